@@ -1,0 +1,105 @@
+// Digs as curves over the bucket's path: what a table holds and what a measurement is compared with.
+//
+// World frame of a scene (the rig): x drag direction, z up, y bucket width. Body frame: origin at the
+// bucket pin; theta = 0 has the tooth straight below the pin, theta > 0 curls, so the tooth is at
+// pin + L (sin theta, -cos theta). My is the y component of the moment of the soil on the bucket about
+// the moving pin; My > 0 resists curling and dragging towards +x. Fx, Fz: force of the soil on the bucket.
+
+#ifndef DIG_CORE_CURVE_H
+#define DIG_CORE_CURVE_H
+
+#include "core/status.h"
+
+#include <stddef.h>
+
+#define DIG_CURVE_POINTS   256 // points of a curve on the path-progress grid 0 … 1
+#define DIG_PHASES_MAX     8
+#define DIG_NAME_SIZE      32
+#define DIG_TRAJECTORY_MAX 8 // trajectories in one table
+#define DIG_SMOOTH_HALF_s  0.16 // half width of the paper's moving average, in rig time
+
+enum dig_channel { DIG_CHANNEL_MY_Nm, DIG_CHANNEL_FX_N, DIG_CHANNEL_FZ_N, DIG_CHANNELS };
+
+/// The axes of a table, in this order wherever gravel is an array.
+enum dig_axis { DIG_AXIS_FRICTION, DIG_AXIS_ROLLING, DIG_AXIS_DENSITY_kgpm3, DIG_AXES };
+
+/// "friction", "rolling", "density_kgpm3".
+const char *dig_axis_name(enum dig_axis axis);
+
+struct dig_gravel {
+    double value[DIG_AXES];
+};
+
+struct dig_phase {
+    char   name[DIG_NAME_SIZE];
+    double duration_s;
+    double vx_mps, vz_mps; // of the pin
+    double omega_radps;    // of theta
+};
+
+/// A prescribed dig: the pin starts at start_pin and moves with constant rates, phase by phase.
+struct dig_trajectory {
+    char             name[DIG_NAME_SIZE];
+    double           theta0_rad;
+    double           start_x_m, start_z_m; // pin at t = 0
+    size_t           phases;
+    struct dig_phase phase[DIG_PHASES_MAX];
+};
+
+struct dig_pose {
+    double x_m, z_m, theta_rad; // pin and bucket attitude, world frame
+};
+
+/// Whole duration, s.
+double dig_trajectory_duration_s(const struct dig_trajectory *trajectory);
+
+/// Pose at time_s, held at the ends outside [0, duration].
+struct dig_pose dig_trajectory_pose(const struct dig_trajectory *trajectory, double time_s);
+
+/// Length of the path travelled until time_s: the integral of |pin velocity| + tooth_m |omega|, m.
+double dig_trajectory_path_m(const struct dig_trajectory *trajectory, double tooth_m,
+                             double time_s);
+
+/// Inverse of the above as a fraction: the time at which progress (0 … 1) of the path is done.
+double dig_trajectory_time_s(const struct dig_trajectory *trajectory, double tooth_m,
+                             double progress);
+
+/// Index of the phase at time_s, in [0, phases).
+size_t dig_trajectory_phase(const struct dig_trajectory *trajectory, double time_s);
+
+/// Centred moving average of half width half_s over n samples at times t_s (ascending): the mean of
+/// the piecewise-linear signal over the part of [t - half, t + half] the samples cover. y and out
+/// may not overlap. O(n).
+void dig_curve_smooth(size_t n, const double t_s[], const double y[], double half_s, double out[]);
+
+/// One point of the table: a gravel, and for each trajectory the mean curve over packings and the
+/// standard deviation of ONE dig about it (n - 1; with a single packing it is NaN and the loader
+/// replaces it by the pooled relative spread).
+struct dig_curve {
+    float mean[DIG_CHANNELS][DIG_CURVE_POINTS];
+    float sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+};
+
+/// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
+/// that lacks a trajectory has packings 0 there.
+struct dig_curve_set {
+    char                   scene_name[DIG_NAME_SIZE];
+    char                   scene_hash[65];  // lower-case hex SHA-256 of the canonical scene
+    double                 tooth_m;         // bucket pin to tooth: the length scale of Froude similarity
+    double                 bucket_width_m;
+    double                 young_Pa;
+    double                 smooth_half_s;   // smoothing already applied to the curves, rig time
+    size_t                 trajectories;
+    struct dig_trajectory  trajectory[DIG_TRAJECTORY_MAX];
+    size_t                 entries;
+    struct dig_gravel     *gravel;   // [entries]
+    int                   *packings; // [entries * trajectories]
+    struct dig_curve      *curve;    // [entries * trajectories]
+    // The full grid behind the entries: axis values ascending; cell[i] is the entry at that grid
+    // index (friction slowest, density fastest) or -1 where the table has a hole.
+    size_t                 axis_count[DIG_AXES];
+    double                *axis[DIG_AXES];
+    int                   *cell;
+};
+
+#endif // DIG_CORE_CURVE_H

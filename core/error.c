@@ -1,0 +1,19 @@
+#include "core/error.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum dig_status dig_error_set(struct dig_error *const error, const enum dig_status status,
+                              const char *const format, ...)
+{
+    assert(format != NULL);
+    if (error != NULL) {
+        va_list args;
+        va_start(args, format);
+        (void)vsnprintf(error->text, sizeof error->text, format, args);
+        va_end(args);
+    }
+    return status;
+}

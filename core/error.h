@@ -1,0 +1,19 @@
+// What went wrong, in words for the person who must mend it. Libraries fill it and never print it;
+// main programs print it once, where the error stops.
+
+#ifndef DIG_CORE_ERROR_H
+#define DIG_CORE_ERROR_H
+
+#include "core/status.h"
+
+struct dig_error {
+    char text[512]; // "FILE:LINE: key: what was found, what was expected"; "" when nothing failed
+};
+
+/// Fills *error (NULL is allowed and ignored) and returns status, so that a refusal is one line:
+/// `return dig_error_set(error, DIG_EINVAL, "%s:%d: young_Pa: %g, expected > 0", …)`.
+/// Text that does not fit is cut.
+__attribute__((format(printf, 3, 4))) enum dig_status
+dig_error_set(struct dig_error *error, enum dig_status status, const char *format, ...);
+
+#endif // DIG_CORE_ERROR_H

@@ -1,0 +1,22 @@
+// Reads a grid YAML: the values of friction, rolling friction and density a table is computed at.
+
+#ifndef DIG_FILES_GRID_YAML_H
+#define DIG_FILES_GRID_YAML_H
+
+#include "core/curve.h"
+#include "core/error.h"
+
+#define DIG_AXIS_VALUES_MAX 32
+
+struct dig_grid {
+    size_t count[DIG_AXES];
+    double value[DIG_AXES][DIG_AXIS_VALUES_MAX]; // ascending
+    size_t packings;                             // digs per point, each in its own bed
+    size_t trajectories;                         // which of the scene's; 0: all
+    char   trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
+};
+
+DIG_MUST_CHECK enum dig_status dig_grid_read(const char *path, struct dig_grid *grid,
+                                             struct dig_error *error);
+
+#endif // DIG_FILES_GRID_YAML_H

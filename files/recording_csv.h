@@ -1,0 +1,37 @@
+// Force recordings, machine recordings and beds as CSV (docs/formats.md): a header line, SI, `#`
+// lines are comments, missing machine samples are empty fields.
+
+#ifndef DIG_FILES_RECORDING_CSV_H
+#define DIG_FILES_RECORDING_CSV_H
+
+#include "core/error.h"
+#include "core/recording.h"
+
+#include <stdio.h>
+
+/// Read a whole file. DIG_EINVAL names file, line, column and what was expected: unknown or missing
+/// columns, text where a number belongs, NaN or infinity, time that does not ascend, sampling below
+/// 50 Hz, fewer than two rows. DIG_EIO: errno's text. *recording is written on success only.
+DIG_MUST_CHECK enum dig_status dig_recording_read(const char *path, struct dig_recording *recording,
+                                                  struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_machine_recording_read(const char                   *path,
+                                                          struct dig_machine_recording *recording,
+                                                          struct dig_error             *error);
+
+/// Write a whole file: into PATH.part, then renamed, so that no half file is ever left behind.
+DIG_MUST_CHECK enum dig_status dig_recording_write(const char                 *path,
+                                                   const struct dig_recording *recording,
+                                                   struct dig_error           *error);
+DIG_MUST_CHECK enum dig_status
+dig_machine_recording_write(const char *path, const struct dig_machine_recording *recording,
+                            struct dig_error *error);
+
+/// A bed: x_m,y_m,z_m,radius_m, one grain a line. Arrays are malloc'ed, each of *grains.
+DIG_MUST_CHECK enum dig_status dig_bed_read(const char *path, size_t *grains, double **x_m,
+                                            double **y_m, double **z_m, double **radius_m,
+                                            struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_bed_write(const char *path, size_t grains, const double x_m[],
+                                             const double y_m[], const double z_m[],
+                                             const double radius_m[], struct dig_error *error);
+
+#endif // DIG_FILES_RECORDING_CSV_H
