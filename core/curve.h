@@ -1,9 +1,11 @@
-// Digs as curves over the bucket's path: what a table holds and what a measurement is compared with.
+// Digs as curves over the bucket's path: what a table holds and what a measurement is compared
+// with.
 //
-// World frame of a scene (the rig): x drag direction, z up, y bucket width. Body frame: origin at the
-// bucket pin; theta = 0 has the tooth straight below the pin, theta > 0 curls, so the tooth is at
-// pin + L (sin theta, -cos theta). My is the y component of the moment of the soil on the bucket about
-// the moving pin; My > 0 resists curling and dragging towards +x. Fx, Fz: force of the soil on the bucket.
+// World frame of a scene (the rig): x drag direction, z up, y bucket width. Body frame: origin at
+// the bucket pin; theta = 0 has the tooth straight below the pin, theta > 0 curls, so the tooth is
+// at pin + L (sin theta, -cos theta). My is the y component of the moment of the soil on the bucket
+// about the moving pin; My > 0 resists curling and dragging towards +x. Fx, Fz: force of the soil
+// on the bucket.
 
 #ifndef DIG_CORE_CURVE_H
 #define DIG_CORE_CURVE_H
@@ -15,7 +17,7 @@
 #define DIG_CURVE_POINTS   256 // points of a curve on the path-progress grid 0 … 1
 #define DIG_PHASES_MAX     8
 #define DIG_NAME_SIZE      32
-#define DIG_TRAJECTORY_MAX 8 // trajectories in one table
+#define DIG_TRAJECTORY_MAX 8    // trajectories in one table
 #define DIG_SMOOTH_HALF_s  0.16 // half width of the paper's moving average, in rig time
 
 enum dig_channel { DIG_CHANNEL_MY_Nm, DIG_CHANNEL_FX_N, DIG_CHANNEL_FZ_N, DIG_CHANNELS };
@@ -83,23 +85,23 @@ struct dig_curve {
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
 /// that lacks a trajectory has packings 0 there.
 struct dig_curve_set {
-    char                   scene_name[DIG_NAME_SIZE];
-    char                   scene_hash[65];  // lower-case hex SHA-256 of the canonical scene
-    double                 tooth_m;         // bucket pin to tooth: the length scale of Froude similarity
-    double                 bucket_width_m;
-    double                 young_Pa;
-    double                 smooth_half_s;   // smoothing already applied to the curves, rig time
-    size_t                 trajectories;
-    struct dig_trajectory  trajectory[DIG_TRAJECTORY_MAX];
-    size_t                 entries;
-    struct dig_gravel     *gravel;   // [entries]
-    int                   *packings; // [entries * trajectories]
-    struct dig_curve      *curve;    // [entries * trajectories]
+    char                  scene_name[DIG_NAME_SIZE];
+    char                  scene_hash[65]; // lower-case hex SHA-256 of the canonical scene
+    double                tooth_m; // bucket pin to tooth: the length scale of Froude similarity
+    double                bucket_width_m;
+    double                young_Pa;
+    double                smooth_half_s; // smoothing already applied to the curves, rig time
+    size_t                trajectories;
+    struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
+    size_t                entries;
+    struct dig_gravel    *gravel;   // [entries]
+    int                  *packings; // [entries * trajectories]
+    struct dig_curve     *curve;    // [entries * trajectories]
     // The full grid behind the entries: axis values ascending; cell[i] is the entry at that grid
     // index (friction slowest, density fastest) or -1 where the table has a hole.
-    size_t                 axis_count[DIG_AXES];
-    double                *axis[DIG_AXES];
-    int                   *cell;
+    size_t  axis_count[DIG_AXES];
+    double *axis[DIG_AXES];
+    int    *cell;
 };
 
 #endif // DIG_CORE_CURVE_H

@@ -39,17 +39,18 @@ struct dig_cylinder {
     double          count;
     double          bore_m;
     double          rod_m;
-    double          relief_Pa;       // beyond it the valve opens and the pressure says nothing
-    double          back_Pa;         // pressure of the return side while moving
-    double          min_length_m;    // pin to pin, retracted
-    double          max_length_m;    // pin to pin, extended
-    struct dig_vec2 base_m;          // boom: machine frame; arm: boom frame; bucket: arm frame
-    struct dig_vec2 eye_m;           // boom: boom frame; arm: arm frame; bucket: unused (linkage)
+    double          relief_Pa;         // beyond it the valve opens and the pressure says nothing
+    double          back_Pa;           // pressure of the return side while moving
+    double          min_length_m;      // pin to pin, retracted
+    double          max_length_m;      // pin to pin, extended
+    struct dig_vec2 base_m;            // boom: machine frame; arm: boom frame; bucket: arm frame
+    struct dig_vec2 eye_m;             // boom: boom frame; arm: arm frame; bucket: unused (linkage)
     double          pressure_sigma_Pa; // 1 sigma of one chamber's sensor, quantisation not included
 };
 
 /// The four-bar between bucket cylinder and bucket, in the arm frame: rocker N-M, link M-K, and the
-/// bucket's ear Q-K, where Q is the bucket pin at (arm length, 0). M lies on the cylinder's side of N-K.
+/// bucket's ear Q-K, where Q is the bucket pin at (arm length, 0). M lies on the cylinder's side of
+/// N-K.
 struct dig_four_bar {
     struct dig_vec2 rocker_pin_m; // N, in the arm frame
     double          rocker_m;     // |NM|
@@ -67,11 +68,11 @@ struct dig_machine {
     double              angle_step_rad;   // quantisation of the angles as they arrive; 0: none
     double              angle_sigma_rad;  // 1 sigma of one angle sensor, quantisation not included
     // What keeps the machine on the ground: the soil may not lift it off its tracks.
-    double              weight_N;         // machine without the front links above
-    double              weight_X_m;       // its centre of mass, from the boom foot along machine X
-    double              tip_front_X_m;    // front tipping edge of the tracks
-    double              tip_rear_X_m;     // rear tipping edge
-    double              boom_foot_Z_m;    // boom foot above the ground the tracks stand on
+    double weight_N;      // machine without the front links above
+    double weight_X_m;    // its centre of mass, from the boom foot along machine X
+    double tip_front_X_m; // front tipping edge of the tracks
+    double tip_rear_X_m;  // rear tipping edge
+    double boom_foot_Z_m; // boom foot above the ground the tracks stand on
 };
 
 /// Refuses what cannot be: non-positive lengths, areas or masses, a rod thicker than its bore,

@@ -7,8 +7,9 @@
 
 #include <stddef.h>
 
-/// One line of a force recording: a rig with a force sensor, or a DEM. Frames of core/curve.h: force
-/// and moment of the soil on the bucket, moments about the moving pin, means over the window around t.
+/// One line of a force recording: a rig with a force sensor, or a DEM. Frames of core/curve.h:
+/// force and moment of the soil on the bucket, moments about the moving pin, means over the window
+/// around t.
 struct dig_force_row {
     double t_s, pin_x_m, pin_z_m, theta_deg;
     double Fx_N, Fy_N, Fz_N, Mx_Nm, My_Nm, Mz_Nm;

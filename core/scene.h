@@ -11,8 +11,8 @@
 
 #define DIG_PROFILE_MAX 16
 
-/// The bucket: plates of zero thickness over the width along the profile's polyline, two side plates
-/// that close the profile's polygon at +-width/2, mouth open between last and first point.
+/// The bucket: plates of zero thickness over the width along the profile's polyline, two side
+/// plates that close the profile's polygon at +-width/2, mouth open between last and first point.
 struct dig_bucket {
     size_t points;
     double x_m[DIG_PROFILE_MAX]; // body frame, first point is the tooth
@@ -27,11 +27,11 @@ struct dig_box {
 
 /// The pouring that makes a bed: grains at random without overlap, at this solid fraction, falling.
 struct dig_packing {
-    double solid_fraction;  // of the region they are dropped in
-    double fill_factor;     // volume of grains poured / volume of the levelled box, before levelling
-    double fall_mps;        // initial speed downwards
-    double settle_s;        // before levelling
-    double relax_s;         // after levelling
+    double solid_fraction; // of the region they are dropped in
+    double fill_factor;    // volume of grains poured / volume of the levelled box, before levelling
+    double fall_mps;       // initial speed downwards
+    double settle_s;       // before levelling
+    double relax_s;        // after levelling
 };
 
 struct dig_material {
@@ -49,8 +49,8 @@ struct dig_scene {
     struct dig_packing    packing;
     struct dig_material   material;
     double                gravity_mps2;
-    double                time_step_s;  // 0: derived from the contact and Rayleigh times
-    double                output_s;     // width of the averaging window of a curve, 0.005
+    double                time_step_s; // 0: derived from the contact and Rayleigh times
+    double                output_s;    // width of the averaging window of a curve, 0.005
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
 };

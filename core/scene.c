@@ -1,0 +1,233 @@
+#include "core/scene.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+double dig_scene_tooth_m(const struct dig_scene *const scene)
+{
+    assert(scene != NULL);
+    return hypot(scene->bucket.x_m[0], scene->bucket.z_m[0]);
+}
+
+const struct dig_trajectory *dig_scene_find(const struct dig_scene *const scene,
+                                            const char *const             name)
+{
+    assert(scene != NULL && name != NULL);
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        if (strcmp(scene->trajectory[i].name, name) == 0) {
+            return &scene->trajectory[i];
+        }
+    }
+    return NULL;
+}
+
+struct range {
+    const char *key;
+    double      value;
+    double      above; // exclusive
+    double      most;  // inclusive
+};
+
+static enum dig_status check_ranges(const size_t n, const struct range range[],
+                                    struct dig_error *const error)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!(range[i].value > range[i].above && range[i].value <= range[i].most)) {
+            return dig_error_set(error, DIG_EINVAL, "%s: %g, expected > %g and <= %g", range[i].key,
+                                 range[i].value, range[i].above, range[i].most);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_box(const struct dig_box *const box, const double diameter_m,
+                                 struct dig_error *const error)
+{
+    const struct {
+        const char *key;
+        double      low, high;
+    } side[] = {
+        { "box_m.x", box->x_min_m, box->x_max_m },
+        { "box_m.y", box->y_min_m, box->y_max_m },
+        { "box_m.z", box->z_min_m, box->z_max_m },
+    };
+    for (size_t i = 0; i < sizeof side / sizeof side[0]; i++) {
+        if (!(isfinite(side[i].low) && isfinite(side[i].high) &&
+              side[i].high - side[i].low > 2.0 * diameter_m)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: [%g, %g], expected two numbers, ascending, more than two "
+                                 "grain diameters apart",
+                                 side[i].key, side[i].low, side[i].high);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_bucket(const struct dig_bucket *const bucket,
+                                    struct dig_error *const        error)
+{
+    if (bucket->points < 3 || bucket->points > DIG_PROFILE_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "bucket.profile_m: %zu points, expected 3 to %d",
+                             bucket->points, DIG_PROFILE_MAX);
+    }
+    for (size_t i = 0; i < bucket->points; i++) {
+        const bool same = i > 0 && hypot(bucket->x_m[i] - bucket->x_m[i - 1],
+                                         bucket->z_m[i] - bucket->z_m[i - 1]) < 1e-9;
+        if (!isfinite(bucket->x_m[i]) || !isfinite(bucket->z_m[i]) || same) {
+            return dig_error_set(
+                error, DIG_EINVAL,
+                "bucket.profile_m[%zu]: [%g, %g], expected two finite numbers that "
+                "differ from the point before",
+                i, bucket->x_m[i], bucket->z_m[i]);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_trajectory(const struct dig_trajectory *const t, const size_t at,
+                                        struct dig_error *const error)
+{
+    if (t->name[0] == '\0') {
+        return dig_error_set(error, DIG_EINVAL, "trajectories[%zu].name: empty, expected a name",
+                             at);
+    }
+    if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "trajectories[%zu].start_pin_m: expected finite numbers", at);
+    }
+    if (t->phases < 1 || t->phases > DIG_PHASES_MAX) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "trajectories[%zu].phases: %zu phases, expected 1 to %d", at,
+                             t->phases, DIG_PHASES_MAX);
+    }
+    for (size_t i = 0; i < t->phases; i++) {
+        const struct dig_phase *const p = &t->phase[i];
+        if (!(p->duration_s > 0.0 && p->duration_s <= 600.0)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "trajectories[%zu].phases[%zu].duration_s: %g, expected > 0 and "
+                                 "<= 600",
+                                 at, i, p->duration_s);
+        }
+        if (!isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "trajectories[%zu].phases[%zu]: rates expected finite", at, i);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_trajectories(const struct dig_scene *const scene,
+                                          struct dig_error *const       error)
+{
+    if (scene->trajectories < 1 || scene->trajectories > DIG_TRAJECTORY_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "trajectories: %zu, expected 1 to %d",
+                             scene->trajectories, DIG_TRAJECTORY_MAX);
+    }
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        const enum dig_status status = check_trajectory(&scene->trajectory[i], i, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        if (dig_scene_find(scene, scene->trajectory[i].name) != &scene->trajectory[i]) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "trajectories[%zu].name: \"%s\" again, expected a new name", i,
+                                 scene->trajectory[i].name);
+        }
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_error *const error)
+{
+    assert(scene != NULL);
+    if (scene->name[0] == '\0') {
+        return dig_error_set(error, DIG_EINVAL, "name: empty, expected a name");
+    }
+
+    const struct range range[] = {
+        { "bucket.width_m", scene->bucket.width_m, 0.0, 100.0 },
+        { "material.diameter_m", scene->material.diameter_m, 0.0, 10.0 },
+        { "material.young_Pa", scene->material.young_Pa, 0.0, 1e12 },
+        { "material.poisson", scene->material.poisson, -1.0, 0.5 },
+        { "material.restitution", scene->material.restitution, 0.0, 1.0 },
+        { "material.characteristic_velocity_mps", scene->material.characteristic_velocity_mps, 0.0,
+          1e3 },
+        { "packing.solid_fraction", scene->packing.solid_fraction, 0.0, 0.4 },
+        { "packing.fill_factor", scene->packing.fill_factor, 0.0, 2.0 },
+        { "packing.fall_mps", scene->packing.fall_mps, -1e-300, 10.0 },
+        { "packing.settle_s", scene->packing.settle_s, 0.0, 60.0 },
+        { "packing.relax_s", scene->packing.relax_s, -1e-300, 60.0 },
+        { "gravity_mps2", scene->gravity_mps2, 0.0, 100.0 },
+        { "time_step_s", scene->time_step_s, -1e-300, 1e-2 },
+        { "output_s", scene->output_s, 0.0, 0.02 },
+    };
+    enum dig_status status = check_ranges(sizeof range / sizeof range[0], range, error);
+    if (status == DIG_OK) {
+        status = check_box(&scene->box, scene->material.diameter_m, error);
+    }
+    if (status == DIG_OK) {
+        status = check_bucket(&scene->bucket, error);
+    }
+    return status == DIG_OK ? check_trajectories(scene, error) : status;
+}
+
+struct text {
+    char  *at;
+    size_t size;
+    size_t length;
+};
+
+__attribute__((format(printf, 2, 3))) static void add(struct text *const text,
+                                                      const char *const  format, ...)
+{
+    char *const  to   = text->length < text->size ? text->at + text->length : NULL;
+    const size_t left = to != NULL ? text->size - text->length : 0;
+    va_list      args;
+    va_start(args, format);
+    const int wrote = vsnprintf(to, left, format, args);
+    va_end(args);
+    assert(wrote >= 0);
+    text->length += (size_t)wrote;
+}
+
+static void add_trajectory(struct text *const text, const struct dig_trajectory *const t)
+{
+    add(text, "trajectory=%s\ntheta0_rad=%.17g\nstart_m=%.17g %.17g\n", t->name, t->theta0_rad,
+        t->start_x_m, t->start_z_m);
+    for (size_t i = 0; i < t->phases; i++) {
+        const struct dig_phase *const p = &t->phase[i];
+        add(text, "phase=%s %.17g %.17g %.17g %.17g\n", p->name, p->duration_s, p->vx_mps,
+            p->vz_mps, p->omega_radps);
+    }
+}
+
+size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t size,
+                           char text_out[const])
+{
+    assert(scene != NULL);
+    struct text                      text = { text_out, size, 0 };
+    const struct dig_box *const      b    = &scene->box;
+    const struct dig_packing *const  p    = &scene->packing;
+    const struct dig_material *const m    = &scene->material;
+
+    add(&text, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
+    for (size_t i = 0; i < scene->bucket.points; i++) {
+        add(&text, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i], scene->bucket.z_m[i]);
+    }
+    add(&text, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m, b->y_min_m,
+        b->y_max_m, b->z_min_m, b->z_max_m);
+    add(&text, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction, p->fill_factor,
+        p->fall_mps, p->settle_s, p->relax_s);
+    add(&text, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa, m->poisson,
+        m->restitution, m->characteristic_velocity_mps);
+    add(&text, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n", scene->gravity_mps2,
+        scene->time_step_s, scene->output_s);
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        add_trajectory(&text, &scene->trajectory[i]);
+    }
+    return text.length;
+}
