@@ -35,6 +35,10 @@ tool_src  := $(wildcard tools/*.c)
 test_src  := $(wildcard tests/test_*.c)
 testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
+system_tests := $(wildcard tests/system/*.sh)
+# Tests whose subject runs threads.
+threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c)
+JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) \
              $(wildcard firmware_host/digsightd.c tools/rig/digrig.c)
 
@@ -49,9 +53,22 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all clean help
+.PHONY: all setup demo test check check-unit check-asan check-tsan check-valgrind coverage lint layers \
+        format format-check install uninstall clean help jar spy
 
-all: $(bins) ## Build everything
+all: $(bins) ## Build everything that is installed
+
+demo: ## Set up what is missing, build, and run the main job end to end (about 4 minutes)
+	$(Q)scripts/setup.sh build demo
+	$(Q)$(MAKE) --no-print-directory -j $(JOBS) all
+	$(Q)BIN=$(BUILD)/bin OUT=$(BUILD)/demo scripts/demo.sh
+
+test: ## Set up what is missing, build, and run every test
+	$(Q)scripts/setup.sh build test
+	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
+
+setup: ## Install everything any target needs
+	$(Q)scripts/setup.sh build demo test lint spy valgrind
 
 $(msg_c) $(msg_h): $(BUILD)/messages/.made ;
 $(BUILD)/messages/.made: $(wildcard messages/*.lcm)
@@ -100,6 +117,58 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(call objs,$(testlib)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(call pkg_libs,cmocka) $(LIBS))
 
+check: $(test_bins) all jar ## Build and run every test (what `make test` does once all is installed)
+	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
+	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh $(system_tests)
+
+check-unit: $(test_bins) ## The unit tests alone
+	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
+
+check-asan: ## The unit tests under AddressSanitizer and UBSan
+	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan \
+	    CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
+
+check-tsan: ## The threaded units under ThreadSanitizer
+	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/tsan test_src="$(threaded_tests)" \
+	    CFLAGS="-O1 -g -fsanitize=thread"
+
+check-valgrind: $(test_bins) ## The unit tests under memcheck
+	$(Q)scripts/setup.sh valgrind
+	$(Q)for t in $(test_bins); do echo "$$t"; \
+	    DIG_TEST_QUICK=1 valgrind -q --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
+
+coverage: ## Line and branch coverage per source file
+	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/cov CFLAGS="-O0 -g --coverage"
+	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
+
+lint: layers $(BUILD)/messages/.made ## Layering, the compiler's analyzer, clang-tidy
+	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
+	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
+	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -n 4 sh -c \
+	    'clang-tidy --quiet "$$@" -- $(STD) $(lint_flags) 2>/dev/null' clang-tidy
+
+layers: ## Fail on an include that points the wrong way
+	$(Q)./scripts/check_layers.sh
+
+format: ## Rewrite the sources with clang-format
+	$(Q)clang-format -i $$(git ls-files '*.[ch]')
+
+format-check: ## Fail on a source clang-format would change
+	$(Q)clang-format --dry-run --Werror $$(git ls-files '*.[ch]')
+
+install: all ## Install under $(DESTDIR)$(PREFIX)
+	$(Q)$(INSTALL) -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/share/digsight/tables'
+	$(Q)$(INSTALL) -m 755 $(bins) '$(DESTDIR)$(PREFIX)/bin'
+	$(Q)cp -R config messages '$(DESTDIR)$(PREFIX)/share/digsight/'
+	$(Q)$(INSTALL) -m 644 $(wildcard tables/*.sqlite) '$(DESTDIR)$(PREFIX)/share/digsight/tables'
+
+uninstall: ## Remove what install put there
+	$(Q)rm -f $(patsubst $(BUILD)/bin/%,'$(DESTDIR)$(PREFIX)/bin/%',$(bins))
+	$(Q)rm -rf '$(DESTDIR)$(PREFIX)/share/digsight'
+
+lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -fopenmp-simd \
+             $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml)
+
 clean: ## Remove the build folder
 	$(Q)rm -rf $(BUILD)
 
@@ -107,4 +176,5 @@ help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-15s %s\n", $$1, $$2 }' Makefile
 
 .SECONDARY:
+-include messages/java.mk
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,140 @@
+// Tests for core/machine.c and core/sample.c
+
+#include "core/machine.h"
+
+#include "core/sample.h"
+#include "tests/testlib.h"
+
+#include <string.h>
+
+static struct dig_machine plausible(void)
+{
+    struct dig_machine m = { .name                  = "test",
+                             .bucket_width_m        = 0.7,
+                             .weight_N              = 1.5e5,
+                             .weight_X_m            = -1.0,
+                             .tip_front_X_m         = 1.5,
+                             .tip_rear_X_m          = -2.5,
+                             .boom_foot_Z_m         = 1.8,
+                             .four_bar.rocker_m     = 0.6,
+                             .four_bar.link_m       = 0.6,
+                             .four_bar.ear_m        = { 0.1, 0.4 },
+                             .four_bar.rocker_pin_m = { 2.0, 0.1 } };
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        m.link[j]     = (struct dig_link){ 3.0, 500.0, { 1.0, 0.1 }, 200.0, -1.0, 1.0 };
+        m.cylinder[j] = (struct dig_cylinder){ .count             = 1.0,
+                                               .bore_m            = 0.12,
+                                               .rod_m             = 0.085,
+                                               .relief_Pa         = 34e6,
+                                               .back_Pa           = 5e5,
+                                               .min_length_m      = 1.0,
+                                               .max_length_m      = 2.0,
+                                               .pressure_sigma_Pa = 1e4 };
+    }
+    return m;
+}
+
+static void a_plausible_machine_passes(void **state)
+{
+    (void)state;
+    const struct dig_machine m = plausible();
+    struct dig_error         e = { "untouched" };
+    assert_int_equal(dig_machine_check(&m, &e), DIG_OK);
+    assert_string_equal(e.text, "untouched");
+}
+
+static void expect_refusal(const struct dig_machine *const m, const char *const starts_with)
+{
+    struct dig_error e = { "" };
+    assert_int_equal(dig_machine_check(m, &e), DIG_EINVAL);
+    if (strncmp(e.text, starts_with, strlen(starts_with)) != 0) {
+        fail_msg("\"%s\" does not start with \"%s\"", e.text, starts_with);
+    }
+    assert_non_null(strstr(e.text, "expected"));
+}
+
+static void what_cannot_be_is_refused_by_its_key(void **state)
+{
+    (void)state;
+    struct dig_machine m = plausible();
+    m.link[1].mass_kg    = 0.0;
+    expect_refusal(&m, "arm.mass_kg: 0");
+
+    m                 = plausible();
+    m.link[2].max_rad = m.link[2].min_rad;
+    expect_refusal(&m, "bucket.max_deg");
+
+    m                    = plausible();
+    m.cylinder[0].bore_m = NAN;
+    expect_refusal(&m, "cylinders.boom.bore_m: ");
+
+    m                   = plausible();
+    m.cylinder[2].rod_m = m.cylinder[2].bore_m;
+    expect_refusal(&m, "cylinders.bucket.rod_m");
+
+    m                          = plausible();
+    m.cylinder[1].max_length_m = 0.5;
+    expect_refusal(&m, "cylinders.arm.max_length_m");
+
+    m                     = plausible();
+    m.cylinder[1].back_Pa = 35e6;
+    expect_refusal(&m, "cylinders.arm.back_Pa");
+
+    m                  = plausible();
+    m.four_bar.ear_m.x = INFINITY;
+    expect_refusal(&m, "four_bar.ear_m");
+
+    m            = plausible();
+    m.weight_X_m = 9.0;
+    expect_refusal(&m, "ground.weight_X_m");
+
+    m                  = plausible();
+    m.pressure_step_Pa = -1.0;
+    expect_refusal(&m, "sensors.pressure_step_Pa");
+}
+
+// 4 x area / pi is the square of the diameter; the annulus is the difference of two squares.
+static void areas_are_those_of_circles(void **state)
+{
+    (void)state;
+    const struct dig_machine m = plausible();
+    assert_close(dig_cylinder_head_m2(&m.cylinder[0]), 113.0973355e-4, 1e-11);
+    assert_close(dig_cylinder_rod_m2(&m.cylinder[0]), 113.0973355e-4 - 56.7450173e-4, 1e-11);
+}
+
+static void every_signal_has_a_name_that_finds_it(void **state)
+{
+    (void)state;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        assert_int_equal(dig_signal_find(dig_signal_name((enum dig_signal)i)), i);
+    }
+    assert_int_equal(dig_signal_find("boom"), -1);
+    assert_null(dig_signal_name(DIG_SIGNALS));
+}
+
+static void a_sample_is_complete_without_the_optional_signals_only(void **state)
+{
+    (void)state;
+    struct dig_sample s = { 0 };
+    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
+        s.valid[i] = true;
+    }
+    assert_true(dig_sample_is_complete(&s));
+    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
+        s.valid[i] = false;
+        assert_false(dig_sample_is_complete(&s));
+        s.valid[i] = true;
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plausible_machine_passes),
+        cmocka_unit_test(what_cannot_be_is_refused_by_its_key),
+        cmocka_unit_test(areas_are_those_of_circles),
+        cmocka_unit_test(every_signal_has_a_name_that_finds_it),
+        cmocka_unit_test(a_sample_is_complete_without_the_optional_signals_only),
+    };
+    return cmocka_run_group_tests_name("machine", tests, NULL, NULL);
+}
