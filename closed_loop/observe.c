@@ -1,0 +1,180 @@
+#include "closed_loop/observe.h"
+
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// The recording's columns that matter, as plain arrays over its rows.
+struct columns {
+    size_t  rows;
+    double *t_s;
+    double *progress; // path travelled as a fraction of the whole
+    double *raw_Nm;
+    double *smooth_Nm;
+};
+
+static double step_m(const struct dig_force_row *const a, const struct dig_force_row *const b,
+                     const double tooth_m)
+{
+    return hypot(b->pin_x_m - a->pin_x_m, b->pin_z_m - a->pin_z_m) +
+           tooth_m * fabs(b->theta_deg - a->theta_deg) * DIG_RAD_PER_DEG;
+}
+
+static double fill_columns(const struct dig_recording *const recording, const double tooth_m,
+                           const struct columns *const c)
+{
+    double path_m = 0.0;
+    for (size_t i = 0; i < c->rows; i++) {
+        const struct dig_force_row *const row = &recording->row[i];
+        path_m += i == 0 ? 0.0 : step_m(row - 1, row, tooth_m);
+        c->t_s[i]      = row->t_s;
+        c->progress[i] = path_m;
+        c->raw_Nm[i]   = row->My_Nm;
+    }
+    for (size_t i = 0; i < c->rows && path_m > 0.0; i++) {
+        c->progress[i] /= path_m;
+    }
+    return path_m;
+}
+
+// Index of the last row at or before this progress; calls with ascending progress walk on.
+static size_t row_at(const struct columns *const c, const double progress, size_t i)
+{
+    while (i + 2 < c->rows && c->progress[i + 1] <= progress) {
+        i++;
+    }
+    return i;
+}
+
+static double fraction_at(const struct columns *const c, const size_t i, const double progress)
+{
+    const double span = c->progress[i + 1] - c->progress[i];
+    return span > 0.0 ? fmin(fmax((progress - c->progress[i]) / span, 0.0), 1.0) : 0.0;
+}
+
+// RMS distance between recorded and prescribed poses at equal progress, the mean offset of the pin
+// taken away (the ground may lie anywhere), in bucket lengths.
+static double path_distance(const struct dig_recording *const recording,
+                            const struct columns *const c, const struct dig_trajectory *const t,
+                            const double tooth_m)
+{
+    enum { POINTS = 64 };
+    double x_m[POINTS], z_m[POINTS], mean_x_m = 0.0, mean_z_m = 0.0, turn2_m2 = 0.0;
+    size_t i = 0;
+    for (int k = 0; k < POINTS; k++) {
+        const double progress = (double)k / (POINTS - 1);
+        i                     = row_at(c, progress, i);
+        const double f        = fraction_at(c, i, progress);
+
+        const struct dig_force_row *const a = &recording->row[i], *const b = a + 1;
+        const double theta_rad =
+            (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
+        const struct dig_pose pose =
+            dig_trajectory_pose(t, dig_trajectory_time_s(t, tooth_m, progress));
+        x_m[k] = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
+        z_m[k] = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
+        mean_x_m += x_m[k] / POINTS;
+        mean_z_m += z_m[k] / POINTS;
+        turn2_m2 += pow(tooth_m * (theta_rad - pose.theta_rad), 2.0);
+    }
+    double sum_m2 = turn2_m2;
+    for (int k = 0; k < POINTS; k++) {
+        sum_m2 += pow(x_m[k] - mean_x_m, 2.0) + pow(z_m[k] - mean_z_m, 2.0);
+    }
+    return sqrt(sum_m2 / POINTS) / tooth_m;
+}
+
+static enum dig_status observe(const struct dig_curve_set *const set,
+                               const struct dig_recording *const recording,
+                               const struct columns *const       c,
+                               struct dig_observation *const     observation,
+                               struct dig_error *const           error)
+{
+    if (!(fill_columns(recording, set->tooth_m, c) > 0.1 * set->tooth_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the recording's bucket hardly moves, expected a dig");
+    }
+
+    int    best          = -1;
+    double best_distance = INFINITY;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        const double distance = path_distance(recording, c, &set->trajectory[t], set->tooth_m);
+        if (distance < best_distance) {
+            best          = (int)t;
+            best_distance = distance;
+        }
+    }
+    if (best < 0 || !(best_distance <= DIG_OBSERVE_PATH_LIMIT)) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "the recording's path is none of the table's: nearest is \"%s\", "
+                             "%.3f bucket lengths away, expected at most %.2f",
+                             best < 0 ? "" : set->trajectory[best].name, best_distance,
+                             DIG_OBSERVE_PATH_LIMIT);
+    }
+
+    dig_curve_smooth(c->rows, c->t_s, c->raw_Nm, set->smooth_half_s, c->smooth_Nm);
+    struct dig_observation o = {
+        .dig_count  = 1,
+        .trajectory = best,
+        .off_path_m = best_distance * set->tooth_m,
+        .first      = 0.0,
+        .last       = 1.0,
+    };
+    size_t i = 0;
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        i                     = row_at(c, progress, i);
+        const double f        = fraction_at(c, i, progress);
+        o.moment_Nm[k]        = c->smooth_Nm[i] + f * (c->smooth_Nm[i + 1] - c->smooth_Nm[i]);
+    }
+    *observation = o;
+    return DIG_OK;
+}
+
+enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
+                                      const struct dig_recording *const recording,
+                                      struct dig_observation *const     observation,
+                                      struct dig_error *const           error)
+{
+    assert(set != NULL && recording != NULL && observation != NULL);
+    if (recording->rows < 2) {
+        return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
+                             recording->rows);
+    }
+    double *const memory = malloc(4 * recording->rows * sizeof *memory);
+    if (memory == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    const size_t          n       = recording->rows;
+    const struct columns  columns = { n, memory, memory + n, memory + 2 * n, memory + 3 * n };
+    const enum dig_status status  = observe(set, recording, &columns, observation, error);
+    free(memory);
+    return status;
+}
+
+enum dig_status dig_observe_mean(const size_t n, const struct dig_observation one[],
+                                 struct dig_observation *const mean, struct dig_error *const error)
+{
+    assert(mean != NULL);
+    if (n == 0) {
+        return dig_error_set(error, DIG_EINVAL, "no recording, expected one or more");
+    }
+    struct dig_observation sum = one[0];
+    for (size_t i = 1; i < n; i++) {
+        if (one[i].trajectory != sum.trajectory) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "recordings of different trajectories, expected digs along one");
+        }
+        sum.off_path_m = fmax(sum.off_path_m, one[i].off_path_m);
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            sum.moment_Nm[k] += one[i].moment_Nm[k];
+        }
+    }
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum.moment_Nm[k] /= (double)n;
+    }
+    *mean = sum;
+    return DIG_OK;
+}

@@ -1,0 +1,33 @@
+// A force recording as the matcher wants it: moment over path progress, smoothed, on the table's
+// grid.
+
+#ifndef DIG_CLOSED_LOOP_OBSERVE_H
+#define DIG_CLOSED_LOOP_OBSERVE_H
+
+#include "core/curve.h"
+#include "core/error.h"
+#include "core/recording.h"
+#include "estimator/estimator.h"
+
+/// A recording whose path is farther than this (rms, in bucket lengths) from every trajectory of
+/// the table is not one of its digs.
+#define DIG_OBSERVE_PATH_LIMIT 0.05
+
+/// Finds the trajectory the recording followed, whole and at its own pace, and samples the smoothed
+/// moment (+-set->smooth_half_s of the recording's time) at DIG_CURVE_POINTS of its path progress.
+/// The recording must be of the table's size (rig scale); where it stands in space does not matter.
+///
+/// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
+/// and its distance. DIG_EINVAL: a recording that does not move. DIG_ENOMEM. O(rows).
+DIG_MUST_CHECK enum dig_status dig_observe_recording(const struct dig_curve_set *set,
+                                                     const struct dig_recording *recording,
+                                                     struct dig_observation     *observation,
+                                                     struct dig_error           *error);
+
+/// The mean of several observations of one trajectory: their scatter averages down. DIG_EINVAL when
+/// they are of different trajectories or there is none.
+DIG_MUST_CHECK enum dig_status dig_observe_mean(size_t n, const struct dig_observation one[],
+                                                struct dig_observation *mean,
+                                                struct dig_error       *error);
+
+#endif // DIG_CLOSED_LOOP_OBSERVE_H

@@ -1,0 +1,133 @@
+// Tests for closed_loop/observe.c
+
+#include "closed_loop/observe.h"
+
+#include "core/units.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dig_curve_set two_digs(void)
+{
+    return (struct dig_curve_set){
+        .tooth_m       = 0.09,
+        .smooth_half_s = 0.16,
+        .trajectories  = 2,
+        .trajectory    = { { "short",
+                             -0.26,
+                             0.08,
+                             0.17,
+                             2,
+                             { { "in", 0.6, 0.025, -0.0436, 0.0 },
+                               { "drag", 2.0, 0.0463, 0.0, 0.0 } } },
+                           { "curl",
+                             -0.52,
+                             0.09,
+                             0.16,
+                             2,
+                             { { "in", 0.8, 0.03, -0.04, 0.0 }, { "turn", 2.0, 0.0, 0.0, 0.3 } } } },
+    };
+}
+
+// A dig along trajectory t, somewhere else in space and `slower` times slower, whose moment is
+// `moment` of the path travelled.
+static struct dig_recording drive(const struct dig_trajectory *const t, const double slower,
+                                  double (*const moment)(double time_s))
+{
+    const double         end_s = dig_trajectory_duration_s(t) * slower;
+    const size_t         rows  = (size_t)(end_s / 0.005) + 1;
+    struct dig_recording r     = { rows, calloc(rows, sizeof *r.row) };
+    for (size_t i = 0; i < rows; i++) {
+        const double          t_s  = (double)i * end_s / (double)(rows - 1);
+        const struct dig_pose pose = dig_trajectory_pose(t, t_s / slower);
+        r.row[i]                   = (struct dig_force_row){ .t_s       = 5.0 + t_s,
+                                                             .pin_x_m   = pose.x_m + 1.0,
+                                                             .pin_z_m   = pose.z_m - 2.0,
+                                                             .theta_deg = pose.theta_rad / DIG_RAD_PER_DEG,
+                                                             .My_Nm     = moment(t_s / slower) };
+    }
+    return r;
+}
+
+static double slow_wave(const double time_s)
+{
+    return 2.0 + sin(0.8 * time_s);
+}
+
+// Whatever the pace and the place, the dig is recognised and its moment stands where the path says.
+static void pace_and_place_do_not_matter(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set       = two_digs();
+    const double               paces[]   = { 1.0, 1.7, 0.6 };
+    const double               blur_most = 0.02; // of +-0.16 s on a wave of 7.9 s and its ends
+    for (int t = 0; t < 2; t++) {
+        for (size_t p = 0; p < 3; p++) {
+            struct dig_recording   r = drive(&set.trajectory[t], paces[p], slow_wave);
+            struct dig_observation o;
+            assert_int_equal(dig_observe_recording(&set, &r, &o, NULL), DIG_OK);
+            assert_int_equal(o.trajectory, t);
+            assert_true(o.off_path_m < 1e-4);
+            // Within a smoothing window of the ends the mean is one-sided and says something else.
+            const double end_s = dig_trajectory_duration_s(&set.trajectory[t]);
+            for (int k = 0; k < DIG_CURVE_POINTS; k += 9) {
+                const double time_s = dig_trajectory_time_s(&set.trajectory[t], set.tooth_m,
+                                                            k / (DIG_CURVE_POINTS - 1.0));
+                if (time_s > 0.3 && time_s < end_s - 0.3) {
+                    assert_close(o.moment_Nm[k], slow_wave(time_s), blur_most);
+                }
+            }
+            dig_recording_finish(&r);
+        }
+    }
+}
+
+static void a_path_of_another_kind_is_refused_and_writes_nothing(void **state)
+{
+    (void)state;
+    const struct dig_curve_set  set = two_digs();
+    const struct dig_trajectory up  = { "up", 0.0, 0.0, 0.0, 1, { { "up", 2.0, 0.0, 0.1, 0.0 } } };
+    const struct dig_trajectory still = { "still", 0.0, 0.0,
+                                          0.0,     1,   { { "still", 2.0, 0.0, 0.0, 0.0 } } };
+    struct dig_observation      o     = { .dig_count = 42 };
+    struct dig_error            e     = { "" };
+    struct dig_recording        r1 = drive(&up, 1.0, slow_wave), r2 = drive(&still, 1.0, slow_wave);
+    assert_int_equal(dig_observe_recording(&set, &r1, &o, &e), DIG_ENOMATCH);
+    assert_non_null(strstr(e.text, "expected"));
+    assert_int_equal(dig_observe_recording(&set, &r2, &o, &e), DIG_EINVAL);
+    r2.rows = 1;
+    assert_int_equal(dig_observe_recording(&set, &r2, &o, &e), DIG_EINVAL);
+    assert_int_equal(o.dig_count, 42);
+    dig_recording_finish(&r1);
+    dig_recording_finish(&r2);
+}
+
+static void the_mean_is_over_digs_of_one_trajectory_only(void **state)
+{
+    (void)state;
+    struct dig_observation two[2] = { { .trajectory = 1 }, { .trajectory = 1 } };
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        two[0].moment_Nm[k] = k;
+        two[1].moment_Nm[k] = 3.0 * k;
+    }
+    struct dig_observation mean = { .dig_count = 42 };
+    assert_int_equal(dig_observe_mean(2, two, &mean, NULL), DIG_OK);
+    assert_close(mean.moment_Nm[100], 200.0, 1e-12);
+
+    mean.dig_count    = 42;
+    two[1].trajectory = 0;
+    assert_int_equal(dig_observe_mean(2, two, &mean, NULL), DIG_EINVAL);
+    assert_int_equal(dig_observe_mean(0, two, &mean, NULL), DIG_EINVAL);
+    assert_int_equal(mean.dig_count, 42);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pace_and_place_do_not_matter),
+        cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
+        cmocka_unit_test(the_mean_is_over_digs_of_one_trajectory_only),
+    };
+    return cmocka_run_group_tests_name("observe", tests, NULL, NULL);
+}
