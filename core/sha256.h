@@ -1,0 +1,22 @@
+// SHA-256 (FIPS 180-4), for the identity of scenes and beds. Not meant for secrets.
+
+#ifndef DIG_CORE_SHA256_H
+#define DIG_CORE_SHA256_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct dig_sha256 {
+    uint32_t state[8];
+    uint64_t bytes;
+    uint8_t  block[64];
+};
+
+void dig_sha256_init(struct dig_sha256 *hash);
+void dig_sha256_add(struct dig_sha256 *hash, const void *data, size_t size);
+void dig_sha256_finish(struct dig_sha256 *hash, uint8_t digest[32]);
+
+/// The digest of one buffer as 64 lower-case hex digits and a NUL.
+void dig_sha256_hex(const void *data, size_t size, char hex[65]);
+
+#endif // DIG_CORE_SHA256_H

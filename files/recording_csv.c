@@ -1,0 +1,316 @@
+#include "files/recording_csv.h"
+
+#include "files/csv.h"
+#include "files/whole.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define GAP_MAX_s  0.02 // 50 Hz
+#define ROWS_MIN   2
+#define GAP_SLACK  1e-6 // of the gap: times are written with few digits
+#define TIME_MAX_s 1e6  // of a recording; nanoseconds in 64 bits would hold far more
+
+static const struct dig_csv_column force_column[] = {
+    { .name = "t_s" },   { .name = "pin_x_m" }, { .name = "pin_z_m" }, { .name = "theta_deg" },
+    { .name = "Fx_N" },  { .name = "Fy_N" },    { .name = "Fz_N" },    { .name = "Mx_Nm" },
+    { .name = "My_Nm" }, { .name = "Mz_Nm" },
+};
+#define FORCE_COLUMNS (sizeof force_column / sizeof force_column[0])
+
+static const struct dig_csv_column bed_column[] = {
+    { .name = "x_m" },
+    { .name = "y_m" },
+    { .name = "z_m" },
+    { .name = "radius_m" },
+};
+#define BED_COLUMNS (sizeof bed_column / sizeof bed_column[0])
+
+// Time, then one column a signal in the signals' own order.
+static void machine_columns(struct dig_csv_column column[const DIG_SIGNALS + 1])
+{
+    column[0] = (struct dig_csv_column){ .name = "t_s" };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        column[s + 1] = (struct dig_csv_column){
+            .name      = dig_signal_name((enum dig_signal)s),
+            .optional  = s >= DIG_SIGNALS_NEEDED,
+            .may_empty = true,
+        };
+    }
+}
+
+static enum dig_status check_rows(const struct dig_csv *const csv, const char *const path,
+                                  struct dig_error *const error)
+{
+    if (csv->rows < ROWS_MIN) {
+        return dig_error_set(error, DIG_EINVAL, "%s:%d: column t_s: 1 row, expected at least %d",
+                             path, csv->line[0], ROWS_MIN);
+    }
+    for (size_t i = 0; i < csv->rows; i++) {
+        const double t_s = csv->value[i * csv->columns];
+        if (!(fabs(t_s) <= TIME_MAX_s)) {
+            return dig_error_set(error, DIG_EINVAL, "%s:%d: column t_s: %g, expected within +-%g",
+                                 path, csv->line[i], t_s, TIME_MAX_s);
+        }
+        const double before_s = i > 0 ? csv->value[(i - 1) * csv->columns] : -(double)INFINITY;
+        if (!(t_s > before_s)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s:%d: column t_s: %.9g after %.9g, expected ascending time",
+                                 path, csv->line[i], t_s, before_s);
+        }
+    }
+    return DIG_OK;
+}
+
+// Every step of a force recording, for a curve is made of all of them. The mean of a machine
+// recording: a bus may drop samples now and then.
+static enum dig_status check_rate(const struct dig_csv *const csv, const bool each,
+                                  const char *const path, struct dig_error *const error)
+{
+    const size_t step = each ? 1 : csv->rows - 1;
+    for (size_t i = step; i < csv->rows; i += step) {
+        const double gap_s =
+            (csv->value[i * csv->columns] - csv->value[(i - step) * csv->columns]) / (double)step;
+        if (!(gap_s <= GAP_MAX_s * (1.0 + GAP_SLACK))) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s:%d: column t_s: %.4g s between samples, expected %g s or less "
+                                 "(50 Hz or faster)",
+                                 path, csv->line[i], gap_s, GAP_MAX_s);
+        }
+    }
+    return DIG_OK;
+}
+
+static struct dig_force_row force_row(const double v[const FORCE_COLUMNS])
+{
+    return (struct dig_force_row){
+        .t_s       = v[0],
+        .pin_x_m   = v[1],
+        .pin_z_m   = v[2],
+        .theta_deg = v[3],
+        .Fx_N      = v[4],
+        .Fy_N      = v[5],
+        .Fz_N      = v[6],
+        .Mx_Nm     = v[7],
+        .My_Nm     = v[8],
+        .Mz_Nm     = v[9],
+    };
+}
+
+enum dig_status dig_recording_read(const char *const path, struct dig_recording *const recording,
+                                   struct dig_error *const error)
+{
+    assert(path != NULL && recording != NULL);
+
+    struct dig_csv  csv;
+    enum dig_status status = dig_csv_read(path, FORCE_COLUMNS, force_column, &csv, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = check_rows(&csv, path, error);
+    if (status == DIG_OK) {
+        status = check_rate(&csv, true, path, error);
+    }
+    struct dig_force_row *const row = malloc(csv.rows * sizeof *row);
+    if (status == DIG_OK && row == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv.rows);
+    }
+    if (status == DIG_OK) {
+        for (size_t i = 0; i < csv.rows; i++) {
+            row[i] = force_row(csv.value + i * csv.columns);
+        }
+        *recording = (struct dig_recording){ .rows = csv.rows, .row = row };
+    } else {
+        free(row);
+    }
+    dig_csv_finish(&csv);
+    return status;
+}
+
+enum dig_status dig_machine_recording_read(const char *const                   path,
+                                           struct dig_machine_recording *const recording,
+                                           struct dig_error *const             error)
+{
+    assert(path != NULL && recording != NULL);
+
+    struct dig_csv_column column[DIG_SIGNALS + 1];
+    machine_columns(column);
+    struct dig_csv  csv;
+    enum dig_status status = dig_csv_read(path, DIG_SIGNALS + 1, column, &csv, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = check_rows(&csv, path, error);
+    if (status == DIG_OK) {
+        status = check_rate(&csv, false, path, error);
+    }
+    struct dig_sample *const row = calloc(csv.rows, sizeof *row);
+    if (status == DIG_OK && row == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv.rows);
+    }
+    if (status == DIG_OK) {
+        for (size_t i = 0; i < csv.rows; i++) {
+            const double *const v = csv.value + i * csv.columns;
+            row[i].time_ns        = llround(v[0] * 1e9);
+            for (int s = 0; s < DIG_SIGNALS; s++) {
+                row[i].valid[s] = !isnan(v[s + 1]);
+                row[i].value[s] = row[i].valid[s] ? v[s + 1] : 0.0;
+            }
+        }
+        *recording = (struct dig_machine_recording){ .rows = csv.rows, .row = row };
+    } else {
+        free(row);
+    }
+    dig_csv_finish(&csv);
+    return status;
+}
+
+static void put_header(FILE *const file, const size_t columns, const struct dig_csv_column column[])
+{
+    for (size_t i = 0; i < columns; i++) {
+        (void)fprintf(file, "%s%s", i == 0 ? "" : ",", column[i].name);
+    }
+    (void)fputc('\n', file);
+}
+
+enum dig_status dig_recording_write(const char *const                 path,
+                                    const struct dig_recording *const recording,
+                                    struct dig_error *const           error)
+{
+    assert(recording != NULL);
+
+    struct dig_out        out;
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_c_locale locale = dig_c_locale_enter();
+    put_header(out.file, FORCE_COLUMNS, force_column);
+    for (size_t i = 0; i < recording->rows; i++) {
+        const struct dig_force_row *const r = &recording->row[i];
+        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", r->t_s,
+                      r->pin_x_m, r->pin_z_m, r->theta_deg, r->Fx_N, r->Fy_N, r->Fz_N, r->Mx_Nm,
+                      r->My_Nm, r->Mz_Nm);
+    }
+    dig_c_locale_leave(&locale);
+    return dig_out_commit(&out, error);
+}
+
+// An optional signal has a column when at least one sample holds it.
+static bool has_signal(const struct dig_machine_recording *const recording, const int signal)
+{
+    for (size_t i = 0; i < recording->rows; i++) {
+        if (recording->row[i].valid[signal]) {
+            return true;
+        }
+    }
+    return signal < DIG_SIGNALS_NEEDED;
+}
+
+enum dig_status dig_machine_recording_write(const char *const                         path,
+                                            const struct dig_machine_recording *const recording,
+                                            struct dig_error *const                   error)
+{
+    assert(recording != NULL);
+
+    struct dig_out        out;
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    bool written[DIG_SIGNALS];
+    (void)fputs("t_s", out.file);
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        written[s] = has_signal(recording, s);
+        if (written[s]) {
+            (void)fprintf(out.file, ",%s", dig_signal_name((enum dig_signal)s));
+        }
+    }
+    (void)fputc('\n', out.file);
+
+    struct dig_c_locale locale = dig_c_locale_enter();
+    for (size_t i = 0; i < recording->rows; i++) {
+        const struct dig_sample *const sample = &recording->row[i];
+        (void)fprintf(out.file, "%.9f", (double)sample->time_ns / 1e9);
+        for (int s = 0; s < DIG_SIGNALS; s++) {
+            if (written[s] && sample->valid[s]) {
+                (void)fprintf(out.file, ",%.12g", sample->value[s]);
+            } else if (written[s]) {
+                (void)fputc(',', out.file);
+            }
+        }
+        (void)fputc('\n', out.file);
+    }
+    dig_c_locale_leave(&locale);
+    return dig_out_commit(&out, error);
+}
+
+static enum dig_status check_bed(const struct dig_csv *const csv, const char *const path,
+                                 struct dig_error *const error)
+{
+    for (size_t i = 0; i < csv->rows; i++) {
+        const double radius_m = csv->value[i * BED_COLUMNS + 3];
+        if (!(radius_m > 0.0)) {
+            return dig_error_set(error, DIG_EINVAL, "%s:%d: column radius_m: %g, expected > 0",
+                                 path, csv->line[i], radius_m);
+        }
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_bed_read(const char *const path, size_t *const grains, double **const x_m,
+                             double **const y_m, double **const z_m, double **const radius_m,
+                             struct dig_error *const error)
+{
+    struct dig_csv  csv;
+    enum dig_status status = dig_csv_read(path, BED_COLUMNS, bed_column, &csv, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = check_bed(&csv, path, error);
+    double *array[BED_COLUMNS];
+    bool    complete = true;
+    for (size_t c = 0; c < BED_COLUMNS; c++) {
+        array[c] = malloc(csv.rows * sizeof(double));
+        complete = complete && array[c] != NULL;
+    }
+    if (status == DIG_OK && !complete) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu grains", path, csv.rows);
+    }
+    if (status == DIG_OK) {
+        for (size_t i = 0; i < csv.rows * BED_COLUMNS; i++) {
+            array[i % BED_COLUMNS][i / BED_COLUMNS] = csv.value[i];
+        }
+        *grains   = csv.rows;
+        *x_m      = array[0];
+        *y_m      = array[1];
+        *z_m      = array[2];
+        *radius_m = array[3];
+    } else {
+        for (size_t c = 0; c < BED_COLUMNS; c++) {
+            free(array[c]);
+        }
+    }
+    dig_csv_finish(&csv);
+    return status;
+}
+
+enum dig_status dig_bed_write(const char *const path, const size_t grains, const double x_m[],
+                              const double y_m[], const double z_m[], const double radius_m[],
+                              struct dig_error *const error)
+{
+    struct dig_out        out;
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_c_locale locale = dig_c_locale_enter();
+    put_header(out.file, BED_COLUMNS, bed_column);
+    for (size_t i = 0; i < grains; i++) {
+        (void)fprintf(out.file, "%.17g,%.17g,%.17g,%.17g\n", x_m[i], y_m[i], z_m[i], radius_m[i]);
+    }
+    dig_c_locale_leave(&locale);
+    return dig_out_commit(&out, error);
+}

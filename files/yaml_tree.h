@@ -1,0 +1,26 @@
+// A YAML text as a tree with line numbers, and what is wrong with it in the eyes of a schema.
+// Internal to files/: libcyaml loads, this explains.
+
+#ifndef DIG_FILES_YAML_TREE_H
+#define DIG_FILES_YAML_TREE_H
+
+#include "core/error.h"
+
+#include <cyaml/cyaml.h>
+#include <yaml.h>
+
+/// Parses text, the content of path, into *document (free with yaml_document_delete()). Refuses
+/// syntax errors, an empty text and a second document, with file and line.
+DIG_MUST_CHECK enum dig_status dig_yaml_parse(const char *path, const char *text, size_t size,
+                                              yaml_document_t *document, struct dig_error *error);
+
+/// Refuses the first thing in the document that does not fit the schema: a key unknown, missing or
+/// given twice, a value of the wrong type or length, a number that is not finite.
+DIG_MUST_CHECK enum dig_status dig_yaml_check(const char *path, yaml_document_t *document,
+                                              const cyaml_schema_value_t *schema,
+                                              struct dig_error           *error);
+
+/// The node at a dotted key, or the deepest one on the way to it; *found says which.
+const yaml_node_t *dig_yaml_find(yaml_document_t *document, const char *key, int *found);
+
+#endif // DIG_FILES_YAML_TREE_H
