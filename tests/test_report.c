@@ -1,0 +1,135 @@
+// Tests for closed_loop/report.c and closed_loop/plot.c
+
+#include "closed_loop/report.h"
+
+#include "closed_loop/plot.h"
+#include "tests/testlib.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static struct dig_report one_run(void)
+{
+    struct dig_report report = { .title = "A <demo> & more", .table = "t.sqlite", .lambda = 10.0 };
+    report.runs              = 1;
+    struct dig_report_run *const run = &report.run[0];
+    *run                             = (struct dig_report_run){ .name        = "Modbus TCP",
+                                                                .dig         = "a recording",
+                                                                .truth_known = true,
+                                                                .truth       = { { 0.5, 0.5, 2500.0 } },
+                                                                .gravel      = { { 0.523, 0.47, 2431.0 } },
+                                                                .low         = { { 0.41, 0.31, 2100.0 } },
+                                                                .high        = { { 0.63, 0.66, 2800.0 } },
+                                                                .nearest     = { { 0.5, 0.5, 2500.0 } },
+                                                                .distance    = 0.2,
+                                                                .error       = 0.1234,
+                                                                .noise_floor = 0.1111 };
+    (void)snprintf(run->simple.trajectory, sizeof run->simple.trajectory, "simpleA");
+    (void)snprintf(run->real.trajectory, sizeof run->real.trajectory, "actual");
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        run->simple.last = run->real.last = 1.0;
+        run->simple.measured_Nm[k] = run->real.measured_Nm[k] = 0.01 * k;
+        run->simple.model_Nm[k] = run->real.model_Nm[k] = 0.011 * k;
+        run->simple.sigma_Nm[k] = run->real.sigma_Nm[k] = 0.1;
+        run->simple.recording_Nm[k]                     = NAN;
+    }
+    return report;
+}
+
+static char *slurp(FILE *const from)
+{
+    rewind(from);
+    char *const  text = calloc(1, 1 << 20);
+    const size_t n    = fread(text, 1, (1 << 20) - 1, from);
+    text[n]           = '\0';
+    return text;
+}
+
+static void the_page_stands_alone_and_holds_the_numbers(void **state)
+{
+    (void)state;
+    const struct dig_report report = one_run();
+    const char *const       path   = "build/test_report.html";
+    struct dig_error        error  = { "" };
+    assert_int_equal(dig_report_html(&report, path, &error), DIG_OK);
+
+    FILE *const file = fopen(path, "r");
+    assert_non_null(file);
+    char *const page = slurp(file);
+    assert_non_null(strstr(page, "A &lt;demo&gt; &amp; more"));
+    assert_non_null(strstr(page, "0.123"));
+    assert_non_null(strstr(page, "2100 – 2800"));
+    char *const first = strstr(page, "<svg");
+    assert_non_null(first);
+    assert_non_null(strstr(first + 1, "<svg"));
+    // Namespaces are names; anything else with a scheme would be fetched.
+    for (const char *at = page; (at = strstr(at, "://")) != NULL; at++) {
+        if (strncmp(at, "://www.w3.org/", 14) != 0) {
+            fail_msg("the page points elsewhere: %.40s", at);
+        }
+    }
+    free(page);
+    (void)fclose(file);
+    (void)remove(path);
+    assert_int_not_equal(access("build/test_report.html.part", F_OK), 0);
+}
+
+static void the_terminal_gets_truth_estimate_interval_and_error(void **state)
+{
+    (void)state;
+    struct dig_report report = one_run();
+    FILE *const       file   = tmpfile();
+    dig_report_text(&report, file);
+    report.run[0].truth_known = false;
+    dig_report_text(&report, file);
+    char *const text = slurp(file);
+    assert_non_null(strstr(text, "0.50        0.52   0.41 to 0.63"));
+    assert_non_null(strstr(text, "error of the predicted actual dig: 0.123"));
+    assert_non_null(strstr(text, "unknown"));
+    free(text);
+    (void)fclose(file);
+}
+
+static void json_holds_the_same(void **state)
+{
+    (void)state;
+    const struct dig_report report = one_run();
+    FILE *const             file   = tmpfile();
+    dig_report_json(&report, file);
+    char *const text = slurp(file);
+    assert_non_null(strstr(text, "\"identified\":{\"friction\":0.523,\"rolling\":0.47,"
+                                 "\"density_kgpm3\":2431}"));
+    assert_non_null(strstr(text, "\"error\":0.1234,\"noise_floor\":0.1111"));
+    free(text);
+    (void)fclose(file);
+}
+
+static void without_gnuplot_it_says_so_and_leaves_nothing(void **state)
+{
+    (void)state;
+    const struct dig_report report = one_run();
+    struct dig_error        error  = { "" };
+    const char *const       kept   = getenv("PATH");
+    char *const             path   = strdup(kept == NULL ? "" : kept);
+    (void)setenv("PATH", "/nonexistent", 1);
+    assert_int_equal(dig_report_html(&report, "build/none.html", &error), DIG_EIO);
+    (void)setenv("PATH", path, 1);
+    free(path);
+    assert_non_null(strstr(error.text, "gnuplot"));
+    assert_int_not_equal(access("build/none.html", F_OK), 0);
+    assert_int_not_equal(access("build/none.html.part", F_OK), 0);
+    assert_int_equal(dig_report_html(&report, "build/no/such/folder.html", &error), DIG_EIO);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_page_stands_alone_and_holds_the_numbers),
+        cmocka_unit_test(the_terminal_gets_truth_estimate_interval_and_error),
+        cmocka_unit_test(json_holds_the_same),
+        cmocka_unit_test(without_gnuplot_it_says_so_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests_name("report", tests, NULL, NULL);
+}
