@@ -1,0 +1,57 @@
+// The command line of digrig.
+
+#ifndef DIG_TOOLS_RIG_OPTIONS_H
+#define DIG_TOOLS_RIG_OPTIONS_H
+
+#include "core/error.h"
+#include "tools/rig/fault.h"
+#include "tools/rig/track.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define DIG_RIG_INPUTS_MAX 32
+#define DIG_RIG_FAULTS_MAX 16
+
+enum dig_rig_command {
+    DIG_RIG_COMMAND_HELP,
+    DIG_RIG_COMMAND_VERSION,
+    DIG_RIG_COMMAND_RECORD,
+    DIG_RIG_COMMAND_SERVE
+};
+
+/// Strings point into argv.
+struct dig_rig_options {
+    enum dig_rig_command         command;
+    size_t                       inputs;
+    const char                  *input[DIG_RIG_INPUTS_MAX]; // recordings, or one campaign folder
+    const char                  *machine;
+    const char                  *scene; // NULL: track.scene_tooth_m as given
+    struct dig_rig_track_options track;
+    uint64_t                     seed;
+    bool                         noise;
+    // record
+    bool        quantise;
+    const char *out;
+    const char *truth; // NULL: none
+    // serve; NULL: not on that bus
+    const char          *can;
+    const char          *tcp; // HOST:PORT
+    const char          *rtu; // DEVICE[:BAUD]
+    double               speed;
+    bool                 loop;
+    bool                 json;
+    double               start_delay_s;
+    size_t               faults;
+    struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
+};
+
+/// The text of --help.
+const char *dig_rig_options_help(void);
+
+/// DIG_EINVAL says which option and what was expected.
+DIG_MUST_CHECK enum dig_status dig_rig_options_parse(int argc, char *argv[],
+                                                     struct dig_rig_options *options,
+                                                     struct dig_error       *error);
+
+#endif // DIG_TOOLS_RIG_OPTIONS_H

@@ -1,0 +1,27 @@
+// Where in front of the machine the dig lies: the pin's start that leaves the most room everywhere.
+
+#ifndef DIG_TOOLS_RIG_PLACEMENT_H
+#define DIG_TOOLS_RIG_PLACEMENT_H
+
+#include "core/error.h"
+#include "core/machine.h"
+#include "tools/rig/path.h"
+#include "tools/rig/state.h"
+
+struct dig_rig_placement {
+    double                X_m, Z_m; // the pin at the first dig's first row, machine frame
+    struct dig_rig_margin margin;   // the least over the path, quasi-static
+};
+
+/// Tries every pin start of a fixed grid (X in hundredths of boom + arm; the dug surface at the
+/// tracks' ground and up to 1 m below or above it) and takes the one whose smallest share
+/// (state.h) over the whole path is largest; 5 % is taken off per metre that the dug surface
+/// lies off the tracks' ground. Deterministic; a second or less. The margin returned may be
+/// negative: then the machine cannot do the dig anywhere, and it says what stops it at the best
+/// place. DIG_EUNREACHABLE when no place has every pose within the linkage's reach.
+DIG_MUST_CHECK enum dig_status dig_rig_placement_find(const struct dig_machine  *machine,
+                                                      const struct dig_rig_path *path,
+                                                      struct dig_rig_placement  *placement,
+                                                      struct dig_error          *error);
+
+#endif // DIG_TOOLS_RIG_PLACEMENT_H
