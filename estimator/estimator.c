@@ -1,11 +1,24 @@
 #include "estimator/estimator.h"
 
+#include "core/units.h"
 #include "estimator/estimator_state.h"
+#include "estimator/linkage.h"
 #include "estimator/match.h"
+#include "estimator/predict.h"
+#include "estimator/wrench.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
+
+// Two trajectories whose fits differ by less than this share of path_limit_m cannot be told apart.
+static const double tie_share = 0.125;
+
+// A dig shorter than this share of its trajectory is not worth matching.
+static const double least_progress = 0.2;
+
+// Filters step over longer gaps as if they were this long.
+static const double longest_step_s = 0.1;
 
 struct dig_estimator_settings dig_estimator_settings_default(void)
 {
@@ -56,14 +69,192 @@ size_t dig_estimator_size(void)
     return sizeof(struct dig_estimator);
 }
 
+static bool set_is_sound(const struct dig_curve_set *const set)
+{
+    if (!(set->tooth_m > 0.0 && isfinite(set->tooth_m) && set->smooth_half_s >= 0.0) ||
+        set->trajectories > DIG_TRAJECTORY_MAX) {
+        return false;
+    }
+    for (size_t t = 0; t < set->trajectories; t++) {
+        const struct dig_trajectory *const trajectory = &set->trajectory[t];
+        if (trajectory->phases < 1 || trajectory->phases > DIG_PHASES_MAX ||
+            !(dig_trajectory_path_m(trajectory, set->tooth_m,
+                                    dig_trajectory_duration_s(trajectory)) > 0.0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Vertices this far apart, rig scale: several times what a bus's steps of angle move the pin.
+static double vertex_spacing_m(const struct dig_curve_set *const set)
+{
+    return 0.025 * set->tooth_m;
+}
+
+// Forgets the dig going on.
+static void forget_dig(struct dig_estimator *const e)
+{
+    e->path       = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
+    e->next_track = 0;
+    e->trajectory = -1;
+    e->progress   = (double)NAN;
+    e->off_path_m = (double)NAN;
+    dig_window_close(&e->window);
+}
+
 enum dig_status dig_estimator_init(struct dig_estimator *const                estimator,
                                    const struct dig_machine *const            machine,
                                    const struct dig_curve_set *const          set,
                                    const struct dig_estimator_settings *const settings)
 {
     assert(estimator != NULL && machine != NULL && set != NULL && settings != NULL);
-    *estimator = (struct dig_estimator){ .machine = machine, .set = set, .settings = *settings };
+    const char *reason = NULL;
+    if (dig_estimator_settings_check(settings, &reason) != DIG_OK ||
+        dig_machine_check(machine, NULL) != DIG_OK || !set_is_sound(set)) {
+        return DIG_EINVAL;
+    }
+    const enum dig_status closes = dig_linkage_check(machine, NULL);
+    if (closes != DIG_OK) {
+        return closes;
+    }
+
+    // A megabyte: cleared in place, not by way of the stack.
+    memset(estimator, 0, sizeof *estimator);
+    estimator->machine  = machine;
+    estimator->set      = set;
+    estimator->settings = *settings;
+    estimator->lambda   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        estimator->route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
+    }
+    forget_dig(estimator);
     return DIG_OK;
+}
+
+// The bucket in rig scale and axes: x = -X, theta = -pi/2 - phi.
+static struct dig_path_point rig_point(const struct dig_estimator *const e,
+                                       const struct dig_front *const     front)
+{
+    const double phi_rad   = front->attitude_rad[DIG_JOINT_BUCKET];
+    const double theta_rad = remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI);
+    return (struct dig_path_point){
+        .x_m    = -front->pin_m[DIG_JOINT_BUCKET].x / e->lambda,
+        .z_m    = front->pin_m[DIG_JOINT_BUCKET].y / e->lambda,
+        .turn_m = e->set->tooth_m * theta_rad,
+    };
+}
+
+// Vertices of the samples before contact, then the one in contact.
+static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
+{
+    for (size_t i = 0; i < e->window.count; i++) {
+        (void)dig_path_add(&e->path, &e->window.pose[i]);
+    }
+
+    // Long waiting in the air may have filled and thinned it; contact is its last vertex then too.
+    if (e->path.vertices == DIG_PATH_MAX) {
+        e->path.vertices--;
+    }
+    e->path.vertex[e->path.vertices] = *touched;
+    e->path.contact                  = e->path.vertices++;
+    for (size_t t = 0; t < e->set->trajectories; t++) {
+        e->track[t] = dig_track_start(&e->route[t], &e->path, 0.0);
+    }
+}
+
+// One trajectory a tick is fitted again: constant time, and each is up to date within a few ticks.
+static void follow_path(struct dig_estimator *const e, const struct dig_path_point *const point)
+{
+    const size_t tracks = e->set->trajectories;
+    if (tracks == 0) {
+        return;
+    }
+    (void)dig_path_add(&e->path, point);
+    e->next_track = (e->next_track + 1) % tracks;
+    dig_track_refine(&e->route[e->next_track], &e->path, e->settings.path_limit_m,
+                     &e->track[e->next_track]);
+
+    const double tie_m = tie_share * e->settings.path_limit_m;
+    e->trajectory =
+        dig_track_choose(tracks, e->track, e->settings.path_limit_m, tie_m, e->trajectory);
+    if (e->trajectory < 0) {
+        e->progress   = (double)NAN;
+        e->off_path_m = (double)NAN;
+        return;
+    }
+    const struct dig_track *const track = &e->track[e->trajectory];
+    const struct dig_place        place =
+        dig_route_place(&e->route[e->trajectory], track->dx_m, track->dz_m, point,
+                        fmax(track->progress - 0.1, 0.0), fmin(track->progress + 0.2, 1.0));
+    e->progress   = place.progress;
+    e->off_path_m = place.distance_m;
+}
+
+// The trajectory is done and the bucket has left its end.
+static bool path_is_over(const struct dig_estimator *const e)
+{
+    return e->trajectory >= 0 && e->progress >= 1.0 && e->off_path_m > e->settings.path_limit_m;
+}
+
+// The whole path decides which trajectory it was; an observation is made if it was one.
+static void finish_dig(struct dig_estimator *const e)
+{
+    e->digs++;
+    const size_t     tracks  = e->set->trajectories;
+    const double     limit_m = e->settings.path_limit_m;
+    struct dig_track fitted[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < tracks; t++) {
+        fitted[t] = dig_track_fit(&e->route[t], &e->path, limit_m);
+    }
+    const int chosen = dig_track_choose(tracks, fitted, limit_m, tie_share * limit_m, -1);
+
+    struct dig_observation observation = { .dig_count = e->digs, .trajectory = chosen };
+    if (chosen >= 0 &&
+        dig_window_observe(&e->window, &e->route[chosen], &fitted[chosen], 2.0 * limit_m,
+                           e->set->smooth_half_s, &observation) == DIG_OK &&
+        observation.last - observation.first >= least_progress) {
+        e->observation     = observation;
+        e->has_observation = true;
+    }
+    forget_dig(e);
+}
+
+// Moves phase, window and path on by one valid moment.
+static void follow_dig(struct dig_estimator *const e, const double time_s, const double dt_s,
+                       const struct dig_wrench *const     wrench,
+                       const struct dig_path_point *const point)
+{
+    const double               lambda4 = pow(e->lambda, 4.0);
+    const enum dig_phase_event event =
+        dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm);
+    const struct dig_window_sample sample = {
+        .time_s    = time_s / sqrt(e->lambda),
+        .moment_Nm = (wrench->My_Nm - e->phase.bias_Nm) / lambda4,
+        .pose      = *point,
+        .sigma_Nm  = (float)(wrench->sigma_My_Nm / lambda4),
+        .slow_Nm   = (float)(wrench->slow_sigma_My_Nm / lambda4),
+    };
+    dig_window_add(&e->window, &sample);
+
+    switch (event) {
+    case DIG_EVENT_TOUCHED:
+        dig_window_open(&e->window);
+        lay_out_path(e, point);
+        break;
+    case DIG_EVENT_LOST: forget_dig(e); break;
+    case DIG_EVENT_GONE: finish_dig(e); break;
+    case DIG_EVENT_NONE:
+    default: break;
+    }
+    if (!e->window.open) {
+        return;
+    }
+    follow_path(e, point);
+    if (path_is_over(e)) {
+        finish_dig(e);
+        dig_phase_end(&e->phase);
+    }
 }
 
 enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
@@ -71,70 +262,87 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
                                    struct dig_estimate *const     estimate)
 {
     assert(estimator != NULL && sample != NULL && estimate != NULL);
-    return DIG_ESTALE;
+    struct dig_estimator *const e = estimator;
+    if (e->started && sample->time_ns <= e->last_ns) {
+        return DIG_ESTALE;
+    }
+    struct dig_wrench     wrench;
+    struct dig_front      front;
+    const enum dig_status status = dig_wrench_solve(e->machine, sample, &wrench, &front);
+    if (status != DIG_OK) {
+        return status;
+    }
+
+    const double tick_s = e->settings.tick_s;
+    const double dt_s   = e->started ? 1e-9 * (double)(sample->time_ns - e->last_ns) : tick_s;
+    e->started          = true;
+    e->last_ns          = sample->time_ns;
+
+    // Without a moment nothing is learnt; the dig goes on from the next one.
+    const struct dig_path_point point = rig_point(e, &front);
+    if (wrench.moment_valid) {
+        follow_dig(e, 1e-9 * (double)sample->time_ns, fmin(dt_s, longest_step_s), &wrench, &point);
+        wrench.My_Nm -= e->phase.bias_Nm;
+    }
+
+    *estimate = (struct dig_estimate){
+        .time_ns    = sample->time_ns,
+        .wrench     = wrench,
+        .pin_X_m    = front.pin_m[DIG_JOINT_BUCKET].x,
+        .pin_Z_m    = front.pin_m[DIG_JOINT_BUCKET].y,
+        .phi_rad    = front.attitude_rad[DIG_JOINT_BUCKET],
+        .phase      = e->phase.phase,
+        .dig_count  = e->digs,
+        .trajectory = e->trajectory,
+        .progress   = e->progress,
+        .off_path_m = e->off_path_m,
+    };
+    return DIG_OK;
 }
 
 bool dig_estimator_take_dig(struct dig_estimator *const   estimator,
                             struct dig_observation *const observation)
 {
-    (void)estimator;
-    (void)observation;
-    return false;
+    assert(estimator != NULL && observation != NULL);
+    if (!estimator->has_observation) {
+        return false;
+    }
+    *observation               = estimator->observation;
+    estimator->has_observation = false;
+    return true;
 }
 
 void dig_estimator_give_match(struct dig_estimator *const   estimator,
                               const struct dig_match *const match)
 {
-    estimator->match = *match;
+    assert(estimator != NULL && match != NULL);
+    const struct dig_curve_set *const set     = estimator->set;
+    const double                      lambda4 = pow(estimator->lambda, 4.0);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        struct dig_outlook *const outlook = &estimator->outlook[t];
+        outlook->valid = dig_predict_curve(set, match, t, &outlook->curve) == DIG_OK;
+        if (outlook->valid) {
+            outlook->peak_Nm = lambda4 * dig_predict_peak_Nm(&outlook->curve);
+            outlook->energy_J =
+                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &outlook->curve);
+        }
+    }
 }
 
 void dig_estimator_predict(const struct dig_estimator *const estimator,
                            struct dig_prediction *const      prediction)
 {
-    (void)estimator;
-    *prediction = (struct dig_prediction){ .valid = false };
-}
-
-enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
-                                      const struct dig_gravel *const    gravel,
-                                      const size_t trajectory, struct dig_curve *const curve)
-{
-    (void)set;
-    (void)gravel;
-    (void)trajectory;
-    (void)curve;
-    return DIG_ENOMATCH;
-}
-
-enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
-                                  const struct dig_observation *const observation,
-                                  const double outside_floors, struct dig_match *const match)
-{
-    (void)set;
-    (void)observation;
-    (void)outside_floors;
-    (void)match;
-    return DIG_ENOMATCH;
-}
-
-enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
-                               const struct dig_observation *const observation,
-                               const int max_evaluations, struct dig_match *const match)
-{
-    (void)set;
-    (void)observation;
-    (void)max_evaluations;
-    (void)match;
-    return DIG_ENOMATCH;
-}
-
-enum dig_status dig_predict_curve(const struct dig_curve_set *const set,
-                                  const struct dig_match *const match, const size_t trajectory,
-                                  struct dig_curve *const curve)
-{
-    (void)set;
-    (void)match;
-    (void)trajectory;
-    (void)curve;
-    return DIG_ENOMATCH;
+    assert(estimator != NULL && prediction != NULL);
+    struct dig_prediction p = { .valid = false, .trajectory = estimator->trajectory };
+    if (estimator->trajectory >= 0 && estimator->outlook[estimator->trajectory].valid) {
+        const struct dig_outlook *const outlook = &estimator->outlook[estimator->trajectory];
+        p.valid                                 = true;
+        p.progress_now                          = estimator->progress;
+        p.from_progress                         = estimator->progress;
+        p.to_progress                           = 1.0;
+        p.peak_Nm                               = outlook->peak_Nm;
+        p.energy_J                              = outlook->energy_J;
+        dig_predict_points(&outlook->curve, estimator->lambda, &p);
+    }
+    *prediction = p;
 }

@@ -16,6 +16,7 @@
 #include "core/status.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define DIG_PREDICTION_POINTS 64
@@ -27,20 +28,23 @@ struct dig_wrench {
     double Fx_N, Fz_N, My_Nm;
     double sigma_Fx_N, sigma_Fz_N, sigma_My_Nm; // 1 sigma, from quantisation, sensor noise
     bool   force_valid, moment_valid;
+    // The part of sigma_My that does not average down over many samples (quantisation of a signal
+    // that stands still); included in sigma_My_Nm.
+    double slow_sigma_My_Nm;
 };
 
 enum dig_dig_phase { DIG_PHASE_AIR, DIG_PHASE_CONTACT, DIG_PHASE_DIG, DIG_PHASE_EXIT };
 
 /// What a tick knows. Poses are of the bucket pin in machine axes; see docs/numerics.md.
 struct dig_estimate {
-    int64_t            time_ns;
-    struct dig_wrench  wrench;
-    double             pin_X_m, pin_Z_m, phi_rad; // pin and absolute direction pin -> tooth, machine
+    int64_t           time_ns;
+    struct dig_wrench wrench;
+    double            pin_X_m, pin_Z_m, phi_rad; // pin and absolute direction pin -> tooth, machine
     enum dig_dig_phase phase;
-    uint32_t           dig_count;   // digs finished since start
-    int                trajectory;  // index into the curve set of the dig going on, -1: not known
-    double             progress;    // 0 … 1 along it; NaN if not known
-    double             off_path_m;  // distance of the real path from it, rig scale; NaN if not known
+    uint32_t           dig_count;  // digs finished since start
+    int                trajectory; // index into the curve set of the dig going on, -1: not known
+    double             progress;   // 0 … 1 along it; NaN if not known
+    double             off_path_m; // distance of the real path from it, rig scale; NaN if not known
 };
 
 /// A finished dig on the table's grid, in rig units: what is matched.
@@ -53,40 +57,45 @@ struct dig_observation {
     double   sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
 };
 
+#define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
+
 /// Which gravel. Distances are ||measured - table|| / ||measured|| over the points measured.
 struct dig_match {
     bool              valid;
-    uint32_t          dig_count;         // of the observation it came from
-    int               nearest;           // entry of the table
+    uint32_t          dig_count; // of the observation it came from
+    int               nearest;   // entry of the table
     double            nearest_distance;
-    struct dig_gravel gravel;            // between the grid points
+    struct dig_gravel gravel; // between the grid points
     double            distance;
-    struct dig_gravel mean, low, high;   // posterior mean and 5 %, 95 % of each axis
-    double            noise_floor;       // expected distance of another packing of the same gravel
-    bool              outside;           // distance says: none of the table's gravels
+    struct dig_gravel mean, low, high; // posterior mean and 5 %, 95 % of each axis
+    double            noise_floor;     // expected distance of another packing of the same gravel
+    bool              outside;         // distance says: none of the table's gravels
+    double            outside_floors;  // distance > this many noise floors is outside
+    size_t            samples;         // 0 until refined
+    struct dig_gravel sample[DIG_MATCH_SAMPLES]; // equally likely, in proportion to the posterior
 };
 
 /// What the real dig will resist, along one trajectory, machine scale, rig axes.
 struct dig_prediction {
-    bool     valid;
-    int      trajectory;
-    double   progress_now;
-    double   from_progress, to_progress; // the points below are equally spaced over this range
-    double   moment_Nm[DIG_PREDICTION_POINTS];
-    double   sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
-    double   Fx_N[DIG_PREDICTION_POINTS], Fz_N[DIG_PREDICTION_POINTS];
-    double   peak_Nm, energy_J;          // of the whole dig
+    bool   valid;
+    int    trajectory;
+    double progress_now;
+    double from_progress, to_progress; // the points below are equally spaced over this range
+    double moment_Nm[DIG_PREDICTION_POINTS];
+    double sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
+    double Fx_N[DIG_PREDICTION_POINTS], Fz_N[DIG_PREDICTION_POINTS];
+    double peak_Nm, energy_J; // of the whole dig
 };
 
 struct dig_estimator_settings {
     // fixed at start
-    double tick_s;             // nominal time between samples
-    double contact_sigmas;     // My above this many sigma, sustained, is contact
-    double contact_hold_s;     // how long it must last
-    double exit_hold_s;        // how long it must be gone
-    double air_bias_s;         // time constant of the bias of My learnt in free air; 0: off
-    double path_limit_m;       // rig scale: farther than this off every trajectory: not known
-    double outside_floors;     // distance > this many noise floors: gravel outside the table
+    double tick_s;         // nominal time between samples
+    double contact_sigmas; // My above this many sigma, sustained, is contact
+    double contact_hold_s; // how long it must last
+    double exit_hold_s;    // how long it must be gone
+    double air_bias_s;     // time constant of the bias of My learnt in free air; 0: off
+    double path_limit_m;   // rig scale: farther than this off every trajectory: not known
+    double outside_floors; // distance > this many noise floors: gravel outside the table
 };
 
 struct dig_estimator_settings dig_estimator_settings_default(void);
@@ -97,27 +106,32 @@ struct dig_estimator; // defined in estimator/estimator_state.h; about 1 MB, fix
 
 size_t dig_estimator_size(void);
 
-/// lambda = machine's tooth length / table's. The machine, the set and the settings must outlive it.
-DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator *estimator,
-                                                  const struct dig_machine *machine,
-                                                  const struct dig_curve_set *set,
+/// lambda = machine's tooth length / table's. The machine and the set must outlive it; the settings
+/// are copied. DIG_EINVAL for a machine, set or setting that fails its check; DIG_EUNREACHABLE for
+/// a bucket linkage that does not close over its range. Then nothing is written. About a
+/// millisecond.
+DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator                *estimator,
+                                                  const struct dig_machine            *machine,
+                                                  const struct dig_curve_set          *set,
                                                   const struct dig_estimator_settings *settings);
 
-/// One tick. DIG_ESTALE: an incomplete sample; the state is kept and *estimate is untouched.
-/// Constant time but for the tick in which a dig ends (a few hundred microseconds, resampling).
-DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator *estimator,
+/// One tick. DIG_ESTALE: an incomplete sample or one not younger than the last; DIG_EINVAL: a
+/// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
+/// for the tick in which a dig ends (up to a millisecond: alignment, resampling).
+DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estimator,
                                                   const struct dig_sample *sample,
-                                                  struct dig_estimate *estimate);
+                                                  struct dig_estimate     *estimate);
 
 /// True once after every finished dig that followed a known trajectory: copies it out.
 bool dig_estimator_take_dig(struct dig_estimator *estimator, struct dig_observation *observation);
 
-/// The gravel that predictions are made for from now on.
+/// The gravel that predictions are made for from now on; one that is not valid ends them. Computes
+/// the curves of every trajectory: about a millisecond.
 void dig_estimator_give_match(struct dig_estimator *estimator, const struct dig_match *match);
 
 /// Prediction for the dig going on, from the current progress to its end; valid = false when no
 /// match was given or the trajectory is not known. Constant time.
 void dig_estimator_predict(const struct dig_estimator *estimator,
-                           struct dig_prediction *prediction);
+                           struct dig_prediction      *prediction);
 
 #endif // DIG_ESTIMATOR_ESTIMATOR_H

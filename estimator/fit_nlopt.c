@@ -1,0 +1,213 @@
+// The only file of the estimator that knows NLopt. NLopt allocates inside nlopt_optimize(), so this
+// runs on a thread of its own, never in the tick; it is bounded by evaluations, not by the clock.
+
+#include "estimator/interpolate.h"
+#include "estimator/match.h"
+#include "estimator/posterior.h"
+
+#include <nlopt.h>
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+enum { STARTS = 3 };
+
+// Distance of what the table does not hold: worse than any curve.
+static const double no_curve = 1e6;
+
+// The fit in positions 0 … 1 along the axes that have more than one point.
+struct problem {
+    const struct dig_curve_set   *set;
+    const struct dig_observation *observation;
+    unsigned                      dimensions;
+    enum dig_axis                 axis[DIG_AXES];
+    struct dig_gravel             fixed; // the other axes
+};
+
+static struct problem make_problem(const struct dig_curve_set *const   set,
+                                   const struct dig_observation *const observation,
+                                   const struct dig_match *const       match)
+{
+    struct problem problem = {
+        .set         = set,
+        .observation = observation,
+        .fixed       = set->gravel[match->nearest],
+    };
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (set->axis_count[a] > 1) {
+            problem.axis[problem.dimensions++] = (enum dig_axis)a;
+        }
+    }
+    return problem;
+}
+
+static struct dig_gravel gravel_of(const struct problem *const problem, const double x[])
+{
+    struct dig_gravel gravel = problem->fixed;
+    for (unsigned d = 0; d < problem->dimensions; d++) {
+        gravel.value[problem->axis[d]] = dig_axis_value(problem->set, problem->axis[d], x[d]);
+    }
+    return gravel;
+}
+
+static struct dig_distance distance_at(const struct problem *const    problem,
+                                       const struct dig_gravel *const gravel)
+{
+    struct dig_cell cell;
+    const size_t    trajectory = (size_t)problem->observation->trajectory;
+    if (dig_cell_find(problem->set, gravel, trajectory, &cell) != DIG_OK) {
+        return (struct dig_distance){ .distance = no_curve, .noise_floor = no_curve };
+    }
+    return dig_cell_distance(&cell, problem->observation);
+}
+
+static double objective(const unsigned n, const double *const x, double *const gradient,
+                        void *const context)
+{
+    (void)n;
+    (void)gradient;
+    const struct problem *const problem = context;
+    const struct dig_gravel     gravel  = gravel_of(problem, x);
+    return distance_at(problem, &gravel).distance;
+}
+
+// The nearest entry and its best neighbours along the axes: a ridge may pass between two entries of
+// which the nearest is not the better start.
+static size_t choose_starts(const struct problem *const problem, double start[STARTS][DIG_AXES],
+                            double spacing[DIG_AXES])
+{
+    const struct dig_curve_set *const set = problem->set;
+
+    double best[STARTS] = { 0.0 };
+    size_t starts       = 1;
+    for (unsigned d = 0; d < problem->dimensions; d++) {
+        const enum dig_axis axis = problem->axis[d];
+        start[0][d]              = dig_axis_position(set, axis, problem->fixed.value[axis]);
+        spacing[d]               = 1.0 / (double)(set->axis_count[axis] - 1);
+    }
+    for (unsigned d = 0; d < 2 * problem->dimensions; d++) {
+        const enum dig_axis axis = problem->axis[d / 2];
+        size_t              at   = 0;
+        while (at + 1 < set->axis_count[axis] &&
+               set->axis[axis][at] < problem->fixed.value[axis] * (1.0 - 1e-9)) {
+            at++;
+        }
+        const bool down = d % 2 == 0;
+        if (down ? at == 0 : at + 1 >= set->axis_count[axis]) {
+            continue;
+        }
+        struct dig_gravel gravel = problem->fixed;
+        gravel.value[axis]       = set->axis[axis][down ? at - 1 : at + 1];
+        const double distance    = distance_at(problem, &gravel).distance;
+        if (distance >= no_curve) {
+            continue;
+        }
+
+        // Insert behind the nearest, sorted by distance.
+        size_t place = starts < STARTS ? starts : STARTS;
+        while (place > 1 && distance < best[place - 1]) {
+            place--;
+        }
+        if (place >= STARTS) {
+            continue;
+        }
+        starts = starts < STARTS ? starts + 1 : STARTS;
+        for (size_t s = starts - 1; s > place; s--) {
+            best[s] = best[s - 1];
+            for (unsigned k = 0; k < problem->dimensions; k++) {
+                start[s][k] = start[s - 1][k];
+            }
+        }
+        best[place] = distance;
+        for (unsigned k = 0; k < problem->dimensions; k++) {
+            start[place][k] =
+                k == d / 2 ? dig_axis_position(set, axis, gravel.value[axis]) : start[0][k];
+        }
+    }
+    return starts;
+}
+
+// Minimises from one start; *x and *distance improve or stay.
+static enum dig_status improve(struct problem *const problem, const double start[],
+                               const double step[], const int max_evaluations, double x[],
+                               double *const distance)
+{
+    const nlopt_opt opt = nlopt_create(NLOPT_LN_SBPLX, problem->dimensions);
+    if (opt == NULL) {
+        return DIG_ENOMEM;
+    }
+    double at[DIG_AXES];
+    for (unsigned d = 0; d < problem->dimensions; d++) {
+        at[d] = start[d];
+    }
+    double       found = INFINITY;
+    nlopt_result result =
+        nlopt_set_min_objective(opt, objective, problem) < 0 ||
+                nlopt_set_lower_bounds1(opt, 0.0) < 0 || nlopt_set_upper_bounds1(opt, 1.0) < 0 ||
+                nlopt_set_initial_step(opt, step) < 0 || nlopt_set_xtol_abs1(opt, 1e-5) < 0 ||
+                nlopt_set_maxeval(opt, max_evaluations) < 0
+            ? NLOPT_OUT_OF_MEMORY
+            : nlopt_optimize(opt, at, &found);
+    nlopt_destroy(opt);
+
+    // Rounding limits what it can reach; what it has reached then still counts.
+    if (result < 0 && result != NLOPT_ROUNDOFF_LIMITED) {
+        return result == NLOPT_OUT_OF_MEMORY ? DIG_ENOMEM : DIG_EINVAL;
+    }
+    if (found < *distance) {
+        *distance = found;
+        for (unsigned d = 0; d < problem->dimensions; d++) {
+            x[d] = at[d];
+        }
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
+                               const struct dig_observation *const observation,
+                               const int max_evaluations, struct dig_match *const match)
+{
+    assert(set != NULL && observation != NULL && match != NULL);
+    if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
+        max_evaluations < 1 || dig_observation_check(set, observation) != DIG_OK) {
+        return DIG_EINVAL;
+    }
+
+    struct dig_match refined = *match;
+    struct problem   problem = make_problem(set, observation, match);
+    double           best    = match->nearest_distance;
+    if (problem.dimensions > 0) {
+        double       start[STARTS][DIG_AXES], step[DIG_AXES], x[DIG_AXES];
+        const size_t starts = choose_starts(&problem, start, step);
+        for (unsigned d = 0; d < problem.dimensions; d++) {
+            x[d]    = start[0][d];
+            step[d] = 0.4 * step[d];
+        }
+        int left = max_evaluations;
+        for (size_t s = 0; s < starts && left > 0; s++) {
+            const int             share  = s + 1 < starts ? (left + 1) / 2 : left;
+            const enum dig_status status = improve(&problem, start[s], step, share, x, &best);
+            if (status != DIG_OK) {
+                return status;
+            }
+            left -= share;
+        }
+        refined.gravel = gravel_of(&problem, x);
+    }
+
+    const struct dig_distance at_best = distance_at(&problem, &refined.gravel);
+    if (at_best.distance < no_curve) {
+        refined.distance    = at_best.distance;
+        refined.noise_floor = at_best.noise_floor;
+        refined.outside     = at_best.distance > match->outside_floors * at_best.noise_floor;
+    }
+
+    // A table of scattered points has no cell to be unsure in: the nearest entry stands.
+    const enum dig_status status = dig_posterior_fill(set, observation, &refined);
+    if (status != DIG_OK && status != DIG_ENOMATCH) {
+        return status;
+    }
+    *match = refined;
+    return DIG_OK;
+}

@@ -1,0 +1,109 @@
+#include "estimator/interpolate.h"
+
+#include <assert.h>
+#include <math.h>
+
+static const double edge = 1e-9;
+
+static double coordinate(const enum dig_axis axis, const double value)
+{
+    return axis == DIG_AXIS_DENSITY_kgpm3 ? log(value) : value;
+}
+
+double dig_axis_position(const struct dig_curve_set *const set, const enum dig_axis axis,
+                         const double value)
+{
+    const size_t count = set->axis_count[axis];
+    if (count < 2) {
+        return 0.0;
+    }
+    const double first = coordinate(axis, set->axis[axis][0]);
+    const double last  = coordinate(axis, set->axis[axis][count - 1]);
+    return (coordinate(axis, value) - first) / (last - first);
+}
+
+double dig_axis_value(const struct dig_curve_set *const set, const enum dig_axis axis,
+                      const double position)
+{
+    const size_t count = set->axis_count[axis];
+    if (count < 2) {
+        return set->axis[axis][0];
+    }
+    const double first = coordinate(axis, set->axis[axis][0]);
+    const double last  = coordinate(axis, set->axis[axis][count - 1]);
+    const double at    = first + position * (last - first);
+    return axis == DIG_AXIS_DENSITY_kgpm3 ? exp(at) : at;
+}
+
+// The interval of an axis a value falls into and how far along it.
+static enum dig_status locate(const struct dig_curve_set *const set, const enum dig_axis axis,
+                              const double value, size_t *const index, double *const fraction)
+{
+    const size_t        count    = set->axis_count[axis];
+    const double *const at       = set->axis[axis];
+    const double        position = dig_axis_position(set, axis, value);
+    const double        off_only = fabs(value - at[0]); // of an axis with one point
+    if (!isfinite(value) || !(position >= -edge && position <= 1.0 + edge) ||
+        (count < 2 && off_only > edge * fmax(1.0, fabs(at[0])))) {
+        return DIG_ENOMATCH;
+    }
+
+    size_t i = 0;
+    while (i + 2 < count && at[i + 1] <= value) {
+        i++;
+    }
+    double f = 0.0;
+    if (count > 1) {
+        const double low  = coordinate(axis, at[i]);
+        const double high = coordinate(axis, at[i + 1]);
+        f                 = (coordinate(axis, value) - low) / (high - low);
+        f                 = f < edge ? 0.0 : f;
+        f                 = f > 1.0 - edge ? 1.0 : f;
+    }
+    *index    = i;
+    *fraction = f;
+    return DIG_OK;
+}
+
+enum dig_status dig_cell_find(const struct dig_curve_set *const set,
+                              const struct dig_gravel *const gravel, const size_t trajectory,
+                              struct dig_cell *const cell)
+{
+    assert(set != NULL && gravel != NULL && cell != NULL && trajectory < set->trajectories);
+    size_t index[DIG_AXES];
+    double fraction[DIG_AXES];
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (set->axis_count[a] == 0 ||
+            locate(set, (enum dig_axis)a, gravel->value[a], &index[a], &fraction[a]) != DIG_OK) {
+            return DIG_ENOMATCH;
+        }
+    }
+
+    struct dig_cell found = { .corners = 0 };
+    for (unsigned corner = 0; corner < DIG_CELL_CORNERS; corner++) {
+        double weight = 1.0;
+        size_t place  = 0;
+        for (unsigned a = 0; a < DIG_AXES; a++) {
+            const bool upper = ((corner >> a) & 1u) != 0;
+            weight *= upper ? fraction[a] : 1.0 - fraction[a];
+            place = place * set->axis_count[a] + index[a] + (upper ? 1 : 0);
+        }
+        if (!(weight > 0.0)) {
+            continue;
+        }
+        const int entry = set->cell[place];
+        if (entry < 0) {
+            return DIG_ENOMATCH;
+        }
+        const size_t slot = (size_t)entry * set->trajectories + trajectory;
+        if (set->packings[slot] <= 0) {
+            return DIG_ENOMATCH;
+        }
+        found.curve[found.corners]  = &set->curve[slot];
+        found.weight[found.corners] = weight;
+        found.inverse_packings += weight / (double)set->packings[slot];
+        found.corners++;
+    }
+    *cell = found;
+    return DIG_OK;
+}

@@ -1,0 +1,250 @@
+#include "estimator/path.h"
+
+#include <assert.h>
+#include <math.h>
+
+// How far from the start of the route contact may be noticed, 1 sigma, against the scatter of one
+// vertex: what the prior on the shift weighs, in vertices.
+static const double anchor_weight = 2.5e-3;
+
+// A vertex is looked for this far behind and ahead of the last one's place.
+static const double look_behind = 0.10;
+static const double look_ahead  = 0.35;
+
+static double dot(const struct dig_path_point a, const struct dig_path_point b)
+{
+    return a.x_m * b.x_m + a.z_m * b.z_m + a.turn_m * b.turn_m;
+}
+
+static struct dig_path_point minus(const struct dig_path_point a, const struct dig_path_point b)
+{
+    return (struct dig_path_point){ a.x_m - b.x_m, a.z_m - b.z_m, a.turn_m - b.turn_m };
+}
+
+static struct dig_path_point scaled(const struct dig_path_point a, const double s)
+{
+    return (struct dig_path_point){ s * a.x_m, s * a.z_m, s * a.turn_m };
+}
+
+struct dig_route dig_route_make(const struct dig_trajectory *const trajectory, const double tooth_m)
+{
+    assert(trajectory != NULL && trajectory->phases <= DIG_PHASES_MAX);
+    struct dig_route route  = { .corners = trajectory->phases + 1 };
+    double           time_s = 0.0;
+    for (size_t i = 0; i <= trajectory->phases; i++) {
+        const struct dig_pose pose = dig_trajectory_pose(trajectory, time_s);
+        route.corner[i] = (struct dig_path_point){ pose.x_m, pose.z_m, tooth_m * pose.theta_rad };
+        route.at_m[i]   = dig_trajectory_path_m(trajectory, tooth_m, time_s);
+        time_s += i < trajectory->phases ? trajectory->phase[i].duration_s : 0.0;
+    }
+    return route;
+}
+
+struct dig_place dig_route_place(const struct dig_route *const route, const double dx_m,
+                                 const double dz_m, const struct dig_path_point *const point,
+                                 const double from, const double to)
+{
+    assert(route != NULL && point != NULL && route->corners >= 2);
+    const double                whole_m = route->at_m[route->corners - 1];
+    const double                from_m  = from * whole_m;
+    const double                to_m    = to * whole_m;
+    const struct dig_path_point at      = { point->x_m - dx_m, point->z_m - dz_m, point->turn_m };
+
+    struct dig_place best = { .distance_m = INFINITY };
+    for (size_t i = 0; i + 1 < route->corners; i++) {
+        const double length_m = route->at_m[i + 1] - route->at_m[i];
+        if (!(length_m > 0.0) || route->at_m[i + 1] < from_m || route->at_m[i] > to_m) {
+            continue;
+        }
+        const struct dig_path_point leg     = minus(route->corner[i + 1], route->corner[i]);
+        const struct dig_path_point rel     = minus(at, route->corner[i]);
+        const double                leg2    = dot(leg, leg);
+        const double                free_f  = dot(rel, leg) / leg2;
+        const double                low_f   = fmax((from_m - route->at_m[i]) / length_m, 0.0);
+        const double                high_f  = fmin((to_m - route->at_m[i]) / length_m, 1.0);
+        const double                f       = fmin(fmax(free_f, low_f), high_f);
+        const bool                  is_lead = i == 0 && free_f < 0.0 && low_f <= 0.0;
+
+        // On the lead-in the foot lies before the start, where progress is still 0.
+        const struct dig_path_point off = minus(rel, scaled(leg, is_lead ? free_f : f));
+        const double                d_m = sqrt(dot(off, off));
+        if (d_m < best.distance_m) {
+            const bool inside = is_lead || (free_f > 0.0 && free_f < 1.0);
+            best              = (struct dig_place){
+                             .progress   = (route->at_m[i] + f * length_m) / whole_m,
+                             .distance_m = d_m,
+                             .tangent    = inside ? scaled(leg, 1.0 / sqrt(leg2)) : (struct dig_path_point){ 0 },
+                             .off        = off,
+            };
+        }
+    }
+    return best;
+}
+
+// Keeps every other vertex and doubles the spacing.
+static void thin(struct dig_path *const path)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < path->vertices; i += 2) {
+        path->vertex[kept++] = path->vertex[i];
+    }
+    path->vertices = kept;
+    path->contact /= 2;
+    path->spacing_m *= 2.0;
+}
+
+bool dig_path_add(struct dig_path *const path, const struct dig_path_point *const point)
+{
+    assert(path != NULL && point != NULL && path->spacing_m > 0.0);
+    if (path->vertices > 0) {
+        const struct dig_path_point step = minus(*point, path->vertex[path->vertices - 1]);
+        if (!(dot(step, step) >= path->spacing_m * path->spacing_m)) {
+            return false;
+        }
+    }
+    if (path->vertices == DIG_PATH_MAX) {
+        thin(path);
+    }
+    path->vertex[path->vertices++] = *point;
+    return true;
+}
+
+static struct dig_path_point route_at(const struct dig_route *const route, const double progress)
+{
+    const double at_m = progress * route->at_m[route->corners - 1];
+    size_t       i    = 0;
+    while (i + 2 < route->corners && route->at_m[i + 1] <= at_m) {
+        i++;
+    }
+    const double                length_m = route->at_m[i + 1] - route->at_m[i];
+    const double                f   = length_m > 0.0 ? (at_m - route->at_m[i]) / length_m : 0.0;
+    const struct dig_path_point leg = minus(route->corner[i + 1], route->corner[i]);
+    return minus(route->corner[i], scaled(leg, -f));
+}
+
+struct dig_track dig_track_start(const struct dig_route *const route,
+                                 const struct dig_path *const path, const double start)
+{
+    assert(route != NULL && path != NULL && path->contact < path->vertices);
+    const struct dig_path_point *const touched = &path->vertex[path->contact];
+    const struct dig_path_point        place   = route_at(route, start);
+    return (struct dig_track){
+        .dx_m        = touched->x_m - place.x_m,
+        .dz_m        = touched->z_m - place.z_m,
+        .anchor_dx_m = touched->x_m - route->corner[0].x_m,
+        .anchor_dz_m = touched->z_m - route->corner[0].z_m,
+        .rms_m       = NAN,
+    };
+}
+
+// Normal equations of the shift: 2 x 2, symmetric.
+struct normal {
+    double xx, xz, zz, bx, bz;
+};
+
+static void add_equation(struct normal *const normal, const struct dig_place *const place)
+{
+    const struct dig_path_point t = place->tangent;
+    normal->xx += 1.0 - t.x_m * t.x_m;
+    normal->xz -= t.x_m * t.z_m;
+    normal->zz += 1.0 - t.z_m * t.z_m;
+    normal->bx += place->off.x_m;
+    normal->bz += place->off.z_m;
+}
+
+void dig_track_refine(const struct dig_route *const route, const struct dig_path *const path,
+                      const double limit_m, struct dig_track *const track)
+{
+    assert(route != NULL && path != NULL && track != NULL);
+
+    // The anchor pulls weakly towards "contact was at the start".
+    struct normal normal = {
+        .xx = anchor_weight,
+        .zz = anchor_weight,
+        .bx = anchor_weight * (track->anchor_dx_m - track->dx_m),
+        .bz = anchor_weight * (track->anchor_dz_m - track->dz_m),
+    };
+    double sum_m2 = 0.0;
+    double last   = 0.0;
+    size_t used   = 0;
+    for (size_t i = 0; i < path->vertices; i++) {
+        const double           from = last - look_behind;
+        const double           to   = last + look_ahead;
+        const struct dig_place place =
+            dig_route_place(route, track->dx_m, track->dz_m, &path->vertex[i], from, fmin(to, 1.0));
+
+        if (i < path->contact) {
+            if (place.distance_m < limit_m) {
+                add_equation(&normal, &place);
+                last = place.progress;
+            }
+            continue;
+        }
+
+        // Past its end the route says nothing about the bucket.
+        if (place.progress >= 1.0 && last >= 1.0 - look_behind) {
+            last = 1.0;
+            break;
+        }
+        add_equation(&normal, &place);
+        sum_m2 += place.distance_m * place.distance_m;
+        last = place.progress;
+        used++;
+    }
+
+    const double det = normal.xx * normal.zz - normal.xz * normal.xz;
+    track->dx_m += (normal.zz * normal.bx - normal.xz * normal.bz) / det;
+    track->dz_m += (normal.xx * normal.bz - normal.xz * normal.bx) / det;
+    track->rms_m    = used > 0 ? sqrt(sum_m2 / (double)used) : (double)NAN;
+    track->progress = last;
+    track->used     = used;
+}
+
+struct dig_track dig_track_fit(const struct dig_route *const route,
+                               const struct dig_path *const path, const double limit_m)
+{
+    enum { STEPS = 12 };
+    static const double starts[] = { 0.0, 0.08, 0.2, 0.35 };
+
+    // A wrong shift fits few vertices well: those left out at the end count as misses of limit_m.
+    struct dig_track best       = dig_track_start(route, path, 0.0);
+    double           best_score = INFINITY;
+    for (size_t k = 0; k < sizeof starts / sizeof starts[0]; k++) {
+        struct dig_track track = dig_track_start(route, path, starts[k]);
+        for (int i = 0; i < STEPS; i++) {
+            dig_track_refine(route, path, limit_m, &track);
+        }
+        const size_t whole  = path->vertices - path->contact;
+        const double missed = (double)(whole - track.used) * limit_m * limit_m;
+        const double score  = track.rms_m * track.rms_m * (double)track.used + missed;
+        if (score < best_score) {
+            best       = track;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+int dig_track_choose(const size_t tracks, const struct dig_track track[], const double limit_m,
+                     const double tie_m, const int sitting)
+{
+    int    best   = -1;
+    double best_m = INFINITY, second_m = INFINITY;
+    for (size_t t = 0; t < tracks; t++) {
+        if (track[t].rms_m < best_m) {
+            second_m = best_m;
+            best_m   = track[t].rms_m;
+            best     = (int)t;
+        } else if (track[t].rms_m < second_m) {
+            second_m = track[t].rms_m;
+        }
+    }
+    if (best < 0 || !(best_m <= limit_m)) {
+        return -1;
+    }
+    if (second_m - best_m >= tie_m || best == sitting) {
+        return best;
+    }
+    const bool sits_tied = sitting >= 0 && track[sitting].rms_m - best_m < tie_m;
+    return sits_tied ? sitting : -1;
+}

@@ -1,0 +1,159 @@
+#include "estimator/window.h"
+
+#include <assert.h>
+#include <math.h>
+
+// Between two samples the bucket moves less than this share of the route.
+#define LOOK 0.10
+
+static void put(struct dig_window *const window, const size_t i,
+                const struct dig_window_sample *const sample)
+{
+    window->time_s[i]    = sample->time_s;
+    window->moment_Nm[i] = sample->moment_Nm;
+    window->pose[i]      = sample->pose;
+    window->sigma_Nm[i]  = sample->sigma_Nm;
+    window->slow_Nm[i]   = sample->slow_Nm;
+}
+
+static void halve(struct dig_window *const window)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < window->count; i += 2, kept++) {
+        window->time_s[kept]    = window->time_s[i];
+        window->moment_Nm[kept] = window->moment_Nm[i];
+        window->pose[kept]      = window->pose[i];
+        window->sigma_Nm[kept]  = window->sigma_Nm[i];
+        window->slow_Nm[kept]   = window->slow_Nm[i];
+    }
+    window->count = kept;
+    window->stride *= 2;
+}
+
+void dig_window_add(struct dig_window *const window, const struct dig_window_sample *const sample)
+{
+    assert(window != NULL && sample != NULL);
+    if (!window->open) {
+        window->ring[window->before % DIG_WINDOW_BEFORE] = *sample;
+        window->before++;
+        return;
+    }
+    if (++window->skipped < window->stride) {
+        return;
+    }
+    window->skipped = 0;
+    if (window->count == DIG_WINDOW_MAX) {
+        halve(window);
+    }
+    put(window, window->count++, sample);
+}
+
+void dig_window_open(struct dig_window *const window)
+{
+    assert(window != NULL && !window->open);
+    const size_t have = window->before < DIG_WINDOW_BEFORE ? window->before : DIG_WINDOW_BEFORE;
+    for (size_t i = 0; i < have; i++) {
+        put(window, i, &window->ring[(window->before - have + i) % DIG_WINDOW_BEFORE]);
+    }
+    window->open    = true;
+    window->count   = have;
+    window->stride  = 1;
+    window->skipped = 0;
+    window->before  = 0;
+}
+
+void dig_window_close(struct dig_window *const window)
+{
+    assert(window != NULL);
+    window->open   = false;
+    window->count  = 0;
+    window->before = 0;
+}
+
+// A range of samples.
+struct range {
+    size_t first, end;
+};
+
+// Furthest progress up to each sample, and the samples from the last one still at the start to the
+// first one at the end.
+static struct range follow(struct dig_window *const window, const struct dig_route *const route,
+                           const struct dig_track *const track, const double limit_m)
+{
+    struct range range    = { 0, 0 };
+    double       last     = 0.0;
+    double       furthest = 0.0;
+    for (size_t i = 0; i < window->count && furthest < 1.0; i++) {
+        const struct dig_place place = dig_route_place(
+            route, track->dx_m, track->dz_m, &window->pose[i], last - LOOK, fmin(last + LOOK, 1.0));
+        if (place.distance_m <= limit_m) {
+            last     = place.progress;
+            furthest = fmax(furthest, place.progress);
+        }
+        window->progress[i] = furthest;
+        range.first         = furthest > 0.0 ? range.first : i;
+        range.end           = i + 1;
+    }
+    return range;
+}
+
+// Samples of the range within half_s of sample i, at least 1: what white noise averages over.
+static double samples_within(const struct dig_window *const window, const struct range range,
+                             const size_t i, const double half_s)
+{
+    const double span_s = window->time_s[range.end - 1] - window->time_s[range.first];
+    const double per_s  = (double)(range.end - range.first - 1) / span_s;
+    const double from_s = fmax(window->time_s[i] - half_s, window->time_s[range.first]);
+    const double to_s   = fmin(window->time_s[i] + half_s, window->time_s[range.end - 1]);
+    return fmax((to_s - from_s) * per_s, 1.0);
+}
+
+enum dig_status dig_window_observe(struct dig_window *const      window,
+                                   const struct dig_route *const route,
+                                   const struct dig_track *const track, const double limit_m,
+                                   const double half_s, struct dig_observation *const observation)
+{
+    assert(window != NULL && route != NULL && track != NULL && observation != NULL);
+
+    const struct range range = follow(window, route, track, limit_m);
+    if (range.end < range.first + 3) {
+        return DIG_ENOMATCH;
+    }
+    const size_t n = range.end - range.first;
+    dig_curve_smooth(n, &window->time_s[range.first], &window->moment_Nm[range.first], half_s,
+                     &window->smooth_Nm[range.first]);
+
+    const double first                       = window->progress[range.first];
+    const double last                        = window->progress[range.end - 1];
+    double       moment_Nm[DIG_CURVE_POINTS] = { 0 }, sigma_Nm[DIG_CURVE_POINTS] = { 0 };
+    size_t       i = range.first, points = 0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        if (at < first || at > last) {
+            continue;
+        }
+        while (i + 2 < range.end && window->progress[i + 1] < at) {
+            i++;
+        }
+        const double span = window->progress[i + 1] - window->progress[i];
+        const double f = span > 0.0 ? fmin(fmax((at - window->progress[i]) / span, 0.0), 1.0) : 0.0;
+        const double slow = (double)window->slow_Nm[i];
+        const double fast = fmax(pow((double)window->sigma_Nm[i], 2.0) - slow * slow, 0.0);
+
+        moment_Nm[k] = window->smooth_Nm[i] + f * (window->smooth_Nm[i + 1] - window->smooth_Nm[i]);
+        sigma_Nm[k]  = sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
+        points++;
+    }
+    if (points < 2) {
+        return DIG_ENOMATCH;
+    }
+
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        observation->moment_Nm[k] = moment_Nm[k];
+        observation->sigma_Nm[k]  = sigma_Nm[k];
+    }
+    observation->first      = first;
+    observation->last       = last;
+    observation->off_path_m = track->rms_m;
+    return DIG_OK;
+}

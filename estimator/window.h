@@ -1,0 +1,60 @@
+// The samples of one dig, kept in a fixed place, and the observation made of them in its end.
+//
+// In the air the window only remembers the last DIG_WINDOW_BEFORE samples, as contact is noticed
+// late; opened, it keeps everything, and when it is full every other sample.
+
+#ifndef DIG_ESTIMATOR_WINDOW_H
+#define DIG_ESTIMATOR_WINDOW_H
+
+#include "core/curve.h"
+#include "estimator/estimator.h"
+#include "estimator/path.h"
+
+#define DIG_WINDOW_BEFORE 1024
+
+/// One sample in rig scale and rig time.
+struct dig_window_sample {
+    double                time_s;
+    double                moment_Nm;
+    struct dig_path_point pose;
+    float                 sigma_Nm, slow_Nm;
+};
+
+/// Zeroed: closed and empty, stride 0 counts as 1.
+struct dig_window {
+    bool                     open;
+    size_t                   before; // samples written into the ring since it was emptied
+    struct dig_window_sample ring[DIG_WINDOW_BEFORE];
+    size_t                   count;
+    size_t                   stride, skipped; // every stride-th sample is kept
+    double                   time_s[DIG_WINDOW_MAX];
+    double                   moment_Nm[DIG_WINDOW_MAX];
+    double                   progress[DIG_WINDOW_MAX]; // filled by dig_window_observe()
+    double                   smooth_Nm[DIG_WINDOW_MAX];
+    struct dig_path_point    pose[DIG_WINDOW_MAX];
+    float                    sigma_Nm[DIG_WINDOW_MAX];
+    float                    slow_Nm[DIG_WINDOW_MAX];
+};
+
+/// Remembers or keeps a sample. Constant time but for the halving of a full window.
+void dig_window_add(struct dig_window *window, const struct dig_window_sample *sample);
+
+/// Opens the window with the samples remembered; closes it and forgets all.
+void dig_window_open(struct dig_window *window);
+void dig_window_close(struct dig_window *window);
+
+/// The observation of the dig along route at the track's shift: samples from the start of the route
+/// to its end (or to where the dig stopped), smoothed over +-half_s of rig time, read off at
+/// DIG_CURVE_POINTS of progress where the furthest progress so far first reached them: a pause or a
+/// step back changes nothing. A sample farther than limit_m from the route moves no progress.
+/// sigma: white noise averages over the smoothing, the slow part does not.
+///
+/// DIG_ENOMATCH when fewer than two points of the grid were reached. Uses the window's own arrays;
+/// O(samples * corners).
+DIG_MUST_CHECK enum dig_status dig_window_observe(struct dig_window      *window,
+                                                  const struct dig_route *route,
+                                                  const struct dig_track *track, double limit_m,
+                                                  double                  half_s,
+                                                  struct dig_observation *observation);
+
+#endif // DIG_ESTIMATOR_WINDOW_H
