@@ -135,3 +135,43 @@ enum dig_status dig_grid_read(const char *const path, struct dig_grid *const gri
     }
     return status;
 }
+
+// "simpleA, simpleB, actual"
+static const char *names_of(const struct dig_scene *const scene, const size_t size,
+                            char text[const])
+{
+    size_t used = 0;
+    for (size_t i = 0; i < scene->trajectories && used < size; i++) {
+        const int n = snprintf(text + used, size - used, "%s%s", i == 0 ? "" : ", ",
+                               scene->trajectory[i].name);
+        used += n > 0 ? (size_t)n : 0;
+    }
+    return text;
+}
+
+enum dig_status dig_grid_trajectories(const char *const path, const struct dig_grid *const grid,
+                                      const struct dig_scene *const scene, size_t *const count,
+                                      size_t                  trajectory[const DIG_TRAJECTORY_MAX],
+                                      struct dig_error *const error)
+{
+    assert(path != NULL && grid != NULL && scene != NULL && count != NULL);
+
+    size_t found[DIG_TRAJECTORY_MAX] = { 0 };
+    size_t n                         = grid->trajectories;
+    for (size_t i = 0; i < n; i++) {
+        const struct dig_trajectory *const t = dig_scene_find(scene, grid->trajectory[i]);
+        if (t == NULL) {
+            char key[64], names[DIG_TRAJECTORY_MAX * (DIG_NAME_SIZE + 2)];
+            (void)snprintf(key, sizeof key, "trajectories[%zu]", i);
+            return dig_yaml_refuse(path, key, error, "\"%s\", expected one of the scene's: %s",
+                                   grid->trajectory[i], names_of(scene, sizeof names, names));
+        }
+        found[i] = (size_t)(t - scene->trajectory);
+    }
+    for (size_t i = 0; grid->trajectories == 0 && i < scene->trajectories; i++) {
+        found[n++] = i;
+    }
+    memcpy(trajectory, found, sizeof found);
+    *count = n;
+    return DIG_OK;
+}

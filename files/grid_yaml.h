@@ -5,6 +5,7 @@
 
 #include "core/curve.h"
 #include "core/error.h"
+#include "core/scene.h"
 
 #define DIG_AXIS_VALUES_MAX 32
 
@@ -18,5 +19,12 @@ struct dig_grid {
 
 DIG_MUST_CHECK enum dig_status dig_grid_read(const char *path, struct dig_grid *grid,
                                              struct dig_error *error);
+
+/// The grid's trajectories as indices in the scene, all of them when the grid names none. A name
+/// the scene lacks is refused with the grid's file and line. Writes on success only.
+DIG_MUST_CHECK enum dig_status dig_grid_trajectories(const char *path, const struct dig_grid *grid,
+                                                     const struct dig_scene *scene, size_t *count,
+                                                     size_t trajectory[DIG_TRAJECTORY_MAX],
+                                                     struct dig_error *error);
 
 #endif // DIG_FILES_GRID_YAML_H

@@ -1,0 +1,260 @@
+#include "tables/export.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const channel_name[DIG_CHANNELS] = {
+    [DIG_CHANNEL_MY_Nm] = "My_Nm",
+    [DIG_CHANNEL_FX_N]  = "Fx_N",
+    [DIG_CHANNEL_FZ_N]  = "Fz_N",
+};
+
+static double progress_of(const size_t k)
+{
+    return (double)k / (DIG_CURVE_POINTS - 1);
+}
+
+static double time_of(const struct dig_curve_set *const set, const size_t trajectory,
+                      const size_t k)
+{
+    return dig_trajectory_time_s(&set->trajectory[trajectory], set->tooth_m, progress_of(k));
+}
+
+static void put_gravel(const struct dig_gravel *const gravel, FILE *const file)
+{
+    (void)fprintf(file, "%.9g,%.9g,%.9g", gravel->value[DIG_AXIS_FRICTION],
+                  gravel->value[DIG_AXIS_ROLLING], gravel->value[DIG_AXIS_DENSITY_kgpm3]);
+}
+
+static void put_point(const struct dig_curve_set *const set, const size_t at,
+                      const size_t trajectory, const size_t k, FILE *const file)
+{
+    (void)fprintf(file, "%.9g,%.9g", progress_of(k), time_of(set, trajectory, k));
+    for (size_t c = 0; c < DIG_CHANNELS; c++) {
+        (void)fprintf(file, ",%.9g,%.9g", (double)set->curve[at].mean[c][k],
+                      (double)set->curve[at].sd[c][k]);
+    }
+    (void)fputc('\n', file);
+}
+
+#define POINT_COLUMNS "progress,t_s,My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N\n"
+
+void dig_export_curves(const struct dig_curve_set *const set, FILE *const file)
+{
+    (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS);
+    for (size_t e = 0; e < set->entries; e++) {
+        for (size_t t = 0; t < set->trajectories; t++) {
+            const size_t at = e * set->trajectories + t;
+            for (size_t k = 0; set->packings[at] > 0 && k < DIG_CURVE_POINTS; k++) {
+                put_gravel(&set->gravel[e], file);
+                (void)fprintf(file, ",%s,%d,", set->trajectory[t].name, set->packings[at]);
+                put_point(set, at, t, k, file);
+            }
+        }
+    }
+}
+
+struct export_context {
+    const struct dig_trajectory *trajectory;
+    FILE                        *file;
+};
+
+static enum dig_status put_run(void *const context, const struct dig_run *const run,
+                               struct dig_error *const error)
+{
+    const struct export_context *const x = context;
+    const struct dig_run_origin *const o = &run->origin;
+    (void)error;
+    for (size_t i = 0; i < run->windows; i++) {
+        put_gravel(&o->gravel, x->file);
+        (void)fprintf(x->file, ",%s,%zu,%llu,%s,%s,%zu,%.9g", x->trajectory[o->trajectory].name,
+                      o->packing, (unsigned long long)o->seed, o->engine, o->version, o->grains,
+                      run->first_s + (double)i * run->step_s);
+        for (size_t c = 0; c < DIG_CHANNELS; c++) {
+            (void)fprintf(x->file, ",%.9g", (double)run->value[c * run->windows + i]);
+        }
+        (void)fputc('\n', x->file);
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_export_runs(struct dig_store *const store, FILE *const file,
+                                struct dig_error *const error)
+{
+    size_t                       count   = 0;
+    struct export_context        context = { dig_store_trajectories(store, &count), file };
+    const struct dig_run_visitor visitor = { put_run, &context };
+    (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packing,seed,engine,version,"
+                        "grains,t_s,My_Nm,Fx_N,Fz_N\n");
+    return dig_store_walk(store, &visitor, error);
+}
+
+void dig_export_list(const struct dig_curve_set *const set, FILE *const file)
+{
+    (void)fprintf(file, "scene %s %.12s  bucket %g m wide, tooth at %g m  E %g Pa\n",
+                  set->scene_name, set->scene_hash, set->bucket_width_m, set->tooth_m,
+                  set->young_Pa);
+    (void)fprintf(file, "%5s  %8s  %8s  %8s ", "entry", "friction", "rolling", "kg/m3");
+    for (size_t t = 0; t < set->trajectories; t++) {
+        (void)fprintf(file, "  %10s", set->trajectory[t].name);
+    }
+    (void)fputs("   (packings)\n", file);
+    for (size_t e = 0; e < set->entries; e++) {
+        const double *const v = set->gravel[e].value;
+        (void)fprintf(file, "%5zu  %8g  %8g  %8g ", e, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
+                      v[DIG_AXIS_DENSITY_kgpm3]);
+        for (size_t t = 0; t < set->trajectories; t++) {
+            (void)fprintf(file, "  %10d", set->packings[e * set->trajectories + t]);
+        }
+        (void)fputc('\n', file);
+    }
+}
+
+static void put_json_text(const char *text, FILE *const file)
+{
+    (void)fputc('"', file);
+    for (; *text != '\0'; text++) {
+        const unsigned char c = (unsigned char)*text;
+        if (c == '"' || c == '\\') {
+            (void)fprintf(file, "\\%c", c);
+        } else if (c < 0x20) {
+            (void)fprintf(file, "\\u%04x", c);
+        } else {
+            (void)fputc(c, file);
+        }
+    }
+    (void)fputc('"', file);
+}
+
+static void put_json_gravel(const struct dig_gravel *const gravel, FILE *const file)
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(file, "%s\"%s\": %.9g", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                      gravel->value[a]);
+    }
+}
+
+static void put_json_scene(const struct dig_curve_set *const set, FILE *const file)
+{
+    (void)fputs("\"scene\": {\"name\": ", file);
+    put_json_text(set->scene_name, file);
+    (void)fprintf(file,
+                  ", \"hash\": \"%s\", \"tooth_m\": %.9g, \"bucket_width_m\": %.9g, "
+                  "\"young_Pa\": %.9g, \"smooth_half_s\": %.9g}",
+                  set->scene_hash, set->tooth_m, set->bucket_width_m, set->young_Pa,
+                  set->smooth_half_s);
+}
+
+void dig_export_list_json(const struct dig_curve_set *const set, FILE *const file)
+{
+    (void)fputc('{', file);
+    put_json_scene(set, file);
+    (void)fputs(",\n \"trajectories\": [", file);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        (void)fputs(t == 0 ? "" : ", ", file);
+        put_json_text(set->trajectory[t].name, file);
+    }
+    (void)fputs("],\n \"entries\": [", file);
+    for (size_t e = 0; e < set->entries; e++) {
+        (void)fprintf(file, "%s\n  {\"entry\": %zu, ", e == 0 ? "" : ",", e);
+        put_json_gravel(&set->gravel[e], file);
+        (void)fputs(", \"packings\": {", file);
+        for (size_t t = 0; t < set->trajectories; t++) {
+            (void)fputs(t == 0 ? "" : ", ", file);
+            put_json_text(set->trajectory[t].name, file);
+            (void)fprintf(file, ": %d", set->packings[e * set->trajectories + t]);
+        }
+        (void)fputs("}}", file);
+    }
+    (void)fputs("\n ]}\n", file);
+}
+
+void dig_export_curve_csv(const struct dig_curve_set *const set, const size_t entry,
+                          const size_t trajectory, FILE *const file)
+{
+    (void)fputs(POINT_COLUMNS, file);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        put_point(set, entry * set->trajectories + trajectory, trajectory, k, file);
+    }
+}
+
+static void put_json_array(const char *const name, const float value[const DIG_CURVE_POINTS],
+                           FILE *const file)
+{
+    (void)fprintf(file, ",\n \"%s\": [", name);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", (double)value[k]);
+    }
+    (void)fputc(']', file);
+}
+
+void dig_export_curve_json(const struct dig_curve_set *const set, const size_t entry,
+                           const size_t trajectory, FILE *const file)
+{
+    const size_t at = entry * set->trajectories + trajectory;
+    (void)fputc('{', file);
+    put_json_scene(set, file);
+    (void)fprintf(file, ",\n \"entry\": %zu, ", entry);
+    put_json_gravel(&set->gravel[entry], file);
+    (void)fputs(", \"trajectory\": ", file);
+    put_json_text(set->trajectory[trajectory].name, file);
+    (void)fprintf(file, ", \"packings\": %d,\n \"progress\": [", set->packings[at]);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", progress_of(k));
+    }
+    (void)fputs("],\n \"t_s\": [", file);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", time_of(set, trajectory, k));
+    }
+    (void)fputc(']', file);
+    static const char *const mean_name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N" };
+    static const char *const sd_name[DIG_CHANNELS]   = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N" };
+    for (size_t c = 0; c < DIG_CHANNELS; c++) {
+        put_json_array(mean_name[c], set->curve[at].mean[c], file);
+        put_json_array(sd_name[c], set->curve[at].sd[c], file);
+    }
+    (void)fputs("}\n", file);
+}
+
+#define PLOT_ROWS 17
+
+// Marks the band of one standard deviation with ':' and the mean with '*'.
+void dig_export_curve_plot(const struct dig_curve_set *const set, const size_t entry,
+                           const size_t trajectory, const enum dig_channel channel,
+                           const size_t width, FILE *const file)
+{
+    const size_t                  at    = entry * set->trajectories + trajectory;
+    const struct dig_curve *const curve = &set->curve[at];
+    const double *const           v     = set->gravel[entry].value;
+    double                        low = 0.0, high = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double mean = (double)curve->mean[channel][k], sd = (double)curve->sd[channel][k];
+        low  = fmin(low, mean - sd);
+        high = fmax(high, mean + sd);
+    }
+    const double step = high > low ? (high - low) / (PLOT_ROWS - 1) : 1.0;
+
+    (void)fprintf(file, "entry %zu: friction %g, rolling %g, %g kg/m3; %s, %d packings\n%s\n",
+                  entry, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING], v[DIG_AXIS_DENSITY_kgpm3],
+                  set->trajectory[trajectory].name, set->packings[at], channel_name[channel]);
+    for (int row = PLOT_ROWS - 1; row >= 0; row--) {
+        const double level = low + step * row;
+        (void)fprintf(file, "%9.3g |", level);
+        for (size_t x = 0; x < width; x++) {
+            const size_t k    = x * (DIG_CURVE_POINTS - 1) / (width > 1 ? width - 1 : 1);
+            const double mean = (double)curve->mean[channel][k];
+            const double sd   = (double)curve->sd[channel][k];
+            const bool   on   = fabs(mean - level) <= 0.5 * step;
+            (void)fputc(on ? '*' : fabs(mean - level) <= sd ? ':' : ' ', file);
+        }
+        (void)fputc('\n', file);
+    }
+    (void)fprintf(file, "%9s +", "");
+    for (size_t x = 0; x < width; x++) {
+        (void)fputc('-', file);
+    }
+    (void)fprintf(file,
+                  "\n%9s  0%*s\n%9s  progress along the path; * mean, : one standard deviation\n",
+                  "", (int)(width > 2 ? width - 1 : 1), "1", "");
+}

@@ -1,0 +1,50 @@
+// What a table is on disk: its SQL, its version, and the checks every opening makes. Internal to
+// tables/; docs/formats.md shows the schema to people.
+
+#ifndef DIG_TABLES_SCHEMA_H
+#define DIG_TABLES_SCHEMA_H
+
+#include "core/curve.h"
+#include "core/error.h"
+#include "core/scene.h"
+
+#include <sqlite3.h>
+
+#define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
+#define DIG_TABLE_VERSION        1          // PRAGMA user_version
+
+/// What a table says of itself, read once at opening.
+struct dig_table_head {
+    char                  scene_name[DIG_NAME_SIZE];
+    char                  scene_hash[65];
+    double                tooth_m, bucket_width_m, young_Pa, smooth_half_s;
+    size_t                trajectories;
+    struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX]; // all of the scene, in its order
+};
+
+/// What a scene's table says of itself.
+void dig_table_head_of(const struct dig_scene *scene, struct dig_table_head *head);
+
+/// *error becomes "PATH: what SQLite says"; the status is that of a failed call.
+enum dig_status dig_sql_refuse(sqlite3 *db, const char *path, struct dig_error *error);
+
+/// Settings of every connection.
+DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
+                                             struct dig_error *error);
+
+/// Runs statements that return no rows.
+DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
+                                           struct dig_error *error);
+
+/// Makes an empty database the table of this scene, in one transaction.
+DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
+                                                 const struct dig_scene *scene,
+                                                 struct dig_error       *error);
+
+/// Refuses what is no table (DIG_EINVAL), a version other than ours (DIG_ESCHEMA, both named), and
+/// a damaged file; then reads the head. Writes *head on success only. Reads the whole file.
+DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
+                                                struct dig_table_head *head,
+                                                struct dig_error      *error);
+
+#endif // DIG_TABLES_SCHEMA_H

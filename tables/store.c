@@ -1,0 +1,227 @@
+#include "tables/store.h"
+
+#include "tables/store_private.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define LOCK_WAIT_s 2.0 // workers of a killed writer need a moment to die
+
+static enum dig_status open_db(const char *const path, const int flags, sqlite3 **const db,
+                               struct dig_error *const error)
+{
+    sqlite3 *opened = NULL;
+    if (sqlite3_open_v2(path, &opened, flags, NULL) != SQLITE_OK) {
+        const enum dig_status status = dig_error_set(
+            error, DIG_EIO, "%s: %s", path, opened != NULL ? sqlite3_errmsg(opened) : "no memory");
+        (void)sqlite3_close(opened);
+        return status;
+    }
+    const enum dig_status status = dig_sql_setup(opened, path, error);
+    if (status != DIG_OK) {
+        (void)sqlite3_close(opened);
+        return status;
+    }
+    *db = opened;
+    return DIG_OK;
+}
+
+enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
+                                  struct dig_table_head *const head, struct dig_error *const error)
+{
+    struct stat file;
+    if (stat(path, &file) != 0) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    if (!S_ISREG(file.st_mode)) {
+        return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
+                             path);
+    }
+    sqlite3        *opened = NULL;
+    enum dig_status status = open_db(path, SQLITE_OPEN_READONLY, &opened, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_schema_check(opened, path, head, error);
+
+    // A journal left by a crash can only be rolled back by one who may write.
+    if (status == DIG_EIO && sqlite3_extended_errcode(opened) == SQLITE_READONLY_ROLLBACK) {
+        (void)sqlite3_close(opened);
+        opened = NULL;
+        status = open_db(path, SQLITE_OPEN_READWRITE, &opened, error);
+        if (status == DIG_OK) {
+            status = dig_schema_check(opened, path, head, error);
+        }
+    }
+    if (status != DIG_OK) {
+        (void)sqlite3_close(opened);
+        return status;
+    }
+    *db = opened;
+    return DIG_OK;
+}
+
+static enum dig_status make_store(const char *const path, struct dig_store **const store,
+                                  struct dig_error *const error)
+{
+    struct dig_store *const made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+    }
+    made->lock_fd = -1;
+    if (strlen(path) >= sizeof made->path) {
+        free(made);
+        return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
+    }
+    memcpy(made->path, path, strlen(path) + 1);
+    *store = made;
+    return DIG_OK;
+}
+
+enum dig_status dig_store_open(const char *const path, struct dig_store **const store,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && store != NULL);
+    struct dig_store *made   = NULL;
+    enum dig_status   status = make_store(path, &made, error);
+    if (status == DIG_OK) {
+        status = dig_sql_open_read(path, &made->db, &made->head, error);
+    }
+    if (status != DIG_OK) {
+        dig_store_close(made);
+        return status;
+    }
+    *store = made;
+    return DIG_OK;
+}
+
+// SQLite locks byte ranges by fcntl; this is the other kind, for the whole life of a writer.
+static enum dig_status lock(struct dig_store *const store, bool *const created,
+                            struct dig_error *const error)
+{
+    *created       = access(store->path, F_OK) != 0;
+    store->lock_fd = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (store->lock_fd < 0) {
+        *created = false;
+        return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+    }
+    const struct timespec pause = { .tv_nsec = 50000000 };
+    for (double waited_s = 0.0; flock(store->lock_fd, LOCK_EX | LOCK_NB) != 0; waited_s += 0.05) {
+        if (errno != EWOULDBLOCK && errno != EINTR) {
+            return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+        }
+        if (waited_s > LOCK_WAIT_s) {
+            return dig_error_set(error, DIG_EIO,
+                                 "%s: another process is adding to this table, expected one writer",
+                                 store->path);
+        }
+        (void)nanosleep(&pause, NULL);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_same_scene(const struct dig_store *const store,
+                                        const struct dig_scene *const scene,
+                                        struct dig_error *const       error)
+{
+    struct dig_table_head wanted;
+    dig_table_head_of(scene, &wanted);
+    if (strcmp(wanted.scene_hash, store->head.scene_hash) == 0) {
+        return DIG_OK;
+    }
+    return dig_error_set(error, DIG_EINVAL,
+                         "%s: scene: holds \"%s\" (%.12s…), not \"%s\" (%.12s…), expected the same "
+                         "scene or a new table",
+                         store->path, store->head.scene_name, store->head.scene_hash,
+                         wanted.scene_name, wanted.scene_hash);
+}
+
+// A file of length 0 is a table not begun: what a crash between making and filling leaves.
+static enum dig_status open_or_fill(struct dig_store *const       store,
+                                    const struct dig_scene *const scene,
+                                    struct dig_error *const       error)
+{
+    struct stat file;
+    if (fstat(store->lock_fd, &file) != 0) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+    }
+    enum dig_status status = open_db(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (file.st_size == 0) {
+        status = dig_schema_create(store->db, store->path, scene, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_schema_check(store->db, store->path, &store->head, error);
+    }
+    // Not before the check: it would write into a file that is not ours.
+    if (status == DIG_OK) {
+        status = dig_sql_run(store->db, store->path,
+                             "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
+    }
+    return status == DIG_OK ? check_same_scene(store, scene, error) : status;
+}
+
+enum dig_status dig_store_create(const char *const path, const struct dig_scene *const scene,
+                                 struct dig_store **const store, struct dig_error *const error)
+{
+    assert(path != NULL && scene != NULL && store != NULL);
+    enum dig_status status = dig_scene_check(scene, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_store *made    = NULL;
+    bool              created = false;
+    status                    = make_store(path, &made, error);
+    if (status == DIG_OK) {
+        status = lock(made, &created, error);
+    }
+    if (status == DIG_OK) {
+        status = open_or_fill(made, scene, error);
+    }
+    if (status != DIG_OK) {
+        dig_store_close(made);
+        if (created) {
+            (void)unlink(path);
+        }
+        return status;
+    }
+    *store = made;
+    return DIG_OK;
+}
+
+void dig_store_close(struct dig_store *const store)
+{
+    if (store != NULL) {
+        (void)sqlite3_close(store->db);
+        // Last: closing any descriptor of a file drops the process's fcntl locks on it.
+        if (store->lock_fd >= 0) {
+            (void)close(store->lock_fd);
+        }
+        free(store);
+    }
+}
+
+void dig_store_forget(struct dig_store *const store)
+{
+    if (store != NULL && store->lock_fd >= 0) {
+        (void)close(store->lock_fd);
+        store->lock_fd = -1;
+    }
+}
+
+const struct dig_trajectory *dig_store_trajectories(const struct dig_store *const store,
+                                                    size_t *const                 count)
+{
+    *count = store->head.trajectories;
+    return store->head.trajectory;
+}
