@@ -5,6 +5,7 @@
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
+#include "tools/rig/buses.h"
 #include "tools/rig/options.h"
 #include "tools/rig/record.h"
 #include "tools/rig/serve.h"
@@ -62,6 +63,9 @@ static int work(const struct dig_rig_options *const options)
     struct dig_recording         recording[DIG_RIG_INPUTS_MAX] = { { .rows = 0 } };
     struct dig_rig_track         track                         = { .rows = 0 };
     struct dig_rig_track_options track_options                 = options->track;
+    if (options->command == DIG_RIG_COMMAND_SERVE) {
+        track_options.rate_Hz = DIG_RIG_TICK_Hz;
+    }
 
     enum dig_status status =
         load(options, &machine, &track_options.scene_tooth_m, recording, &error);

@@ -1,0 +1,32 @@
+// What the Modbus servers read and the motion writes: one set of registers between the threads.
+
+#ifndef DIG_TOOLS_RIG_BOARD_H
+#define DIG_TOOLS_RIG_BOARD_H
+
+#include "tools/rig/modbus_map.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct dig_rig_board {
+    pthread_mutex_t lock;
+    uint16_t        registers[DIG_RIG_REGISTERS];
+    bool            silent; // the servers take requests and answer none
+    bool            stop;   // the servers' threads are to end
+};
+
+/// False when the mutex cannot be made.
+bool dig_rig_board_init(struct dig_rig_board *board);
+void dig_rig_board_finish(struct dig_rig_board *board);
+
+void dig_rig_board_write(struct dig_rig_board *board, const uint16_t registers[DIG_RIG_REGISTERS],
+                         bool silent);
+
+/// Copies the registers out; returns silent.
+bool dig_rig_board_read(struct dig_rig_board *board, uint16_t registers[DIG_RIG_REGISTERS]);
+
+void dig_rig_board_stop(struct dig_rig_board *board);
+bool dig_rig_board_is_stopped(struct dig_rig_board *board);
+
+#endif // DIG_TOOLS_RIG_BOARD_H
