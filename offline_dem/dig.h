@@ -27,7 +27,7 @@ struct dig_progress {
 
 /// Pours and levels a bed of this gravel. Minutes of one core for 7000 grains are normal; seconds
 /// with a fast machine. DIG_EINVAL when the scene or the gravel cannot be computed.
-DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene *scene,
+DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
                                             struct dig_bed *bed, struct dig_error *error);
@@ -35,11 +35,13 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene *scene,
 void dig_bed_finish(struct dig_bed *bed);
 
 /// Drives the bucket through the trajectory in a copy of the bed. vtk_dir NULL: no pictures.
-DIG_MUST_CHECK enum dig_status dig_dig_run(const struct dig_scene *scene,
-                                           const struct dig_gravel *gravel,
-                                           const struct dig_bed *bed,
-                                           const struct dig_trajectory *trajectory,
-                                           const char *vtk_dir, const struct dig_progress *progress,
-                                           struct dig_recording *recording, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status
+dig_dig_run(const struct dig_scene *scene, const struct dig_gravel *gravel,
+            const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
+            const struct dig_progress *progress, struct dig_recording *recording,
+            struct dig_error *error);
+
+/// The step a dig is computed with, s: the scene's, or derived from the Rayleigh and contact times.
+double dig_time_step_s(const struct dig_scene *scene, double density_kgpm3);
 
 #endif // DIG_OFFLINE_DEM_DIG_H

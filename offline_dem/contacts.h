@@ -1,0 +1,32 @@
+// Pairs close enough to touch soon, with what each contact remembers: structure of arrays, so that
+// the law reads and writes whole vectors. One list holds contacts of one kind pair only, so the
+// law's constants are the same for all of it.
+
+#ifndef DIG_OFFLINE_DEM_CONTACTS_H
+#define DIG_OFFLINE_DEM_CONTACTS_H
+
+#include "core/status.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define DIG_BLOCK    128 // contacts computed together: their operands stay in the first cache
+#define DIG_MEMORIES 6   // numbers of a struct dig_memory
+
+struct dig_contacts {
+    size_t    n;
+    size_t    room;                 // a multiple of DIG_BLOCK
+    uint32_t *i;                    // grain
+    uint32_t *j;                    // grain, or surface
+    uint32_t *key;                  // finds the contact again when the list is made anew
+    double   *memory[DIG_MEMORIES]; // sx sy sz mx my mz
+};
+
+/// Appends with these memories (NULL: zero). DIG_ENOMEM leaves the list as it was.
+DIG_MUST_CHECK enum dig_status dig_contacts_add(struct dig_contacts *list, uint32_t i, uint32_t j,
+                                                uint32_t key, const struct dig_contacts *from,
+                                                uint32_t at);
+
+void dig_contacts_finish(struct dig_contacts *list);
+
+#endif // DIG_OFFLINE_DEM_CONTACTS_H

@@ -1,0 +1,80 @@
+// A box of grains, its walls and perhaps a tool, stepped through time: neighbour list, contact
+// lists and kernel put together. Leap-frog: forces at x(t) with v(t - dt/2), which is velocity
+// Verlet with half kicks, the two halves that meet between two steps done as one.
+
+#ifndef DIG_OFFLINE_DEM_ENGINE_H
+#define DIG_OFFLINE_DEM_ENGINE_H
+
+#include "core/status.h"
+#include "offline_dem/contacts.h"
+#include "offline_dem/grains.h"
+#include "offline_dem/kernel.h"
+#include "offline_dem/law.h"
+#include "offline_dem/neighbour.h"
+#include "offline_dem/tool.h"
+
+#include <stdbool.h>
+
+#define DIG_WALLS_MAX 8
+
+/// Grains stay where normal . x >= offset_m; normal has length 1.
+struct dig_wall {
+    double normal[3];
+    double offset_m;
+};
+
+/// Force and moment of the grains on the tool, summed over steps.
+struct dig_wrench {
+    double f_N[3];
+    double t_Nm[3]; // about the moving pin
+};
+
+struct dig_engine {
+    // Fixed at start.
+    double                  dt_s;
+    double                  gravity_mps2[3];
+    struct dig_law_material material;
+    size_t                  walls;
+    struct dig_wall         wall[DIG_WALLS_MAX];
+    enum dig_isa            isa;
+
+    // May be placed between steps; NULL: no tool.
+    struct dig_tool *tool;
+
+    // State.
+    struct dig_grains grains;
+    bool              started; // the first kick is half a step
+    size_t            steps;
+    struct dig_wrench on_tool; // of the last step
+    struct dig_wrench on_walls;
+
+    // Lists and their validity.
+    struct dig_neighbours near_list;
+    struct dig_contacts   pair[DIG_KINDS_MAX * DIG_KINDS_MAX]; // kind_i * KINDS_MAX + kind_j
+    struct dig_contacts   surface[DIG_KINDS_MAX];              // j: wall, or walls + plate
+    double (*at_m)[4];                                         // [n] where the lists were made
+    size_t          at_room;
+    struct dig_pose tool_at;
+    double          tool_margin_m;
+    bool            stale;
+    size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
+};
+
+/// Takes over *grains. The caller fills the fixed fields of a zeroed *engine first.
+void dig_engine_init(struct dig_engine *engine, struct dig_grains *grains);
+
+/// Tells the engine that grains were taken out or moved by hand. Contacts are forgotten if
+/// `forget`, else they stay with their grains' names.
+void dig_engine_touched(struct dig_engine *engine);
+
+/// Removes grains for which drop[i] is not 0; the contacts between the others remember.
+DIG_MUST_CHECK enum dig_status dig_engine_drop(struct dig_engine  *engine,
+                                               const unsigned char drop[]);
+
+/// One step. The tool, if any, must stand where it is at the new positions' time. DIG_ENOMEM, or
+/// DIG_EINVAL when a grain's position is not a number any more: the time step was too long.
+DIG_MUST_CHECK enum dig_status dig_engine_step(struct dig_engine *engine);
+
+void dig_engine_finish(struct dig_engine *engine);
+
+#endif // DIG_OFFLINE_DEM_ENGINE_H

@@ -1,0 +1,143 @@
+#include "offline_dem/grains.h"
+
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Cache lines, so that one grain's position and velocity never straddle more than they must.
+#define ALIGNMENT 64
+
+static void *allocate(const size_t n, const size_t size)
+{
+    const size_t bytes = (n * size + ALIGNMENT) / ALIGNMENT * ALIGNMENT;
+    void *const  p     = aligned_alloc(ALIGNMENT, bytes);
+    if (p != NULL) {
+        memset(p, 0, bytes);
+    }
+    return p;
+}
+
+// Radii from one file or one pouring: equal ones are equal to the bit, or nearly.
+static size_t find_kind(struct dig_grains *const grains, const double radius_m,
+                        const double density_kgpm3)
+{
+    for (size_t k = 0; k < grains->kinds; k++) {
+        if (fabs(grains->kind[k].radius_m - radius_m) <= 1e-9 * radius_m) {
+            return k;
+        }
+    }
+    const double mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
+    if (grains->kinds < DIG_KINDS_MAX) {
+        grains->kind[grains->kinds] = (struct dig_kind){
+            .radius_m     = radius_m,
+            .mass_kg      = mass_kg,
+            .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
+        };
+    }
+    return grains->kinds++;
+}
+
+enum dig_status dig_grains_create(const size_t n, const double x_m[], const double y_m[],
+                                  const double z_m[], const double radius_m[],
+                                  const double density_kgpm3, struct dig_grains *const grains)
+{
+    struct dig_grains made = {
+        .n      = n,
+        .motion = allocate(n, sizeof *made.motion),
+        .load   = allocate(n, sizeof *made.load),
+        .of     = allocate(n, sizeof *made.of),
+        .name   = allocate(n, sizeof *made.name),
+    };
+    enum dig_status status = DIG_ENOMEM;
+    if (made.motion == NULL || made.load == NULL || made.of == NULL || made.name == NULL) {
+        goto error;
+    }
+    status = DIG_EINVAL;
+    for (size_t i = 0; i < n; i++) {
+        if (!(radius_m[i] > 0.0) || !isfinite(x_m[i] + y_m[i] + z_m[i] + radius_m[i])) {
+            goto error;
+        }
+        const size_t kind = find_kind(&made, radius_m[i], density_kgpm3);
+        if (kind >= DIG_KINDS_MAX) {
+            goto error;
+        }
+        made.motion[i] = (struct dig_motion){ .x_m = { x_m[i], y_m[i], z_m[i] } };
+        made.of[i]     = (uint8_t)kind;
+        made.name[i]   = (uint32_t)i;
+    }
+    *grains = made;
+    return DIG_OK;
+
+error:
+    dig_grains_finish(&made);
+    return status;
+}
+
+void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[])
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < grains->n; i++) {
+        if (!drop[i]) {
+            grains->motion[kept] = grains->motion[i];
+            grains->load[kept]   = grains->load[i];
+            grains->of[kept]     = grains->of[i];
+            grains->name[kept]   = grains->name[i];
+            kept++;
+        }
+    }
+    grains->n = kept;
+}
+
+enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
+{
+    const size_t             n      = grains->n;
+    struct dig_motion *const motion = allocate(n, sizeof *motion);
+    uint8_t *const           of     = allocate(n, sizeof *of);
+    uint32_t *const          name   = allocate(n, sizeof *name);
+    if (motion == NULL || of == NULL || name == NULL) {
+        free(motion);
+        free(of);
+        free(name);
+        return DIG_ENOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        motion[k] = grains->motion[order[k]];
+        of[k]     = grains->of[order[k]];
+        name[k]   = grains->name[order[k]];
+    }
+    free(grains->motion);
+    free(grains->of);
+    free(grains->name);
+    grains->motion = motion;
+    grains->of     = of;
+    grains->name   = name;
+    return DIG_OK;
+}
+
+void dig_grains_finish(struct dig_grains *const grains)
+{
+    if (grains == NULL) {
+        return;
+    }
+    free(grains->motion);
+    free(grains->load);
+    free(grains->of);
+    free(grains->name);
+    *grains = (struct dig_grains){ 0 };
+}
+
+double dig_grains_kinetic_J(const struct dig_grains *const grains)
+{
+    double sum_J = 0.0;
+    for (size_t i = 0; i < grains->n; i++) {
+        const double *const          v    = grains->motion[i].v_mps;
+        const double *const          w    = grains->motion[i].w_radps;
+        const struct dig_kind *const kind = &grains->kind[grains->of[i]];
+        sum_J += 0.5 * kind->mass_kg * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
+                 0.5 * kind->inertia_kgm2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    }
+    return sum_J;
+}

@@ -1,0 +1,43 @@
+// The hot loops: contact forces in blocks, and the step of the grains. Written in plain C; compiled
+// for AVX-512, AVX2 and the baseline processor, and picked at run time. No multiply is fused with
+// an add and no sum is reordered, so every variant gives the same bits.
+
+#ifndef DIG_OFFLINE_DEM_KERNEL_H
+#define DIG_OFFLINE_DEM_KERNEL_H
+
+#include "offline_dem/contacts.h"
+#include "offline_dem/grains.h"
+#include "offline_dem/law.h"
+
+#include <stdbool.h>
+
+enum dig_isa { DIG_ISA_BASE, DIG_ISA_AVX2, DIG_ISA_AVX512 };
+
+/// The best this processor can do.
+enum dig_isa dig_kernel_best(void);
+
+/// "baseline", "avx2", "avx512f".
+const char *dig_kernel_name(enum dig_isa isa);
+
+/// Operands of a block of contacts, filled by whoever knows the geometry; results of the law.
+struct dig_block {
+    _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
+    _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
+};
+
+/// The law on count <= DIG_BLOCK contacts, whose operands stand in block->in and whose memories
+/// stand in memory; memories are updated, block->out is filled.
+void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, size_t count,
+                      double memory[DIG_MEMORIES][DIG_BLOCK], struct dig_block *block);
+
+/// Forces and torques of all contacts of a list of grain pairs, added to the loads.
+void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s,
+                      struct dig_contacts *list, struct dig_grains *grains);
+
+/// Kicks every grain over kick_s with its load and gravity, moves it over dt_s and clears its load.
+/// at_m: where each grain stood when the contact lists were made, and its margin. True when a grain
+/// has left its margin, or has a coordinate that is not a number.
+bool dig_kernel_advance(enum dig_isa isa, const double gravity_mps2[3], double kick_s, double dt_s,
+                        const double at_m[][4], struct dig_grains *grains);
+
+#endif // DIG_OFFLINE_DEM_KERNEL_H

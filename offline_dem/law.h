@@ -1,0 +1,207 @@
+// The contact law between two grains, or a grain and a wall or plate: Hooke springs with a
+// characteristic velocity, tangential history capped by Coulomb, EPSD2 rolling friction.
+//
+//            i o                n: unit vector from j to i
+//               \  n            delta = reach - |d|: overlap, d = x_i - x_j (or the closest point)
+//            ----x----          the contact point is ci below i and cj above j, on the line
+//                 \             of centres
+//                  o j
+//
+// Normal:     F_n = k_n delta - gamma_n v_n. Not limited at zero: damping may pull for the last
+//             instants of a collision, as in the reference code.
+// Tangential: xi += v_t dt, its normal part removed; F_t = -k_t xi - gamma_t v_t, and when
+//             k_t |xi| > mu |F_n| the spring alone, shortened to mu |F_n| / k_t, without damping.
+// Rolling:    M += k_r w_t dt with w_t the part of w_i - w_j that lies in the contact plane (spin
+//             about n is free); |M| is cut to mu_r R* |F_n|. No viscous part (EPSD2).
+//
+// Sources: Di Renzo & Di Maio, Chem. Eng. Sci. 59 (2004) 525; Ai, Chen, Rotter & Ooi, Powder
+// Technol. 206 (2011) 269 (EPSD, here with viscous damping 0); Iwata et al. for the values; the
+// k_n with a characteristic velocity is the linear spring that stores at that velocity as much as
+// Hertz's. Constants and the domain: docs/numerics.md.
+
+#ifndef DIG_OFFLINE_DEM_LAW_H
+#define DIG_OFFLINE_DEM_LAW_H
+
+#include "core/units.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/// What a contact remembers while it lasts; zero when it begins.
+struct dig_memory {
+    double sx_m, sy_m, sz_m;    // tangential displacement xi
+    double mx_Nm, my_Nm, mz_Nm; // rolling torque M on j (and -M on i)
+};
+
+/// Constants of the contacts between two kinds of grain, or of one kind with walls and plates.
+struct dig_law {
+    double reach_m;         // they touch below this distance
+    double lever_i_m;       // from the centre to the contact at no overlap
+    double lever_j_m;       // 0 for a wall
+    double lever_shrink;    // share of the overlap taken off the levers: 1/2, wall 1
+    double normal_Npm;      // k_n = k_t
+    double damping_Nspm;    // gamma_n = gamma_t
+    double rolling_Nmprad;  // k_r
+    double friction;        // mu
+    double rolling_lever_m; // mu_r R*
+};
+
+/// Elastic and frictional constants that do not depend on the grains' sizes.
+struct dig_law_material {
+    double young_Pa, poisson, restitution, characteristic_velocity_mps;
+    double friction, rolling;
+};
+
+/// The relative state of two touching bodies: d = x_i - x_j, velocities of the centres (for a wall
+/// or plate: of its contact point) and rotations.
+struct dig_touch {
+    double dx_m, dy_m, dz_m;
+    double vx_mps, vy_mps, vz_mps; // v_i - v_j
+    double ix_radps, iy_radps, iz_radps;
+    double jx_radps, jy_radps, jz_radps;
+};
+
+/// What the contact does to i; j gets the opposite force and its own torque.
+struct dig_push {
+    double fx_N, fy_N, fz_N;
+    double ix_Nm, iy_Nm, iz_Nm;
+    double jx_Nm, jy_Nm, jz_Nm;
+};
+
+/// Constants for an effective radius and mass; reach and levers are left to the caller.
+static inline struct dig_law dig_law_make(const struct dig_law_material *const material,
+                                          const double radius_m, const double mass_kg)
+{
+    const double young_Pa =
+        material->young_Pa / (2.0 * (1.0 - material->poisson * material->poisson));
+    const double hertz      = 16.0 / 15.0 * sqrt(radius_m) * young_Pa;
+    const double velocity   = material->characteristic_velocity_mps;
+    const double normal_Npm = hertz * pow(mass_kg * velocity * velocity / hertz, 0.2);
+    const double log_e      = log(material->restitution);
+    const double ratio      = DIG_PI / log_e;
+    return (struct dig_law){
+        .normal_Npm      = normal_Npm,
+        .damping_Nspm    = sqrt(4.0 * mass_kg * normal_Npm / (1.0 + ratio * ratio)),
+        .rolling_Nmprad  = normal_Npm * radius_m * radius_m,
+        .friction        = material->friction,
+        .rolling_lever_m = material->rolling * radius_m,
+    };
+}
+
+/// Two grains: R* = ri rj / (ri + rj), m* likewise.
+static inline struct dig_law dig_law_pair(const struct dig_law_material *const material,
+                                          const double ri_m, const double rj_m, const double mi_kg,
+                                          const double mj_kg)
+{
+    struct dig_law law =
+        dig_law_make(material, ri_m * rj_m / (ri_m + rj_m), mi_kg * mj_kg / (mi_kg + mj_kg));
+    law.reach_m      = ri_m + rj_m;
+    law.lever_i_m    = ri_m;
+    law.lever_j_m    = rj_m;
+    law.lever_shrink = 0.5;
+    return law;
+}
+
+/// A grain and something that does not give way: R* = r, m* = m.
+static inline struct dig_law dig_law_wall(const struct dig_law_material *const material,
+                                          const double r_m, const double m_kg)
+{
+    struct dig_law law = dig_law_make(material, r_m, m_kg);
+    law.reach_m        = r_m;
+    law.lever_i_m      = r_m;
+    law.lever_j_m      = 0.0;
+    law.lever_shrink   = 1.0;
+    return law;
+}
+
+/// One contact over one step. Without branches, so that a loop over it becomes vector code; bodies
+/// that do not touch get zeros, and *memory is cleared.
+__attribute__((always_inline)) static inline struct dig_push
+dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch t,
+             struct dig_memory *const memory)
+{
+    // The floor keeps a lane of padding from dividing by zero.
+    const double d2_m2    = t.dx_m * t.dx_m + t.dy_m * t.dy_m + t.dz_m * t.dz_m + 1e-300;
+    const double d_m      = sqrt(d2_m2);
+    const bool   touching = d_m < law.reach_m;
+    const double inv      = 1.0 / d_m;
+    const double nx       = t.dx_m * inv;
+    const double ny       = t.dy_m * inv;
+    const double nz       = t.dz_m * inv;
+
+    // Normal
+    const double delta_m  = law.reach_m - d_m;
+    const double vn_mps   = t.vx_mps * nx + t.vy_mps * ny + t.vz_mps * nz;
+    const double normal_N = law.normal_Npm * delta_m - law.damping_Nspm * vn_mps;
+    const double load_N   = fabs(normal_N);
+
+    // Slip of the contact point
+    const double ci_m = law.lever_i_m - law.lever_shrink * delta_m;
+    const double cj_m = law.lever_j_m > 0.0 ? law.lever_j_m - law.lever_shrink * delta_m : 0.0;
+    const double wx   = ci_m * t.ix_radps + cj_m * t.jx_radps;
+    const double wy   = ci_m * t.iy_radps + cj_m * t.jy_radps;
+    const double wz   = ci_m * t.iz_radps + cj_m * t.jz_radps;
+    const double vx   = t.vx_mps - vn_mps * nx - (wy * nz - wz * ny);
+    const double vy   = t.vy_mps - vn_mps * ny - (wz * nx - wx * nz);
+    const double vz   = t.vz_mps - vn_mps * nz - (wx * ny - wy * nx);
+
+    // Tangential spring, capped
+    double       sx = memory->sx_m + vx * dt_s;
+    double       sy = memory->sy_m + vy * dt_s;
+    double       sz = memory->sz_m + vz * dt_s;
+    const double sn = sx * nx + sy * ny + sz * nz;
+    sx -= sn * nx;
+    sy -= sn * ny;
+    sz -= sn * nz;
+    const double spring_N = law.normal_Npm * sqrt(sx * sx + sy * sy + sz * sz);
+    const double grip_N   = law.friction * load_N;
+    const bool   slides   = spring_N > grip_N;
+    const double shorten  = slides ? grip_N / spring_N : 1.0;
+    const double damping  = slides ? 0.0 : law.damping_Nspm;
+    sx *= shorten;
+    sy *= shorten;
+    sz *= shorten;
+    const double tx = -law.normal_Npm * sx - damping * vx;
+    const double ty = -law.normal_Npm * sy - damping * vy;
+    const double tz = -law.normal_Npm * sz - damping * vz;
+
+    // Rolling spring, capped
+    double       rx        = t.ix_radps - t.jx_radps;
+    double       ry        = t.iy_radps - t.jy_radps;
+    double       rz        = t.iz_radps - t.jz_radps;
+    const double rn        = rx * nx + ry * ny + rz * nz;
+    const double kr        = law.rolling_Nmprad * dt_s;
+    rx                     = memory->mx_Nm + kr * (rx - rn * nx);
+    ry                     = memory->my_Nm + kr * (ry - rn * ny);
+    rz                     = memory->mz_Nm + kr * (rz - rn * nz);
+    const double torque_Nm = sqrt(rx * rx + ry * ry + rz * rz);
+    const double limit_Nm  = law.rolling_lever_m * load_N;
+    const double cut       = torque_Nm > limit_Nm ? limit_Nm / torque_Nm : 1.0;
+    rx *= cut;
+    ry *= cut;
+    rz *= cut;
+
+    memory->sx_m  = touching ? sx : 0.0;
+    memory->sy_m  = touching ? sy : 0.0;
+    memory->sz_m  = touching ? sz : 0.0;
+    memory->mx_Nm = touching ? rx : 0.0;
+    memory->my_Nm = touching ? ry : 0.0;
+    memory->mz_Nm = touching ? rz : 0.0;
+
+    const double ax = ny * tz - nz * ty;
+    const double ay = nz * tx - nx * tz;
+    const double az = nx * ty - ny * tx;
+    return (struct dig_push){
+        .fx_N  = touching ? normal_N * nx + tx : 0.0,
+        .fy_N  = touching ? normal_N * ny + ty : 0.0,
+        .fz_N  = touching ? normal_N * nz + tz : 0.0,
+        .ix_Nm = touching ? -ci_m * ax - rx : 0.0,
+        .iy_Nm = touching ? -ci_m * ay - ry : 0.0,
+        .iz_Nm = touching ? -ci_m * az - rz : 0.0,
+        .jx_Nm = touching ? -cj_m * ax + rx : 0.0,
+        .jy_Nm = touching ? -cj_m * ay + ry : 0.0,
+        .jz_Nm = touching ? -cj_m * az + rz : 0.0,
+    };
+}
+
+#endif // DIG_OFFLINE_DEM_LAW_H

@@ -1,0 +1,223 @@
+#include "offline_dem/neighbour.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A box of cells around all grains. The number of cells is bounded whatever the spread of the
+// grains: a grain thrown far away makes cells larger, not memory.
+struct grid {
+    double    low_m[3];
+    double    cell_m;
+    ptrdiff_t count[3];
+    size_t    cells;
+    uint32_t *start;  // [cells + 1]
+    uint32_t *member; // [n], cell by cell
+};
+
+#define CELLS_PER_GRAIN 8
+
+static ptrdiff_t clamp_cell(const struct grid *const g, const int axis, const double x_m)
+{
+    const double c = floor((x_m - g->low_m[axis]) / g->cell_m);
+    if (!(c > 0.0)) {
+        return 0;
+    }
+    return c < (double)g->count[axis] ? (ptrdiff_t)c : g->count[axis] - 1;
+}
+
+static size_t cell_of(const struct grid *const g, const double x_m[])
+{
+    const ptrdiff_t ix = clamp_cell(g, 0, x_m[0]);
+    const ptrdiff_t iy = clamp_cell(g, 1, x_m[1]);
+    const ptrdiff_t iz = clamp_cell(g, 2, x_m[2]);
+    return (size_t)(ix + g->count[0] * (iy + g->count[1] * iz));
+}
+
+static void size_grid(const struct dig_grains *const grains, struct grid *const g)
+{
+    double high_m[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (int a = 0; a < 3; a++) {
+        g->low_m[a] = INFINITY;
+    }
+    for (size_t i = 0; i < grains->n; i++) {
+        for (int a = 0; a < 3; a++) {
+            g->low_m[a] = fmin(g->low_m[a], grains->motion[i].x_m[a]);
+            high_m[a]   = fmax(high_m[a], grains->motion[i].x_m[a]);
+        }
+    }
+    const double most = (double)(CELLS_PER_GRAIN * grains->n + 64);
+    for (;;) {
+        double cells = 1.0;
+        for (int a = 0; a < 3; a++) {
+            const double c = floor((high_m[a] - g->low_m[a]) / g->cell_m) + 1.0;
+            g->count[a]    = c < most ? (ptrdiff_t)c : (ptrdiff_t)most;
+            cells *= c;
+        }
+        if (!(cells > most)) {
+            break;
+        }
+        g->cell_m *= 1.5;
+    }
+    g->cells = (size_t)(g->count[0] * g->count[1] * g->count[2]);
+}
+
+static enum dig_status fill_grid(const struct dig_grains *const grains, const double cell_m,
+                                 struct grid *const g)
+{
+    const size_t n = grains->n;
+    g->cell_m      = cell_m;
+    size_grid(grains, g);
+    g->start             = calloc(g->cells + 2, sizeof *g->start);
+    g->member            = malloc((n + 1) * sizeof *g->member);
+    uint32_t *const cell = malloc((n + 1) * sizeof *cell);
+    if (g->start == NULL || g->member == NULL || cell == NULL) {
+        free(g->start);
+        free(g->member);
+        free(cell);
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < n; i++) {
+        cell[i] = (uint32_t)cell_of(g, grains->motion[i].x_m);
+        g->start[cell[i] + 2]++;
+    }
+    for (size_t c = 2; c < g->cells + 2; c++) {
+        g->start[c] += g->start[c - 1];
+    }
+    // start[c + 1] runs ahead while cell c is filled and ends where cell c + 1 begins.
+    for (size_t i = 0; i < n; i++) {
+        g->member[g->start[cell[i] + 1]++] = (uint32_t)i;
+    }
+    free(cell);
+    return DIG_OK;
+}
+
+enum dig_status dig_neighbours_order(const struct dig_grains *const grains, const double cell_m,
+                                     uint32_t order[])
+{
+    if (grains->n == 0) {
+        return DIG_OK;
+    }
+    struct grid           g;
+    const enum dig_status status = fill_grid(grains, cell_m, &g);
+    if (status != DIG_OK) {
+        return status;
+    }
+    memcpy(order, g.member, grains->n * sizeof *order);
+    free(g.start);
+    free(g.member);
+    return DIG_OK;
+}
+
+static enum dig_status make_room(struct dig_neighbours *const list, const size_t need)
+{
+    if (need <= list->room) {
+        return DIG_OK;
+    }
+    const size_t    room  = need + need / 2 + 1024;
+    uint32_t *const other = realloc(list->other, room * sizeof *other);
+    if (other == NULL) {
+        return DIG_ENOMEM;
+    }
+    list->other = other;
+    list->room  = room;
+    return DIG_OK;
+}
+
+// The pairs of grain i, appended at *used.
+static enum dig_status search(const struct dig_grains *const grains, const double margin_m[],
+                              const struct grid *const g, const double radius_max_m,
+                              const uint32_t i, struct dig_neighbours *const list,
+                              size_t *const used)
+{
+    const double *const x        = grains->motion[i].x_m;
+    const double        radius_m = grains->kind[grains->of[i]].radius_m;
+    const double        far_m    = radius_m + radius_max_m + 2.0 * margin_m[i];
+    ptrdiff_t           low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        low[a]  = clamp_cell(g, a, x[a] - far_m);
+        high[a] = clamp_cell(g, a, x[a] + far_m);
+    }
+    for (ptrdiff_t iz = low[2]; iz <= high[2]; iz++) {
+        for (ptrdiff_t iy = low[1]; iy <= high[1]; iy++) {
+            const size_t row   = (size_t)(g->count[0] * (iy + g->count[1] * iz));
+            const size_t first = g->start[row + (size_t)low[0]];
+            const size_t last  = g->start[row + (size_t)high[0] + 1];
+            if (make_room(list, *used + (last - first)) != DIG_OK) {
+                return DIG_ENOMEM;
+            }
+            for (size_t k = first; k < last; k++) {
+                const uint32_t j = g->member[k];
+                // The grain with the larger margin searches far enough to see the pair.
+                const int mine =
+                    margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
+                const double *const y    = grains->motion[j].x_m;
+                const double        d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
+                const double        cut_m =
+                    radius_m + grains->kind[grains->of[j]].radius_m + margin_m[i] + margin_m[j];
+                if (mine && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < cut_m * cut_m) {
+                    list->other[(*used)++] = j;
+                }
+            }
+        }
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_neighbours_build(const struct dig_grains *const grains, const double margin_m[],
+                                     struct dig_neighbours *const list)
+{
+    const size_t n = grains->n;
+    if (list->n != n || list->start == NULL) {
+        free(list->start);
+        free(list->at_m);
+        list->start = calloc(n + 1, sizeof *list->start);
+        list->at_m  = calloc(n + 1, sizeof *list->at_m);
+        list->n     = n;
+        if (list->start == NULL || list->at_m == NULL) {
+            dig_neighbours_finish(list);
+            return DIG_ENOMEM;
+        }
+    }
+    if (n == 0) {
+        return DIG_OK;
+    }
+
+    // Cells as wide as the reach of a resting pair: most grains then search 27 cells.
+    double radius_max_m = 0.0, margin_min_m = INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        radius_max_m = fmax(radius_max_m, grains->kind[grains->of[i]].radius_m);
+        margin_min_m = fmin(margin_min_m, margin_m[i]);
+        memcpy(list->at_m[i], grains->motion[i].x_m, 3 * sizeof(double));
+        list->at_m[i][3] = margin_m[i];
+    }
+    struct grid     g;
+    enum dig_status status = fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), &g);
+    if (status != DIG_OK) {
+        dig_neighbours_finish(list);
+        return status;
+    }
+    size_t used = 0;
+    for (size_t i = 0; i < n && status == DIG_OK; i++) {
+        list->start[i] = (uint32_t)used;
+        status         = search(grains, margin_m, &g, radius_max_m, (uint32_t)i, list, &used);
+    }
+    list->start[n] = (uint32_t)used;
+    free(g.start);
+    free(g.member);
+    if (status != DIG_OK) {
+        dig_neighbours_finish(list);
+    }
+    return status;
+}
+
+void dig_neighbours_finish(struct dig_neighbours *const list)
+{
+    if (list == NULL) {
+        return;
+    }
+    free(list->start);
+    free(list->other);
+    free(list->at_m);
+    *list = (struct dig_neighbours){ 0 };
+}
