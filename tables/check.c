@@ -27,30 +27,6 @@ static bool agree(const float a[], const float b[])
     return true;
 }
 
-static enum dig_status gravel_row(struct dig_store *const        store,
-                                  const struct dig_gravel *const gravel, sqlite3_int64 *const id,
-                                  struct dig_error *const error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(store->db,
-                           "SELECT id FROM gravel WHERE friction = ?1 AND rolling = ?2 AND "
-                           "density_kgpm3 = ?3",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(store->db, store->path, error);
-    }
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)sqlite3_bind_double(s, a + 1, gravel->value[a]);
-    }
-    enum dig_status status = DIG_OK;
-    if (sqlite3_step(s) == SQLITE_ROW) {
-        *id = sqlite3_column_int64(s, 0);
-    } else {
-        status = dig_sql_refuse(store->db, store->path, error);
-    }
-    (void)sqlite3_finalize(s);
-    return status;
-}
-
 static enum dig_status check_entry(struct dig_store *const           store,
                                    const struct dig_curve_set *const set, const size_t entry,
                                    const size_t trajectory, struct dig_error *const error)
@@ -61,7 +37,7 @@ static enum dig_status check_entry(struct dig_store *const           store,
     struct dig_ensemble *const     ensemble = calloc(1, sizeof *ensemble);
     struct dig_curve *const        curve    = calloc(1, sizeof *curve);
     enum dig_status                status   = ensemble != NULL && curve != NULL
-                                                  ? gravel_row(store, gravel, &id, error)
+                                                  ? dig_gravel_find(store, gravel, &id, error)
                                                   : dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     if (status == DIG_OK) {
         status = dig_entry_derive(store, id, trajectory, ensemble, error);
@@ -123,16 +99,20 @@ enum dig_status dig_store_check(struct dig_store *const        store,
                                 struct dig_error *const        error)
 {
     assert(store != NULL && report != NULL);
-    struct dig_curve_set *set    = NULL;
-    enum dig_status       status = dig_table_load(store->path, &set, error);
+
+    // One transaction: a writer may be adding runs.
+    enum dig_status status = dig_sql_run(store->db, store->path, "BEGIN", error);
     if (status != DIG_OK) {
         return status;
     }
+    struct dig_curve_set *set = NULL;
+    status                    = dig_sql_load(store->db, store->path, &store->head, &set, error);
     for (size_t e = 0; status == DIG_OK && e < set->entries; e++) {
         for (size_t t = 0; status == DIG_OK && t < set->trajectories; t++) {
             status = check_entry(store, set, e, t, error);
         }
     }
+    (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
     if (status == DIG_OK) {
         *report = count(set);
     }

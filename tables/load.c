@@ -306,30 +306,17 @@ static enum dig_status load(struct loader *const l)
     return status;
 }
 
-enum dig_status dig_table_load(const char *const path, struct dig_curve_set **const set,
-                               struct dig_error *const error)
+enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
+                             const struct dig_table_head *const head,
+                             struct dig_curve_set **const set, struct dig_error *const error)
 {
-    assert(path != NULL && set != NULL);
-
-    struct loader         l      = { .path = path, .error = error };
-    struct dig_table_head head   = { .trajectories = 0 };
-    enum dig_status       status = dig_sql_open_read(path, &l.db, &head, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    l.set = calloc(1, sizeof *l.set);
+    struct loader l = { .path = path, .db = db, .error = error };
+    l.set           = calloc(1, sizeof *l.set);
     if (l.set == NULL) {
-        status = no_memory(&l);
-    } else {
-        copy_head(l.set, &head);
-
-        // One transaction, so that a writer's commit cannot fall between two statements.
-        status = dig_sql_run(l.db, path, "BEGIN", error);
-        if (status == DIG_OK) {
-            status = load(&l);
-        }
+        return no_memory(&l);
     }
-    (void)sqlite3_close(l.db);
+    copy_head(l.set, head);
+    const enum dig_status status = load(&l);
     free(l.id);
     if (status != DIG_OK) {
         dig_curve_set_destroy(l.set);
@@ -337,6 +324,26 @@ enum dig_status dig_table_load(const char *const path, struct dig_curve_set **co
     }
     *set = l.set;
     return DIG_OK;
+}
+
+enum dig_status dig_table_load(const char *const path, struct dig_curve_set **const set,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && set != NULL);
+
+    sqlite3              *db     = NULL;
+    struct dig_table_head head   = { .trajectories = 0 };
+    enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    // One transaction, so that a writer's commit cannot fall between two statements.
+    status = dig_sql_run(db, path, "BEGIN", error);
+    if (status == DIG_OK) {
+        status = dig_sql_load(db, path, &head, set, error);
+    }
+    (void)sqlite3_close(db);
+    return status;
 }
 
 void dig_curve_set_destroy(struct dig_curve_set *const set)

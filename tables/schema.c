@@ -3,13 +3,9 @@
 #include "core/sha256.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-#define CANONICAL_SIZE 16384 // eight trajectories of eight phases stay well below it
 
 static const char schema_sql[] = "CREATE TABLE scene ("
                                  "  id INTEGER PRIMARY KEY CHECK (id = 1),"
@@ -109,7 +105,7 @@ enum dig_status dig_sql_setup(sqlite3 *const db, const char *const path,
 
 void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_head *const head)
 {
-    char         text[CANONICAL_SIZE];
+    char         text[DIG_CANONICAL_SIZE];
     const size_t length = dig_scene_canonical(scene, sizeof text, text);
     assert(length < sizeof text);
 
@@ -128,7 +124,7 @@ void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_hea
 static bool insert_scene(sqlite3 *const db, const struct dig_scene *const scene)
 {
     struct dig_table_head head;
-    char                  text[CANONICAL_SIZE];
+    char                  text[DIG_CANONICAL_SIZE];
     (void)dig_scene_canonical(scene, sizeof text, text);
     dig_table_head_of(scene, &head);
 
@@ -212,241 +208,6 @@ enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
     }
     if (status != DIG_OK) {
         (void)sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
-    }
-    return status;
-}
-
-// The one integer a PRAGMA answers.
-static enum dig_status pragma_int(sqlite3 *const db, const char *const path, const char *const sql,
-                                  int *const value, struct dig_error *const error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, sql, -1, &s, NULL) != SQLITE_OK || sqlite3_step(s) != SQLITE_ROW) {
-        const enum dig_status status = dig_sql_refuse(db, path, error);
-        (void)sqlite3_finalize(s);
-        return status;
-    }
-    *value = sqlite3_column_int(s, 0);
-    (void)sqlite3_finalize(s);
-    return DIG_OK;
-}
-
-static enum dig_status check_identity(sqlite3 *const db, const char *const path,
-                                      struct dig_error *const error)
-{
-    int             id = 0, version = 0;
-    enum dig_status status = pragma_int(db, path, "PRAGMA application_id", &id, error);
-    if (status == DIG_OK) {
-        status = pragma_int(db, path, "PRAGMA user_version", &version, error);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (id != DIG_TABLE_APPLICATION_ID) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: not a digsight table (application_id %d, expected %d)", path, id,
-                             DIG_TABLE_APPLICATION_ID);
-    }
-    if (version != DIG_TABLE_VERSION) {
-        return dig_error_set(error, DIG_ESCHEMA,
-                             "%s: user_version: table format %d, expected %d as this program knows "
-                             "it",
-                             path, version, DIG_TABLE_VERSION);
-    }
-    return DIG_OK;
-}
-
-static enum dig_status check_integrity(sqlite3 *const db, const char *const path,
-                                       struct dig_error *const error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, "PRAGMA integrity_check(1)", -1, &s, NULL) != SQLITE_OK ||
-        sqlite3_step(s) != SQLITE_ROW) {
-        const enum dig_status status = dig_sql_refuse(db, path, error);
-        (void)sqlite3_finalize(s);
-        return status;
-    }
-    const char     *found  = (const char *)sqlite3_column_text(s, 0);
-    enum dig_status status = DIG_OK;
-    if (found == NULL || strcmp(found, "ok") != 0) {
-        status = dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
-                               found != NULL ? found : "?");
-    }
-    (void)sqlite3_finalize(s);
-
-    s = NULL;
-    if (status == DIG_OK) {
-        if (sqlite3_prepare_v2(db, "PRAGMA foreign_key_check", -1, &s, NULL) != SQLITE_OK) {
-            status = dig_sql_refuse(db, path, error);
-        } else if (sqlite3_step(s) == SQLITE_ROW) {
-            status = dig_error_set(error, DIG_EINVAL,
-                                   "%s: damaged: a row of %s refers to nothing, expected an intact "
-                                   "table",
-                                   path, (const char *)sqlite3_column_text(s, 0));
-        }
-        (void)sqlite3_finalize(s);
-    }
-    return status;
-}
-
-// Copies a text column into a name; false when it is missing or too long.
-static bool column_name(sqlite3_stmt *const s, const int column, char name[const DIG_NAME_SIZE])
-{
-    const char *const text = (const char *)sqlite3_column_text(s, column);
-    if (text == NULL || strlen(text) >= DIG_NAME_SIZE) {
-        return false;
-    }
-    memcpy(name, text, strlen(text) + 1);
-    return true;
-}
-
-static enum dig_status damaged(const char *const path, const char *const what,
-                               struct dig_error *const error)
-{
-    return dig_error_set(error, DIG_EINVAL, "%s: %s", path, what);
-}
-
-// The scene's row; *canonical is malloc'ed.
-static enum dig_status read_scene(sqlite3 *const db, const char *const path,
-                                  struct dig_table_head *const head, char **const canonical,
-                                  struct dig_error *const error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db,
-                           "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
-                           "smooth_half_s, points FROM scene",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(db, path, error);
-    }
-    if (sqlite3_step(s) != SQLITE_ROW) {
-        (void)sqlite3_finalize(s);
-        return damaged(path, "scene: no row, expected one", error);
-    }
-    const char *const hash   = (const char *)sqlite3_column_text(s, 1);
-    const char *const text   = (const char *)sqlite3_column_text(s, 2);
-    enum dig_status   status = DIG_OK;
-    head->tooth_m            = sqlite3_column_double(s, 3);
-    head->bucket_width_m     = sqlite3_column_double(s, 4);
-    head->young_Pa           = sqlite3_column_double(s, 5);
-    head->smooth_half_s      = sqlite3_column_double(s, 6);
-    const int points         = sqlite3_column_int(s, 7);
-
-    char actual[65] = "";
-    if (text != NULL) {
-        dig_sha256_hex(text, strlen(text), actual);
-    }
-    if (!column_name(s, 0, head->scene_name)) {
-        status = damaged(path, "scene.name: expected at most 31 characters", error);
-    } else if (hash == NULL || strcmp(hash, actual) != 0) {
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",
-                               path, hash != NULL ? hash : "nothing", actual);
-    } else if (!(head->tooth_m > 0.0) || !(head->bucket_width_m > 0.0) || !(head->young_Pa > 0.0) ||
-               !(head->smooth_half_s >= 0.0)) {
-        status = damaged(path, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0", error);
-    } else if (points != DIG_CURVE_POINTS) {
-        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %d, expected %d", path,
-                               points, DIG_CURVE_POINTS);
-    } else {
-        memcpy(head->scene_hash, hash, sizeof head->scene_hash);
-        *canonical = malloc(strlen(text) + 1);
-        if (*canonical == NULL) {
-            status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
-        } else {
-            memcpy(*canonical, text, strlen(text) + 1);
-        }
-    }
-    (void)sqlite3_finalize(s);
-    return status;
-}
-
-static enum dig_status read_trajectories(sqlite3 *const db, const char *const path,
-                                         struct dig_table_head *const head,
-                                         struct dig_error *const      error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db,
-                           "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, "
-                           "duration_s, vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p "
-                           "ON p.trajectory = t.id ORDER BY t.id, number",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(db, path, error);
-    }
-    enum dig_status status = DIG_OK;
-    int             step;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
-        const int id     = sqlite3_column_int(s, 0);
-        const int number = sqlite3_column_int(s, 5);
-        if (number == 0) {
-            head->trajectories++;
-        }
-        struct dig_trajectory *const t =
-            head->trajectories >= 1 && head->trajectories <= DIG_TRAJECTORY_MAX
-                ? &head->trajectory[head->trajectories - 1]
-                : NULL;
-        if (t == NULL || id != (int)head->trajectories - 1 || number >= DIG_PHASES_MAX ||
-            number != (int)t->phases || !column_name(s, 1, t->name) ||
-            !column_name(s, 6, t->phase[t->phases].name)) {
-            status = damaged(path, "trajectory: expected rows numbered from 0, with their phases",
-                             error);
-            break;
-        }
-        struct dig_phase *const p = &t->phase[t->phases++];
-        t->theta0_rad             = sqlite3_column_double(s, 2);
-        t->start_x_m              = sqlite3_column_double(s, 3);
-        t->start_z_m              = sqlite3_column_double(s, 4);
-        p->duration_s             = sqlite3_column_double(s, 7);
-        p->vx_mps                 = sqlite3_column_double(s, 8);
-        p->vz_mps                 = sqlite3_column_double(s, 9);
-        p->omega_radps            = sqlite3_column_double(s, 10);
-        if (!(p->duration_s > 0.0)) {
-            status = damaged(path, "phase.duration_s: expected > 0", error);
-        }
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(db, path, error);
-    }
-    (void)sqlite3_finalize(s);
-    return status;
-}
-
-// The trajectories stand twice, as rows for people and in the text the hash is of: they must agree.
-static bool trajectories_agree(const struct dig_table_head *const head, const char *const canonical)
-{
-    static const char first[] = "trajectory=";
-    struct dig_scene  scene   = { .trajectories = head->trajectories };
-    memcpy(scene.trajectory, head->trajectory, sizeof scene.trajectory);
-    char text[CANONICAL_SIZE];
-    if (dig_scene_canonical(&scene, sizeof text, text) >= sizeof text) {
-        return false;
-    }
-    const char *const here  = strstr(text, first);
-    const char *const there = strstr(canonical, first);
-    return here != NULL && there != NULL && strcmp(here, there) == 0;
-}
-
-enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
-                                 struct dig_table_head *const head, struct dig_error *const error)
-{
-    enum dig_status status = check_identity(db, path, error);
-    if (status == DIG_OK) {
-        status = check_integrity(db, path, error);
-    }
-    struct dig_table_head read      = { .trajectories = 0 };
-    char                 *canonical = NULL;
-    if (status == DIG_OK) {
-        status = read_scene(db, path, &read, &canonical, error);
-    }
-    if (status == DIG_OK) {
-        status = read_trajectories(db, path, &read, error);
-    }
-    if (status == DIG_OK && !trajectories_agree(&read, canonical)) {
-        status = damaged(
-            path, "trajectory: the rows differ from scene.canonical, expected the same", error);
-    }
-    free(canonical);
-    if (status == DIG_OK) {
-        *head = read;
     }
     return status;
 }

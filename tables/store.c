@@ -13,7 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LOCK_WAIT_s 2.0 // workers of a killed writer need a moment to die
+#define WRITER_WAIT_ms 60000
+#define LOCK_WAIT_s    2.0 // workers of a killed writer need a moment to die
 
 static enum dig_status open_db(const char *const path, const int flags, sqlite3 **const db,
                                struct dig_error *const error)
@@ -163,8 +164,10 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
     if (status == DIG_OK) {
         status = dig_schema_check(store->db, store->path, &store->head, error);
     }
-    // Not before the check: it would write into a file that is not ours.
+    // Not before the check: it would write into a file that is not ours. A reader that dawdles must
+    // not end a computation of hours.
     if (status == DIG_OK) {
+        (void)sqlite3_busy_timeout(store->db, WRITER_WAIT_ms);
         status = dig_sql_run(store->db, store->path,
                              "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
     }

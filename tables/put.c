@@ -1,0 +1,205 @@
+// A run in, with the entry it changes: the half of the store that writes rows.
+
+#include "tables/store.h"
+#include "tables/store_private.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static enum dig_status refuse(const struct dig_store *const store, struct dig_error *const error)
+{
+    return dig_sql_refuse(store->db, store->path, error);
+}
+
+static enum dig_status prepare(const struct dig_store *const store, const char *const sql,
+                               sqlite3_stmt **const s, struct dig_error *const error)
+{
+    return sqlite3_prepare_v2(store->db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
+                                                                        : refuse(store, error);
+}
+
+// The samples as they are stored, little endian; *bytes is malloc'ed.
+static enum dig_status pack_recording(const struct dig_recording *const r, uint8_t **const bytes,
+                                      double *const step_s, struct dig_error *const error)
+{
+    if (r->rows < 2 || r->rows > DIG_WINDOWS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "recording: %zu rows, expected 2 to %d", r->rows,
+                             DIG_WINDOWS_MAX);
+    }
+    const double    spacing_s = (r->row[r->rows - 1].t_s - r->row[0].t_s) / (double)(r->rows - 1);
+    float *const    value     = malloc(DIG_CHANNELS * r->rows * sizeof *value);
+    uint8_t *const  packed    = malloc(DIG_CHANNELS * r->rows * 4);
+    enum dig_status status =
+        value != NULL && packed != NULL
+            ? DIG_OK
+            : dig_error_set(error, DIG_ENOMEM, "recording: no memory for %zu rows", r->rows);
+    for (size_t i = 0; status == DIG_OK && i < r->rows; i++) {
+        const struct dig_force_row *const row = &r->row[i];
+        const double off_s                    = row->t_s - (r->row[0].t_s + (double)i * spacing_s);
+        if (!(spacing_s > 0.0) || !(fabs(off_s) <= 0.01 * spacing_s)) {
+            status = dig_error_set(error, DIG_EINVAL,
+                                   "recording: row %zu: t_s %.9g, expected evenly spaced times",
+                                   i + 1, row->t_s);
+            break;
+        }
+        if (!isfinite(row->My_Nm) || !isfinite(row->Fx_N) || !isfinite(row->Fz_N)) {
+            status = dig_error_set(error, DIG_EINVAL,
+                                   "recording: row %zu: expected finite forces and moment", i + 1);
+            break;
+        }
+        value[DIG_CHANNEL_MY_Nm * r->rows + i] = (float)row->My_Nm;
+        value[DIG_CHANNEL_FX_N * r->rows + i]  = (float)row->Fx_N;
+        value[DIG_CHANNEL_FZ_N * r->rows + i]  = (float)row->Fz_N;
+    }
+    if (status == DIG_OK) {
+        dig_floats_pack(DIG_CHANNELS * r->rows, value, packed);
+        *bytes  = packed;
+        *step_s = spacing_s;
+    } else {
+        free(packed);
+    }
+    free(value);
+    return status;
+}
+
+// Makes the gravel's row where there is none yet, and finds its key.
+static enum dig_status make_gravel(struct dig_store *const        store,
+                                   const struct dig_gravel *const gravel, sqlite3_int64 *const id,
+                                   struct dig_error *const error)
+{
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = prepare(store,
+                                     "INSERT INTO gravel (friction, rolling, density_kgpm3) "
+                                     "VALUES (?1, ?2, ?3) ON CONFLICT DO NOTHING",
+                                     &s, error);
+    if (status == DIG_OK) {
+        for (int a = 0; a < DIG_AXES; a++) {
+            (void)sqlite3_bind_double(s, a + 1, gravel->value[a]);
+        }
+        status = sqlite3_step(s) == SQLITE_DONE ? DIG_OK : refuse(store, error);
+    }
+    (void)sqlite3_finalize(s);
+    return status == DIG_OK ? dig_gravel_find(store, gravel, id, error) : status;
+}
+
+static enum dig_status insert_run(struct dig_store *const store, const sqlite3_int64 gravel,
+                                  const struct dig_run_origin *const origin, const size_t windows,
+                                  const double first_s, const double step_s,
+                                  const uint8_t *const bytes, struct dig_error *const error)
+{
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        prepare(store,
+                "INSERT INTO run (gravel, trajectory, packing, seed, engine, version, grains, "
+                "windows, first_s, step_s, curve, made_utc, wall_s) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                &s, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    (void)sqlite3_bind_int64(s, 1, gravel);
+    (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)origin->trajectory);
+    (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)origin->packing);
+    (void)sqlite3_bind_int64(s, 4, (sqlite3_int64)origin->seed);
+    (void)sqlite3_bind_text(s, 5, origin->engine, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_text(s, 6, origin->version, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_int64(s, 7, (sqlite3_int64)origin->grains);
+    (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)windows);
+    (void)sqlite3_bind_double(s, 9, first_s);
+    (void)sqlite3_bind_double(s, 10, step_s);
+    (void)sqlite3_bind_blob64(s, 11, bytes, DIG_CHANNELS * windows * 4, SQLITE_STATIC);
+    (void)sqlite3_bind_text(s, 12, origin->made_utc, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_double(s, 13, origin->wall_s);
+    const int step = sqlite3_step(s);
+    if (step == SQLITE_CONSTRAINT &&
+        sqlite3_extended_errcode(store->db) == SQLITE_CONSTRAINT_UNIQUE) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s: run: packing %zu of friction %g, rolling %g, %g kg/m3 on %s is "
+                               "there already, expected a new one",
+                               store->path, origin->packing, origin->gravel.value[0],
+                               origin->gravel.value[1], origin->gravel.value[2],
+                               store->head.trajectory[origin->trajectory].name);
+    } else if (step != SQLITE_DONE) {
+        status = refuse(store, error);
+    }
+    (void)sqlite3_finalize(s);
+    return status;
+}
+
+static enum dig_status write_entry(struct dig_store *const store, const sqlite3_int64 gravel,
+                                   const size_t trajectory, const struct dig_ensemble *const e,
+                                   struct dig_error *const error)
+{
+    enum { NUMBERS = DIG_CHANNELS * DIG_CURVE_POINTS };
+    struct dig_curve curve;
+    uint8_t          mean[NUMBERS * 4], spread[NUMBERS * 4];
+    dig_ensemble_curve(e, &curve);
+    dig_floats_pack(NUMBERS, &curve.mean[0][0], mean);
+    dig_floats_pack(NUMBERS, &curve.sd[0][0], spread);
+
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        prepare(store,
+                "INSERT INTO entry (gravel, trajectory, packings, mean, spread) "
+                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (gravel, trajectory) DO UPDATE "
+                "SET packings = ?3, mean = ?4, spread = ?5",
+                &s, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    (void)sqlite3_bind_int64(s, 1, gravel);
+    (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);
+    (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)e->packings);
+    (void)sqlite3_bind_blob(s, 4, mean, sizeof mean, SQLITE_STATIC);
+    if (e->packings > 1) {
+        (void)sqlite3_bind_blob(s, 5, spread, sizeof spread, SQLITE_STATIC);
+    }
+    status = sqlite3_step(s) == SQLITE_DONE ? DIG_OK : refuse(store, error);
+    (void)sqlite3_finalize(s);
+    return status;
+}
+
+enum dig_status dig_store_put(struct dig_store *const            store,
+                              const struct dig_run_origin *const origin,
+                              const struct dig_recording *const  recording,
+                              struct dig_error *const            error)
+{
+    assert(store != NULL && origin != NULL && recording != NULL);
+    assert(store->lock_fd >= 0 && origin->trajectory < store->head.trajectories);
+
+    uint8_t        *bytes  = NULL;
+    double          step_s = 0.0;
+    enum dig_status status = pack_recording(recording, &bytes, &step_s, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+    if (status != DIG_OK) {
+        free(bytes);
+        return status;
+    }
+    sqlite3_int64              gravel   = 0;
+    struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
+    status = ensemble != NULL ? make_gravel(store, &origin->gravel, &gravel, error)
+                              : dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    if (status == DIG_OK) {
+        status = insert_run(store, gravel, origin, recording->rows, recording->row[0].t_s, step_s,
+                            bytes, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_entry_derive(store, gravel, origin->trajectory, ensemble, error);
+    }
+    if (status == DIG_OK) {
+        status = write_entry(store, gravel, origin->trajectory, ensemble, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_sql_run(store->db, store->path, "COMMIT", error);
+    }
+    if (status != DIG_OK) {
+        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+    }
+    free(ensemble);
+    free(bytes);
+    return status;
+}
