@@ -95,11 +95,11 @@ static double vertex_spacing_m(const struct dig_curve_set *const set)
 // Forgets the dig going on.
 static void forget_dig(struct dig_estimator *const e)
 {
-    e->path       = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
-    e->next_track = 0;
-    e->trajectory = -1;
-    e->progress   = (double)NAN;
-    e->off_path_m = (double)NAN;
+    e->path          = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
+    e->next_follower = 0;
+    e->trajectory    = -1;
+    e->progress      = (double)NAN;
+    e->off_path_m    = (double)NAN;
     dig_window_close(&e->window);
 }
 
@@ -159,7 +159,7 @@ static void lay_out_path(struct dig_estimator *const e, const struct dig_path_po
     e->path.vertex[e->path.vertices] = *touched;
     e->path.contact                  = e->path.vertices++;
     for (size_t t = 0; t < e->set->trajectories; t++) {
-        e->track[t] = dig_track_start(&e->route[t], &e->path, 0.0);
+        e->follower[t] = dig_follower_start(&e->route[t], &e->path, e->settings.path_limit_m);
     }
 }
 
@@ -171,19 +171,22 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         return;
     }
     (void)dig_path_add(&e->path, point);
-    e->next_track = (e->next_track + 1) % tracks;
-    dig_track_refine(&e->route[e->next_track], &e->path, e->settings.path_limit_m,
-                     &e->track[e->next_track]);
+    e->next_follower     = (e->next_follower + 1) % tracks;
+    const double limit_m = e->settings.path_limit_m;
+    dig_follower_step(&e->route[e->next_follower], &e->path, limit_m,
+                      &e->follower[e->next_follower]);
 
-    const double tie_m = tie_share * e->settings.path_limit_m;
-    e->trajectory =
-        dig_track_choose(tracks, e->track, e->settings.path_limit_m, tie_m, e->trajectory);
+    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < tracks; t++) {
+        track_of[t] = &e->follower[t].track;
+    }
+    e->trajectory = dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, e->trajectory);
     if (e->trajectory < 0) {
         e->progress   = (double)NAN;
         e->off_path_m = (double)NAN;
         return;
     }
-    const struct dig_track *const track = &e->track[e->trajectory];
+    const struct dig_track *const track = &e->follower[e->trajectory].track;
     const struct dig_place        place =
         dig_route_place(&e->route[e->trajectory], track->dx_m, track->dz_m, point,
                         fmax(track->progress - 0.1, 0.0), fmin(track->progress + 0.2, 1.0));
@@ -201,13 +204,15 @@ static bool path_is_over(const struct dig_estimator *const e)
 static void finish_dig(struct dig_estimator *const e)
 {
     e->digs++;
-    const size_t     tracks  = e->set->trajectories;
-    const double     limit_m = e->settings.path_limit_m;
-    struct dig_track fitted[DIG_TRAJECTORY_MAX];
+    const size_t            tracks  = e->set->trajectories;
+    const double            limit_m = e->settings.path_limit_m;
+    struct dig_track        fitted[DIG_TRAJECTORY_MAX];
+    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
-        fitted[t] = dig_track_fit(&e->route[t], &e->path, limit_m);
+        fitted[t]   = dig_track_fit(&e->route[t], &e->path, limit_m);
+        track_of[t] = &fitted[t];
     }
-    const int chosen = dig_track_choose(tracks, fitted, limit_m, tie_share * limit_m, -1);
+    const int chosen = dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, -1);
 
     struct dig_observation observation = { .dig_count = e->digs, .trajectory = chosen };
     if (chosen >= 0 &&

@@ -30,9 +30,9 @@ struct dig_estimator {
     // of the dig going on
     struct dig_phase_state phase;
     struct dig_path        path;
-    struct dig_track       track[DIG_TRAJECTORY_MAX];
-    size_t                 next_track; // the one whose turn it is to be refined
-    int                    trajectory; // -1: not known
+    struct dig_follower    follower[DIG_TRAJECTORY_MAX];
+    size_t                 next_follower; // the one whose turn it is to be refined
+    int                    trajectory;    // -1: not known
     double                 progress;
     double                 off_path_m;
     struct dig_window      window;

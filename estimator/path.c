@@ -7,6 +7,17 @@
 // vertex: what the prior on the shift weighs, in vertices.
 static const double anchor_weight = 2.5e-3;
 
+// Before contact the bucket may come from anywhere: only vertices this near count, in limit_m.
+static const double lead_in_share = 0.1;
+
+// What a contact far from the start of the route counts as, in distance: contact is noticed late,
+// but a fit that needs it very late is worse than one that does not.
+static const double anchor_share = 0.1;
+
+// Places of the route where contact may have been noticed, late as it is: where fits start from.
+enum { STARTS = 4, CHALLENGE_STEPS = 6 };
+static const double starts[STARTS] = { 0.0, 0.08, 0.2, 0.35 };
+
 // A vertex is looked for this far behind and ahead of the last one's place.
 static const double look_behind = 0.10;
 static const double look_ahead  = 0.35;
@@ -134,6 +145,7 @@ struct dig_track dig_track_start(const struct dig_route *const route,
         .anchor_dx_m = touched->x_m - route->corner[0].x_m,
         .anchor_dz_m = touched->z_m - route->corner[0].z_m,
         .rms_m       = NAN,
+        .score_m     = NAN,
     };
 }
 
@@ -174,7 +186,7 @@ void dig_track_refine(const struct dig_route *const route, const struct dig_path
             dig_route_place(route, track->dx_m, track->dz_m, &path->vertex[i], from, fmin(to, 1.0));
 
         if (i < path->contact) {
-            if (place.distance_m < limit_m) {
+            if (place.distance_m < lead_in_share * limit_m) {
                 add_equation(&normal, &place);
                 last = place.progress;
             }
@@ -195,56 +207,80 @@ void dig_track_refine(const struct dig_route *const route, const struct dig_path
     const double det = normal.xx * normal.zz - normal.xz * normal.xz;
     track->dx_m += (normal.zz * normal.bx - normal.xz * normal.bz) / det;
     track->dz_m += (normal.xx * normal.bz - normal.xz * normal.bx) / det;
+
+    // A wrong shift may fit few vertices well: those left out at the end count as misses.
+    const size_t whole  = path->vertices - path->contact;
+    const double missed = (double)(whole - used) * limit_m * limit_m;
+    const double all_m  = sqrt((sum_m2 + missed) / (double)whole);
+
     track->rms_m    = used > 0 ? sqrt(sum_m2 / (double)used) : (double)NAN;
+    track->score_m  = hypot(all_m, anchor_share * hypot(track->anchor_dx_m - track->dx_m,
+                                                        track->anchor_dz_m - track->dz_m));
     track->progress = last;
     track->used     = used;
+}
+
+struct dig_follower dig_follower_start(const struct dig_route *const route,
+                                       const struct dig_path *const path, const double limit_m)
+{
+    struct dig_follower follower = { .track = dig_track_start(route, path, 0.0) };
+    dig_track_refine(route, path, limit_m, &follower.track);
+    return follower;
+}
+
+void dig_follower_step(const struct dig_route *const route, const struct dig_path *const path,
+                       const double limit_m, struct dig_follower *const follower)
+{
+    assert(follower != NULL);
+    struct dig_track *const track      = &follower->track;
+    struct dig_track *const challenger = &follower->challenger;
+    dig_track_refine(route, path, limit_m, track);
+
+    if (follower->turn % CHALLENGE_STEPS == 0) {
+        const double start = starts[follower->turn / CHALLENGE_STEPS % STARTS];
+        *challenger        = dig_track_start(route, path, start);
+    }
+    dig_track_refine(route, path, limit_m, challenger);
+    follower->turn++;
+    if (follower->turn % CHALLENGE_STEPS == 0 && challenger->score_m < track->score_m) {
+        *track = *challenger;
+    }
 }
 
 struct dig_track dig_track_fit(const struct dig_route *const route,
                                const struct dig_path *const path, const double limit_m)
 {
     enum { STEPS = 12 };
-    static const double starts[] = { 0.0, 0.08, 0.2, 0.35 };
-
-    // A wrong shift fits few vertices well: those left out at the end count as misses of limit_m.
-    struct dig_track best       = dig_track_start(route, path, 0.0);
-    double           best_score = INFINITY;
-    for (size_t k = 0; k < sizeof starts / sizeof starts[0]; k++) {
+    struct dig_track best = { .score_m = INFINITY };
+    for (size_t k = 0; k < STARTS; k++) {
         struct dig_track track = dig_track_start(route, path, starts[k]);
         for (int i = 0; i < STEPS; i++) {
             dig_track_refine(route, path, limit_m, &track);
         }
-        const size_t whole  = path->vertices - path->contact;
-        const double missed = (double)(whole - track.used) * limit_m * limit_m;
-        const double score  = track.rms_m * track.rms_m * (double)track.used + missed;
-        if (score < best_score) {
-            best       = track;
-            best_score = score;
-        }
+        best = track.score_m < best.score_m ? track : best;
     }
     return best;
 }
 
-int dig_track_choose(const size_t tracks, const struct dig_track track[], const double limit_m,
-                     const double tie_m, const int sitting)
+int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
+                     const double limit_m, const double tie_m, const int sitting)
 {
     int    best   = -1;
     double best_m = INFINITY, second_m = INFINITY;
     for (size_t t = 0; t < tracks; t++) {
-        if (track[t].rms_m < best_m) {
+        if (track[t]->score_m < best_m) {
             second_m = best_m;
-            best_m   = track[t].rms_m;
+            best_m   = track[t]->score_m;
             best     = (int)t;
-        } else if (track[t].rms_m < second_m) {
-            second_m = track[t].rms_m;
+        } else if (track[t]->score_m < second_m) {
+            second_m = track[t]->score_m;
         }
     }
-    if (best < 0 || !(best_m <= limit_m)) {
+    if (best < 0 || !(track[best]->rms_m <= limit_m)) {
         return -1;
     }
-    if (second_m - best_m >= tie_m || best == sitting) {
+    if (second_m - best_m >= tie_m) {
         return best;
     }
-    const bool sits_tied = sitting >= 0 && track[sitting].rms_m - best_m < tie_m;
-    return sits_tied ? sitting : -1;
+    return sitting >= 0 && track[sitting]->score_m - best_m < tie_m ? sitting : -1;
 }

@@ -48,8 +48,17 @@ struct dig_track {
     double dx_m, dz_m;
     double anchor_dx_m, anchor_dz_m; // the shift that puts the contact at the start
     double rms_m;                    // NaN until fitted
+    double score_m;                  // rms with vertices left out as misses of limit_m, and a tenth
+                                     // of the shift from the anchor, in quadrature
     double progress;                 // of the last vertex
     size_t used;                     // vertices that lie on it, those past its end left out
+};
+
+/// A track kept up to date while the dig goes on, and a second fit from another start that replaces
+/// it when it turns out better: a Gauss-Newton fit alone can be caught at a wrong leg.
+struct dig_follower {
+    struct dig_track track, challenger;
+    unsigned         turn;
 };
 
 /// The vertices of a dig. Zeroed with a spacing it is empty.
@@ -73,9 +82,15 @@ struct dig_track dig_track_start(const struct dig_route *route, const struct dig
                                  double start);
 
 /// One Gauss-Newton step of the shift and a new rms over the vertices since contact. Vertices
-/// before contact help only where they lie within limit_m. O(vertices * corners).
+/// before contact help only where they lie within a tenth of limit_m. O(vertices * corners).
 void dig_track_refine(const struct dig_route *route, const struct dig_path *path, double limit_m,
                       struct dig_track *track);
+
+/// A follower at its first fit, and one step of it: two refinements.
+struct dig_follower dig_follower_start(const struct dig_route *route, const struct dig_path *path,
+                                       double limit_m);
+void dig_follower_step(const struct dig_route *route, const struct dig_path *path, double limit_m,
+                       struct dig_follower *follower);
 
 /// Fits from several starts, as contact may have been noticed late, and keeps the best.
 /// O(vertices * corners), some hundred microseconds.
@@ -83,8 +98,9 @@ struct dig_track dig_track_fit(const struct dig_route *route, const struct dig_p
                                double limit_m);
 
 /// The track that fits best, or -1 when none is within limit_m or the best two cannot be told apart
-/// (their rms differ by less than tie_m). sitting: the choice so far, or -1; kept while it is tied.
-int dig_track_choose(size_t tracks, const struct dig_track track[], double limit_m, double tie_m,
-                     int sitting);
+/// (their scores differ by less than tie_m). sitting: the choice so far, or -1; kept while it is
+/// tied.
+int dig_track_choose(size_t tracks, const struct dig_track *const track[], double limit_m,
+                     double tie_m, int sitting);
 
 #endif // DIG_ESTIMATOR_PATH_H
