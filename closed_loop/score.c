@@ -42,10 +42,10 @@ void dig_score_add(struct dig_score *const score, const struct dig_trajectory *c
 
 double dig_score_error(const struct dig_score *const score)
 {
-    return score->whole_N2m2s > 0.0 ? sqrt(score->wrong_N2m2s / score->whole_N2m2s) : NAN;
+    return score->whole_N2m2s > 0.0 ? sqrt(score->wrong_N2m2s / score->whole_N2m2s) : (double)NAN;
 }
 
 double dig_score_noise_floor(const struct dig_score *const score)
 {
-    return score->whole_N2m2s > 0.0 ? sqrt(score->floor_N2m2s / score->whole_N2m2s) : NAN;
+    return score->whole_N2m2s > 0.0 ? sqrt(score->floor_N2m2s / score->whole_N2m2s) : (double)NAN;
 }
