@@ -36,6 +36,7 @@ test_src  := $(wildcard tests/test_*.c)
 testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
+helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
 threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
@@ -117,7 +118,12 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(call objs,$(testlib)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(call pkg_libs,cmocka) $(LIBS))
 
-check: $(test_bins) all jar ## Build and run every test (what `make test` does once all is installed)
+# Programs that only system tests need.
+$(BUILD)/tests/system/%: $(BUILD)/tests/system/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
+check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make test` does once all is installed)
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh $(system_tests)
 

@@ -1,0 +1,59 @@
+// The daemon's configuration: a YAML file (docs/formats.md) as plain settings. All of them are
+// fixed at start. File names in it are relative to the folder of the configuration.
+
+#ifndef DIG_FIRMWARE_HOST_CONFIG_H
+#define DIG_FIRMWARE_HOST_CONFIG_H
+
+#include "core/error.h"
+#include "estimator/estimator.h"
+#include "firmware_host/input.h"
+#include "firmware_host/rt.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+enum dig_input_kind {
+    DIG_INPUT_CAN,
+    DIG_INPUT_MODBUS_TCP,
+    DIG_INPUT_MODBUS_RTU,
+    DIG_INPUT_REPLAY,
+};
+
+struct dig_path {
+    char text[PATH_MAX];
+};
+
+struct dig_config {
+    struct dig_path table, machine;
+    char            scene[65]; // the scene the table must be of: its name or its hash; "": any
+
+    enum dig_input_kind       kind;
+    char                      can_interface[16];
+    struct dig_path           dbc, map;
+    struct dig_modbus_address modbus;
+    struct dig_path           replay;
+    double                    replay_speed;
+
+    double                        tick_s;
+    double                        stale_s;    // without a complete sample for so long: missing
+    double                        time_scale; // machine seconds per second; 1 on a machine
+    struct dig_rt_settings        realtime;
+    char                          lcm_url[256];
+    struct dig_estimator_settings estimator;
+    int                           match_evaluations;
+    size_t                        identify_trajectories; // 0: all whose name begins with "simple"
+    char                          identify_trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
+    int    estimate_every; // of the samples and estimates, one in so many is published
+    double prediction_s;   // between predictions
+};
+
+/// Reads and checks a file. DIG_EINVAL names file, line, key and what was expected. Writes on
+/// success only. The files it names are not opened.
+DIG_MUST_CHECK enum dig_status dig_config_read(const char *path, struct dig_config *config,
+                                               struct dig_error *error);
+
+/// True when digs of this trajectory identify the gravel.
+bool dig_config_identifies(const struct dig_config *config, const char *trajectory);
+
+#endif // DIG_FIRMWARE_HOST_CONFIG_H

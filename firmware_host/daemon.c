@@ -1,0 +1,327 @@
+#include "firmware_host/daemon.h"
+
+#include "firmware_host/load.h"
+#include "firmware_host/notify.h"
+#include "firmware_host/publish.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define READINGS    4096
+#define RECORDS     4096
+#define DIGS        4
+#define RESULTS     16
+#define STACK_BYTES ((size_t)512 * 1024)
+#define LINE        512
+
+/// Bytes behind the handoffs, in one block with everything else the threads touch.
+struct handoff_memory {
+    struct dig_reading     readings[READINGS];
+    struct dig_record      records[RECORDS];
+    struct dig_observation digs[DIGS];
+    struct dig_fit_result  results[RESULTS];
+    struct dig_match       match[3];
+    struct dig_outlook     outlook[3];
+    struct dig_pulse       pulse[3];
+    struct dig_note        input_notes[3], fit_notes[3];
+};
+
+struct dig_daemon {
+    struct dig_loaded     loaded;
+    struct dig_estimator *estimator;
+    struct dig_input      input;
+    struct dig_loop       loop;
+    struct dig_fit        fit;
+    struct dig_publisher  publisher;
+    struct dig_ring       readings, records, digs, results;
+    struct dig_latest     match, outlook, pulse, input_notes, fit_notes;
+    struct handoff_memory memory;
+    struct dig_rt_grant   grant;
+    sem_t                 granted;
+    atomic_bool           stop;         // input, tick, matcher
+    atomic_bool           stop_publish; // after them
+};
+
+static enum dig_status create_input(struct dig_daemon *const d, const char *const path,
+                                    struct dig_error *const error)
+{
+    const struct dig_config *const config = &d->loaded.config;
+    enum dig_status                status = DIG_EINVAL;
+    switch (config->kind) {
+    case DIG_INPUT_CAN:
+        status = dig_input_can_create(&d->input, config->can_interface, &d->loaded.map);
+        break;
+    case DIG_INPUT_MODBUS_TCP:
+    case DIG_INPUT_MODBUS_RTU:
+        status = dig_input_modbus_create(&d->input, &config->modbus, &d->loaded.map);
+        break;
+    case DIG_INPUT_REPLAY:
+        status = dig_input_replay_create(&d->input, &d->loaded.recording, config->replay.text,
+                                         config->replay_speed);
+        break;
+    }
+    return status == DIG_OK
+               ? DIG_OK
+               : dig_error_set(error, status, "%s: input: %s", path, dig_status_str(status));
+}
+
+// The machine's and the map's limits in the assembler's words.
+static struct dig_assembler_settings assembler_settings(const struct dig_loaded *const l)
+{
+    struct dig_assembler_settings settings = {
+        .time_scale = l->config.time_scale,
+        .coherent_s = 1.0,
+        .optional_s = 1.0,
+        .groups     = 1,
+        .needed     = { [0] = true },
+    };
+    if (l->config.kind == DIG_INPUT_REPLAY) {
+        return settings;
+    }
+    settings.has_alive = l->map.has_alive;
+    settings.frozen_s  = l->map.frozen_s;
+    settings.repeats   = l->map.kind == DIG_MAP_MODBUS;
+    if (l->map.kind == DIG_MAP_CAN) {
+        settings.coherent_s = l->map.coherent_s;
+        settings.groups     = (unsigned)l->map.groups;
+        for (size_t g = 0; g < l->map.groups; g++) {
+            settings.needed[g] = l->map.group[g].needed;
+        }
+    }
+    return settings;
+}
+
+static void connect_threads(struct dig_daemon *const d)
+{
+    struct handoff_memory *const m = &d->memory;
+    dig_ring_init(&d->readings, sizeof m->readings[0], READINGS, m->readings);
+    dig_ring_init(&d->records, sizeof m->records[0], RECORDS, m->records);
+    dig_ring_init(&d->digs, sizeof m->digs[0], DIGS, m->digs);
+    dig_ring_init(&d->results, sizeof m->results[0], RESULTS, m->results);
+    dig_latest_init(&d->match, sizeof m->match[0], m->match);
+    dig_latest_init(&d->outlook, sizeof m->outlook[0], m->outlook);
+    dig_latest_init(&d->pulse, sizeof m->pulse[0], m->pulse);
+    dig_latest_init(&d->input_notes, sizeof m->input_notes[0], m->input_notes);
+    dig_latest_init(&d->fit_notes, sizeof m->fit_notes[0], m->fit_notes);
+
+    d->input.readings = &d->readings;
+    d->input.notes    = &d->input_notes;
+    d->input.stop     = &d->stop;
+
+    const struct dig_config *const config   = &d->loaded.config;
+    const struct dig_loop_settings settings = {
+        .assembler    = assembler_settings(&d->loaded),
+        .tick_s       = config->tick_s,
+        .stale_s      = config->stale_s,
+        .prediction_s = config->prediction_s,
+    };
+    const struct dig_loop_ports ports = { &d->readings, &d->match,   &d->records,
+                                          &d->digs,     &d->outlook, &d->pulse };
+    dig_loop_init(&d->loop, &settings, &ports, d->estimator);
+
+    d->fit       = (struct dig_fit){ .config  = config,
+                                     .set     = d->loaded.set,
+                                     .digs    = &d->digs,
+                                     .match   = &d->match,
+                                     .results = &d->results,
+                                     .notes   = &d->fit_notes,
+                                     .stop    = &d->stop };
+    d->publisher = (struct dig_publisher){ .config      = config,
+                                           .set         = d->loaded.set,
+                                           .input       = &d->input,
+                                           .fit         = &d->fit,
+                                           .records     = &d->records,
+                                           .outlook     = &d->outlook,
+                                           .results     = &d->results,
+                                           .pulse       = &d->pulse,
+                                           .input_notes = &d->input_notes,
+                                           .fit_notes   = &d->fit_notes,
+                                           .stop        = &d->stop_publish };
+}
+
+enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **const daemon,
+                                  struct dig_error *const error)
+{
+    assert(path != NULL && daemon != NULL);
+    struct dig_daemon *const d = calloc(1, sizeof *d);
+    if (d == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "no memory");
+    }
+    enum dig_status status = dig_load(path, &d->loaded, error);
+    if (status == DIG_OK) {
+        d->estimator = calloc(1, dig_estimator_size());
+        status = d->estimator != NULL ? DIG_OK : dig_error_set(error, DIG_ENOMEM, "no memory");
+    }
+    if (status == DIG_OK) {
+        status = dig_estimator_init(d->estimator, &d->loaded.machine, d->loaded.set,
+                                    &d->loaded.config.estimator);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: machine %s with table %s: %s", path,
+                                d->loaded.config.machine.text, d->loaded.config.table.text,
+                                dig_status_str(status));
+        }
+    }
+    if (status == DIG_OK) {
+        status = create_input(d, path, error);
+    }
+    if (status != DIG_OK) {
+        dig_daemon_destroy(d);
+        return status;
+    }
+    connect_threads(d);
+    *daemon = d;
+    return DIG_OK;
+}
+
+void dig_daemon_destroy(struct dig_daemon *const daemon)
+{
+    if (daemon != NULL) {
+        dig_input_destroy(&daemon->input);
+        free(daemon->estimator);
+        dig_loaded_finish(&daemon->loaded);
+        free(daemon);
+    }
+}
+
+void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(const char *line))
+{
+    assert(d != NULL && say != NULL);
+    const struct dig_loaded *const    l   = &d->loaded;
+    const struct dig_curve_set *const set = l->set;
+    char                              line[LINE], digs[LINE] = "";
+    for (size_t t = 0; t < set->trajectories; t++) {
+        const size_t used = strlen(digs);
+        (void)snprintf(digs + used, sizeof digs - used, "%s%s%s", used > 0 ? ", " : "",
+                       set->trajectory[t].name,
+                       dig_config_identifies(&l->config, set->trajectory[t].name) ? " (identifies)"
+                                                                                  : "");
+    }
+    (void)snprintf(line, sizeof line, "table %.200s: scene %s (%.12s…), %zu gravels, digs: %.150s",
+                   l->config.table.text, set->scene_name, set->scene_hash, set->entries, digs);
+    say(line);
+    (void)snprintf(line, sizeof line, "machine %s: bucket %.3f m, %.2f times the table's",
+                   l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m,
+                   l->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
+    say(line);
+    (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", d->input.name,
+                   1.0 / l->config.tick_s, l->config.lcm_url);
+    say(line);
+}
+
+static void *input_main(void *const context)
+{
+    struct dig_daemon *const d = context;
+    dig_input_run(&d->input);
+    return NULL;
+}
+
+static void *tick_main(void *const context)
+{
+    struct dig_daemon *const d = context;
+    d->grant                   = dig_rt_enter(&d->loaded.config.realtime);
+    (void)sem_post(&d->granted);
+    dig_loop_run(&d->loop, &d->stop);
+    return NULL;
+}
+
+static void *fit_main(void *const context)
+{
+    struct dig_daemon *const d = context;
+    dig_fit_run(&d->fit);
+    return NULL;
+}
+
+static void *publish_main(void *const context)
+{
+    struct dig_daemon *const d = context;
+    dig_publisher_run(&d->publisher);
+    return NULL;
+}
+
+// A replay is over when its last reading went through the tick, and its last dig through the
+// matcher.
+static bool is_quiet(struct dig_daemon *const d)
+{
+    return atomic_load(&d->input.ended) &&
+           atomic_load(&d->readings.written) == atomic_load(&d->readings.read) &&
+           atomic_load(&d->digs.written) == atomic_load(&d->digs.read) &&
+           !atomic_load(&d->fit.busy);
+}
+
+static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signals)
+{
+    const struct timespec slice = { .tv_nsec = 50000000L };
+    for (int quiet = 0; quiet < 5;) {
+        if (sigtimedwait(signals, NULL, &slice) > 0) {
+            return;
+        }
+        quiet = is_quiet(d) ? quiet + 1 : 0;
+    }
+}
+
+enum dig_status dig_daemon_run(struct dig_daemon *const d, void (*const say)(const char *line),
+                               struct dig_error *const  error)
+{
+    assert(d != NULL && say != NULL);
+
+    // Blocked before the first thread starts, so that every thread inherits it and only we see
+    // them.
+    sigset_t signals;
+    (void)sigemptyset(&signals);
+    (void)sigaddset(&signals, SIGTERM);
+    (void)sigaddset(&signals, SIGINT);
+    (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
+
+    static void *(*const mains[])(void *) = { tick_main, publish_main, fit_main, input_main };
+    pthread_t      thread[4];
+    size_t         started = 0;
+    pthread_attr_t attributes;
+    (void)pthread_attr_init(&attributes);
+    (void)pthread_attr_setstacksize(&attributes, STACK_BYTES);
+    (void)sem_init(&d->granted, 0, 0);
+    d->publisher.say = say;
+
+    enum dig_status status = DIG_OK;
+    for (size_t i = 0; i < sizeof mains / sizeof mains[0] && status == DIG_OK; i++) {
+        const int why = pthread_create(&thread[i], &attributes, mains[i], d);
+        if (why != 0) {
+            errno  = why;
+            status = dig_error_set(error, DIG_EIO, "a thread could not be started (error %d)", why);
+            break;
+        }
+        started++;
+        if (i == 0) {
+            char line[LINE];
+            while (sem_wait(&d->granted) != 0) {
+            }
+            d->publisher.grant = d->grant;
+            dig_rt_describe(&d->loaded.config.realtime, &d->grant, sizeof line, line);
+            say(line);
+        }
+    }
+    (void)pthread_attr_destroy(&attributes);
+    if (status == DIG_OK) {
+        (void)dig_notify("READY=1");
+        wait_for_end(d, &signals);
+        (void)dig_notify("STOPPING=1");
+    }
+    atomic_store(&d->stop, true);
+    for (size_t i = 0; i < started; i++) {
+        if (i != 1) {
+            (void)pthread_join(thread[i], NULL);
+        }
+    }
+    atomic_store(&d->stop_publish, true);
+    if (started > 1) {
+        (void)pthread_join(thread[1], NULL);
+    }
+    (void)sem_destroy(&d->granted);
+    return status;
+}

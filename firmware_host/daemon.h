@@ -1,0 +1,33 @@
+// The whole daemon behind its options: what it loads, the threads it runs, how it stops.
+//
+//   input thread -> readings -> tick -> records, outlook, pulse -> publisher -> LCM
+//                               ^  |                                  ^
+//                       match --+  +-- digs -> matcher -- results ----+
+
+#ifndef DIG_FIRMWARE_HOST_DAEMON_H
+#define DIG_FIRMWARE_HOST_DAEMON_H
+
+#include "core/machine.h"
+#include "firmware_host/config.h"
+#include "firmware_host/signal_map.h"
+
+struct dig_daemon;
+
+/// Reads the configuration and everything it names: table, machine, DBC, map, recording.
+/// DIG_EINVAL, DIG_ESCHEMA or DIG_EIO with the file, line, key and what was expected; also a table
+/// whose scene is not the one asked for, or whose bucket is not of the machine's shape.
+DIG_MUST_CHECK enum dig_status dig_daemon_create(const char *config, struct dig_daemon **daemon,
+                                                 struct dig_error *error);
+
+/// NULL is allowed.
+void dig_daemon_destroy(struct dig_daemon *daemon);
+
+/// What was loaded, for people, as lines through say.
+void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char *line));
+
+/// Runs until SIGTERM or SIGINT, or until a replay has ended and all of it is published. Lines for
+/// people go through say. DIG_EIO: a thread could not be started.
+DIG_MUST_CHECK enum dig_status
+dig_daemon_run(struct dig_daemon *daemon, void (*say)(const char *line), struct dig_error *error);
+
+#endif // DIG_FIRMWARE_HOST_DAEMON_H

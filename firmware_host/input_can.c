@@ -1,0 +1,195 @@
+// SocketCAN, receiving only: this file holds no call that could put a frame on the bus.
+
+// Kernel time stamps and struct ifreq are Linux', not POSIX'.
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+
+#include "firmware_host/input.h"
+#include "firmware_host/signal_map.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#define NS_PER_S 1000000000LL
+#define WAIT_ms  100
+
+struct can_source {
+    char                         interface[IFNAMSIZ];
+    const struct dig_signal_map *map;
+    int                          fd;
+};
+
+static enum dig_status refuse(const struct dig_input *const input, const char *const what,
+                              struct dig_error *const error)
+{
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
+    return dig_error_set(error, DIG_EIO, "%s: %s: %s", input->name, what, strerror(errno));
+}
+
+// Only the mapped messages, exactly, and the controller's error frames wake us.
+static int set_filters(const int fd, const struct dig_signal_map *const map)
+{
+    struct can_filter filter[DIG_GROUPS_MAX];
+    for (size_t i = 0; i < map->groups; i++) {
+        const bool extended = map->group[i].extended;
+        filter[i]           = (struct can_filter){
+                      .can_id   = map->group[i].id | (extended ? CAN_EFF_FLAG : 0),
+                      .can_mask = CAN_EFF_FLAG | CAN_RTR_FLAG | (extended ? CAN_EFF_MASK : CAN_SFF_MASK),
+        };
+    }
+    const can_err_mask_t errors = CAN_ERR_MASK;
+    const int            off = 0, on = 1;
+    if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filter,
+                   (socklen_t)(map->groups * sizeof filter[0])) != 0 ||
+        setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
+        setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) != 0) {
+        return -1;
+    }
+    // A kernel without it says so by time stamps that do not come; the time of reading serves then.
+    (void)setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+    return 0;
+}
+
+static enum dig_status open_can(struct dig_input *const input, struct dig_error *const error)
+{
+    struct can_source *const s  = input->source;
+    const int                fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
+    if (fd < 0) {
+        return refuse(input, "no SocketCAN", error);
+    }
+    struct ifreq request = { 0 };
+    memcpy(request.ifr_name, s->interface, sizeof request.ifr_name);
+    if (set_filters(fd, s->map) != 0 || ioctl(fd, SIOCGIFINDEX, &request) != 0) {
+        const enum dig_status status = refuse(input, "cannot be opened", error);
+        (void)close(fd);
+        return status;
+    }
+    const struct sockaddr_can address = { .can_family  = AF_CAN,
+                                          .can_ifindex = request.ifr_ifindex };
+    if (bind(fd, (const struct sockaddr *)&address, sizeof address) != 0) {
+        const enum dig_status status = refuse(input, "cannot be bound", error);
+        (void)close(fd);
+        return status;
+    }
+    if (ioctl(fd, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0) {
+        errno                        = ENETDOWN;
+        const enum dig_status status = refuse(input, "cannot be read", error);
+        (void)close(fd);
+        return status;
+    }
+    // Where the kernel knows how, the socket itself gives up sending.
+    (void)shutdown(fd, SHUT_WR);
+    s->fd = fd;
+    return DIG_OK;
+}
+
+static int64_t to_ns(const struct timespec *const t)
+{
+    return (int64_t)t->tv_sec * NS_PER_S + t->tv_nsec;
+}
+
+// The kernel stamps in wall time; the daemon lives in monotonic time. A wall clock that was just
+// set gives a stamp from the future or long ago: then the time of reading is better.
+static int64_t stamp_of(struct msghdr *const message)
+{
+    const int64_t now_ns = dig_input_now_ns();
+    for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
+        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {
+            struct timespec stamp, wall;
+            memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+            (void)clock_gettime(CLOCK_REALTIME, &wall);
+            const int64_t age_ns = to_ns(&wall) - to_ns(&stamp);
+            return age_ns >= 0 && age_ns < NS_PER_S ? now_ns - age_ns : now_ns;
+        }
+    }
+    return now_ns;
+}
+
+static void take_frame(struct dig_input *const input, const struct can_frame *const frame,
+                       const int64_t time_ns)
+{
+    const struct can_source *const s        = input->source;
+    const bool                     extended = (frame->can_id & CAN_EFF_FLAG) != 0;
+    const uint32_t                 id    = frame->can_id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+    const int                      group = dig_signal_map_group(s->map, id, extended);
+    struct dig_reading             reading;
+    if ((frame->can_id & CAN_ERR_FLAG) != 0 || group < 0 ||
+        dig_signal_map_frame(s->map, (unsigned)group, frame->can_dlc, frame->data, time_ns,
+                             &reading) != DIG_OK) {
+        atomic_fetch_add(&input->malformed, 1);
+        return;
+    }
+    atomic_fetch_add(&input->frames, 1);
+    dig_input_give(input, &reading);
+}
+
+static enum dig_status read_can(struct dig_input *const input, struct dig_error *const error)
+{
+    const struct can_source *const s     = input->source;
+    struct pollfd                  ready = { .fd = s->fd, .events = POLLIN };
+    const int                      any   = poll(&ready, 1, WAIT_ms);
+    if (any == 0 || (any < 0 && errno == EINTR)) {
+        return DIG_OK;
+    }
+    struct can_frame frame        = { 0 };
+    char             control[128] = { 0 };
+    struct iovec     data         = { .iov_base = &frame, .iov_len = sizeof frame };
+    struct msghdr    message      = {
+                .msg_iov = &data, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control
+    };
+    const ssize_t got = recvmsg(s->fd, &message, MSG_DONTWAIT);
+    if (got < 0) {
+        return errno == EAGAIN || errno == EINTR ? DIG_OK : refuse(input, "cannot be read", error);
+    }
+    if (got != (ssize_t)sizeof frame) {
+        atomic_fetch_add(&input->malformed, 1);
+        return DIG_OK;
+    }
+    take_frame(input, &frame, stamp_of(&message));
+    return DIG_OK;
+}
+
+static void close_can(struct dig_input *const input)
+{
+    struct can_source *const s = input->source;
+    (void)close(s->fd);
+    s->fd = -1;
+}
+
+static void destroy_can(struct dig_input *const input)
+{
+    free(input->source);
+}
+
+static const struct dig_input_ops ops = { open_can, read_can, close_can, destroy_can };
+
+enum dig_status dig_input_can_create(struct dig_input *const input, const char *const interface,
+                                     const struct dig_signal_map *const map)
+{
+    assert(input != NULL && interface != NULL && map != NULL);
+    if (map->kind != DIG_MAP_CAN || strlen(interface) >= IFNAMSIZ) {
+        return DIG_EINVAL;
+    }
+    struct can_source *const s = calloc(1, sizeof *s);
+    if (s == NULL) {
+        return DIG_ENOMEM;
+    }
+    (void)snprintf(s->interface, sizeof s->interface, "%s", interface);
+    s->map        = map;
+    s->fd         = -1;
+    input->ops    = &ops;
+    input->source = s;
+    (void)snprintf(input->name, sizeof input->name, "can %.15s", interface);
+    return DIG_OK;
+}

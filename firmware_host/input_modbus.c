@@ -1,0 +1,137 @@
+// Modbus TCP and RTU through libmodbus: the block of registers the map names, polled. Only
+// functions 3 and 4, which read; no call of this file can write.
+
+#include "firmware_host/input.h"
+#include "firmware_host/signal_map.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <modbus/modbus.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+
+#define NS_PER_S       1000000000LL
+#define RESPONSE_us    200000 // a server that is slower than this is taken for gone
+#define FAILURES_BORNE 5
+
+struct modbus_source {
+    struct dig_modbus_address    address;
+    const struct dig_signal_map *map;
+    modbus_t                    *bus;
+    int64_t                      next_ns;  // when the next poll is due
+    int                          failures; // in a row
+};
+
+static enum dig_status refuse(const struct dig_input *const input, const char *const what,
+                              struct dig_error *const error)
+{
+    return dig_error_set(error, DIG_EIO, "%s: %s: %s", input->name, what, modbus_strerror(errno));
+}
+
+static enum dig_status open_modbus(struct dig_input *const input, struct dig_error *const error)
+{
+    struct modbus_source *const            s = input->source;
+    const struct dig_modbus_address *const a = &s->address;
+    char                                   port[8];
+    (void)snprintf(port, sizeof port, "%d", a->port);
+    s->bus = a->host[0] != '\0' ? modbus_new_tcp_pi(a->host, port)
+                                : modbus_new_rtu(a->device, a->baud, a->parity, 8, 1);
+    if (s->bus == NULL) {
+        return refuse(input, "cannot be opened", error);
+    }
+    if (modbus_set_slave(s->bus, a->unit) != 0 ||
+        modbus_set_response_timeout(s->bus, 0, RESPONSE_us) != 0 || modbus_connect(s->bus) != 0) {
+        const enum dig_status status = refuse(input, "cannot be opened", error);
+        modbus_free(s->bus);
+        s->bus = NULL;
+        return status;
+    }
+    s->next_ns  = dig_input_now_ns();
+    s->failures = 0;
+    return DIG_OK;
+}
+
+// A poll that failed. A frame that did not survive the wire, a refusal or a late answer is borne a
+// few times; a connection that broke is not.
+static enum dig_status bear(struct dig_input *const input, struct dig_error *const error)
+{
+    struct modbus_source *const s     = input->source;
+    const bool                  borne = errno > MODBUS_ENOBASE || errno == ETIMEDOUT;
+    if (errno > MODBUS_ENOBASE) {
+        atomic_fetch_add(&input->malformed, 1);
+    }
+    if (borne && ++s->failures < FAILURES_BORNE) {
+        (void)modbus_flush(s->bus);
+        return DIG_OK;
+    }
+    return refuse(input, "no good answer", error);
+}
+
+static enum dig_status read_modbus(struct dig_input *const input, struct dig_error *const error)
+{
+    struct modbus_source *const        s      = input->source;
+    const struct dig_signal_map *const map    = s->map;
+    const int64_t                      now_ns = dig_input_now_ns();
+    if (s->next_ns > now_ns) {
+        dig_input_pause(input, s->next_ns - now_ns);
+    }
+    // A late poll shifts the ones after it: two polls on each other's heels say nothing new.
+    const int64_t period_ns = (int64_t)(s->address.poll_s * (double)NS_PER_S);
+    s->next_ns              = (now_ns > s->next_ns + period_ns ? now_ns : s->next_ns) + period_ns;
+
+    uint16_t  registers[DIG_REGISTERS_MAX];
+    const int first = (int)map->first_register, count = (int)map->registers;
+    const int got = map->function == 3
+                        ? modbus_read_registers(s->bus, first, count, registers)
+                        : modbus_read_input_registers(s->bus, first, count, registers);
+    if (got == count) {
+        struct dig_reading reading;
+        dig_signal_map_registers(map, registers, dig_input_now_ns(), &reading);
+        atomic_fetch_add(&input->frames, 1);
+        dig_input_give(input, &reading);
+        s->failures = 0;
+        return DIG_OK;
+    }
+    return bear(input, error);
+}
+
+static void close_modbus(struct dig_input *const input)
+{
+    struct modbus_source *const s = input->source;
+    modbus_close(s->bus);
+    modbus_free(s->bus);
+    s->bus = NULL;
+}
+
+static void destroy_modbus(struct dig_input *const input)
+{
+    free(input->source);
+}
+
+static const struct dig_input_ops ops = { open_modbus, read_modbus, close_modbus, destroy_modbus };
+
+enum dig_status dig_input_modbus_create(struct dig_input *const                input,
+                                        const struct dig_modbus_address *const address,
+                                        const struct dig_signal_map *const     map)
+{
+    assert(input != NULL && address != NULL && map != NULL);
+    if (map->kind != DIG_MAP_MODBUS || !(address->poll_s > 0.0)) {
+        return DIG_EINVAL;
+    }
+    struct modbus_source *const s = calloc(1, sizeof *s);
+    if (s == NULL) {
+        return DIG_ENOMEM;
+    }
+    s->address    = *address;
+    s->map        = map;
+    input->ops    = &ops;
+    input->source = s;
+    if (address->host[0] != '\0') {
+        (void)snprintf(input->name, sizeof input->name, "modbus-tcp %s:%d", address->host,
+                       address->port);
+    } else {
+        (void)snprintf(input->name, sizeof input->name, "modbus-rtu %s", address->device);
+    }
+    return DIG_OK;
+}

@@ -1,0 +1,29 @@
+// Everything the configuration names, read and checked against each other.
+
+#ifndef DIG_FIRMWARE_HOST_LOAD_H
+#define DIG_FIRMWARE_HOST_LOAD_H
+
+#include "core/machine.h"
+#include "core/recording.h"
+#include "firmware_host/config.h"
+#include "firmware_host/signal_map.h"
+
+/// A machine's and a scene's bucket are of one shape when width / length agree within this.
+#define DIG_SHAPE_TOLERANCE 0.05
+
+struct dig_loaded {
+    struct dig_config            config;
+    struct dig_machine           machine;
+    struct dig_curve_set        *set;
+    struct dig_signal_map        map;       // of a bus
+    struct dig_machine_recording recording; // of a replay
+};
+
+/// Errors as dig_daemon_create(). Writes on success only; free with dig_loaded_finish().
+DIG_MUST_CHECK enum dig_status dig_load(const char *path, struct dig_loaded *loaded,
+                                        struct dig_error *error);
+
+/// NULL and a zeroed struct are allowed.
+void dig_loaded_finish(struct dig_loaded *loaded);
+
+#endif // DIG_FIRMWARE_HOST_LOAD_H

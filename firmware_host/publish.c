@@ -1,0 +1,214 @@
+#include "firmware_host/publish.h"
+
+#include "firmware_host/notify.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#define NS_PER_S 1000000000LL
+
+__attribute__((format(printf, 2, 3))) static void say(const struct dig_publisher *const p,
+                                                      const char *const                 format, ...)
+{
+    char    line[512];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    p->say(line);
+}
+
+// Joins LCM, or says why not and tries again later.
+static bool is_online(struct dig_publisher *const p, const int64_t now_ns)
+{
+    if (p->output != NULL) {
+        return true;
+    }
+    if (now_ns < p->next_lcm_ns) {
+        return false;
+    }
+    struct dig_error error = { "" };
+    if (dig_output_create(p->config->lcm_url, &p->output, &error) == DIG_OK) {
+        say(p, "publishing on %s", p->config->lcm_url);
+        p->next_health_ns = 0;
+        return true;
+    }
+    if (p->lcm_pause_ns == 0) {
+        say(p, "%s; trying again", error.text);
+    }
+    p->lcm_pause_ns = p->lcm_pause_ns == 0             ? NS_PER_S / 4
+                      : p->lcm_pause_ns < 4 * NS_PER_S ? 2 * p->lcm_pause_ns
+                                                       : 5 * NS_PER_S;
+    p->next_lcm_ns  = now_ns + p->lcm_pause_ns;
+    return false;
+}
+
+// LCM's own buffers may be full for a moment; a network that is gone is joined anew.
+static void check_sent(struct dig_publisher *const p, const enum dig_status status)
+{
+    if (status != DIG_OK && p->output != NULL) {
+        say(p, "LCM %s: sending failed; joining again", p->config->lcm_url);
+        dig_output_destroy(p->output);
+        p->output       = NULL;
+        p->lcm_pause_ns = NS_PER_S;
+        p->next_lcm_ns  = dig_input_now_ns() + p->lcm_pause_ns;
+    }
+}
+
+static void publish_records(struct dig_publisher *const p)
+{
+    struct dig_record record;
+    while (dig_ring_pop(p->records, &record)) {
+        const bool due = p->records_seen++ % (uint64_t)p->config->estimate_every == 0;
+        if (due && p->output != NULL) {
+            check_sent(p, dig_output_record(p->output, p->set, &record));
+        }
+    }
+}
+
+static void publish_outlook(struct dig_publisher *const p)
+{
+    struct dig_outlook outlook;
+    if (dig_latest_take(p->outlook, &outlook) && p->output != NULL) {
+        check_sent(p, dig_output_outlook(p->output, p->set, &outlook));
+    }
+}
+
+static void say_match(const struct dig_publisher *const p)
+{
+    const struct dig_match *const m = &p->result.match;
+    say(p,
+        "dig %u (%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
+        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s",
+        m->dig_count, p->set->trajectory[p->result.trajectory].name,
+        m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
+        m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
+        m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
+        m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
+        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor,
+        m->outside ? "; OUTSIDE the table: none of its gravels" : "");
+}
+
+static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
+{
+    bool news = false;
+    while (dig_ring_pop(p->results, &p->result)) {
+        news          = true;
+        p->any_result = true;
+        say_match(p);
+    }
+    if (p->any_result && (news || now_ns >= p->next_match_ns) && p->output != NULL) {
+        p->next_match_ns = now_ns + NS_PER_S;
+        check_sent(p, dig_output_match(p->output, p->set, &p->result));
+    }
+}
+
+static const char *state_of(const struct dig_publisher *const p, const bool stopping)
+{
+    if (stopping) {
+        return DIG_STATE_STOPPING;
+    }
+    if (p->health.pulse.ticks == 0) {
+        return DIG_STATE_STARTING;
+    }
+    return p->health.pulse.fresh ? DIG_STATE_RUNNING : DIG_STATE_WAITING;
+}
+
+static void take_notes(struct dig_publisher *const p, bool *const news)
+{
+    struct dig_note note;
+    const bool      from_input = dig_latest_take(p->input_notes, &note);
+    if (from_input || dig_latest_take(p->fit_notes, &note)) {
+        if (strcmp(note.text, p->note.text) != 0) {
+            *news   = true;
+            p->note = note;
+            if (note.text[0] != '\0') {
+                say(p, "%s", note.text);
+            }
+        }
+    }
+}
+
+// Drops are counted for programs in HEALTH; a person hears of them at most every ten seconds.
+static void say_drops(struct dig_publisher *const p, const int64_t now_ns)
+{
+    const struct dig_drops *const d   = &p->health.pulse.drops;
+    const int64_t                 all = d->nan + d->not_available + d->out_of_range + d->frozen +
+                        p->health.malformed + p->health.lost;
+    if (all > p->said_drops && now_ns >= p->next_say_ns) {
+        p->said_drops  = all;
+        p->next_say_ns = now_ns + 10 * NS_PER_S;
+        say(p,
+            "dropped so far: %" PRId64 " not available, %" PRId64 " out of range, %" PRId64
+            " frozen, %" PRId64 " NaN, %" PRId64 " malformed, %" PRId64 " lost",
+            d->not_available, d->out_of_range, d->frozen, d->nan, p->health.malformed,
+            p->health.lost);
+    }
+}
+
+static void publish_health(struct dig_publisher *const p, const int64_t now_ns, const bool stopping)
+{
+    bool news = false;
+    take_notes(p, &news);
+    (void)dig_latest_take(p->pulse, &p->health.pulse);
+    const char *const state = state_of(p, stopping);
+    if (state != p->state) {
+        news     = true;
+        p->state = state;
+        say(p, "%s (%s)", state, p->input->name);
+    }
+    p->health.time_ns    = now_ns;
+    p->health.state      = state;
+    p->health.input      = p->input->name;
+    p->health.note       = p->note.text;
+    p->health.rt         = p->grant;
+    p->health.tick_s     = p->config->tick_s;
+    p->health.frames     = atomic_load(&p->input->frames);
+    p->health.malformed  = atomic_load(&p->input->malformed);
+    p->health.reconnects = atomic_load(&p->input->reconnects);
+    p->health.lost       = atomic_load(&p->input->overflow) + p->health.pulse.lost;
+    p->health.matches    = (int32_t)atomic_load(&p->fit->matches);
+    say_drops(p, now_ns);
+    if ((news || now_ns >= p->next_health_ns) && p->output != NULL) {
+        p->next_health_ns = now_ns + NS_PER_S;
+        check_sent(p, dig_output_health(p->output, &p->health));
+    }
+}
+
+static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
+{
+    const int64_t interval_ns = dig_notify_watchdog_ns();
+    // The tick's own pulse is the proof of life: a tick that hangs lets the watchdog bark.
+    const bool alive = now_ns - p->health.pulse.time_ns < NS_PER_S;
+    if (interval_ns > 0 && alive && now_ns >= p->next_watchdog_ns) {
+        p->next_watchdog_ns = now_ns + interval_ns;
+        (void)dig_notify("WATCHDOG=1");
+    }
+}
+
+void dig_publisher_run(struct dig_publisher *const p)
+{
+    assert(p != NULL && p->say != NULL);
+    const struct timespec pause    = { .tv_nsec = (long)(p->config->tick_s * 1e9) };
+    bool                  stopping = false;
+    while (!stopping) {
+        // Read before the last round, so that it finds everything that was put before *stop.
+        stopping             = atomic_load(p->stop);
+        const int64_t now_ns = dig_input_now_ns();
+        (void)is_online(p, now_ns);
+        publish_records(p);
+        publish_outlook(p);
+        publish_matches(p, now_ns);
+        publish_health(p, now_ns, stopping);
+        feed_watchdog(p, now_ns);
+        if (!stopping) {
+            (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, NULL);
+        }
+    }
+    dig_output_destroy(p->output);
+    p->output = NULL;
+}

@@ -1,0 +1,47 @@
+// The publishing thread: empties the tick's and the matcher's rings into LCM, keeps an eye on the
+// state of things, and tells the service manager the daemon lives.
+
+#ifndef DIG_FIRMWARE_HOST_PUBLISH_H
+#define DIG_FIRMWARE_HOST_PUBLISH_H
+
+#include "firmware_host/output.h"
+
+#define DIG_STATE_STARTING "starting"
+#define DIG_STATE_WAITING  "waiting for bus"
+#define DIG_STATE_RUNNING  "running"
+#define DIG_STATE_STOPPING "stopping"
+
+/// Its other ends are the tick's, the matcher's and the input's.
+struct dig_publisher {
+    const struct dig_config    *config;
+    const struct dig_curve_set *set;
+    struct dig_input           *input;
+    struct dig_fit             *fit;
+    struct dig_ring            *records;     // in
+    struct dig_latest          *outlook;     // in
+    struct dig_ring            *results;     // in
+    struct dig_latest          *pulse;       // in
+    struct dig_latest          *input_notes; // in
+    struct dig_latest          *fit_notes;   // in
+    const atomic_bool          *stop;
+    struct dig_rt_grant         grant;
+    /// Called for every line worth a person's eye, on this thread; at most a few a second.
+    void (*say)(const char *line);
+
+    // the thread's own
+    struct dig_output    *output;
+    struct dig_health     health;
+    struct dig_note       note;
+    struct dig_fit_result result; // the last one
+    bool                  any_result;
+    const char           *state;
+    int64_t               next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_say_ns;
+    int64_t               lcm_pause_ns;
+    int64_t               said_drops;
+    uint64_t              records_seen;
+};
+
+/// The thread: returns after *stop, when all that was left is published.
+void dig_publisher_run(struct dig_publisher *publisher);
+
+#endif // DIG_FIRMWARE_HOST_PUBLISH_H

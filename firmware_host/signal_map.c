@@ -1,0 +1,115 @@
+#include "firmware_host/signal_map.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+static bool is_not_available(const struct dig_map_entry *const entry, const uint64_t raw)
+{
+    for (size_t i = 0; i < entry->not_available; i++) {
+        if (entry->not_available_raw[i] == raw) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void decode(const struct dig_map_entry *const entry, const uint64_t raw,
+                   const double physical, uint8_t *const state, double *const value)
+{
+    const double si = entry->sign * (entry->scale * physical + entry->offset);
+    if (is_not_available(entry, raw)) {
+        *state = DIG_READING_NOT_AVAILABLE;
+    } else if (!isfinite(si)) {
+        *state = DIG_READING_NAN;
+    } else if (!(si >= entry->min && si <= entry->max)) {
+        *state = DIG_READING_OUT_OF_RANGE;
+    } else {
+        *state = DIG_READING_OK;
+        *value = si;
+    }
+}
+
+int dig_signal_map_group(const struct dig_signal_map *const map, const uint32_t id,
+                         const bool extended)
+{
+    assert(map != NULL);
+    for (size_t i = 0; i < map->groups; i++) {
+        if (map->group[i].id == id && map->group[i].extended == extended) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+enum dig_status dig_signal_map_frame(const struct dig_signal_map *const map, const unsigned group,
+                                     const size_t bytes, const uint8_t data[],
+                                     const int64_t time_ns, struct dig_reading *const reading)
+{
+    assert(map != NULL && map->kind == DIG_MAP_CAN && group < map->groups && reading != NULL);
+    if (bytes < map->group[group].bytes) {
+        return DIG_EINVAL;
+    }
+    struct dig_reading out = { .time_ns = time_ns, .group = group };
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        const struct dig_map_entry *const entry = &map->entry[i];
+        if (entry->used && entry->group == group) {
+            const uint64_t raw = dig_dbc_raw(&entry->can, data);
+            decode(entry, raw, dig_dbc_value(&entry->can, raw), &out.state[i], &out.value[i]);
+        }
+    }
+    if (map->has_alive && map->alive.group == group) {
+        out.has_alive = true;
+        out.alive     = dig_dbc_raw(&map->alive.can, data);
+    }
+    *reading = out;
+    return DIG_OK;
+}
+
+// A register or two as they stand, the first the high word unless the map says otherwise.
+static uint64_t raw_of(const struct dig_signal_map *const map,
+                       const struct dig_map_entry *const entry, const uint16_t registers[])
+{
+    const size_t at = entry->reg - map->first_register;
+    if (entry->type == DIG_REGISTER_UINT16 || entry->type == DIG_REGISTER_INT16) {
+        return registers[at];
+    }
+    const uint64_t first = registers[at], second = registers[at + 1];
+    return map->low_word_first ? (second << 16) | first : (first << 16) | second;
+}
+
+static double physical_of(const enum dig_register_type type, const uint64_t raw)
+{
+    switch (type) {
+    case DIG_REGISTER_INT16: return raw < 0x8000U ? (double)raw : (double)raw - 65536.0;
+    case DIG_REGISTER_INT32: return raw < 0x80000000U ? (double)raw : (double)raw - 4294967296.0;
+    case DIG_REGISTER_FLOAT32: {
+        const uint32_t bits = (uint32_t)raw;
+        float          number;
+        memcpy(&number, &bits, sizeof number);
+        return (double)number;
+    }
+    case DIG_REGISTER_UINT16:
+    case DIG_REGISTER_UINT32: break;
+    }
+    return (double)raw;
+}
+
+void dig_signal_map_registers(const struct dig_signal_map *const map, const uint16_t registers[],
+                              const int64_t time_ns, struct dig_reading *const reading)
+{
+    assert(map != NULL && map->kind == DIG_MAP_MODBUS && reading != NULL);
+    struct dig_reading out = { .time_ns = time_ns };
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        const struct dig_map_entry *const entry = &map->entry[i];
+        if (entry->used) {
+            const uint64_t raw = raw_of(map, entry, registers);
+            decode(entry, raw, physical_of(entry->type, raw), &out.state[i], &out.value[i]);
+        }
+    }
+    if (map->has_alive) {
+        out.has_alive = true;
+        out.alive     = raw_of(map, &map->alive, registers);
+    }
+    *reading = out;
+}

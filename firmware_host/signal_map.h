@@ -1,0 +1,86 @@
+// Which raw value on the bus is which of our signals: from a YAML map (docs/formats.md) over a
+// DBC's signals or over Modbus registers, to SI in the machine's frames.
+//
+//   SI value = sign * (scale * physical + offset)
+//
+// where physical is the DBC's factor * raw + DBC offset, or the raw register. Raw values listed as
+// not_available, and values outside min … max, never become a number.
+
+#ifndef DIG_FIRMWARE_HOST_SIGNAL_MAP_H
+#define DIG_FIRMWARE_HOST_SIGNAL_MAP_H
+
+#include "core/error.h"
+#include "firmware_host/dbc.h"
+#include "firmware_host/reading.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define DIG_NOT_AVAILABLE_MAX 4
+#define DIG_REGISTERS_MAX     125 // of one Modbus request
+
+enum dig_map_kind { DIG_MAP_CAN, DIG_MAP_MODBUS };
+
+enum dig_register_type {
+    DIG_REGISTER_UINT16,
+    DIG_REGISTER_INT16,
+    DIG_REGISTER_UINT32,
+    DIG_REGISTER_INT32,
+    DIG_REGISTER_FLOAT32,
+};
+
+struct dig_map_entry {
+    bool                   used;
+    unsigned               group; // CAN: index into dig_signal_map.group
+    struct dig_dbc_signal  can;
+    unsigned               reg; // Modbus: first register
+    enum dig_register_type type;
+    double                 sign, scale, offset, min, max;
+    size_t                 not_available; // raw values listed
+    uint64_t               not_available_raw[DIG_NOT_AVAILABLE_MAX];
+};
+
+/// A CAN message that is listened to.
+struct dig_map_group {
+    uint32_t id;
+    bool     extended, needed; // needed: carries a signal a wrench needs
+    unsigned bytes;
+    char     name[DIG_DBC_NAME_SIZE];
+};
+
+struct dig_signal_map {
+    enum dig_map_kind    kind;
+    struct dig_map_entry entry[DIG_SIGNALS];
+    bool                 has_alive;
+    struct dig_map_entry alive;
+    double               frozen_s;   // the alive counter may stand still this long
+    double               coherent_s; // signals of one sample may lie this far apart
+    size_t               groups;
+    struct dig_map_group group[DIG_GROUPS_MAX];
+    unsigned             first_register, registers; // Modbus: the block that is polled
+    unsigned             function;                  // Modbus: 4 input registers, 3 holding
+    bool                 low_word_first;            // Modbus: of 32-bit values
+};
+
+/// Reads and checks. dbc is needed for kind: can and ignored otherwise; NULL refuses such a map.
+/// DIG_EINVAL names file, line, key and what was expected: also a message or signal the DBC does
+/// not have, a unit the scale cannot be right for, a needed signal without an entry, the same
+/// signal twice.
+DIG_MUST_CHECK enum dig_status dig_signal_map_read(const char *path, const struct dig_dbc *dbc,
+                                                   struct dig_signal_map *map,
+                                                   struct dig_error      *error);
+
+/// The group (in map->group) of a CAN id, or -1.
+int dig_signal_map_group(const struct dig_signal_map *map, uint32_t id, bool extended);
+
+/// Decodes one frame of a group. DIG_EINVAL: shorter than the DBC says; *reading is untouched.
+DIG_MUST_CHECK enum dig_status dig_signal_map_frame(const struct dig_signal_map *map,
+                                                    unsigned group, size_t bytes,
+                                                    const uint8_t data[], int64_t time_ns,
+                                                    struct dig_reading *reading);
+
+/// Decodes the polled block: map->registers registers from map->first_register on.
+void dig_signal_map_registers(const struct dig_signal_map *map, const uint16_t registers[],
+                              int64_t time_ns, struct dig_reading *reading);
+
+#endif // DIG_FIRMWARE_HOST_SIGNAL_MAP_H

@@ -1,0 +1,92 @@
+// Prints what an LCM log of the daemon holds, a line a message, for system tests to read:
+//   daemon_log LOG.lcm
+//   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS
+//   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
+//   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT
+//   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
+//   RECONNECTS
+//          DIGS MATCHES LOST TICKS OVERRUNS WORST_us INPUT NOTE
+//   samples N DURATION_s MAX_GAP_s
+
+#include "files/lcm_log.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *name(const char *const text)
+{
+    return text[0] != '\0' ? text : "-";
+}
+
+static void estimate(void *const context, const int64_t time_us, const digsight_estimate_t *const m)
+{
+    (void)context;
+    (void)time_us;
+    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d\n", (double)m->time_ns * 1e-9, m->phase,
+                 name(m->trajectory), m->progress, m->moment_Nm, m->sigma_moment_Nm, m->dig_count);
+}
+
+static void match(void *const context, const int64_t time_us, const digsight_match_t *const m)
+{
+    (void)context;
+    (void)time_us;
+    (void)printf("match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f\n", m->valid,
+                 m->outside, m->dig_count, name(m->trajectory), m->friction, m->friction_low,
+                 m->friction_high, m->rolling, m->rolling_low, m->rolling_high, m->density_kgpm3,
+                 m->density_low_kgpm3, m->density_high_kgpm3, m->distance);
+}
+
+static void prediction(void *const context, const int64_t time_us,
+                       const digsight_prediction_t *const m)
+{
+    (void)context;
+    (void)time_us;
+    (void)printf("prediction %d %s %.5f %d %.6g %.6g\n", m->valid, name(m->trajectory),
+                 m->progress_now, m->points, m->peak_Nm, m->points > 0 ? m->moment_Nm[0] : 0.0);
+}
+
+static void health(void *const context, const int64_t time_us, const digsight_health_t *const m)
+{
+    (void)context;
+    (void)time_us;
+    char state[32];
+    (void)snprintf(state, sizeof state, "%s", m->state);
+    for (char *c = state; *c != '\0'; c++) {
+        *c = *c == ' ' ? '_' : *c;
+    }
+    (void)printf("health %s %d %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64
+                 " %" PRId64 " %" PRId64 " %d %d %" PRId64 " %" PRId64 " %" PRId64
+                 " %.1f \"%s\" \"%s\"\n",
+                 state, m->realtime, m->frames, m->dropped_malformed, m->dropped_nan,
+                 m->dropped_not_available, m->dropped_out_of_range, m->dropped_frozen, m->missing,
+                 m->reconnects, m->digs, m->matches, m->lost, m->ticks, m->overruns,
+                 m->worst_tick_us, m->input, m->note);
+}
+
+int main(const int argc, char *argv[])
+{
+    if (argc != 2) {
+        (void)fprintf(stderr, "usage: daemon_log LOG.lcm\n");
+        return 2;
+    }
+    const struct dig_lcm_log_reader reader = {
+        .estimate = estimate, .match = match, .prediction = prediction, .health = health
+    };
+    struct dig_error             error = { "" };
+    struct dig_machine_recording samples;
+    if (dig_lcm_log_each(argv[1], &reader, &error) != DIG_OK ||
+        dig_lcm_log_read(argv[1], &samples, &error) != DIG_OK) {
+        (void)fprintf(stderr, "daemon_log: %s\n", error.text);
+        return 1;
+    }
+    double gap_s = 0.0;
+    for (size_t i = 1; i < samples.rows; i++) {
+        const double step_s = (double)(samples.row[i].time_ns - samples.row[i - 1].time_ns) * 1e-9;
+        gap_s               = step_s > gap_s ? step_s : gap_s;
+    }
+    (void)printf("samples %zu %.3f %.4f\n", samples.rows,
+                 (double)samples.row[samples.rows - 1].time_ns * 1e-9, gap_s);
+    dig_machine_recording_finish(&samples);
+    return 0;
+}
