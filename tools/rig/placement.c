@@ -1,19 +1,28 @@
 #include "tools/rig/placement.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 // Every so many frames of the path: 40 ms, a few millimetres of pin and a few noise grains of
 // force.
 static const size_t stride = 40;
 
-// The least share over the path, or less than `enough` as soon as that is sure.
+// Out of a joint's or a cylinder's range is worse than any load: a smaller load would not help.
+static const double out_of_range = 1e6;
+
+struct found {
+    double                score; // to be large
+    struct dig_rig_margin margin;
+};
+
+// The least over the path, or something not above `enough` as soon as it is sure to be.
 static enum dig_status least_margin(const struct dig_machine *const  machine,
                                     const struct dig_rig_path *const path, const double X_m,
                                     const double Z_m, const double enough,
-                                    struct dig_rig_margin *const margin)
+                                    struct found *const found)
 {
     const struct dig_rig_motion still = { .turn_radps2 = { 0.0 } };
-    struct dig_rig_margin       least = { .share = INFINITY };
+    struct found                least = { .score = INFINITY };
     for (size_t i = 0; i < path->frames; i += stride) {
         struct dig_rig_pose pose = path->frame[i].pose;
         pose.X_m += X_m;
@@ -24,14 +33,19 @@ static enum dig_status least_margin(const struct dig_machine *const  machine,
         if (status != DIG_OK) {
             return status;
         }
-        if (!(state.nearest.share >= least.share)) {
-            least = state.nearest;
+        const bool         fits = state.mechanical.share > 0.0;
+        const struct found here = {
+            .score  = fits ? state.nearest.share : state.mechanical.share - out_of_range,
+            .margin = fits ? state.nearest : state.mechanical,
+        };
+        if (!(here.score >= least.score)) {
+            least = here;
         }
-        if (!(least.share > enough)) {
+        if (!(least.score > enough)) {
             break;
         }
     }
-    *margin = least;
+    *found = least;
     return DIG_OK;
 }
 
@@ -56,19 +70,29 @@ enum dig_status dig_rig_placement_find(const struct dig_machine *const  machine,
         for (int percent = 25; percent < 100; percent++) {
             const double          X_m = 0.01 * percent * reach_m;
             const double          Z_m = level_m + surface_m[s];
-            struct dig_rig_margin margin;
-            if (least_margin(machine, path, X_m, Z_m, best_score + penalty, &margin) == DIG_OK &&
-                margin.share - penalty > best_score) {
-                best       = (struct dig_rig_placement){ .X_m = X_m, .Z_m = Z_m, .margin = margin };
-                best_score = margin.share - penalty;
+            struct found          found;
+            const enum dig_status status =
+                least_margin(machine, path, X_m, Z_m, best_score + penalty, &found);
+            if (status == DIG_OK && found.score - penalty > best_score) {
+                best = (struct dig_rig_placement){ .X_m = X_m, .Z_m = Z_m, .margin = found.margin };
+                best_score = found.score - penalty;
             }
         }
     }
-    if (!(isfinite(best_score))) {
+    if (!isfinite(best_score)) {
         return dig_error_set(
             error, DIG_EUNREACHABLE,
             "%s: no place within reach of boom and arm (%.2f m) holds the whole dig", machine->name,
             reach_m);
+    }
+    if (best_score < -0.5 * out_of_range) {
+        char text[200];
+        return dig_error_set(
+            error, DIG_EUNREACHABLE,
+            "%s cannot do this dig anywhere; nearest with the pin starting at X %.2f "
+            "m, Z %.2f m: %s",
+            machine->name, best.X_m, best.Z_m,
+            dig_rig_margin_text(&best.margin, sizeof text, text));
     }
     *placement = best;
     return DIG_OK;

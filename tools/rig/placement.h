@@ -17,8 +17,9 @@ struct dig_rig_placement {
 /// tracks' ground and up to 1 m below or above it) and takes the one whose smallest share
 /// (state.h) over the whole path is largest; 5 % is taken off per metre that the dug surface
 /// lies off the tracks' ground. Deterministic; a second or less. The margin returned may be
-/// negative: then the machine cannot do the dig anywhere, and it says what stops it at the best
-/// place. DIG_EUNREACHABLE when no place has every pose within the linkage's reach.
+/// negative: then the machine has the reach but not the force or the weight, and it says which at
+/// the best place. DIG_EUNREACHABLE when no place has every pose within reach of the linkage and
+/// within the ranges of joints and cylinders; *error then says what stops the best one.
 DIG_MUST_CHECK enum dig_status dig_rig_placement_find(const struct dig_machine  *machine,
                                                       const struct dig_rig_path *path,
                                                       struct dig_rig_placement  *placement,

@@ -134,6 +134,10 @@ look_at_ground(const struct dig_machine *const machine, const struct dig_rig_joi
                              .value = weight_N - down_N,
                              .bound = weight_N,
                          });
+    // Off the ground altogether there is no edge left to speak of.
+    if (!(down_N > 0.0)) {
+        return;
+    }
     keep_nearer(nearest, (struct dig_rig_margin){
                              .share = front_Nm / hold_front_Nm,
                              .limit = DIG_RIG_LIMIT_TIP,

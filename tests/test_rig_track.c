@@ -1,0 +1,265 @@
+// Tests for tools/rig/track.c, placement.c and state.c
+
+#include "tools/rig/track.h"
+
+#include "core/units.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "tests/testlib.h"
+
+#include <string.h>
+
+#define SIMPLE "tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv"
+#define ACTUAL "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv"
+#define STIFF  "tests/data/reference/mu0.9_mur0.9_rho2500__actual.csv"
+
+static struct dig_machine read_machine(const char *const name)
+{
+    char path[200];
+    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
+    struct dig_machine machine;
+    struct dig_error   error = { "" };
+    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return machine;
+}
+
+static struct dig_recording read_recording(const char *const path)
+{
+    struct dig_recording recording;
+    struct dig_error     error = { "" };
+    if (dig_recording_read(path, &recording, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return recording;
+}
+
+static void simple_then_actual_fit_the_trench_machine_below_relief(void **state)
+{
+    (void)state;
+    const struct dig_machine           machine = read_machine("zx200_trench");
+    const struct dig_rig_track_options options = dig_rig_track_options_default();
+    struct dig_recording recording[2]          = { read_recording(SIMPLE), read_recording(ACTUAL) };
+    struct dig_rig_track track;
+    struct dig_error     error = { "" };
+    assert_int_equal(dig_rig_track_build(&machine, &options, 2, recording, &track, &error), DIG_OK);
+
+    assert_true(track.nearest.share > 0.1);
+    double most_Pa = 0.0;
+    double least   = 1e9;
+    for (size_t i = 0; i < track.rows; i++) {
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            const struct dig_rig_row *const row = &track.row[i];
+            assert_true(row->joints.rad[j] > machine.link[j].min_rad);
+            assert_true(row->joints.rad[j] < machine.link[j].max_rad);
+            most_Pa = fmax(most_Pa, fmax(row->pressures.head_Pa[j], row->pressures.rod_Pa[j]));
+            least   = fmin(least, fmin(row->pressures.head_Pa[j], row->pressures.rod_Pa[j]));
+        }
+    }
+    assert_true(most_Pa < 20e6);
+    assert_true(least >= machine.cylinder[0].back_Pa);
+    dig_rig_track_finish(&track);
+    dig_recording_finish(&recording[0]);
+    dig_recording_finish(&recording[1]);
+}
+
+static void stiffest_reference_dig_fits_the_trench_machine(void **state)
+{
+    (void)state;
+    const struct dig_machine           machine   = read_machine("zx200_trench");
+    const struct dig_rig_track_options options   = dig_rig_track_options_default();
+    struct dig_recording               recording = read_recording(STIFF);
+    struct dig_rig_track               track;
+    struct dig_error                   error = { "" };
+    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
+                     DIG_OK);
+    dig_rig_track_finish(&track);
+    dig_recording_finish(&recording);
+}
+
+// The rows carry the recording: time, force and moment scaled, whatever the air around it.
+static void soil_of_the_track_is_the_recording_s_at_scale(void **state)
+{
+    (void)state;
+    const struct dig_machine     machine   = read_machine("zx200_trench");
+    struct dig_rig_track_options options   = dig_rig_track_options_default();
+    struct dig_recording         recording = read_recording(SIMPLE);
+    struct dig_rig_track         track;
+    struct dig_error             error = { "" };
+    options.air                        = false;
+    options.blend                      = false;
+    options.rate_Hz                    = 1000.0;
+    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
+                     DIG_OK);
+    for (size_t r = 100; r < 500; r += 37) {
+        const struct dig_force_row *const row = &recording.row[r];
+        const double                      t_s = sqrt(10.0) * (row->t_s - recording.row[0].t_s);
+        const size_t                      i   = (size_t)lround(t_s / track.step_s);
+        // Between two samples of 5 ms the force is straight; half a millisecond of it is slack.
+        const double slack_N = 1000.0 * fabs(recording.row[r + 1].Fx_N - row->Fx_N) +
+                               1000.0 * fabs(row->Fx_N - recording.row[r - 1].Fx_N) + 1.0;
+        assert_close(track.row[i].soil.FX_N, -1000.0 * row->Fx_N, 0.05 * slack_N);
+        assert_close(track.row[i].pose.phi_rad, (-90.0 - row->theta_deg) * DIG_RAD_PER_DEG, 1e-6);
+    }
+    dig_rig_track_finish(&track);
+    dig_recording_finish(&recording);
+}
+
+// Virtual work has no gauge: the moment about the bucket pin must come back from the bucket
+// cylinder alone, by the balance of powers along the track when nothing else moves.
+static void inertia_is_a_small_part_of_a_slow_dig(void **state)
+{
+    (void)state;
+    const struct dig_machine     machine   = read_machine("zx200_trench");
+    struct dig_rig_track_options options   = dig_rig_track_options_default();
+    struct dig_recording         recording = read_recording(ACTUAL);
+    struct dig_rig_track         moving;
+    struct dig_rig_track         still;
+    struct dig_error             error = { "" };
+    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &moving, &error),
+                     DIG_OK);
+    options.quasi_static = true;
+    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &still, &error),
+                     DIG_OK);
+    assert_int_equal(moving.rows, still.rows);
+    double most_Pa = 0.0;
+    for (size_t i = 0; i < moving.rows; i++) {
+        most_Pa = fmax(most_Pa, fabs(moving.row[i].pressures.head_Pa[DIG_JOINT_BUCKET] -
+                                     still.row[i].pressures.head_Pa[DIG_JOINT_BUCKET]));
+    }
+    assert_true(most_Pa > 1e3);   // it is there
+    assert_true(most_Pa < 0.5e6); // and small beside megapascals
+    dig_rig_track_finish(&moving);
+    dig_rig_track_finish(&still);
+    dig_recording_finish(&recording);
+}
+
+static void refuse(const struct dig_machine *const machine, const char *const path,
+                   const struct dig_rig_track_options *const options,
+                   const enum dig_status expected, const char *const word, const char *const other)
+{
+    struct dig_recording recording = read_recording(path);
+    struct dig_rig_track track     = { .rows = 42 };
+    struct dig_error     error     = { "" };
+    assert_int_equal(dig_rig_track_build(machine, options, 1, &recording, &track, &error),
+                     expected);
+    assert_int_equal(track.rows, 42);
+    if (strstr(error.text, word) == NULL || strstr(error.text, other) == NULL) {
+        fail_msg("\"%s\" names neither \"%s\" nor \"%s\"", error.text, word, other);
+    }
+    dig_recording_finish(&recording);
+}
+
+static void dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit(void **state)
+{
+    (void)state;
+    struct dig_machine                 machine   = read_machine("zx200_trench");
+    const struct dig_rig_track_options options   = dig_rig_track_options_default();
+    machine.cylinder[DIG_JOINT_BUCKET].relief_Pa = 3e6;
+    refuse(&machine, ACTUAL, &options, DIG_EINVAL, "bucket cylinder:", "relief 3.0 MPa");
+}
+
+static void dig_that_lifts_or_tips_the_machine_is_refused(void **state)
+{
+    (void)state;
+    struct dig_machine                 machine = read_machine("zx200_trench");
+    const struct dig_rig_track_options options = dig_rig_track_options_default();
+    machine.weight_N                           = 1e3;
+    refuse(&machine, ACTUAL, &options, DIG_EINVAL, "machine tipped over its", "kNm");
+
+    // Tracks so wide that nothing tips, front so light that the soil carries it all.
+    machine.tip_front_X_m = 500.0;
+    machine.tip_rear_X_m  = -500.0;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        machine.link[j].mass_kg = 10.0;
+    }
+    refuse(&machine, ACTUAL, &options, DIG_EINVAL, "machine lifted", "all weighs 1.3 kN");
+}
+
+static void standard_bucket_is_refused_as_more_than_the_machine_has(void **state)
+{
+    (void)state;
+    const struct dig_machine           machine = read_machine("zx200");
+    const struct dig_rig_track_options options = dig_rig_track_options_default();
+    refuse(&machine, ACTUAL, &options, DIG_EINVAL, "zx200 cannot do this dig", "");
+}
+
+static void dig_out_of_reach_is_refused(void **state)
+{
+    (void)state;
+    struct dig_machine           machine = read_machine("zx200_trench");
+    struct dig_rig_track_options options = dig_rig_track_options_default();
+    options.placed                       = true;
+    options.pin_X_m                      = 9.0;
+    options.pin_Z_m                      = -1.0;
+    refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "out of reach", "9.");
+
+    // Within reach of the links, but not of the arm's own range.
+    options                             = dig_rig_track_options_default();
+    machine.link[DIG_JOINT_ARM].max_rad = machine.link[DIG_JOINT_ARM].min_rad + 0.01;
+    refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "arm joint:", "limit");
+
+    machine = read_machine("zx200_trench");
+    machine.cylinder[DIG_JOINT_ARM].max_length_m =
+        machine.cylinder[DIG_JOINT_ARM].min_length_m + 0.01;
+    refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "arm cylinder:", "limit");
+}
+
+static void options_out_of_their_domain_are_refused(void **state)
+{
+    (void)state;
+    const struct dig_machine     machine = read_machine("zx200_trench");
+    struct dig_rig_track_options options = dig_rig_track_options_default();
+    options.rate_Hz                      = 300.0;
+    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "rate", "300");
+    options               = dig_rig_track_options_default();
+    options.scene_tooth_m = 0.0;
+    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "tooth-m", "0");
+    options         = dig_rig_track_options_default();
+    options.placed  = true;
+    options.pin_X_m = NAN;
+    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "pin-start", "finite");
+}
+
+// Which margin is left of a pose is counted by hand for a front of one heavy bucket.
+static void ground_limits_are_those_of_a_beam_on_two_edges(void **state)
+{
+    (void)state;
+    struct dig_machine machine = read_machine("zx200_trench");
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        machine.link[j].mass_kg = 1e-3;
+    }
+    machine.weight_N                  = 100e3;
+    machine.weight_X_m                = 0.0;
+    machine.tip_front_X_m             = 2.0;
+    machine.tip_rear_X_m              = -2.0;
+    machine.boom_foot_Z_m             = 2.0;
+    const struct dig_rig_pose   pose  = { 6.0, -1.0, -1.5 };
+    const struct dig_rig_motion still = { .turn_radps2 = { 0.0 } };
+    // 100 kN hold 200 kNm about either edge; 20 kN up at 8 m from the rear edge take 160, 10 kN of
+    // push 1 m above the ground give 10 back, a moment of 30 kNm takes the rest but 20.
+    const struct dig_rig_wrench soil = { 10e3, 20e3, 30e3 };
+    struct dig_rig_state        found;
+    assert_int_equal(dig_rig_state_solve(&machine, &pose, &still, &soil, &found), DIG_OK);
+    assert_int_equal(found.nearest.limit, DIG_RIG_LIMIT_TIP);
+    assert_string_equal(found.nearest.end, "rear");
+    assert_close(found.nearest.share, 20.0 / 200.0, 1e-4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(simple_then_actual_fit_the_trench_machine_below_relief),
+        cmocka_unit_test(stiffest_reference_dig_fits_the_trench_machine),
+        cmocka_unit_test(soil_of_the_track_is_the_recording_s_at_scale),
+        cmocka_unit_test(inertia_is_a_small_part_of_a_slow_dig),
+        cmocka_unit_test(dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit),
+        cmocka_unit_test(dig_that_lifts_or_tips_the_machine_is_refused),
+        cmocka_unit_test(standard_bucket_is_refused_as_more_than_the_machine_has),
+        cmocka_unit_test(dig_out_of_reach_is_refused),
+        cmocka_unit_test(options_out_of_their_domain_are_refused),
+        cmocka_unit_test(ground_limits_are_those_of_a_beam_on_two_edges),
+    };
+    return cmocka_run_group_tests_name("rig track", tests, NULL, NULL);
+}
