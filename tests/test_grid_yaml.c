@@ -1,0 +1,129 @@
+// Tests for files/grid_yaml.c and config/grids/
+
+#include "files/grid_yaml.h"
+
+#include "files/scene_yaml.h"
+#include "tests/scratch.h"
+
+static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    struct dig_grid grid;
+    assert_int_equal(dig_grid_read("tests/data/formats/grid.yaml", &grid, NULL), DIG_OK);
+    assert_int_equal(grid.count[DIG_AXIS_FRICTION], 2);
+    assert_int_equal(grid.count[DIG_AXIS_ROLLING], 3);
+    assert_int_equal(grid.count[DIG_AXIS_DENSITY_kgpm3], 1);
+    assert_close(grid.value[DIG_AXIS_FRICTION][1], 0.6, 0.0);
+    assert_close(grid.value[DIG_AXIS_ROLLING][2], 0.4, 0.0);
+    assert_close(grid.value[DIG_AXIS_DENSITY_kgpm3][0], 2500.0, 0.0);
+    assert_int_equal(grid.packings, 2);
+    assert_int_equal(grid.trajectories, 1);
+    assert_string_equal(grid.trajectory[0], "scrape");
+}
+
+static void every_grid_that_is_shipped_fits_the_rig(void **state)
+{
+    (void)state;
+    struct dig_scene rig;
+    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &rig, NULL), DIG_OK);
+    DIR *const dir = opendir("config/grids");
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        if (strstr(entry->d_name, ".yaml") != NULL) {
+            char             path[512];
+            struct dig_grid  grid;
+            struct dig_error error = { "" };
+            size_t           count = 0, trajectory[DIG_TRAJECTORY_MAX];
+            (void)snprintf(path, sizeof path, "config/grids/%s", entry->d_name);
+            if (dig_grid_read(path, &grid, &error) != DIG_OK ||
+                dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error) != DIG_OK) {
+                fail_msg("%s", error.text);
+            }
+            assert_true(count > 0);
+        }
+    }
+    (void)closedir(dir);
+}
+
+#define AXES "friction: [.3, .5]\nrolling: [0]\ndensity_kgpm3: [2500]\n"
+
+static void trajectories_are_found_in_the_scene_or_refused(void **state)
+{
+    (void)state;
+    struct dig_scene rig;
+    struct dig_grid  grid;
+    struct dig_error error = { "" };
+    size_t           count = 77, trajectory[DIG_TRAJECTORY_MAX] = { 77 };
+    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &rig, NULL), DIG_OK);
+
+    const char *path =
+        scratch_write("grid.yaml", AXES "packings: 1\ntrajectories: [simpleA, dance]\n");
+    assert_int_equal(dig_grid_read(path, &grid, &error), DIG_OK);
+    assert_int_equal(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text,
+                    "grid.yaml:5: trajectories[1]: \"dance\", expected one of the scene's: "
+                    "simpleA, simpleB, actual");
+    assert_int_equal(count, 77);
+    assert_int_equal(trajectory[0], 77);
+
+    path = scratch_write("grid.yaml", AXES "packings: 1\ntrajectories: [actual, simpleA]\n");
+    assert_int_equal(dig_grid_read(path, &grid, &error), DIG_OK);
+    assert_int_equal(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), DIG_OK);
+    assert_int_equal(count, 2);
+    assert_int_equal(trajectory[0], 2);
+    assert_int_equal(trajectory[1], 0);
+
+    path = scratch_write("grid.yaml", AXES "packings: 1\n");
+    assert_int_equal(dig_grid_read(path, &grid, &error), DIG_OK);
+    assert_int_equal(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), DIG_OK);
+    assert_int_equal(count, 3);
+    assert_int_equal(trajectory[2], 2);
+}
+
+static void what_is_no_grid_is_refused_with_line_and_key(void **state)
+{
+    (void)state;
+    static const char *const bad[][2] = {
+        { "friction: [.5, .3]\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":1: friction[1]: 0.3 after 0.5, expected ascending" },
+        { "friction: [.3, .3]\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":1: friction[1]: 0.3 after 0.3, expected ascending" },
+        { "friction: [-.1]\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":1: friction[0]: -0.1, expected 0 to 3" },
+        { "friction: [.3]\nrolling: [9]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":2: rolling[0]: 9, expected 0 to 3" },
+        { "friction: [.3]\nrolling: [0]\ndensity_kgpm3: [2.5]\npackings: 1\n",
+          ":3: density_kgpm3[0]: 2.5, expected 100 to 20000" },
+        { "friction: []\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":1: friction: 0 values, expected 1 to 32" },
+        { AXES "packings: 0\n", ":4: packings: 0, expected 1 to 1000" },
+        { AXES "packings: -1\n", ":4: packings: \"-1\", expected a whole number" },
+        { AXES, ":1: packings: missing, expected a whole number" },
+        { AXES "packings: 1\ntrajectories: [a, b, a]\n",
+          ":5: trajectories[2]: \"a\" again, expected a new name" },
+        { AXES "packings: 1\ntrajectories: simpleA\n",
+          ":5: trajectories: \"simpleA\", expected a list" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_error error = { "" };
+        struct dig_grid  grid;
+        memset(&grid, 0x5a, sizeof grid);
+        const struct dig_grid untouched = grid;
+        assert_int_equal(dig_grid_read(scratch_write("bad.yaml", bad[i][0]), &grid, &error),
+                         DIG_EINVAL);
+        assert_memory_equal(&grid, &untouched, sizeof grid);
+        assert_contains(error.text, bad[i][1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(every_grid_that_is_shipped_fits_the_rig),
+        cmocka_unit_test(trajectories_are_found_in_the_scene_or_refused),
+        cmocka_unit_test(what_is_no_grid_is_refused_with_line_and_key),
+    };
+    return cmocka_run_group_tests_name("grid_yaml", tests, scratch_setup, scratch_teardown);
+}

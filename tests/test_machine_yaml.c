@@ -1,0 +1,129 @@
+// Tests for files/machine_yaml.c and config/machines/
+
+#include "files/machine_yaml.h"
+
+#include "core/units.h"
+#include "tests/scratch.h"
+
+#include <ctype.h>
+
+static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    struct dig_error   error = { "" };
+    struct dig_machine m;
+    if (dig_machine_read("tests/data/formats/machine.yaml", &m, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_string_equal(m.name, "example 20 t");
+    assert_close(m.link[DIG_JOINT_BOOM].length_m, 5.65, 0.0);
+    assert_close(m.link[DIG_JOINT_ARM].com_m.y, 0.1, 0.0);
+    assert_close(m.link[DIG_JOINT_ARM].min_rad, -155.0 / 180.0 * DIG_PI, 1e-15);
+    assert_close(m.link[DIG_JOINT_BUCKET].max_rad, 35.0 / 180.0 * DIG_PI, 1e-15);
+    assert_close(m.cylinder[DIG_JOINT_BOOM].count, 2.0, 0.0);
+    assert_close(m.cylinder[DIG_JOINT_BOOM].eye_m.x, 2.6, 0.0);
+    assert_close(m.cylinder[DIG_JOINT_ARM].base_m.y, 0.9, 0.0);
+    assert_close(m.cylinder[DIG_JOINT_ARM].eye_m.x, -0.7, 0.0);
+    assert_close(m.cylinder[DIG_JOINT_BUCKET].bore_m, 0.115, 0.0);
+    assert_close(m.cylinder[DIG_JOINT_BUCKET].pressure_sigma_Pa, 5e4, 0.0);
+    assert_close(m.four_bar.rocker_pin_m.x, 2.5, 0.0);
+    assert_close(m.four_bar.ear_m.y, 0.45, 0.0);
+    assert_close(m.bucket_width_m, 1.2, 0.0);
+    assert_close(m.pressure_step_Pa, 2e5, 0.0);
+    assert_close(m.angle_sigma_rad, 1e-3, 0.0);
+    assert_close(m.weight_X_m, -1.2, 0.0);
+    assert_close(m.boom_foot_Z_m, 1.8, 0.0);
+}
+
+static void every_machine_that_is_shipped_loads(void **state)
+{
+    (void)state;
+    DIR *const dir = opendir("config/machines");
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        if (strstr(entry->d_name, ".yaml") != NULL) {
+            char               path[512];
+            struct dig_machine machine;
+            struct dig_error   error = { "" };
+            (void)snprintf(path, sizeof path, "config/machines/%s", entry->d_name);
+            if (dig_machine_read(path, &machine, &error) != DIG_OK) {
+                fail_msg("%s", error.text);
+            }
+        }
+    }
+    (void)closedir(dir);
+}
+
+static void expect_refusal(const char *const text, const char *const says)
+{
+    struct dig_error   error = { "" };
+    struct dig_machine machine;
+    memset(&machine, 0x5a, sizeof machine);
+    const struct dig_machine untouched = machine;
+    assert_int_equal(dig_machine_read(scratch_write("bad.yaml", text), &machine, &error),
+                     DIG_EINVAL);
+    assert_memory_equal(&machine, &untouched, sizeof machine);
+    assert_contains(error.text, says);
+    assert_contains(error.text, "expected");
+}
+
+static void what_cannot_be_is_refused_with_line_and_key(void **state)
+{
+    (void)state;
+    static const char *const bad[][3] = {
+        { "bore_m: 0.12\n", "bore_m: 0\n", "bad.yaml:29: cylinders.boom.bore_m: 0" },
+        { "rod_m: 0.08\n", "rod_m: 0.2\n", "bad.yaml:52: cylinders.bucket.rod_m: 0.2" },
+        { "max_deg: -30", "max_deg: -170", "arm.max_deg: -170" },
+        { "rocker_m: 0.65", "rocker_m: -0.65", "four_bar.rocker_m: -0.65" },
+        { "weight_X_m: -1.2", "weight_X_m: 9", "ground.weight_X_m: 9" },
+        { "source: round numbers, made up for this example\n", "",
+          "bad.yaml:1: source: missing, expected a text" },
+        { "base_m: [0.4, 0.6]", "base_m: [0.4, 0.6]\n    eye_m: [0, 0]",
+          "cylinders.bucket.eye_m: unknown key" },
+        { "angle_step_rad: 4.0e-4", "angle_step_rad: -1", "sensors.angle_step_rad: -1" },
+    };
+    size_t      size  = 0;
+    char *const text  = scratch_read("tests/data/formats/machine.yaml", &size);
+    char *const other = malloc(size + 100);
+    assert_non_null(other);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        const char *const at = strstr(text, bad[i][0]);
+        assert_non_null(at);
+        (void)snprintf(other, size + 100, "%.*s%s%s", (int)(at - text), text, bad[i][1],
+                       at + strlen(bad[i][0]));
+        expect_refusal(other, bad[i][2]);
+    }
+    free(other);
+    free(text);
+}
+
+static void every_key_is_known_and_needed(void **state)
+{
+    (void)state;
+    size_t      size = 0;
+    char *const text = scratch_read("tests/data/formats/machine.yaml", &size);
+    int         line = 1;
+    for (size_t i = 0; i + 1 < size; i++) {
+        line += text[i] == '\n';
+        if (text[i + 1] == ':' && isalnum((unsigned char)text[i])) {
+            const char kept = text[i];
+            text[i]         = 'Q';
+            char where[32];
+            (void)snprintf(where, sizeof where, "bad.yaml:%d: ", line);
+            expect_refusal(text, where);
+            text[i] = kept;
+        }
+    }
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(every_machine_that_is_shipped_loads),
+        cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
+        cmocka_unit_test(every_key_is_known_and_needed),
+    };
+    return cmocka_run_group_tests_name("machine_yaml", tests, scratch_setup, scratch_teardown);
+}

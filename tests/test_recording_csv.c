@@ -1,0 +1,293 @@
+// Tests for files/recording_csv.c, files/csv.c and files/whole.c
+
+#include "files/recording_csv.h"
+
+#include "files/whole.h"
+#include "tests/scratch.h"
+
+#include <stdbool.h>
+#include <sys/stat.h>
+
+#define FORCE "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n"
+#define MACHINE                                                                                    \
+    "t_s,boom_rad,arm_rad,bucket_rad,boom_head_Pa,boom_rod_Pa,arm_head_Pa,arm_rod_Pa,"             \
+    "bucket_head_Pa,bucket_rod_Pa\n"
+
+static void the_force_recording_of_the_formats_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    struct dig_recording r = { 0 };
+    assert_int_equal(dig_recording_read("tests/data/formats/force_recording.csv", &r, NULL),
+                     DIG_OK);
+    assert_int_equal(r.rows, 3);
+    assert_close(r.row[1].t_s, 0.0075, 0.0);
+    assert_close(r.row[1].pin_x_m, 0.0835, 0.0);
+    assert_close(r.row[1].pin_z_m, 0.1716, 0.0);
+    assert_close(r.row[1].theta_deg, -15.0, 0.0);
+    assert_close(r.row[1].Fx_N, 0.1, 0.0);
+    assert_close(r.row[2].Fy_N, 0.01, 0.0);
+    assert_close(r.row[1].Fz_N, -0.25, 0.0);
+    assert_close(r.row[2].Mx_Nm, 1e-4, 0.0);
+    assert_close(r.row[2].My_Nm, 0.025, 0.0);
+    assert_close(r.row[2].Mz_Nm, -1e-4, 0.0);
+    dig_recording_finish(&r);
+}
+
+static void the_machine_recording_of_the_formats_keeps_what_is_missing_missing(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r = { 0 };
+    assert_int_equal(
+        dig_machine_recording_read("tests/data/formats/machine_recording.csv", &r, NULL), DIG_OK);
+    assert_int_equal(r.rows, 3);
+    assert_int_equal(r.row[1].time_ns, 10000000);
+    assert_close(r.row[2].value[DIG_SIGNAL_ARM_rad], -1.899, 0.0);
+    assert_close(r.row[1].value[DIG_SIGNAL_BUCKET_ROD_Pa], 8e5, 0.0);
+    assert_true(r.row[0].valid[DIG_SIGNAL_BOOM_ROD_Pa]);
+    assert_false(r.row[1].valid[DIG_SIGNAL_BOOM_ROD_Pa]);
+    assert_close(r.row[1].value[DIG_SIGNAL_BOOM_ROD_Pa], 0.0, 0.0);
+    assert_true(r.row[2].valid[DIG_SIGNAL_PITCH_rad]);
+    assert_false(r.row[1].valid[DIG_SIGNAL_PITCH_rad]);
+    assert_false(r.row[2].valid[DIG_SIGNAL_TEMPERATURE_degC]);
+    assert_true(dig_sample_is_complete(&r.row[0]));
+    assert_false(dig_sample_is_complete(&r.row[1]));
+    dig_machine_recording_finish(&r);
+}
+
+static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **state)
+{
+    (void)state;
+    struct dig_recording r    = { 0 };
+    const char *const    path = scratch_write(
+           "any.csv", "\xef\xbb\xbf# first\r\n My_Nm , "
+                         "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,Mz_Nm\r\n"
+                         "\r\n7,0,1,2,3,4,5,6,8,9\r\n  # between\r\n 70 ,\t+.01,1,2,3,4,5,6,8,9");
+    assert_int_equal(dig_recording_read(path, &r, NULL), DIG_OK);
+    assert_int_equal(r.rows, 2);
+    assert_close(r.row[0].My_Nm, 7.0, 0.0);
+    assert_close(r.row[1].My_Nm, 70.0, 0.0);
+    assert_close(r.row[1].t_s, 0.01, 0.0);
+    assert_close(r.row[1].Mz_Nm, 9.0, 0.0);
+    dig_recording_finish(&r);
+}
+
+static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **state)
+{
+    (void)state;
+    static const char *const bad[][2] = {
+        { "", ":1: no header, expected a header of t_s, pin_x_m" },
+        { "# nothing\n", ":1: no header" },
+        { FORCE, ":1: no row of numbers" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n", ":2: column t_s: 1 row, expected at least 2" },
+        { "t_s,pin_x_m\n0,0\n", ":1: column pin_z_m: missing, expected a header of" },
+        { "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm,colour\n",
+          ":1: column \"colour\": unknown" },
+        { "t_s,t_s,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n",
+          ":1: column t_s: given twice" },
+        { "t,x\n1,2\n", ":1: column \"t\": unknown" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,zero,0\n",
+          ":3: column My_Nm: \"zero\", expected a finite number" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,nan,0\n", ":3: column My_Nm: \"nan\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,inf,0,0,0,0,0\n", ":3: column Fx_N: \"inf\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,1e999,0,0,0,0,0\n", ":3: column Fx_N: \"1e999\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0x1,0,0,0,0,0\n", ":3: column Fx_N: \"0x1\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,1 2,0,0,0,0,0\n", ":3: column Fx_N: \"1 2\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,,0,0,0,0,0\n", ":3: column Fx_N: \"\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,0\n",
+          ":3: column Mz_Nm: the line has 9 fields, expected 10" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,0,0,0\n",
+          ":3: column after the last: the line has 11 fields, expected 10" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n\n0,0,0,0,0,0,0,0,0,0\n",
+          ":4: column t_s: 0 after 0, expected ascending time" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.1,0,0,0,0,0,0,0,0,0\n",
+          ":3: column t_s: 0.1 s between samples, expected 0.02 s or less" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n1e300,0,0,0,0,0,0,0,0,0\n", ":3: column t_s: 1e+300" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_error     error = { "" };
+        struct dig_recording r     = { .rows = 42 };
+        assert_int_equal(dig_recording_read(scratch_write("bad.csv", bad[i][0]), &r, &error),
+                         DIG_EINVAL);
+        assert_int_equal(r.rows, 42);
+        assert_null(r.row);
+        assert_contains(error.text, "bad.csv:");
+        assert_contains(error.text, bad[i][1]);
+    }
+}
+
+static void defects_of_machine_recordings_and_beds_are_told_too(void **state)
+{
+    (void)state;
+    struct dig_error             error = { "" };
+    struct dig_machine_recording r     = { .rows = 42 };
+    assert_int_equal(dig_machine_recording_read(scratch_write("bad.csv", FORCE), &r, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "bad.csv:1: column \"pin_x_m\": unknown");
+    assert_int_equal(
+        dig_machine_recording_read(
+            scratch_write("bad.csv", MACHINE "0,,,,,,,,,\n.01,1,1,1,1,1,1,1,oops,1\n"), &r, &error),
+        DIG_EINVAL);
+    assert_contains(error.text, "bad.csv:3: column bucket_head_Pa: \"oops\"");
+    assert_int_equal(dig_machine_recording_read(
+                         scratch_write("bad.csv", MACHINE "0,,,,,,,,,\n.1,,,,,,,,,\n"), &r, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "50 Hz");
+    assert_int_equal(dig_machine_recording_read(
+                         scratch_write("bad.csv", MACHINE "0,,,,,,,,,\n,,,,,,,,,\n"), &r, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "bad.csv:3: column t_s: \"\"");
+    assert_int_equal(r.rows, 42);
+
+    size_t  grains = 42;
+    double *x = NULL, *y = NULL, *z = NULL, *radius = NULL;
+    assert_int_equal(dig_bed_read(scratch_write("bad.csv", "x_m,y_m,z_m,radius_m\n0,0,0,0\n"),
+                                  &grains, &x, &y, &z, &radius, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "bad.csv:2: column radius_m: 0, expected > 0");
+    assert_int_equal(dig_bed_read(scratch_path("absent.csv"), &grains, &x, &y, &z, &radius, &error),
+                     DIG_EIO);
+    assert_contains(error.text, "absent.csv: No such file");
+    assert_int_equal(grains, 42);
+    assert_null(x);
+}
+
+static void what_is_written_is_read_back(void **state)
+{
+    (void)state;
+    struct dig_force_row       rows[50];
+    const struct dig_recording written = { .rows = 50, .row = rows };
+    for (size_t i = 0; i < 50; i++) {
+        const double k = (double)i;
+        rows[i]        = (struct dig_force_row){
+                   0.005 * k + 0.0025, k / 7, -k / 3,  1e-7 * k, 1e5 / (k + 1), k * k,
+                   -1e-9 * k,          3,     1.0 / 3, -0.0
+        };
+    }
+    struct dig_recording read = { 0 };
+    const char *const    path = scratch_path("out.csv");
+    assert_int_equal(dig_recording_write(path, &written, NULL), DIG_OK);
+    assert_int_equal(dig_recording_read(path, &read, NULL), DIG_OK);
+    assert_int_equal(read.rows, 50);
+    for (size_t i = 0; i < 50; i++) {
+        assert_close(read.row[i].t_s, rows[i].t_s, 1e-9);
+        assert_close(read.row[i].pin_x_m, rows[i].pin_x_m, 1e-8 * fabs(rows[i].pin_x_m));
+        assert_close(read.row[i].Fx_N, rows[i].Fx_N, 1e-8 * rows[i].Fx_N);
+        assert_close(read.row[i].My_Nm, rows[i].My_Nm, 1e-9);
+    }
+    dig_recording_finish(&read);
+    assert_false(scratch_exists("out.csv.part"));
+}
+
+static void a_machine_recording_is_read_back_with_its_gaps(void **state)
+{
+    (void)state;
+    struct dig_sample rows[20];
+    memset(rows, 0, sizeof rows);
+    for (int i = 0; i < 20; i++) {
+        rows[i].time_ns = INT64_C(3600000000000) + i * INT64_C(10000001);
+        for (int s = 0; s < DIG_SIGNALS; s++) {
+            rows[i].valid[s] = (i + s) % 3 != 0 && s != DIG_SIGNAL_PITCH_rad;
+            rows[i].value[s] = rows[i].valid[s] ? 12345678.9 * s - i / 3.0 : 0.0;
+        }
+    }
+    const struct dig_machine_recording written = { .rows = 20, .row = rows };
+    struct dig_machine_recording       read    = { 0 };
+    const char *const                  path    = scratch_path("machine.csv");
+    assert_int_equal(dig_machine_recording_write(path, &written, NULL), DIG_OK);
+    assert_int_equal(dig_machine_recording_read(path, &read, NULL), DIG_OK);
+    assert_int_equal(read.rows, 20);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(read.row[i].time_ns, rows[i].time_ns);
+        for (int s = 0; s < DIG_SIGNALS; s++) {
+            assert_int_equal(read.row[i].valid[s], rows[i].valid[s]);
+            assert_close(read.row[i].value[s], rows[i].value[s], 1e-11 * fabs(rows[i].value[s]));
+        }
+    }
+    dig_machine_recording_finish(&read);
+
+    size_t      size = 0;
+    char *const text = scratch_read(path, &size);
+    assert_null(strstr(text, "pitch_rad"));
+    assert_non_null(strstr(text, "temperature_degC"));
+    free(text);
+}
+
+static void a_bed_is_read_back_bit_by_bit(void **state)
+{
+    (void)state;
+    const double x[] = { 0.1, 1.0 / 3 }, y[] = { -0.05, 1e-17 }, z[] = { 0.03, 2.0 / 7 },
+                 radius[]     = { 0.00375, 0.003 };
+    size_t            grains  = 0;
+    double           *read[4] = { NULL };
+    const char *const path    = scratch_path("bed.csv");
+    assert_int_equal(dig_bed_write(path, 2, x, y, z, radius, NULL), DIG_OK);
+    assert_int_equal(dig_bed_read(path, &grains, &read[0], &read[1], &read[2], &read[3], NULL),
+                     DIG_OK);
+    assert_int_equal(grains, 2);
+    assert_memory_equal(read[0], x, sizeof x);
+    assert_memory_equal(read[1], y, sizeof y);
+    assert_memory_equal(read[2], z, sizeof z);
+    assert_memory_equal(read[3], radius, sizeof radius);
+    for (size_t i = 0; i < 4; i++) {
+        free(read[i]);
+    }
+    assert_int_equal(dig_bed_read("tests/data/formats/bed.csv", &grains, &read[0], &read[1],
+                                  &read[2], &read[3], NULL),
+                     DIG_OK);
+    assert_int_equal(grains, 3);
+    for (size_t i = 0; i < 4; i++) {
+        free(read[i]);
+    }
+}
+
+static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state)
+{
+    (void)state;
+    struct dig_error  error = { "" };
+    struct dig_out    out;
+    const char *const path = scratch_write("kept.txt", "old");
+    assert_int_equal(dig_out_open(&out, path, &error), DIG_OK);
+    (void)fputs("new", out.file);
+    dig_out_cancel(&out);
+    dig_out_cancel(&out);
+    size_t size = 0;
+    char  *text = scratch_read(path, &size);
+    assert_string_equal(text, "old");
+    free(text);
+    assert_false(scratch_exists("kept.txt.part"));
+
+    assert_int_equal(dig_out_open(&out, path, &error), DIG_OK);
+    (void)fputs("new", out.file);
+    assert_int_equal(dig_out_commit(&out, &error), DIG_OK);
+    dig_out_cancel(&out);
+    text = scratch_read(path, &size);
+    assert_string_equal(text, "new");
+    free(text);
+
+    assert_int_equal(dig_out_open(&out, scratch_path("no/such/folder.csv"), &error), DIG_EIO);
+    assert_contains(error.text, "No such file");
+
+    // A folder that turns up under the name meanwhile: rename must fail, and the part go.
+    assert_int_equal(dig_out_open(&out, scratch_path("folder"), &error), DIG_OK);
+    assert_int_equal(mkdir(scratch_path("folder"), 0777), 0);
+    assert_int_equal(dig_out_commit(&out, &error), DIG_EIO);
+    assert_contains(error.text, "folder: ");
+    assert_false(scratch_exists("folder.part"));
+    assert_int_equal(rmdir(scratch_path("folder")), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_force_recording_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
+        cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
+        cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
+        cmocka_unit_test(defects_of_machine_recordings_and_beds_are_told_too),
+        cmocka_unit_test(what_is_written_is_read_back),
+        cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
+        cmocka_unit_test(a_bed_is_read_back_bit_by_bit),
+        cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
+    };
+    return cmocka_run_group_tests_name("recording_csv", tests, scratch_setup, scratch_teardown);
+}

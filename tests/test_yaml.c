@@ -1,0 +1,265 @@
+// Tests for files/yaml.c and files/yaml_tree.c
+
+#include "files/yaml.h"
+
+#include "tests/scratch.h"
+
+#include <locale.h>
+#include <stdbool.h>
+
+struct part {
+    double weight_kg;
+    char   name[8];
+};
+
+struct thing {
+    char        name[16];
+    int         kind;
+    int8_t      small;
+    uint32_t    id;
+    bool        on;
+    double      pair[2];
+    struct part inner;
+    struct part parts[3];
+    uint32_t    parts_count;
+};
+
+static const cyaml_schema_value_t number        = { CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, double) };
+static const cyaml_schema_field_t part_fields[] = {
+    CYAML_FIELD_FLOAT("weight_kg", CYAML_FLAG_DEFAULT, struct part, weight_kg),
+    CYAML_FIELD_STRING("name", CYAML_FLAG_OPTIONAL, struct part, name, 1),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t part    = { CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct part,
+                                                                  part_fields) };
+static const cyaml_strval_t       kinds[] = { { "round", 1 }, { "square", 2 } };
+static const cyaml_schema_field_t thing_fields[] = {
+    CYAML_FIELD_STRING("name", CYAML_FLAG_DEFAULT, struct thing, name, 1),
+    CYAML_FIELD_ENUM("kind", CYAML_FLAG_OPTIONAL, struct thing, kind, kinds, 2),
+    CYAML_FIELD_INT("small", CYAML_FLAG_OPTIONAL, struct thing, small),
+    CYAML_FIELD_UINT("id", CYAML_FLAG_OPTIONAL, struct thing, id),
+    CYAML_FIELD_BOOL("on", CYAML_FLAG_OPTIONAL, struct thing, on),
+    CYAML_FIELD_SEQUENCE_FIXED("pair", CYAML_FLAG_DEFAULT, struct thing, pair, &number, 2),
+    CYAML_FIELD_MAPPING("inner", CYAML_FLAG_DEFAULT, struct thing, inner, part_fields),
+    CYAML_FIELD_SEQUENCE("parts", CYAML_FLAG_OPTIONAL, struct thing, parts, &part, 0, 3),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct thing,
+                                                                 thing_fields) };
+
+#define GOOD                                                                                       \
+    "# a comment\n"                                                                                \
+    "name: hammer\n"                                                                               \
+    "kind: square\n"                                                                               \
+    "small: -128\n"                                                                                \
+    "id: 0x18FF79E8\n"                                                                             \
+    "on: yes\n"                                                                                    \
+    "pair: [1.5e-3, -2]\n"                                                                         \
+    "inner:\n"                                                                                     \
+    "  weight_kg: 1\n"                                                                             \
+    "parts:\n"                                                                                     \
+    "  - {weight_kg: 2, name: head}\n"                                                             \
+    "  - weight_kg: 3\n"
+
+static void what_fits_the_schema_is_loaded(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    cyaml_data_t    *data  = NULL;
+    assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, &error),
+                     DIG_OK);
+    const struct thing *const t = data;
+    assert_string_equal(t->name, "hammer");
+    assert_int_equal(t->kind, 2);
+    assert_int_equal(t->small, -128);
+    assert_int_equal(t->id, 0x18FF79E8);
+    assert_true(t->on);
+    assert_close(t->pair[0], 1.5e-3, 1e-18);
+    assert_close(t->pair[1], -2.0, 0.0);
+    assert_close(t->inner.weight_kg, 1.0, 0.0);
+    assert_int_equal(t->parts_count, 2);
+    assert_string_equal(t->parts[0].name, "head");
+    assert_close(t->parts[1].weight_kg, 3.0, 0.0);
+    dig_yaml_free(&schema, data);
+}
+
+static void a_comma_as_the_users_decimal_point_changes_nothing(void **state)
+{
+    (void)state;
+    cyaml_data_t *data   = NULL;
+    const char   *before = setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, NULL), DIG_OK);
+    assert_close(((const struct thing *)data)->pair[0], 1.5e-3, 1e-18);
+    dig_yaml_free(&schema, data);
+    (void)before; // where that locale is not installed nothing was changed, and nothing is shown
+    (void)setlocale(LC_NUMERIC, "C");
+}
+
+// Every defect by file, line, key and expectation, and nothing is loaded.
+static void every_defect_is_told_by_line_key_and_expectation(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *line, *says;
+    } bad[] = {
+        { "", ":1: ", "empty, expected YAML" },
+        { "# only this\n", ":1: ", "empty" },
+        { "- a\n- b\n", ":1: ", "a list, expected a mapping of name, kind" },
+        { "name: [\n", ":2: ", "expected YAML" },
+        { "name: a\n\tkind: b\n", ":2: ", "expected YAML" },
+        { "name: \"a\nb: c\n", ":3: ", "expected YAML" },
+        { "name: \xff\xfe\n", ":1: ", "expected YAML" },
+        { "name: a\npair: [1, 2]\n", ":1: ", "inner: missing, expected a mapping" },
+        { "pair: [1, 2]\ninner: {weight_kg: 1}\n", ":1: ", "name: missing, expected a text" },
+        { "name: a\npair: [1, 2]\ninner:\n  name: b\n",
+          ":4: ", "inner.weight_kg: missing, expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\ncolour: red\n", ":4: ",
+          "colour: unknown key, expected one of name, kind, small, id, on, pair, inner, parts" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nname: b\n",
+          ":4: ", "name: again (first on line 1), expected once" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: heavy}\n",
+          ":3: ", "inner.weight_kg: \"heavy\", expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: nan}\n",
+          ":3: ", "\"nan\", expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: .inf}\n", ":3: ", "expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 0x10}\n", ":3: ", "expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1e999}\n", ":3: ", "expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1 kg}\n", ":3: ", "expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: }\n",
+          ":3: ", "inner.weight_kg: nothing, expected a number" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: [1]}\n", ":3: ", "a list, expected a number" },
+        { "name: a\npair: [1]\ninner: {weight_kg: 1}\n", ":2: ", "pair: 1 values, expected 2" },
+        { "name: a\npair: [1, 2, 3]\ninner: {weight_kg: 1}\n", ":2: ", "3 values, expected 2" },
+        { "name: a\npair: [1, x]\ninner: {weight_kg: 1}\n",
+          ":2: ", "pair[1]: \"x\", expected a number" },
+        { "name: a\npair: 1\ninner: {weight_kg: 1}\n", ":2: ", "pair: \"1\", expected a list" },
+        { "name: a\npair: [1, 2]\ninner: 5\n", ":3: ", "\"5\", expected a mapping of weight_kg" },
+        { "name: {a: b}\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":1: ", "name: a mapping, expected a text" },
+        { "name:\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":1: ", "name: nothing, expected a text" },
+        { "name: a name that is much too long\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":1: ", "28 characters, expected at most 15" },
+        { "name: a\nkind: oval\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":2: ", "kind: \"oval\", expected one of round, square" },
+        { "name: a\nsmall: 128\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":2: ", "small: \"128\", expected a whole number" },
+        { "name: a\nid: -1\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":2: ", "id: \"-1\", expected a whole number, not negative" },
+        { "name: a\nid: 4294967296\npair: [1, 2]\ninner: {weight_kg: 1}\n", ":2: ", "id: " },
+        { "name: a\nid: 1.5\npair: [1, 2]\ninner: {weight_kg: 1}\n", ":2: ", "id: " },
+        { "name: a\non: maybe\npair: [1, 2]\ninner: {weight_kg: 1}\n",
+          ":2: ", "on: \"maybe\", expected true or false" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nparts:\n  - weight_kg: 1\n  - name: b\n",
+          ":6: ", "parts[1].weight_kg: missing" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nparts: [{weight_kg: 1}, {weight_kg: 1}, "
+          "{weight_kg: 1}, {weight_kg: 1}]\n",
+          ":4: ", "parts: 4 values, expected 0 to 3" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\n---\nname: b\n",
+          ":5: ", "a second document, expected one" },
+        { "name: a\npair: [1, 2]\ninner: *nowhere\n", ":3: ", "expected YAML" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_error  error = { "" };
+        cyaml_data_t     *data  = NULL;
+        const char *const path  = scratch_write("bad.yaml", bad[i].text);
+        assert_int_equal(dig_yaml_load(path, &schema, &data, &error), DIG_EINVAL);
+        assert_null(data);
+        assert_ptr_equal(strstr(error.text, path), error.text);
+        assert_ptr_equal(strstr(error.text + strlen(path), bad[i].line), error.text + strlen(path));
+        assert_contains(error.text, bad[i].says);
+        assert_null(strchr(error.text, '\n'));
+    }
+}
+
+static void a_file_that_cannot_be_read_is_told_with_the_systems_words(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    cyaml_data_t    *data  = NULL;
+    assert_int_equal(dig_yaml_load(scratch_path("absent.yaml"), &schema, &data, &error), DIG_EIO);
+    assert_contains(error.text, "absent.yaml: No such file");
+    assert_int_equal(dig_yaml_load(scratch_dir, &schema, &data, &error), DIG_EIO);
+    assert_contains(error.text, "directory");
+    assert_int_equal(
+        dig_yaml_load(scratch_write_bytes("nul.yaml", "a: b\nc\0d", 8), &schema, &data, &error),
+        DIG_EINVAL);
+    assert_contains(error.text, "nul.yaml:2: a NUL byte, expected a text file");
+    assert_null(data);
+}
+
+static void a_value_is_found_by_its_dotted_key(void **state)
+{
+    (void)state;
+    const char *const path = scratch_write("good.yaml", GOOD);
+    assert_int_equal(dig_yaml_line(path, "name"), 2);
+    assert_int_equal(dig_yaml_line(path, "inner.weight_kg"), 9);
+    assert_int_equal(dig_yaml_line(path, "pair[1]"), 7);
+    assert_int_equal(dig_yaml_line(path, "parts[0].name"), 11);
+    assert_int_equal(dig_yaml_line(path, "parts[1].weight_kg"), 12);
+    assert_int_equal(dig_yaml_line(path, "parts[2].weight_kg"), 0);
+    assert_int_equal(dig_yaml_line(path, "parts[1].name"), 0);
+    assert_int_equal(dig_yaml_line(path, "name.first"), 0);
+    assert_int_equal(dig_yaml_line(path, "nothing"), 0);
+    assert_int_equal(dig_yaml_line(scratch_path("absent.yaml"), "name"), 0);
+}
+
+static void a_refusal_after_loading_names_the_nearest_line(void **state)
+{
+    (void)state;
+    const char *const path  = scratch_write("good.yaml", GOOD);
+    struct dig_error  error = { "" };
+    assert_int_equal(dig_yaml_refuse(path, "parts[1].weight_kg", &error, "%d, expected 4", 3),
+                     DIG_EINVAL);
+    assert_contains(error.text, "good.yaml:12: parts[1].weight_kg: 3, expected 4");
+    assert_int_equal(dig_yaml_refuse(path, "parts[1].name", &error, "expected one"), DIG_EINVAL);
+    assert_contains(error.text, "good.yaml:12: parts[1].name: expected one");
+
+    const struct dig_error found = { "inner.weight_kg: 1, expected > 1" };
+    assert_int_equal(dig_yaml_refuse_checked(path, DIG_ESCHEMA, &found, &error), DIG_ESCHEMA);
+    assert_contains(error.text, "good.yaml:9: inner.weight_kg: 1, expected > 1");
+}
+
+// Whatever the bytes, the answer is a struct or a refusal. Each byte of a good file is replaced by
+// bytes that mean something to YAML, and the file is cut at each length.
+static void damaged_bytes_never_do_worse_than_a_refusal(void **state)
+{
+    (void)state;
+    static const char evil[] = "\x01\xff:{[&*!|>-%@'\"\n#\t ,";
+    char              text[] = GOOD;
+    for (size_t i = 0; i + 1 < sizeof text; i++) {
+        for (size_t e = 0; e + 1 < sizeof evil; e++) {
+            const char kept = text[i];
+            text[i]         = evil[e];
+
+            struct dig_error      error = { "" };
+            cyaml_data_t         *data  = NULL;
+            const enum dig_status status =
+                dig_yaml_load(scratch_write("evil.yaml", text), &schema, &data, &error);
+            assert_true((status == DIG_OK) == (data != NULL));
+            assert_true(status == DIG_OK || strstr(error.text, "evil.yaml:") != NULL);
+            dig_yaml_free(&schema, data);
+            text[i] = kept;
+        }
+        struct dig_error      error = { "" };
+        cyaml_data_t         *data  = NULL;
+        const enum dig_status cut =
+            dig_yaml_load(scratch_write_bytes("cut.yaml", text, i), &schema, &data, &error);
+        assert_true((cut == DIG_OK) == (data != NULL));
+        dig_yaml_free(&schema, data);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_fits_the_schema_is_loaded),
+        cmocka_unit_test(a_comma_as_the_users_decimal_point_changes_nothing),
+        cmocka_unit_test(every_defect_is_told_by_line_key_and_expectation),
+        cmocka_unit_test(a_file_that_cannot_be_read_is_told_with_the_systems_words),
+        cmocka_unit_test(a_value_is_found_by_its_dotted_key),
+        cmocka_unit_test(a_refusal_after_loading_names_the_nearest_line),
+        cmocka_unit_test(damaged_bytes_never_do_worse_than_a_refusal),
+    };
+    return cmocka_run_group_tests_name("yaml", tests, scratch_setup, scratch_teardown);
+}
