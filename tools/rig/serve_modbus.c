@@ -87,13 +87,13 @@ static bool answer(struct dig_rig_modbus *const server, const uint8_t request[],
     if (function != MODBUS_FC_READ_HOLDING_REGISTERS &&
         function != MODBUS_FC_READ_INPUT_REGISTERS) {
         server->requests.refused[function]++;
-        // A broadcast is never answered.
-        const bool sent =
-            (rtu && request[0] == MODBUS_BROADCAST_ADDRESS) ||
-            modbus_reply_exception(server->context, request, MODBUS_EXCEPTION_ILLEGAL_FUNCTION) > 0;
-        // What libmodbus does not know, it does not know the length of either.
+        // What libmodbus does not know, it does not know the length of either. Before the reply:
+        // the client's next request may come right behind it.
         (void)modbus_flush(server->context);
-        return sent;
+        // A broadcast is never answered.
+        return (rtu && request[0] == MODBUS_BROADCAST_ADDRESS) ||
+               modbus_reply_exception(server->context, request, MODBUS_EXCEPTION_ILLEGAL_FUNCTION) >
+                   0;
     }
     memcpy(server->map->tab_input_registers, server->map->tab_registers,
            sizeof server->map->tab_registers[0] * DIG_RIG_REGISTERS);
@@ -179,7 +179,12 @@ static void *serve_rtu(void *const argument)
         const int length = modbus_receive(server->context, request);
         if (length > 0) {
             (void)answer(server, request, length);
-        } else if (length < 0 && (errno == EIO || errno == ECONNRESET || errno == EBADF)) {
+        } else if (length == 0) {
+            // For another slave. libmodbus takes what comes next for that slave's reply: let it
+            // wait for it now, or it would swallow the next request to us where there is no such
+            // slave.
+            (void)modbus_receive(server->context, request);
+        } else if (errno == EIO || errno == ECONNRESET || errno == EBADF) {
             // The other end of the line went away: open it again when it is back.
             modbus_close(server->context);
             server->open = false;
@@ -194,6 +199,8 @@ static enum dig_status start(struct dig_rig_modbus *const server, void *(*const 
 {
     // A client that stops in the middle of a request holds the others up no longer than this.
     (void)modbus_set_byte_timeout(server->context, 0, 100000);
+    // How long another slave of a serial line may take to reply; shorter than masters wait.
+    (void)modbus_set_response_timeout(server->context, 0, 50000);
     const int failed = pthread_create(&server->thread, NULL, run, server);
     if (failed != 0) {
         destroy(server);

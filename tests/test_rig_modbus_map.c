@@ -1,0 +1,60 @@
+// Tests for tools/rig/modbus_map.c: registers worked out by hand.
+
+#include "tools/rig/modbus_map.h"
+
+#include "tests/testlib.h"
+
+static void registers_are_those_worked_by_hand(void **state)
+{
+    (void)state;
+    struct dig_sample sample = {
+        .value = { 0.5123, -1.25, -0.00012, 12.4e6, 1.0e6, 0.0, 34.3e6, 1.2346e6, 499.0, -0.05,
+                   45.25 },
+    };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        sample.valid[s] = true;
+    }
+    uint16_t registers[DIG_RIG_REGISTERS];
+    dig_rig_modbus_encode(&sample, 65535, registers);
+    // -12500 is 0xCF2C, -1 is 0xFFFF, -500 is 0xFE0C; 452.5 tenths round away from zero.
+    const uint16_t expected[DIG_RIG_REGISTERS] = { 65535, 5123, 0xCF2C, 0xFFFF, 0xFE0C, 12400,
+                                                   1000,  0,    34300,  1235,   0,      453 };
+    assert_memory_equal(registers, expected, sizeof expected);
+}
+
+static void what_is_not_known_has_its_own_number(void **state)
+{
+    (void)state;
+    const struct dig_sample none = { .time_ns = 0 };
+    uint16_t                registers[DIG_RIG_REGISTERS];
+    dig_rig_modbus_encode(&none, 7, registers);
+    const uint16_t expected[DIG_RIG_REGISTERS] = { 7,      0x8000, 0x8000, 0x8000, 0x8000, 0xFFFF,
+                                                   0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0x8000 };
+    assert_memory_equal(registers, expected, sizeof expected);
+}
+
+static void values_beyond_a_register_stand_at_its_end(void **state)
+{
+    (void)state;
+    struct dig_sample far = {
+        .value = { 12.0, -12.0, NAN, 60e6, 90e6, -1e6, 1e6, 1e6, INFINITY, 0.0, 1e9 },
+    };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        far.valid[s] = true;
+    }
+    uint16_t registers[DIG_RIG_REGISTERS];
+    dig_rig_modbus_encode(&far, 0, registers);
+    const uint16_t expected[DIG_RIG_REGISTERS] = { 0,     32767, 0x8001, 0x8000, 0,      60000,
+                                                   65534, 0,     1000,   1000,   0xFFFF, 32767 };
+    assert_memory_equal(registers, expected, sizeof expected);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(registers_are_those_worked_by_hand),
+        cmocka_unit_test(what_is_not_known_has_its_own_number),
+        cmocka_unit_test(values_beyond_a_register_stand_at_its_end),
+    };
+    return cmocka_run_group_tests_name("rig Modbus map", tests, NULL, NULL);
+}

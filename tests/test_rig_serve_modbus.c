@@ -1,0 +1,360 @@
+// Tests for tools/rig/serve_modbus.c and board.c with libmodbus clients: TCP on a free port of the
+// loopback, RTU over a pseudo terminal.
+
+#define _XOPEN_SOURCE 600 // posix_openpt() and its kin
+
+#include "tools/rig/serve_modbus.h"
+
+#include "tests/testlib.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <modbus/modbus.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <termios.h>
+#include <time.h>
+#include <unistd.h>
+
+static const uint16_t registers[DIG_RIG_REGISTERS] = { 1,    5123, 0xCF2C, 0xFFFF, 0xFE0C, 12400,
+                                                       1000, 0,    34300,  1235,   0,      453 };
+
+struct rig {
+    struct dig_rig_board    board;
+    struct dig_rig_modbus  *server;
+    struct dig_rig_requests requests;
+    int                     port;
+};
+
+static void start_tcp(struct rig *const rig)
+{
+    char             where[100];
+    struct dig_error error = { "" };
+    memset(rig, 0, sizeof *rig);
+    assert_true(dig_rig_board_init(&rig->board));
+    dig_rig_board_write(&rig->board, registers, false);
+    if (dig_rig_modbus_start_tcp("127.0.0.1:0", &rig->board, sizeof where, where, &rig->server,
+                                 &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(sscanf(where, "Modbus TCP on 127.0.0.1:%d", &rig->port), 1);
+}
+
+static void stop(struct rig *const rig)
+{
+    dig_rig_board_stop(&rig->board);
+    dig_rig_modbus_join(rig->server, &rig->requests);
+    dig_rig_board_finish(&rig->board);
+}
+
+static modbus_t *join(const struct rig *const rig)
+{
+    modbus_t *const client = modbus_new_tcp("127.0.0.1", rig->port);
+    assert_non_null(client);
+    assert_int_equal(modbus_connect(client), 0);
+    return client;
+}
+
+static void leave(modbus_t *const client)
+{
+    modbus_close(client);
+    modbus_free(client);
+}
+
+static void input_and_holding_registers_read_the_same_board(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    modbus_t *const client                   = join(&rig);
+    uint16_t        found[DIG_RIG_REGISTERS] = { 0 };
+    assert_int_equal(modbus_read_input_registers(client, 0, DIG_RIG_REGISTERS, found), 12);
+    assert_memory_equal(found, registers, sizeof registers);
+    memset(found, 0, sizeof found);
+    assert_int_equal(modbus_read_registers(client, 0, DIG_RIG_REGISTERS, found), 12);
+    assert_memory_equal(found, registers, sizeof registers);
+
+    // What is written on the board is read at once, and from the middle too.
+    uint16_t newer[DIG_RIG_REGISTERS];
+    memcpy(newer, registers, sizeof newer);
+    newer[5] = 777;
+    dig_rig_board_write(&rig.board, newer, false);
+    assert_int_equal(modbus_read_input_registers(client, 5, 1, found), 1);
+    assert_int_equal(found[0], 777);
+    leave(client);
+    stop(&rig);
+    assert_int_equal(rig.requests.served[3], 1);
+    assert_int_equal(rig.requests.served[4], 2);
+}
+
+static void every_write_is_refused_with_exception_1_and_counted(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    modbus_t *const client   = join(&rig);
+    uint16_t        found[2] = { 0 };
+    uint8_t         bits[8]  = { 0 };
+
+    assert_int_equal(modbus_write_register(client, 0, 9), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_registers(client, 0, 2, registers), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_bit(client, 0, 1), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_bits(client, 0, 8, bits), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_mask_write_register(client, 0, 1, 1), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_and_read_registers(client, 0, 1, registers, 0, 1, found), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_read_bits(client, 0, 8, bits), -1);
+    assert_int_equal(errno, EMBXILFUN);
+
+    // And none of them touched the board or broke the connection.
+    assert_int_equal(modbus_read_registers(client, 0, 2, found), 2);
+    assert_memory_equal(found, registers, sizeof found);
+    leave(client);
+    stop(&rig);
+    const int functions[] = { 1, 5, 6, 15, 16, 22, 23 };
+    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
+        assert_int_equal(rig.requests.refused[functions[i]], 1);
+        assert_int_equal(rig.requests.served[functions[i]], 0);
+    }
+}
+
+static void reads_outside_the_map_are_refused(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    modbus_t *const client   = join(&rig);
+    uint16_t        found[2] = { 42, 42 };
+    assert_int_equal(modbus_read_input_registers(client, 11, 2, found), -1);
+    assert_int_equal(errno, EMBXILADD);
+    assert_int_equal(modbus_read_input_registers(client, 40000, 1, found), -1);
+    assert_int_equal(errno, EMBXILADD);
+    assert_int_equal(found[0], 42);
+    leave(client);
+    stop(&rig);
+    assert_int_equal(rig.requests.refused[4], 2);
+    assert_int_equal(rig.requests.served[4], 0);
+}
+
+static void several_clients_come_and_go_and_one_that_drops_stops_nobody(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    uint16_t found[DIG_RIG_REGISTERS];
+    for (int round = 0; round < 12; round++) {
+        modbus_t *const a = join(&rig);
+        modbus_t *const b = join(&rig);
+        assert_int_equal(modbus_read_registers(a, 0, 12, found), 12);
+        assert_int_equal(modbus_read_registers(b, 0, 12, found), 12);
+        // One leaves in the middle of a request.
+        const uint8_t half[] = { 0x00, 0x01, 0x00, 0x00, 0x00 };
+        assert_int_equal(write(modbus_get_socket(a), half, sizeof half), (int)sizeof half);
+        leave(a);
+        assert_int_equal(modbus_read_registers(b, 0, 12, found), 12);
+        leave(b);
+    }
+    modbus_t *const last = join(&rig);
+    assert_int_equal(modbus_read_registers(last, 0, 12, found), 12);
+    leave(last);
+    stop(&rig);
+    assert_int_equal(rig.requests.served[3], 37);
+    assert_int_equal(rig.requests.clients, 25);
+}
+
+static void silent_board_answers_nothing_and_speaks_again_later(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    modbus_t *const client = join(&rig);
+    uint16_t        found[12];
+    modbus_set_response_timeout(client, 0, 100000);
+    dig_rig_board_write(&rig.board, registers, true);
+    assert_int_equal(modbus_read_registers(client, 0, 12, found), -1);
+    assert_int_equal(errno, ETIMEDOUT);
+    dig_rig_board_write(&rig.board, registers, false);
+    modbus_set_response_timeout(client, 2, 0);
+    assert_int_equal(modbus_read_registers(client, 0, 12, found), 12);
+    leave(client);
+    stop(&rig);
+    assert_int_equal(rig.requests.unanswered, 1);
+}
+
+static void port_that_is_taken_and_addresses_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    struct rig rig;
+    start_tcp(&rig);
+    char                   where[100];
+    char                   taken[64];
+    struct dig_rig_modbus *server = NULL;
+    struct dig_error       error  = { "" };
+    (void)snprintf(taken, sizeof taken, "127.0.0.1:%d", rig.port);
+    assert_int_equal(
+        dig_rig_modbus_start_tcp(taken, &rig.board, sizeof where, where, &server, &error), DIG_EIO);
+    static const char *const bad[] = { "",
+                                       "1502",
+                                       "127.0.0.1",
+                                       "127.0.0.1:",
+                                       "127.0.0.1:x",
+                                       "127.0.0.1:70000",
+                                       "localhost:1502",
+                                       ":1502" };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(
+            dig_rig_modbus_start_tcp(bad[i], &rig.board, sizeof where, where, &server, &error),
+            DIG_EINVAL);
+    }
+    assert_int_equal(dig_rig_modbus_start_rtu("/nowhere/tty:9600", &rig.board, sizeof where, where,
+                                              &server, &error),
+                     DIG_EIO);
+    assert_null(server);
+    stop(&rig);
+}
+
+// Two pseudo terminals back to back, as a cable between two serial ports: bytes that come out of
+// one master go into the other until the pipe says stop.
+struct cable {
+    int             master[2];
+    char            name[2][64];
+    int             keep[2]; // the slaves' ends held open, or a closed one would hang the master up
+    pthread_t       thread;
+    bool            stop;
+    pthread_mutex_t lock;
+};
+
+static bool is_cut(struct cable *const cable)
+{
+    (void)pthread_mutex_lock(&cable->lock);
+    const bool stop = cable->stop;
+    (void)pthread_mutex_unlock(&cable->lock);
+    return stop;
+}
+
+static void *carry(void *const argument)
+{
+    struct cable *const cable = argument;
+    while (!is_cut(cable)) {
+        bool moved = false;
+        for (int i = 0; i < 2; i++) {
+            uint8_t       bytes[256];
+            const ssize_t n = read(cable->master[i], bytes, sizeof bytes);
+            if (n > 0) {
+                moved = true;
+                if (write(cable->master[1 - i], bytes, (size_t)n) != n) {
+                    return NULL;
+                }
+            }
+        }
+        if (!moved) {
+            const struct timespec wait = { 0, 1000000 };
+            (void)nanosleep(&wait, NULL);
+        }
+    }
+    return NULL;
+}
+
+static void plug_in(struct cable *const cable)
+{
+    memset(cable, 0, sizeof *cable);
+    (void)pthread_mutex_init(&cable->lock, NULL);
+    for (int i = 0; i < 2; i++) {
+        cable->master[i] = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+        assert_true(cable->master[i] >= 0);
+        assert_int_equal(grantpt(cable->master[i]), 0);
+        assert_int_equal(unlockpt(cable->master[i]), 0);
+        (void)snprintf(cable->name[i], sizeof cable->name[i], "%s", ptsname(cable->master[i]));
+        cable->keep[i] = open(cable->name[i], O_RDWR | O_NOCTTY);
+        struct termios raw;
+        assert_int_equal(tcgetattr(cable->keep[i], &raw), 0);
+        raw.c_iflag = raw.c_oflag = raw.c_lflag = 0;
+        assert_int_equal(tcsetattr(cable->keep[i], TCSANOW, &raw), 0);
+    }
+    assert_int_equal(pthread_create(&cable->thread, NULL, carry, cable), 0);
+}
+
+static void unplug(struct cable *const cable)
+{
+    (void)pthread_mutex_lock(&cable->lock);
+    cable->stop = true;
+    (void)pthread_mutex_unlock(&cable->lock);
+    (void)pthread_join(cable->thread, NULL);
+    for (int i = 0; i < 2; i++) {
+        (void)close(cable->keep[i]);
+        (void)close(cable->master[i]);
+    }
+    (void)pthread_mutex_destroy(&cable->lock);
+}
+
+static void slave_1_on_a_serial_line_serves_reads_and_refuses_writes(void **state)
+{
+    (void)state;
+    struct cable cable;
+    plug_in(&cable);
+    struct rig       rig;
+    char             where[200];
+    char             address[100];
+    struct dig_error error = { "" };
+    memset(&rig, 0, sizeof rig);
+    assert_true(dig_rig_board_init(&rig.board));
+    dig_rig_board_write(&rig.board, registers, false);
+    (void)snprintf(address, sizeof address, "%s:57600", cable.name[0]);
+    if (dig_rig_modbus_start_rtu(address, &rig.board, sizeof where, where, &rig.server, &error) !=
+        DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_non_null(strstr(where, "slave 1"));
+    assert_non_null(strstr(where, "57600 baud"));
+
+    modbus_t *const client = modbus_new_rtu(cable.name[1], 57600, 'N', 8, 1);
+    assert_non_null(client);
+    assert_int_equal(modbus_set_slave(client, 1), 0);
+    assert_int_equal(modbus_connect(client), 0);
+    modbus_set_response_timeout(client, 2, 0);
+    uint16_t found[DIG_RIG_REGISTERS];
+    for (int i = 0; i < 5; i++) {
+        memset(found, 0, sizeof found);
+        assert_int_equal(modbus_read_input_registers(client, 0, 12, found), 12);
+        assert_memory_equal(found, registers, sizeof registers);
+    }
+    assert_int_equal(modbus_read_registers(client, 0, 12, found), 12);
+    assert_int_equal(modbus_write_register(client, 0, 9), -1);
+    assert_int_equal(errno, EMBXILFUN);
+
+    // Another slave's requests are none of its business.
+    assert_int_equal(modbus_set_slave(client, 2), 0);
+    modbus_set_response_timeout(client, 0, 100000);
+    assert_int_equal(modbus_read_registers(client, 0, 12, found), -1);
+    assert_int_equal(errno, ETIMEDOUT);
+    assert_int_equal(modbus_set_slave(client, 1), 0);
+    modbus_set_response_timeout(client, 2, 0);
+    assert_int_equal(modbus_read_registers(client, 0, 12, found), 12);
+
+    leave(client);
+    stop(&rig);
+    unplug(&cable);
+    assert_int_equal(rig.requests.served[4], 5);
+    assert_int_equal(rig.requests.served[3], 2);
+    assert_int_equal(rig.requests.refused[6], 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(input_and_holding_registers_read_the_same_board),
+        cmocka_unit_test(every_write_is_refused_with_exception_1_and_counted),
+        cmocka_unit_test(reads_outside_the_map_are_refused),
+        cmocka_unit_test(several_clients_come_and_go_and_one_that_drops_stops_nobody),
+        cmocka_unit_test(silent_board_answers_nothing_and_speaks_again_later),
+        cmocka_unit_test(port_that_is_taken_and_addresses_that_are_none_are_refused),
+        cmocka_unit_test(slave_1_on_a_serial_line_serves_reads_and_refuses_writes),
+    };
+    return cmocka_run_group_tests_name("rig Modbus servers", tests, NULL, NULL);
+}
