@@ -1,0 +1,149 @@
+// Tests for tools/rig/options.c
+
+#include "tools/rig/options.h"
+
+#include "tests/testlib.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static enum dig_status parse(const char *const line, struct dig_rig_options *const options,
+                             struct dig_error *const error)
+{
+    static char text[500];
+    char       *argv[40] = { NULL };
+    int         argc     = 0;
+    (void)snprintf(text, sizeof text, "%s", line);
+    for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
+        argv[argc++] = word;
+    }
+    return dig_rig_options_parse(argc, argv, options, error);
+}
+
+static struct dig_rig_options good(const char *const line)
+{
+    struct dig_rig_options options;
+    struct dig_error       error = { "" };
+    if (parse(line, &options, &error) != DIG_OK) {
+        fail_msg("%s: %s", line, error.text);
+    }
+    return options;
+}
+
+static void examples_of_the_contract_are_understood(void **state)
+{
+    (void)state;
+    const struct dig_rig_options serve =
+        good("digrig serve r.csv --machine m.yaml --can vcan0 --modbus-tcp 127.0.0.1:1502 "
+             "--modbus-rtu /dev/ttyS0:9600 --speed 2.5 --loop --start-delay 3 --json "
+             "--fault frozen@5:2 --fault missing@9");
+    assert_int_equal(serve.command, DIG_RIG_COMMAND_SERVE);
+    assert_int_equal(serve.inputs, 1);
+    assert_string_equal(serve.input[0], "r.csv");
+    assert_string_equal(serve.machine, "m.yaml");
+    assert_string_equal(serve.can, "vcan0");
+    assert_string_equal(serve.tcp, "127.0.0.1:1502");
+    assert_string_equal(serve.rtu, "/dev/ttyS0:9600");
+    assert_close(serve.speed, 2.5, 0.0);
+    assert_close(serve.start_delay_s, 3.0, 0.0);
+    assert_true(serve.loop && serve.json && serve.noise);
+    assert_int_equal(serve.faults, 2);
+    assert_int_equal(serve.fault[1].kind, DIG_RIG_FAULT_MISSING);
+
+    const struct dig_rig_options record = good(
+        "digrig record a.csv b.csv --machine m.yaml -o out.csv --rate 100 --truth t.csv --exact "
+        "--pin-start 6.5,-1.25 --seed 18446744073709551615 --tooth-m 0.1 --no-air --no-blend "
+        "--quasi-static --scene s.yaml");
+    assert_int_equal(record.command, DIG_RIG_COMMAND_RECORD);
+    assert_int_equal(record.inputs, 2);
+    assert_string_equal(record.out, "out.csv");
+    assert_string_equal(record.truth, "t.csv");
+    assert_string_equal(record.scene, "s.yaml");
+    assert_false(record.noise || record.quantise || record.track.air || record.track.blend);
+    assert_true(record.track.quasi_static && record.track.placed);
+    assert_close(record.track.pin_X_m, 6.5, 0.0);
+    assert_close(record.track.pin_Z_m, -1.25, 0.0);
+    assert_close(record.track.rate_Hz, 100.0, 0.0);
+    assert_close(record.track.scene_tooth_m, 0.1, 0.0);
+    assert_true(record.seed == UINT64_MAX);
+}
+
+static void defaults_are_a_noisy_quantised_machine_in_real_time(void **state)
+{
+    (void)state;
+    const struct dig_rig_options o = good("digrig record a.csv --machine m.yaml -o out.csv");
+    assert_true(o.noise && o.quantise && o.track.air && o.track.blend);
+    assert_false(o.track.placed || o.track.quasi_static || o.loop);
+    assert_close(o.speed, 1.0, 0.0);
+    assert_close(o.track.scene_tooth_m, 0.09, 0.0);
+    assert_close(o.track.rate_Hz, 200.0, 0.0);
+    assert_false(good("digrig record a.csv --machine m.yaml -o o.csv --noise 0").noise);
+    assert_true(good("digrig record a.csv --machine m.yaml -o o.csv --noise 1").noise);
+    assert_int_equal(good("digrig --help").command, DIG_RIG_COMMAND_HELP);
+    assert_int_equal(good("digrig serve --help").command, DIG_RIG_COMMAND_HELP);
+    assert_int_equal(good("digrig --version").command, DIG_RIG_COMMAND_VERSION);
+}
+
+static void bad_lines_are_refused_with_a_word_and_write_nothing(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *word;
+    } bad[] = {
+        { "digrig", "record or serve" },
+        { "digrig dance", "dance" },
+        { "digrig record --machine m -o o", "no recording" },
+        { "digrig record a.csv -o o", "--machine" },
+        { "digrig record a.csv --machine m", "-o" },
+        { "digrig record a.csv --machine m -o o --can vcan0", "serve" },
+        { "digrig serve a.csv --machine m", "no bus" },
+        { "digrig serve a.csv --machine m --can c -o o", "record" },
+        { "digrig serve a.csv --machine m --can c --speed 0", "speed" },
+        { "digrig serve a.csv --machine m --can c --speed fast", "speed" },
+        { "digrig serve a.csv --machine m --can c --speed nan", "speed" },
+        { "digrig serve a.csv --machine m --can c --start-delay -1", "start-delay" },
+        { "digrig serve a.csv --machine m --can c --fault melted@3", "melted" },
+        { "digrig record a.csv --machine m -o o --rate 10", "rate" },
+        { "digrig record a.csv --machine m -o o --pin-start 3", "pin-start" },
+        { "digrig record a.csv --machine m -o o --pin-start 3,nan", "pin-start" },
+        { "digrig record a.csv --machine m -o o --seed -4", "seed" },
+        { "digrig record a.csv --machine m -o o --seed x", "seed" },
+        { "digrig record a.csv --machine m -o o --tooth-m 0", "tooth-m" },
+        { "digrig record a.csv --machine m -o o --wings 2", "--wings" },
+        { "digrig record a.csv --machine m -o", "-o" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_rig_options options = { .inputs = 42 };
+        struct dig_error       error   = { "" };
+        assert_int_equal(parse(bad[i].line, &options, &error), DIG_EINVAL);
+        assert_int_equal(options.inputs, 42);
+        if (strstr(error.text, bad[i].word) == NULL) {
+            fail_msg("%s: \"%s\" does not say \"%s\"", bad[i].line, error.text, bad[i].word);
+        }
+    }
+}
+
+static void help_names_every_option_and_shows_examples(void **state)
+{
+    (void)state;
+    static const char *const words[] = {
+        "--machine",      "--tooth-m",  "--scene",      "--pin-start",  "--seed",  "--no-noise",
+        "--quasi-static", "--no-blend", "--no-air",     "-o OUT",       "--rate",  "--truth",
+        "--exact",        "--can",      "--modbus-tcp", "--modbus-rtu", "--speed", "--loop",
+        "--fault",        "--json",     "examples:",    "exit status:"
+    };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        assert_non_null(strstr(dig_rig_options_help(), words[i]));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(examples_of_the_contract_are_understood),
+        cmocka_unit_test(defaults_are_a_noisy_quantised_machine_in_real_time),
+        cmocka_unit_test(bad_lines_are_refused_with_a_word_and_write_nothing),
+        cmocka_unit_test(help_names_every_option_and_shows_examples),
+    };
+    return cmocka_run_group_tests_name("rig options", tests, NULL, NULL);
+}
