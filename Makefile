@@ -54,7 +54,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup demo test check check-unit check-asan check-tsan check-valgrind coverage lint layers \
+.PHONY: all setup demo tables test check check-unit check-asan check-tsan check-valgrind coverage lint layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -67,6 +67,12 @@ demo: ## Set up what is missing, build, and run the main job end to end (about 4
 test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
+
+tables: all ## Compute what tables/coarse.sqlite lacks (hours of one core when it lacks all)
+	$(Q)for grid in base_9 base_5 base_3 coarse_a coarse_b; do \
+	    $(BUILD)/bin/digtable generate config/scenes/rig.yaml config/grids/$$grid.yaml \
+	        -o tables/coarse.sqlite || exit 1; done
+	$(Q)$(BUILD)/bin/digtable check tables/coarse.sqlite
 
 setup: ## Install everything any target needs
 	$(Q)scripts/setup.sh build demo test lint spy valgrind

@@ -347,7 +347,9 @@ static enum dig_status fill_run(const struct options *const       options,
     }
     struct dig_score score = { 0 };
     const int        t     = find_trajectory(set, run->real.trajectory);
-    dig_score_add(&score, &set->trajectory[t], set->tooth_m, fmax(real.first, said.from), real.last,
+    // One grid point in from where the prediction begins: the curve is a gap before it.
+    const double from = fmax(real.first, said.from + 1.0 / (DIG_CURVE_POINTS - 1));
+    dig_score_add(&score, &set->trajectory[t], set->tooth_m, from, real.last,
                   run->real.measured_Nm, run->real.model_Nm, run->real.sigma_Nm);
     run->error       = dig_score_error(&score);
     run->noise_floor = dig_score_noise_floor(&score);

@@ -1,0 +1,53 @@
+#!/bin/bash
+# The main job, end to end, on digs that another DEM code computed: finish a coarse table, let a machine
+# dig on a real bus, let the daemon identify the gravel and predict the real dig, show how right it was.
+#   BIN=build/bin OUT=build/demo scripts/demo.sh
+set -eu
+bin=${BIN:-build/bin} out=${OUT:-build/demo}
+machine=config/machines/zx200_trench.yaml
+reference=tests/data/reference
+gravel=${DIG_DEMO_GRAVEL:-mu0.5_mur0.5_rho2500_seed2} truth=${DIG_DEMO_TRUTH:-.5,.5,2500}
+simple=$reference/${gravel}__simpleA.csv actual=$reference/${gravel}__actual.csv
+speed=${DIG_DEMO_SPEED:-1}
+
+say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
+rm -rf "$out" && mkdir -p "$out"
+out=$(cd "$out" && pwd)
+
+say "1. Table: the coarse table that ships, and the points it lacks, computed now by the DEM"
+cp tables/coarse.sqlite "$out/table.sqlite"
+chmod u+w "$out/table.sqlite"
+"$bin/digtable" generate config/scenes/rig.yaml config/grids/coarse.yaml -o "$out/table.sqlite" --time-limit 60
+"$bin/digtable" check "$out/table.sqlite"
+
+say "2. Machine, bus and daemon: a simple dig, then a real dig, in gravel nobody here computed"
+echo "  recordings: LIGGGHTS, $(basename "$simple") then $(basename "$actual"), on a machine 10 times the rig"
+runs=("Modbus TCP=$out/modbus.lcm")
+scripts/demo_run.sh modbus "$bin" "$out" "$out/table.sqlite" "$machine" "$speed" "$simple" "$actual" &
+modbus=$!
+can=
+if command -v linux.uml >/dev/null; then
+    tools/vcan/with-vcan -t 150 scripts/demo_run.sh can "$bin" "$out" "$out/table.sqlite" "$machine" "$speed" "$simple" "$actual" &
+    can=$!
+else
+    echo "  SocketCAN: skipped, this machine has no User Mode Linux (package user-mode-linux)"
+fi
+failed=0
+wait "$modbus" || { failed=1; tail -n 5 "$out"/modbus.*.log >&2; }
+if [ -n "$can" ]; then
+    if wait "$can"; then
+        runs+=("SocketCAN in User Mode Linux=$out/can.lcm")
+    else
+        echo "  SocketCAN: User Mode Linux does not run here; see $out/can.*.log" >&2
+    fi
+fi
+[ "$failed" = 0 ]
+grep -h "real time\|realtime\|locked" "$out"/modbus.daemon.log | head -n 3 || true
+
+say "3. What was identified, and how right the prediction of the real dig was"
+"$bin/digreport" --table "$out/table.sqlite" --machine "$machine" --truth "$truth" \
+    --title "Digsight demo: $gravel" --recording "$simple" --recording "$actual" \
+    --html "$out/report.html" --json "$out/report.json" "${runs[@]}"
+echo
+echo "  report with plots: $out/report.html"
+echo "  LCM logs: $out/*.lcm   (make spy, then lcm-logplayer LOG, shows them live)"
