@@ -150,19 +150,23 @@ struct dig_sample model_sample(const struct dig_machine *const machine,
     }
     sample.value[DIG_SIGNAL_PITCH_rad] = pitch_rad;
 
-    double push_N[DIG_JOINTS];
+    // Each drive has a return pressure of its own, so that a test that varies back_Pa varies where
+    // between its steps each chamber reads, independently.
+    const double share[DIG_JOINTS] = { 1.0, 0.618, 1.414 };
+    double       push_N[DIG_JOINTS];
     model_pushes_N(machine, joint_rad, pitch_rad, load, push_N);
     for (int j = 0; j < DIG_JOINTS; j++) {
-        const struct dig_cylinder *const c       = &machine->cylinder[j];
-        const double                     head_m2 = DIG_PI * pow(0.5 * c->bore_m, 2.0);
-        const double                     rod_m2  = head_m2 - DIG_PI * pow(0.5 * c->rod_m, 2.0);
-        const double                     one_N   = push_N[j] / c->count;
-        const double                     head_Pa = (one_N + back_Pa * rod_m2) / head_m2;
-        const double                     rod_Pa  = (back_Pa * head_m2 - one_N) / rod_m2;
+        const double                     return_Pa = share[j] * back_Pa;
+        const struct dig_cylinder *const c         = &machine->cylinder[j];
+        const double                     head_m2   = DIG_PI * pow(0.5 * c->bore_m, 2.0);
+        const double                     rod_m2    = head_m2 - DIG_PI * pow(0.5 * c->rod_m, 2.0);
+        const double                     one_N     = push_N[j] / c->count;
+        const double                     head_Pa   = (one_N + return_Pa * rod_m2) / head_m2;
+        const double                     rod_Pa    = (return_Pa * head_m2 - one_N) / rod_m2;
 
         sample.value[DIG_SIGNAL_BOOM_rad + j]             = joint_rad[j];
-        sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j]     = fmax(head_Pa, back_Pa);
-        sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j + 1] = fmax(rod_Pa, back_Pa);
+        sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j]     = fmax(head_Pa, return_Pa);
+        sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j + 1] = fmax(rod_Pa, return_Pa);
     }
     return sample;
 }
