@@ -1,8 +1,8 @@
 #include "offline_dem/dig.h"
 
 #include "core/units.h"
-#include "offline_dem/engine.h"
 #include "offline_dem/packing.h"
+#include "offline_dem/world.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,60 +65,60 @@ double dig_time_step_s(const struct dig_scene *const scene, const double density
     return fmin(0.14 * rayleigh_s, contact_s / 25.0);
 }
 
-static void set_walls(const struct dig_box *const box, struct dig_engine *const engine)
+static void set_walls(const struct dig_box *const box, struct dig_world *const world)
 {
-    engine->walls   = 5;
-    engine->wall[0] = (struct dig_wall){ { 1.0, 0.0, 0.0 }, box->x_min_m };
-    engine->wall[1] = (struct dig_wall){ { -1.0, 0.0, 0.0 }, -box->x_max_m };
-    engine->wall[2] = (struct dig_wall){ { 0.0, 1.0, 0.0 }, box->y_min_m };
-    engine->wall[3] = (struct dig_wall){ { 0.0, -1.0, 0.0 }, -box->y_max_m };
-    engine->wall[4] = (struct dig_wall){ { 0.0, 0.0, 1.0 }, box->z_min_m };
+    world->walls   = 5;
+    world->wall[0] = (struct dig_wall){ { 1.0, 0.0, 0.0 }, box->x_min_m };
+    world->wall[1] = (struct dig_wall){ { -1.0, 0.0, 0.0 }, -box->x_max_m };
+    world->wall[2] = (struct dig_wall){ { 0.0, 1.0, 0.0 }, box->y_min_m };
+    world->wall[3] = (struct dig_wall){ { 0.0, -1.0, 0.0 }, -box->y_max_m };
+    world->wall[4] = (struct dig_wall){ { 0.0, 0.0, 1.0 }, box->z_min_m };
 }
 
-static struct dig_engine make_engine(const struct dig_scene *const  scene,
-                                     const struct dig_gravel *const gravel,
-                                     struct dig_grains *const       grains)
+static struct dig_world make_world(const struct dig_scene *const  scene,
+                                   const struct dig_gravel *const gravel,
+                                   struct dig_grains *const       grains)
 {
-    struct dig_engine engine = {
+    struct dig_world world = {
         .dt_s         = dig_time_step_s(scene, gravel->value[DIG_AXIS_DENSITY_kgpm3]),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .material     = law_material(scene, gravel),
         .isa          = dig_kernel_best(),
     };
-    set_walls(&scene->box, &engine);
-    dig_engine_init(&engine, grains);
-    return engine;
+    set_walls(&scene->box, &world);
+    dig_world_init(&world, grains);
+    return world;
 }
 
-static enum dig_status go(struct dig_engine *const engine, const double duration_s,
+static enum dig_status go(struct dig_world *const world, const double duration_s,
                           const double done_s, const double total_s,
                           const struct dig_progress *const progress)
 {
-    const size_t steps = (size_t)llround(duration_s / engine->dt_s);
+    const size_t steps = (size_t)llround(duration_s / world->dt_s);
     for (size_t s = 0; s < steps; s++) {
-        const enum dig_status status = dig_engine_step(engine);
+        const enum dig_status status = dig_world_step(world);
         if (status != DIG_OK) {
             return status;
         }
         if (progress != NULL && s % TELL_STEPS == 0 &&
-            !progress->tell(progress->context, done_s + (double)s * engine->dt_s, total_s)) {
+            !progress->tell(progress->context, done_s + (double)s * world->dt_s, total_s)) {
             return DIG_ESTALE;
         }
     }
     return DIG_OK;
 }
 
-static enum dig_status level(struct dig_engine *const engine, const double z_max_m)
+static enum dig_status level(struct dig_world *const world, const double z_max_m)
 {
-    unsigned char *const drop = calloc(engine->grains.n + 1, 1);
+    unsigned char *const drop = calloc(world->grains.n + 1, 1);
     if (drop == NULL) {
         return DIG_ENOMEM;
     }
-    for (size_t i = 0; i < engine->grains.n; i++) {
-        const double radius_m = engine->grains.kind[engine->grains.of[i]].radius_m;
-        drop[i]               = engine->grains.motion[i].x_m[2] > z_max_m - radius_m;
+    for (size_t i = 0; i < world->grains.n; i++) {
+        const double radius_m = world->grains.kind[world->grains.of[i]].radius_m;
+        drop[i]               = world->grains.motion[i].x_m[2] > z_max_m - radius_m;
     }
-    const enum dig_status status = dig_engine_drop(engine, drop);
+    const enum dig_status status = dig_world_drop(world, drop);
     free(drop);
     return status;
 }
@@ -205,19 +205,19 @@ enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
     if (status != DIG_OK) {
         return explain(error, status);
     }
-    struct dig_engine engine  = make_engine(scene, gravel, &grains);
-    const double      total_s = scene->packing.settle_s + scene->packing.relax_s;
-    status                    = go(&engine, scene->packing.settle_s, 0.0, total_s, progress);
+    struct dig_world world   = make_world(scene, gravel, &grains);
+    const double     total_s = scene->packing.settle_s + scene->packing.relax_s;
+    status                   = go(&world, scene->packing.settle_s, 0.0, total_s, progress);
     if (status == DIG_OK) {
-        status = level(&engine, scene->box.z_max_m);
+        status = level(&world, scene->box.z_max_m);
     }
     if (status == DIG_OK) {
-        status = go(&engine, scene->packing.relax_s, scene->packing.settle_s, total_s, progress);
+        status = go(&world, scene->packing.relax_s, scene->packing.settle_s, total_s, progress);
     }
     if (status == DIG_OK) {
-        status = copy_bed(&engine.grains, bed);
+        status = copy_bed(&world.grains, bed);
     }
-    dig_engine_finish(&engine);
+    dig_world_finish(&world);
     return status == DIG_OK ? status : explain(error, status);
 }
 
@@ -246,10 +246,10 @@ static void place_tool(const struct dig_trajectory *const trajectory, const doub
 static enum dig_status drive(const struct dig_scene *const      scene,
                              const struct dig_trajectory *const trajectory,
                              const struct dig_progress *const   progress,
-                             struct dig_engine *const engine, struct dig_tool *const tool,
+                             struct dig_world *const world, struct dig_tool *const tool,
                              struct dig_recording *const recording)
 {
-    const double dt_s       = engine->dt_s;
+    const double dt_s       = world->dt_s;
     const double duration_s = dig_trajectory_duration_s(trajectory);
     const size_t window     = (size_t)fmax(1.0, round(scene->output_s / dt_s));
     const size_t rows       = (size_t)floor(duration_s / dt_s / (double)window + 1e-6);
@@ -259,16 +259,16 @@ static enum dig_status drive(const struct dig_scene *const      scene,
     }
     // The forces before the first step belong to no window: they give the half kick.
     place_tool(trajectory, 0.0, dt_s, tool);
-    dig_engine_touched(engine);
-    enum dig_status status = dig_engine_step(engine);
+    dig_world_touched(world);
+    enum dig_status status = dig_world_step(world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         double sum[6] = { 0.0 };
         for (size_t s = 1; s <= window && status == DIG_OK; s++) {
             place_tool(trajectory, (double)(r * window + s) * dt_s, dt_s, tool);
-            status = dig_engine_step(engine);
+            status = dig_world_step(world);
             for (int k = 0; k < 3; k++) {
-                sum[k] += engine->on_tool.f_N[k];
-                sum[3 + k] += engine->on_tool.t_Nm[k];
+                sum[k] += world->on_tool.f_N[k];
+                sum[3 + k] += world->on_tool.t_Nm[k];
             }
         }
         const double          t_s   = ((double)(r * window) + 0.5 * (double)(window + 1)) * dt_s;
@@ -314,12 +314,12 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
                              "bed: expected finite grains of at most %d different radii > 0",
                              DIG_KINDS_MAX);
     }
-    struct dig_engine    engine = make_engine(scene, gravel, &grains);
-    struct dig_tool      tool   = dig_tool_make(&scene->bucket);
-    struct dig_recording made   = { 0 };
-    engine.tool                 = &tool;
-    status                      = drive(scene, trajectory, progress, &engine, &tool, &made);
-    dig_engine_finish(&engine);
+    struct dig_world     world = make_world(scene, gravel, &grains);
+    struct dig_tool      tool  = dig_tool_make(&scene->bucket);
+    struct dig_recording made  = { 0 };
+    world.tool                 = &tool;
+    status                     = drive(scene, trajectory, progress, &world, &tool, &made);
+    dig_world_finish(&world);
     if (status != DIG_OK) {
         dig_recording_finish(&made);
         return explain(error, status);

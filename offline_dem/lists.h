@@ -1,18 +1,18 @@
-// Keeps an engine's contact lists right: made anew when a grain or the tool has left its margin,
+// Keeps an world's contact lists right: made anew when a grain or the tool has left its margin,
 // with every contact that goes on remembering what it knew.
 
 #ifndef DIG_OFFLINE_DEM_LISTS_H
 #define DIG_OFFLINE_DEM_LISTS_H
 
-#include "offline_dem/engine.h"
+#include "offline_dem/world.h"
 
 /// Remakes the contact lists, and the neighbour list behind them if it no longer covers the
 /// margins. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lists_update(struct dig_engine *engine);
+DIG_MUST_CHECK enum dig_status dig_lists_update(struct dig_world *world);
 
 /// Follows grains to new places: place[old index] is the new one, UINT32_MAX: gone.
-void dig_lists_move(struct dig_engine *engine, const uint32_t place[]);
+void dig_lists_move(struct dig_world *world, const uint32_t place[]);
 
-void dig_lists_finish(struct dig_engine *engine);
+void dig_lists_finish(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_LISTS_H

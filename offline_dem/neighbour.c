@@ -1,6 +1,7 @@
 #include "offline_dem/neighbour.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -133,6 +134,8 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
     const double *const x        = grains->motion[i].x_m;
     const double        radius_m = grains->kind[grains->of[i]].radius_m;
     const double        far_m    = radius_m + radius_max_m + 2.0 * margin_m[i];
+    const double        own_m    = radius_m + margin_m[i];
+    size_t              count    = *used;
     ptrdiff_t           low[3], high[3];
     for (int a = 0; a < 3; a++) {
         low[a]  = clamp_cell(g, a, x[a] - far_m);
@@ -143,24 +146,25 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
             const size_t row   = (size_t)(g->count[0] * (iy + g->count[1] * iz));
             const size_t first = g->start[row + (size_t)low[0]];
             const size_t last  = g->start[row + (size_t)high[0] + 1];
-            if (make_room(list, *used + (last - first)) != DIG_OK) {
+            if (make_room(list, count + (last - first)) != DIG_OK) {
                 return DIG_ENOMEM;
             }
             for (size_t k = first; k < last; k++) {
-                const uint32_t j = g->member[k];
-                // The grain with the larger margin searches far enough to see the pair.
-                const int mine =
-                    margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
+                const uint32_t      j    = g->member[k];
                 const double *const y    = grains->motion[j].x_m;
                 const double        d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
-                const double        cut_m =
-                    radius_m + grains->kind[grains->of[j]].radius_m + margin_m[i] + margin_m[j];
-                if (mine && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < cut_m * cut_m) {
-                    list->other[(*used)++] = j;
-                }
+                const double reach_m = own_m + grains->kind[grains->of[j]].radius_m + margin_m[j];
+                // The grain with the larger margin searches far enough to see the pair. Written
+                // whether it counts or not: a branch would be guessed wrong every third time.
+                const bool mine =
+                    margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
+                const bool close   = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;
+                list->other[count] = j;
+                count += (size_t)(mine & close);
             }
         }
     }
+    *used = count;
     return DIG_OK;
 }
 

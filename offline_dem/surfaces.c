@@ -111,24 +111,24 @@ static void fill_plate(const struct dig_tool *const tool, const double body_m[3]
 }
 
 // The candidates of one grain, contacts c … of the list; returns how many.
-static size_t fill_plates(struct dig_engine *const e, struct dig_contacts *const list,
+static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const list,
                           const double radius_m, const size_t first, const size_t c,
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
     const uint32_t                 i = list->i[first + c];
-    const struct dig_motion *const m = &e->grains.motion[i];
+    const struct dig_motion *const m = &w->grains.motion[i];
     struct near_plates             near;
     near.count = 0;
     double body_m[3];
-    dig_tool_to_body(e->tool, m->x_m, body_m);
+    dig_tool_to_body(w->tool, m->x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
     while (c + used < count && list->i[first + c + used] == i &&
-           list->j[first + c + used] >= e->walls) {
+           list->j[first + c + used] >= w->walls) {
         const size_t k     = near.count;
-        const size_t plate = list->j[first + c + used] - e->walls;
-        dig_tool_closest(e->tool, plate, body_m, near.closest_m[k]);
+        const size_t plate = list->j[first + c + used] - w->walls;
+        dig_tool_closest(w->tool, plate, body_m, near.closest_m[k]);
         near.contact[k]    = first + c + used;
         near.plate[k]      = plate;
         near.distance_m[k] = distance(body_m, near.closest_m[k]);
@@ -138,11 +138,11 @@ static size_t fill_plates(struct dig_engine *const e, struct dig_contacts *const
         used++;
     }
     if (in_use > 1) {
-        resolve_edges(e->tool, radius_m, &near, list);
+        resolve_edges(w->tool, radius_m, &near, list);
     }
     for (size_t k = 0; k < near.count; k++) {
         if (near.counts[k]) {
-            fill_plate(e->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
+            fill_plate(w->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
         } else {
             fill(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
                  (const double[3]){ 0.0, 0.0, 0.0 });
@@ -152,12 +152,12 @@ static size_t fill_plates(struct dig_engine *const e, struct dig_contacts *const
     return used;
 }
 
-static void apply(struct dig_engine *const e, const struct dig_contacts *const list,
+static void apply(struct dig_world *const w, const struct dig_contacts *const list,
                   const size_t first, const size_t count, const struct dig_block *const block,
                   const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
-        struct dig_load *const load = &e->grains.load[list->i[first + c]];
+        struct dig_load *const load = &w->grains.load[list->i[first + c]];
         double                 f[3], t[3];
         for (int k = 0; k < 3; k++) {
             f[k] = block->out[k][c];
@@ -165,17 +165,17 @@ static void apply(struct dig_engine *const e, const struct dig_contacts *const l
             load->f_N[k] += f[k];
             load->t_Nm[k] += block->out[3 + k][c];
         }
-        if (list->j[first + c] < e->walls) {
+        if (list->j[first + c] < w->walls) {
             for (int k = 0; k < 3; k++) {
-                e->on_walls.f_N[k] -= f[k];
+                w->on_walls.f_N[k] -= f[k];
             }
             continue;
         }
-        const double *const      a = arm_m[c];
-        struct dig_wrench *const w = &e->on_tool;
+        const double *const      a   = arm_m[c];
+        struct dig_wrench *const sum = &w->on_tool;
         for (int k = 0; k < 3; k++) {
-            w->f_N[k] -= f[k];
-            w->t_Nm[k] +=
+            sum->f_N[k] -= f[k];
+            sum->t_Nm[k] +=
                 t[k] - (a[(k + 1) % 3] * f[(k + 2) % 3] - a[(k + 2) % 3] * f[(k + 1) % 3]);
         }
     }
@@ -194,37 +194,37 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-void dig_surfaces_step(struct dig_engine *const e)
+void dig_surfaces_step(struct dig_world *const w)
 {
-    e->on_tool  = (struct dig_wrench){ 0 };
-    e->on_walls = (struct dig_wrench){ 0 };
-    for (size_t kind = 0; kind < e->grains.kinds; kind++) {
-        struct dig_contacts *const list     = &e->surface[kind];
-        const struct dig_kind      k        = e->grains.kind[kind];
+    w->on_tool  = (struct dig_wrench){ 0 };
+    w->on_walls = (struct dig_wrench){ 0 };
+    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
+        struct dig_contacts *const list     = &w->surface[kind];
+        const struct dig_kind      k        = w->grains.kind[kind];
         const double               radius_m = k.radius_m;
-        const struct dig_law       law      = dig_law_wall(&e->material, radius_m, k.mass_kg);
+        const struct dig_law       law      = dig_law_wall(&w->material, radius_m, k.mass_kg);
         for (size_t first = 0; first < list->n;) {
             const size_t     count = block_length(list, first);
             struct dig_block block;
             double           arm_m[DIG_BLOCK][3];
             for (size_t c = 0; c < count;) {
-                if (list->j[first + c] < e->walls) {
-                    fill_wall(&e->wall[list->j[first + c]], radius_m,
-                              &e->grains.motion[list->i[first + c]], c, &block);
+                if (list->j[first + c] < w->walls) {
+                    fill_wall(&w->wall[list->j[first + c]], radius_m,
+                              &w->grains.motion[list->i[first + c]], c, &block);
                     c++;
                 } else {
-                    c += fill_plates(e, list, radius_m, first, c, count, &block, arm_m);
+                    c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
                 }
             }
             double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
             for (int m = 0; m < DIG_MEMORIES; m++) {
                 memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
             }
-            dig_kernel_block(e->isa, &law, e->dt_s, count, memory, &block);
+            dig_kernel_block(w->isa, &law, w->dt_s, count, memory, &block);
             for (int m = 0; m < DIG_MEMORIES; m++) {
                 memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
             }
-            apply(e, list, first, count, &block, (const double(*)[3])arm_m);
+            apply(w, list, first, count, &block, (const double(*)[3])arm_m);
             first += count;
         }
     }

@@ -8,9 +8,9 @@
 #ifndef DIG_OFFLINE_DEM_SURFACES_H
 #define DIG_OFFLINE_DEM_SURFACES_H
 
-#include "offline_dem/engine.h"
+#include "offline_dem/world.h"
 
 /// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls.
-void dig_surfaces_step(struct dig_engine *engine);
+void dig_surfaces_step(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_SURFACES_H

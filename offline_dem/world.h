@@ -2,8 +2,8 @@
 // lists and kernel put together. Leap-frog: forces at x(t) with v(t - dt/2), which is velocity
 // Verlet with half kicks, the two halves that meet between two steps done as one.
 
-#ifndef DIG_OFFLINE_DEM_ENGINE_H
-#define DIG_OFFLINE_DEM_ENGINE_H
+#ifndef DIG_OFFLINE_DEM_WORLD_H
+#define DIG_OFFLINE_DEM_WORLD_H
 
 #include "core/status.h"
 #include "offline_dem/contacts.h"
@@ -29,7 +29,7 @@ struct dig_wrench {
     double t_Nm[3]; // about the moving pin
 };
 
-struct dig_engine {
+struct dig_world {
     // Fixed at start.
     double                  dt_s;
     double                  gravity_mps2[3];
@@ -60,21 +60,20 @@ struct dig_engine {
     size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
 };
 
-/// Takes over *grains. The caller fills the fixed fields of a zeroed *engine first.
-void dig_engine_init(struct dig_engine *engine, struct dig_grains *grains);
+/// Takes over *grains. The caller fills the fixed fields of a zeroed *world first.
+void dig_world_init(struct dig_world *world, struct dig_grains *grains);
 
-/// Tells the engine that grains were taken out or moved by hand. Contacts are forgotten if
+/// Tells the world that grains were taken out or moved by hand. Contacts are forgotten if
 /// `forget`, else they stay with their grains' names.
-void dig_engine_touched(struct dig_engine *engine);
+void dig_world_touched(struct dig_world *world);
 
 /// Removes grains for which drop[i] is not 0; the contacts between the others remember.
-DIG_MUST_CHECK enum dig_status dig_engine_drop(struct dig_engine  *engine,
-                                               const unsigned char drop[]);
+DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const unsigned char drop[]);
 
 /// One step. The tool, if any, must stand where it is at the new positions' time. DIG_ENOMEM, or
 /// DIG_EINVAL when a grain's position is not a number any more: the time step was too long.
-DIG_MUST_CHECK enum dig_status dig_engine_step(struct dig_engine *engine);
+DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 
-void dig_engine_finish(struct dig_engine *engine);
+void dig_world_finish(struct dig_world *world);
 
-#endif // DIG_OFFLINE_DEM_ENGINE_H
+#endif // DIG_OFFLINE_DEM_WORLD_H

@@ -1,0 +1,92 @@
+#include "offline_dem/world.h"
+
+#include "offline_dem/lists.h"
+#include "offline_dem/surfaces.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void dig_world_init(struct dig_world *const world, struct dig_grains *const grains)
+{
+    world->grains = *grains;
+    world->stale  = true;
+    *grains       = (struct dig_grains){ 0 };
+}
+
+void dig_world_touched(struct dig_world *const world)
+{
+    world->stale = true;
+}
+
+enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char drop[])
+{
+    uint32_t *const place = malloc((w->grains.n + 1) * sizeof *place);
+    if (place == NULL) {
+        return DIG_ENOMEM;
+    }
+    uint32_t kept = 0;
+    for (size_t i = 0; i < w->grains.n; i++) {
+        place[i] = drop[i] ? UINT32_MAX : kept++;
+    }
+    dig_lists_move(w, place);
+    free(place);
+    dig_grains_drop(&w->grains, drop);
+    // The neighbour list still counts the grains there were: it is remade before it is used.
+    dig_neighbours_finish(&w->near_list);
+    w->stale = true;
+    return DIG_OK;
+}
+
+static bool is_finite(const struct dig_grains *const grains)
+{
+    for (size_t i = 0; i < grains->n; i++) {
+        const struct dig_motion *const m = &grains->motion[i];
+        if (!isfinite(m->x_m[0] + m->x_m[1] + m->x_m[2] + m->v_mps[0] + m->v_mps[1] + m->v_mps[2] +
+                      m->w_radps[0] + m->w_radps[1] + m->w_radps[2])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+enum dig_status dig_world_step(struct dig_world *const w)
+{
+    if (w->tool != NULL && !w->stale &&
+        dig_tool_travel_m(w->tool, w->tool_at, w->tool->pose) > w->tool_margin_m) {
+        w->stale = true;
+    }
+    if (w->stale) {
+        if (!is_finite(&w->grains)) {
+            return DIG_EINVAL;
+        }
+        const enum dig_status status = dig_lists_update(w);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    for (size_t a = 0; a < w->grains.kinds; a++) {
+        for (size_t b = a; b < w->grains.kinds; b++) {
+            const struct dig_kind ka = w->grains.kind[a];
+            const struct dig_kind kb = w->grains.kind[b];
+            const struct dig_law  law =
+                dig_law_pair(&w->material, ka.radius_m, kb.radius_m, ka.mass_kg, kb.mass_kg);
+            dig_kernel_pairs(w->isa, &law, w->dt_s, &w->pair[a * DIG_KINDS_MAX + b], &w->grains);
+        }
+    }
+    dig_surfaces_step(w);
+    w->stale   = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
+                                    w->dt_s, (const double(*)[4])w->at_m, &w->grains);
+    w->started = true;
+    w->steps++;
+    return DIG_OK;
+}
+
+void dig_world_finish(struct dig_world *const world)
+{
+    if (world == NULL) {
+        return;
+    }
+    dig_grains_finish(&world->grains);
+    dig_lists_finish(world);
+}
