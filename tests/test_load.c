@@ -1,0 +1,292 @@
+// Tests for tables/load.c and derive.c
+
+#include "tables/load.h"
+
+#include "files/scene_yaml.h"
+#include "tests/tables_fixture.h"
+
+static struct dig_curve_set *load(const char *const name)
+{
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return set;
+}
+
+static const struct dig_curve *curve_of(const struct dig_curve_set *const set, const size_t entry,
+                                        const size_t trajectory)
+{
+    return &set->curve[entry * set->trajectories + trajectory];
+}
+
+static void the_head_is_that_of_the_scene(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("head.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    dig_store_close(store);
+    struct dig_curve_set *const set   = load("head.sqlite");
+    const struct dig_scene      scene = fixture_scene();
+    char                        hash[65];
+    dig_scene_hash(&scene, hash);
+    assert_string_equal(set->scene_hash, hash);
+    assert_string_equal(set->scene_name, "tub");
+    assert_close(set->tooth_m, 0.09, 0.0);
+    assert_close(set->bucket_width_m, 0.07, 0.0);
+    assert_close(set->young_Pa, 5e6, 0.0);
+    assert_close(set->smooth_half_s, 0.16, 0.0);
+    assert_int_equal(set->trajectories, 2);
+    for (size_t t = 0; t < 2; t++) {
+        const struct dig_trajectory *const a = &set->trajectory[t], *const b = &scene.trajectory[t];
+        assert_string_equal(a->name, b->name);
+        assert_int_equal(a->phases, b->phases);
+        assert_close(a->theta0_rad, b->theta0_rad, 0.0);
+        assert_close(a->start_x_m, b->start_x_m, 0.0);
+        assert_close(a->phase[0].vx_mps, b->phase[0].vx_mps, 0.0);
+        assert_close(a->phase[0].duration_s, b->phase[0].duration_s, 0.0);
+    }
+    dig_curve_set_destroy(set);
+}
+
+static void mean_and_spread_are_those_of_the_packings(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("mean.sqlite");
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 2, 0, 6.0);
+    dig_store_close(store);
+    struct dig_curve_set *const   set = load("mean.sqlite");
+    const struct dig_curve *const c   = curve_of(set, 0, 0);
+    const double                  sd  = sqrt((4.0 + 1.0 + 9.0) / 2.0);
+    assert_int_equal(set->packings[0], 3);
+    assert_int_equal(set->packings[1], 0);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close((double)c->mean[DIG_CHANNEL_MY_Nm][k], 3.0, 1e-6);
+        assert_close((double)c->mean[DIG_CHANNEL_FX_N][k], 6.0, 1e-6);
+        assert_close((double)c->mean[DIG_CHANNEL_FZ_N][k], -9.0, 1e-6);
+        assert_close((double)c->sd[DIG_CHANNEL_MY_Nm][k], sd, 1e-6);
+        assert_close((double)c->sd[DIG_CHANNEL_FZ_N][k], 3.0 * sd, 1e-5);
+    }
+    dig_curve_set_destroy(set);
+}
+
+// A straight line is its own moving average, so away from the ends the curve is the line at the
+// time at which that part of the path is done, which is worked out by hand here.
+static void a_curve_runs_along_the_path_not_along_time(void **state)
+{
+    (void)state;
+    struct dig_store *const     store = fixture_create("path.sqlite");
+    const struct dig_run_origin pull  = fixture_origin(.3, .3, 2500.0, 0, 0);
+    const struct dig_run_origin push  = fixture_origin(.3, .3, 2500.0, 0, 1);
+    struct dig_recording        ramp  = fixture_ramp(400, 10.0, 4.0);
+    assert_int_equal(dig_store_put(store, &pull, &ramp, NULL), DIG_OK);
+    ramp = fixture_ramp(200, 10.0, 4.0);
+    assert_int_equal(dig_store_put(store, &push, &ramp, NULL), DIG_OK);
+    dig_store_close(store);
+    struct dig_curve_set *const set = load("path.sqlite");
+
+    const float *const along_pull = curve_of(set, 0, 0)->mean[DIG_CHANNEL_MY_Nm];
+    assert_close((double)along_pull[51], 10.0 + 4.0 * 0.4, 1e-5);  // a fifth of 2 s
+    assert_close((double)along_pull[204], 10.0 + 4.0 * 1.6, 1e-5); // four fifths
+    const float *const along_push = curve_of(set, 0, 1)->mean[DIG_CHANNEL_MY_Nm];
+    assert_close((double)along_push[51], 10.0 + 4.0 * 0.4, 1e-5); // slow half: 1 path in 2 s
+    assert_close((double)along_push[153], 10.0 + 4.0 * (0.5 + 0.35 / 0.75 * 0.5), 1e-5);
+    dig_curve_set_destroy(set);
+}
+
+// A step of the moment: the average over +-0.16 s turns it into a ramp 0.32 s long.
+static void a_step_becomes_a_ramp_as_long_as_the_moving_average(void **state)
+{
+    (void)state;
+    struct dig_store *const     store  = fixture_create("step.sqlite");
+    const struct dig_run_origin origin = fixture_origin(.3, .3, 2500.0, 0, 0);
+    struct dig_recording        step   = fixture_recording(400, 1.0);
+    for (size_t i = 0; i < 200; i++) {
+        step.row[i].My_Nm = 0.0;
+    }
+    assert_int_equal(dig_store_put(store, &origin, &step, NULL), DIG_OK);
+    dig_store_close(store);
+    struct dig_curve_set *const set = load("step.sqlite");
+    const float *const          y   = curve_of(set, 0, 0)->mean[DIG_CHANNEL_MY_Nm];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double t_s = 2.0 * (double)k / 255.0;
+        assert_close((double)y[k], fmin(fmax((t_s - 1.0 + 0.16) / 0.32, 0.0), 1.0), 0.004);
+    }
+    dig_curve_set_destroy(set);
+}
+
+static void a_single_packing_takes_the_pooled_relative_spread(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("pool.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0); // mean 2, variance 2: one half of its square
+    fixture_put(store, .3, .3, 1, 0, 3.0);
+    fixture_put(store, .5, .3, 0, 0, 4.0); // no spread, with twice the weight
+    fixture_put(store, .5, .3, 1, 0, 4.0);
+    fixture_put(store, .5, .3, 2, 0, 4.0);
+    fixture_put(store, .9, .3, 0, 0, -10.0);
+    fixture_put(store, .9, .3, 0, 1, 5.0); // nobody has a second packing on "push"
+    dig_store_close(store);
+    struct dig_curve_set *const set = load("pool.sqlite");
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close((double)curve_of(set, 0, 0)->sd[0][k], sqrt(2.0), 1e-5);
+        assert_close((double)curve_of(set, 1, 0)->sd[0][k], 0.0, 1e-6);
+        assert_close((double)curve_of(set, 2, 0)->sd[0][k], 10.0 * sqrt(0.5 / 3.0), 1e-4);
+        assert_close((double)curve_of(set, 2, 1)->sd[0][k], 1.0, 1e-5);
+    }
+    dig_curve_set_destroy(set);
+}
+
+static void the_grid_knows_its_axes_and_its_holes(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("grid.sqlite");
+    fixture_put(store, .9, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .9, 0, 0, 2.0);
+    fixture_put(store, .3, .1, 0, 0, 3.0);
+    dig_store_close(store);
+    struct dig_curve_set *const set = load("grid.sqlite");
+    assert_int_equal(set->entries, 3);
+    assert_int_equal(set->axis_count[DIG_AXIS_FRICTION], 2);
+    assert_int_equal(set->axis_count[DIG_AXIS_ROLLING], 3);
+    assert_int_equal(set->axis_count[DIG_AXIS_DENSITY_kgpm3], 1);
+    assert_close(set->axis[DIG_AXIS_ROLLING][0], .1, 0.0);
+    assert_close(set->axis[DIG_AXIS_ROLLING][2], .9, 0.0);
+
+    // Friction slowest: (.3, .1) (.3, .3) (.3, .9) (.9, .1) (.9, .3) (.9, .9).
+    static const double moment[] = { 3.0, 0.0, 2.0, 0.0, 1.0, 0.0 };
+    for (size_t i = 0; i < 6; i++) {
+        if (moment[i] > 0.0) {
+            assert_true(set->cell[i] >= 0);
+            assert_close((double)curve_of(set, (size_t)set->cell[i], 0)->mean[0][100], moment[i],
+                         1e-6);
+        } else {
+            assert_int_equal(set->cell[i], -1);
+        }
+    }
+    dig_curve_set_destroy(set);
+    dig_curve_set_destroy(NULL);
+}
+
+static void damage_is_refused_and_named(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("good.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    dig_store_close(store);
+    static const struct {
+        const char     *sql;
+        enum dig_status status;
+        const char     *says;
+    } bad[] = {
+        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 1" },
+        { "PRAGMA application_id = 99", DIG_EINVAL, "not a digsight table (application_id 99" },
+        { "UPDATE scene SET hash = replace(hash, substr(hash, 1, 1), 'x')", DIG_EINVAL,
+          "scene.hash: " },
+        { "UPDATE scene SET canonical = canonical || ' '", DIG_EINVAL, "scene.hash: " },
+        { "UPDATE scene SET tooth_m = -1", DIG_EINVAL, "scene: tooth_m" },
+        { "UPDATE scene SET points = 128", DIG_ESCHEMA, "scene.points: 128, expected 256" },
+        { "DELETE FROM scene", DIG_EINVAL, "scene: no row" },
+        { "UPDATE trajectory SET theta0_rad = 0.5", DIG_EINVAL,
+          "the rows differ from scene.canon" },
+        { "UPDATE phase SET vx_mps = 0.06 WHERE trajectory = 0", DIG_EINVAL,
+          "trajectory: the rows" },
+        { "UPDATE phase SET duration_s = 0", DIG_EINVAL, "phase.duration_s: expected > 0" },
+        { "DELETE FROM phase WHERE number = 0", DIG_EINVAL, "trajectory: " },
+        { "UPDATE entry SET mean = x'00'", DIG_EINVAL, "entry.mean, entry.spread: expected 768" },
+        { "UPDATE entry SET mean = CAST(mean || x'00' AS BLOB)", DIG_EINVAL, "entry.mean" },
+        { "UPDATE entry SET spread = CAST(substr(spread, 1, 400) || x'0000c07f' || "
+          "substr(spread, 405) AS BLOB)",
+          DIG_EINVAL, "finite" },
+        { "UPDATE entry SET trajectory = 1; UPDATE entry SET trajectory = 9", DIG_EINVAL,
+          "refers to nothing" },
+        { "UPDATE gravel SET rolling = -0.5", DIG_EINVAL, "gravel.rolling: -0.5, expected >= 0" },
+        { "DELETE FROM entry; DELETE FROM run; DELETE FROM gravel", DIG_EINVAL, "gravel: no rows" },
+        { "DROP TABLE entry", DIG_EIO, "no such table: entry" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_curve_set *set   = NULL;
+        struct dig_error      error = { "" };
+        const char *const     path  = fixture_copy("good.sqlite", "bad.sqlite", bad[i].sql);
+        assert_int_equal(dig_table_load(path, &set, &error), bad[i].status);
+        assert_null(set);
+        assert_contains(error.text, "bad.sqlite: ");
+        assert_contains(error.text, bad[i].says);
+    }
+}
+
+static void what_is_no_table_is_refused(void **state)
+{
+    (void)state;
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    assert_int_equal(dig_table_load(scratch_path("absent.sqlite"), &set, &error), DIG_EIO);
+    assert_contains(error.text, "absent.sqlite: No such file");
+    assert_false(scratch_exists("absent.sqlite"));
+    assert_int_equal(dig_table_load(scratch_dir, &set, &error), DIG_EINVAL);
+    assert_contains(error.text, "expected a regular file");
+    assert_int_equal(dig_table_load(scratch_write("empty.sqlite", ""), &set, &error), DIG_EINVAL);
+    assert_contains(error.text, "not a digsight table");
+    assert_int_equal(
+        dig_table_load(scratch_write("text.sqlite", "friction,rolling\n1,2\n"), &set, &error),
+        DIG_EINVAL);
+    assert_contains(error.text, "not a digsight table");
+    assert_null(set);
+}
+
+// Cut at every page and flipped at places spread over the file: a set or a refusal, never more.
+static void a_damaged_file_never_does_worse_than_a_refusal(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("whole.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .5, 0, 1, 2.0);
+    dig_store_close(store);
+    size_t      size    = 0;
+    char *const whole   = scratch_read(scratch_path("whole.sqlite"), &size);
+    size_t      refused = 0, tried = 0;
+    uint32_t    random = 12345;
+    for (int i = 0; i < 400; i++) {
+        random                      = random * 1664525U + 1013904223U;
+        const size_t at             = i < 200 ? (size_t)i * 7 % size : random % size;
+        const char   kept           = whole[at];
+        whole[at]                   = (char)(kept ^ (1 << (random >> 29)));
+        struct dig_curve_set *set   = NULL;
+        struct dig_error      error = { "" };
+        const enum dig_status status =
+            dig_table_load(scratch_write_bytes("flip.sqlite", whole, size), &set, &error);
+        assert_true((status == DIG_OK) == (set != NULL));
+        refused += status != DIG_OK;
+        tried++;
+        dig_curve_set_destroy(set);
+        whole[at] = kept;
+    }
+    for (size_t cut = 0; cut < size; cut += 4096) {
+        struct dig_curve_set *set = NULL;
+        assert_int_not_equal(
+            dig_table_load(scratch_write_bytes("cut.sqlite", whole, cut), &set, NULL), DIG_OK);
+        assert_null(set);
+    }
+    free(whole);
+    assert_true(refused > 0 && refused < tried);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_head_is_that_of_the_scene),
+        cmocka_unit_test(mean_and_spread_are_those_of_the_packings),
+        cmocka_unit_test(a_curve_runs_along_the_path_not_along_time),
+        cmocka_unit_test(a_step_becomes_a_ramp_as_long_as_the_moving_average),
+        cmocka_unit_test(a_single_packing_takes_the_pooled_relative_spread),
+        cmocka_unit_test(the_grid_knows_its_axes_and_its_holes),
+        cmocka_unit_test(damage_is_refused_and_named),
+        cmocka_unit_test(what_is_no_table_is_refused),
+        cmocka_unit_test(a_damaged_file_never_does_worse_than_a_refusal),
+    };
+    return cmocka_run_group_tests_name("load", tests, scratch_setup, scratch_teardown);
+}

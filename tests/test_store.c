@@ -1,0 +1,309 @@
+// Tests for tables/store.c, put.c, runs.c, check.c and schema.c
+
+#include "tables/store.h"
+
+#include "tests/tables_fixture.h"
+
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <time.h>
+
+static void run_sql(const char *const name, const char *const sql)
+{
+    sqlite3 *db    = NULL;
+    char    *error = NULL;
+    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, &error) != SQLITE_OK) {
+        fail_msg("%s: %s", sql, error);
+    }
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+static sqlite3_int64 ask(const char *const name, const char *const sql)
+{
+    sqlite3      *db = NULL;
+    sqlite3_stmt *s  = NULL;
+    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &s, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
+    const sqlite3_int64 answer = sqlite3_column_int64(s, 0);
+    (void)sqlite3_finalize(s);
+    (void)sqlite3_close(db);
+    return answer;
+}
+
+static void a_new_table_says_what_it_is(void **state)
+{
+    (void)state;
+    dig_store_close(fixture_create("new.sqlite"));
+    assert_int_equal(ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
+    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 1);
+    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
+    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
+    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
+    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM pragma_table_list WHERE schema = "
+                                       "'main' AND NOT strict AND name NOT LIKE 'sqlite_%'"),
+                     0);
+    assert_false(scratch_exists("new.sqlite-wal"));
+    assert_false(scratch_exists("new.sqlite-journal"));
+}
+
+struct seen {
+    size_t         runs;
+    struct dig_run last;
+    float          first_value;
+};
+
+static enum dig_status see(void *const context, const struct dig_run *const run,
+                           struct dig_error *const error)
+{
+    (void)error;
+    struct seen *const seen = context;
+    seen->runs++;
+    seen->last        = *run;
+    seen->last.value  = NULL;
+    seen->first_value = run->value[DIG_CHANNEL_FZ_N * run->windows];
+    return DIG_OK;
+}
+
+static void a_run_comes_back_with_where_it_came_from(void **state)
+{
+    (void)state;
+    struct dig_store *store = fixture_create("run.sqlite");
+    fixture_put(store, .3, .5, 7, 1, 0.75);
+    bool                    there  = false;
+    const struct dig_gravel gravel = { { .3, .5, 2500.0 } };
+    assert_int_equal(dig_store_has(store, &gravel, 7, 1, &there, NULL), DIG_OK);
+    assert_true(there);
+    assert_int_equal(dig_store_has(store, &gravel, 7, 0, &there, NULL), DIG_OK);
+    assert_false(there);
+    assert_int_equal(dig_store_has(store, &gravel, 6, 1, &there, NULL), DIG_OK);
+    assert_false(there);
+    dig_store_close(store);
+
+    assert_int_equal(dig_store_open(scratch_path("run.sqlite"), &store, NULL), DIG_OK);
+    struct seen                  seen    = { .runs = 0 };
+    const struct dig_run_visitor visitor = { see, &seen };
+    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
+    assert_int_equal(seen.runs, 1);
+    assert_close(seen.last.origin.gravel.value[DIG_AXIS_ROLLING], .5, 0.0);
+    assert_int_equal(seen.last.origin.packing, 7);
+    assert_int_equal(seen.last.origin.trajectory, 1);
+    assert_true(seen.last.origin.seed == 4611686018427387912U);
+    assert_string_equal(seen.last.origin.engine, "test");
+    assert_string_equal(seen.last.origin.version, "1.2");
+    assert_int_equal(seen.last.origin.grains, 12);
+    assert_close(seen.last.origin.wall_s, 0.5, 0.0);
+    assert_int_equal(seen.last.windows, 200);
+    assert_close(seen.last.first_s, 0.0025, 0.0);
+    assert_close(seen.last.step_s, 0.005, 1e-15);
+    assert_close((double)seen.first_value, -2.25, 0.0);
+    dig_store_close(store);
+}
+
+static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
+{
+    (void)state;
+    struct dig_store           *store     = fixture_create("once.sqlite");
+    struct dig_error            error     = { "" };
+    const struct dig_run_origin origin    = fixture_origin(.3, .5, 2500.0, 0, 0);
+    struct dig_recording        recording = fixture_recording(400, 1.0);
+    assert_int_equal(dig_store_put(store, &origin, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_store_put(store, &origin, &recording, &error), DIG_EINVAL);
+    assert_contains(error.text, "packing 0 of friction 0.3, rolling 0.5, 2500 kg/m3 on pull is "
+                                "there already");
+
+    const struct dig_run_origin second = fixture_origin(.9, .5, 2500.0, 1, 0);
+    recording.row[17].My_Nm            = (double)NAN;
+    assert_int_equal(dig_store_put(store, &second, &recording, &error), DIG_EINVAL);
+    assert_contains(error.text, "row 18: expected finite");
+    recording = fixture_recording(400, 1.0);
+    recording.row[17].t_s += 0.001;
+    assert_int_equal(dig_store_put(store, &second, &recording, &error), DIG_EINVAL);
+    assert_contains(error.text, "row 18: t_s 0.0885, expected evenly spaced");
+    recording      = fixture_recording(400, 1.0);
+    recording.rows = 1;
+    assert_int_equal(dig_store_put(store, &second, &recording, &error), DIG_EINVAL);
+    dig_store_close(store);
+    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM run"), 1);
+    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM gravel"), 1);
+    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
+}
+
+static void another_scene_is_refused_and_both_are_named(void **state)
+{
+    (void)state;
+    dig_store_close(fixture_create("scene.sqlite"));
+    size_t            before_size = 0, after_size = 0;
+    char *const       before = scratch_read(scratch_path("scene.sqlite"), &before_size);
+    struct dig_scene  other  = fixture_scene();
+    struct dig_error  error  = { "" };
+    struct dig_store *store  = NULL;
+    other.material.young_Pa  = 6e6;
+    (void)snprintf(other.name, sizeof other.name, "stiffer");
+    assert_int_equal(dig_store_create(scratch_path("scene.sqlite"), &other, &store, &error),
+                     DIG_EINVAL);
+    assert_null(store);
+    assert_contains(error.text, "holds \"tub\" (");
+    assert_contains(error.text, "not \"stiffer\" (");
+    char *const after = scratch_read(scratch_path("scene.sqlite"), &after_size);
+    assert_int_equal(before_size, after_size);
+    assert_memory_equal(before, after, after_size);
+    free(before);
+    free(after);
+}
+
+static void what_cannot_become_a_table_is_left_as_it_was(void **state)
+{
+    (void)state;
+    struct dig_scene  scene = fixture_scene();
+    struct dig_error  error = { "" };
+    struct dig_store *store = NULL;
+    assert_int_equal(
+        dig_store_create(scratch_write("text.sqlite", "no database at all, just a text file\n"),
+                         &scene, &store, &error),
+        DIG_EINVAL);
+    assert_contains(error.text, "text.sqlite: not a digsight table");
+    size_t size = 0;
+    char  *text = scratch_read(scratch_path("text.sqlite"), &size);
+    assert_string_equal(text, "no database at all, just a text file\n");
+    free(text);
+
+    run_sql("other.sqlite", "CREATE TABLE photos (id INTEGER)");
+    assert_int_equal(dig_store_create(scratch_path("other.sqlite"), &scene, &store, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
+
+    dig_store_close(fixture_create("newer.sqlite"));
+    run_sql("newer.sqlite", "PRAGMA user_version = 2");
+    assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
+                     DIG_ESCHEMA);
+    assert_contains(error.text, "newer.sqlite: user_version: table format 2, expected 1");
+
+    assert_int_equal(
+        dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);
+    scene.bucket.points = 1;
+    assert_int_equal(dig_store_create(scratch_path("bad.sqlite"), &scene, &store, &error),
+                     DIG_EINVAL);
+    assert_false(scratch_exists("bad.sqlite"));
+    assert_null(store);
+}
+
+static void a_file_not_yet_filled_becomes_a_table(void **state)
+{
+    (void)state;
+    (void)scratch_write("empty.sqlite", "");
+    dig_store_close(fixture_create("empty.sqlite"));
+    assert_int_equal(ask("empty.sqlite", "SELECT count(*) FROM scene"), 1);
+}
+
+static void there_is_one_writer_at_a_time(void **state)
+{
+    (void)state;
+    struct dig_store      *first  = fixture_create("lock.sqlite");
+    struct dig_store      *second = NULL;
+    const struct dig_scene scene  = fixture_scene();
+    struct dig_error       error  = { "" };
+    assert_int_equal(dig_store_create(scratch_path("lock.sqlite"), &scene, &second, &error),
+                     DIG_EIO);
+    assert_contains(error.text, "another process is adding to this table");
+    assert_int_equal(dig_store_open(scratch_path("lock.sqlite"), &second, NULL), DIG_OK);
+    fixture_put(first, .3, .3, 0, 0, 1.0); // while a reader has it open
+    dig_store_close(second);
+    dig_store_close(first);
+    assert_int_equal(dig_store_create(scratch_path("lock.sqlite"), &scene, &second, NULL), DIG_OK);
+    dig_store_close(second);
+}
+
+// Killed at moments spread over its work, a writer leaves whole runs with their entries, and the
+// next one goes on behind the last of them.
+static void a_killed_writer_leaves_whole_runs_only(void **state)
+{
+    (void)state;
+    dig_store_close(fixture_create("killed.sqlite"));
+    for (int round = 1; round <= 8; round++) {
+        const sqlite3_int64 before = ask("killed.sqlite", "SELECT count(*) FROM run");
+        const pid_t         child  = fork();
+        if (child == 0) {
+            struct dig_store *const store = fixture_create("killed.sqlite");
+            for (size_t k = (size_t)before;; k++) {
+                fixture_put(store, .3, .3, k, 0, (double)k);
+            }
+        }
+        assert_true(child > 0);
+        const struct timespec some = { .tv_nsec = 7000000L * round };
+        (void)nanosleep(&some, NULL);
+        assert_int_equal(kill(child, SIGKILL), 0);
+        assert_int_equal(waitpid(child, NULL, 0), child);
+
+        struct dig_store *const store = fixture_create("killed.sqlite");
+        const sqlite3_int64     after = ask("killed.sqlite", "SELECT count(*) FROM run");
+        assert_true(after >= before);
+        if (after > 0) {
+            struct dig_store_report report = { .entries = 0 };
+            struct dig_error        error  = { "" };
+            if (dig_store_check(store, &report, &error) != DIG_OK) {
+                fail_msg("%s", error.text);
+            }
+            assert_int_equal(report.runs, after);
+        }
+        dig_store_close(store);
+    }
+    assert_true(ask("killed.sqlite", "SELECT count(*) FROM run") > 0);
+    assert_int_equal(ask("killed.sqlite", "SELECT count(*) - max(packing) FROM run"), 1);
+}
+
+static void the_check_counts_holes_and_finds_entries_that_lie(void **state)
+{
+    (void)state;
+    struct dig_store *store = fixture_create("check.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    fixture_put(store, .5, .5, 0, 0, 3.0);
+    fixture_put(store, .9, .3, 0, 0, 3.0);
+    fixture_put(store, .9, .3, 1, 0, 3.5);
+    struct dig_store_report report = { .entries = 0 };
+    assert_int_equal(dig_store_check(store, &report, NULL), DIG_OK);
+    assert_int_equal(report.points, 3);
+    assert_int_equal(report.entries, 3);
+    assert_int_equal(report.runs, 5);
+    assert_int_equal(report.holes, 3);
+    assert_int_equal(report.incomplete, 1);
+    dig_store_close(store);
+
+    static const char *const lies[] = {
+        "UPDATE entry SET mean = (SELECT mean FROM entry WHERE gravel = 2) WHERE gravel = 1",
+        "UPDATE entry SET spread = mean WHERE gravel = 3",
+        "UPDATE entry SET packings = 3 WHERE gravel = 3",
+        "DELETE FROM entry WHERE gravel = 1",
+        "DELETE FROM run WHERE gravel = 2",
+    };
+    for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+        struct dig_error error = { "" };
+        report                 = (struct dig_store_report){ .runs = 42 };
+        (void)fixture_copy("check.sqlite", "lie.sqlite", lies[i]);
+        assert_int_equal(dig_store_open(scratch_path("lie.sqlite"), &store, NULL), DIG_OK);
+        assert_int_equal(dig_store_check(store, &report, &error), DIG_EINVAL);
+        assert_contains(error.text, "lie.sqlite: entry: friction");
+        assert_contains(error.text, "expected");
+        assert_int_equal(report.runs, 42);
+        dig_store_close(store);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_new_table_says_what_it_is),
+        cmocka_unit_test(a_run_comes_back_with_where_it_came_from),
+        cmocka_unit_test(a_run_is_stored_once_and_a_bad_one_not_at_all),
+        cmocka_unit_test(another_scene_is_refused_and_both_are_named),
+        cmocka_unit_test(what_cannot_become_a_table_is_left_as_it_was),
+        cmocka_unit_test(a_file_not_yet_filled_becomes_a_table),
+        cmocka_unit_test(there_is_one_writer_at_a_time),
+        cmocka_unit_test(a_killed_writer_leaves_whole_runs_only),
+        cmocka_unit_test(the_check_counts_holes_and_finds_entries_that_lie),
+    };
+    return cmocka_run_group_tests_name("store", tests, scratch_setup, scratch_teardown);
+}
