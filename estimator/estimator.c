@@ -334,20 +334,35 @@ void dig_estimator_give_match(struct dig_estimator *const   estimator,
     }
 }
 
-void dig_estimator_predict(const struct dig_estimator *const estimator,
-                           struct dig_prediction *const      prediction)
+// The prediction for one trajectory from `progress` to its end; valid = false without a match.
+static struct dig_prediction predict_from(const struct dig_estimator *const estimator,
+                                          const int trajectory, const double progress)
 {
-    assert(estimator != NULL && prediction != NULL);
-    struct dig_prediction p = { .valid = false, .trajectory = estimator->trajectory };
-    if (estimator->trajectory >= 0 && estimator->outlook[estimator->trajectory].valid) {
-        const struct dig_outlook *const outlook = &estimator->outlook[estimator->trajectory];
+    struct dig_prediction p = { .valid = false, .trajectory = trajectory };
+    if (trajectory >= 0 && (size_t)trajectory < estimator->set->trajectories &&
+        estimator->outlook[trajectory].valid) {
+        const struct dig_outlook *const outlook = &estimator->outlook[trajectory];
         p.valid                                 = true;
-        p.progress_now                          = estimator->progress;
-        p.from_progress                         = estimator->progress;
+        p.progress_now                          = progress;
+        p.from_progress                         = progress;
         p.to_progress                           = 1.0;
         p.peak_Nm                               = outlook->peak_Nm;
         p.energy_J                              = outlook->energy_J;
         dig_predict_points(&outlook->curve, estimator->lambda, &p);
     }
-    *prediction = p;
+    return p;
+}
+
+void dig_estimator_predict(const struct dig_estimator *const estimator,
+                           struct dig_prediction *const      prediction)
+{
+    assert(estimator != NULL && prediction != NULL);
+    *prediction = predict_from(estimator, estimator->trajectory, estimator->progress);
+}
+
+void dig_estimator_predict_whole(const struct dig_estimator *const estimator, const int trajectory,
+                                 struct dig_prediction *const prediction)
+{
+    assert(estimator != NULL && prediction != NULL);
+    *prediction = predict_from(estimator, trajectory, 0.0);
 }

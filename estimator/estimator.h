@@ -134,4 +134,9 @@ void dig_estimator_give_match(struct dig_estimator *estimator, const struct dig_
 void dig_estimator_predict(const struct dig_estimator *estimator,
                            struct dig_prediction      *prediction);
 
+/// Prediction for a dig that has not begun, whole, along the trajectory of that index; valid =
+/// false when no match was given or the set has no such trajectory. Constant time.
+void dig_estimator_predict_whole(const struct dig_estimator *estimator, int trajectory,
+                                 struct dig_prediction *prediction);
+
 #endif // DIG_ESTIMATOR_ESTIMATOR_H

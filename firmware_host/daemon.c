@@ -121,6 +121,8 @@ static void connect_threads(struct dig_daemon *const d)
         .tick_s       = config->tick_s,
         .stale_s      = config->stale_s,
         .prediction_s = config->prediction_s,
+        .ahead_s      = 0.5,
+        .trajectories = (int)d->loaded.set->trajectories,
     };
     const struct dig_loop_ports ports = { &d->readings, &d->match,   &d->records,
                                           &d->digs,     &d->outlook, &d->pulse };

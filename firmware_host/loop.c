@@ -37,6 +37,30 @@ static void take_sample(struct dig_loop *const loop, const struct dig_sample *co
     }
 }
 
+static void hand_on(struct dig_loop *const loop, const int64_t now_ns, const double lives_s)
+{
+    struct dig_outlook *const outlook = &loop->outlook;
+    outlook->time_ns                  = now_ns;
+    outlook->expires_ns               = now_ns + ns(lives_s);
+    outlook->dig_count                = loop->match_dig;
+    dig_latest_put(loop->ports.outlook, outlook);
+}
+
+// In the air, what each of the table's digs would resist with, one trajectory after the other.
+static void look_ahead(struct dig_loop *const loop, const int64_t now_ns)
+{
+    if (loop->settings.trajectories == 0 || loop->estimate.phase != DIG_PHASE_AIR ||
+        now_ns - loop->ahead_ns < ns(loop->settings.ahead_s)) {
+        return;
+    }
+    loop->ahead = (loop->ahead + 1) % loop->settings.trajectories;
+    dig_estimator_predict_whole(loop->estimator, loop->ahead, &loop->outlook.prediction);
+    if (loop->outlook.prediction.valid) {
+        loop->ahead_ns = now_ns;
+        hand_on(loop, now_ns, 2.0 * loop->settings.ahead_s * loop->settings.trajectories);
+    }
+}
+
 // A prediction while a dig goes on on fresh samples; one that says "no longer" when it ends.
 static void predict(struct dig_loop *const loop, const int64_t now_ns)
 {
@@ -49,12 +73,9 @@ static void predict(struct dig_loop *const loop, const int64_t now_ns)
         dig_estimator_predict(loop->estimator, &outlook->prediction);
     }
     if (outlook->prediction.valid || loop->predicting) {
-        loop->predicting    = outlook->prediction.valid;
-        loop->predicted_ns  = now_ns;
-        outlook->time_ns    = now_ns;
-        outlook->expires_ns = now_ns + ns(2.0 * loop->settings.prediction_s);
-        outlook->dig_count  = loop->match_dig;
-        dig_latest_put(loop->ports.outlook, outlook);
+        loop->predicting   = outlook->prediction.valid;
+        loop->predicted_ns = now_ns;
+        hand_on(loop, now_ns, 2.0 * loop->settings.prediction_s);
     }
 }
 
@@ -77,6 +98,7 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
     loop->pulse.fresh =
         loop->sampled_ns > 0 && now_ns - loop->sampled_ns <= ns(loop->settings.stale_s);
     predict(loop, now_ns);
+    look_ahead(loop, now_ns);
 
     loop->pulse.ticks++;
     loop->pulse.missing += loop->pulse.fresh ? 0 : 1;

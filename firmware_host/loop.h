@@ -54,6 +54,8 @@ struct dig_loop_settings {
     double                        tick_s;
     double                        stale_s;      // wall time
     double                        prediction_s; // between predictions, wall time
+    double                        ahead_s;      // between whole predictions in the air, wall time
+    int                           trajectories; // of the table: each is predicted ahead in turn
 };
 
 struct dig_loop {
@@ -69,6 +71,8 @@ struct dig_loop {
     int64_t                  sampled_ns;   // when the last complete sample was taken; 0: never
     int64_t                  predicted_ns; // when the last prediction was made
     bool                     predicting;   // the last one handed on was valid
+    int64_t                  ahead_ns;     // when the last whole prediction was made
+    int                      ahead;        // the trajectory it was for
 };
 
 /// The estimator must be initialised and outlive the loop.
