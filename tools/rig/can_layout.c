@@ -42,7 +42,7 @@ struct dig_rig_can_frame dig_rig_can_angles(const struct dig_sample *const sampl
     struct dig_rig_can_frame frame = blank(0x18FF7DE8);
     for (int i = 0; i < 3; i++) {
         const enum dig_signal signal = (enum dig_signal)(DIG_SIGNAL_BOOM_rad + i);
-        put_le(frame.data + 2 * i, raw_of(sample, signal, 0.0004, -10.0, 0xFFFF));
+        put_le(&frame.data[2 * i], raw_of(sample, signal, 0.0004, -10.0, 0xFFFF));
     }
     return frame;
 }

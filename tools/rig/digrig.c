@@ -2,6 +2,7 @@
 
 #include "core/recording.h"
 #include "core/scene.h"
+#include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
@@ -12,6 +13,7 @@
 #include "tools/rig/track.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
@@ -22,20 +24,77 @@ static int complain(const enum dig_status status, const struct dig_error *const 
     return status == DIG_EIO || status == DIG_ENOMEM ? EXIT_FAILED : EXIT_USAGE;
 }
 
+static enum dig_status read_tooth(const char *const scene_path, double *const tooth_m,
+                                  struct dig_error *const error)
+{
+    struct dig_scene      scene;
+    const enum dig_status status = dig_scene_read(scene_path, &scene, error);
+    if (status == DIG_OK) {
+        *tooth_m = dig_scene_tooth_m(&scene);
+    }
+    return status;
+}
+
+struct digs {
+    size_t               recordings;
+    struct dig_recording recording[DIG_CAMPAIGN_MAX];
+};
+
+static void digs_finish(struct digs *const digs)
+{
+    for (size_t i = 0; i < digs->recordings; i++) {
+        dig_recording_finish(&digs->recording[i]);
+    }
+    free(digs);
+}
+
+static enum dig_status add_dig(struct digs *const digs, const char *const path,
+                               struct dig_error *const error)
+{
+    if (digs->recordings == DIG_CAMPAIGN_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%s: more than %d recordings", path,
+                             DIG_CAMPAIGN_MAX);
+    }
+    const enum dig_status status =
+        dig_recording_read(path, &digs->recording[digs->recordings], error);
+    digs->recordings += status == DIG_OK ? 1 : 0;
+    return status;
+}
+
+// All of a campaign, in its order; its scene counts unless another was given.
+static enum dig_status add_campaign(struct digs *const digs, const char *const folder,
+                                    const bool scene_given, double *const tooth_m,
+                                    struct dig_error *const error)
+{
+    struct dig_campaign *const campaign = malloc(sizeof *campaign);
+    if (campaign == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s", folder);
+    }
+    enum dig_status status = dig_campaign_read(folder, campaign, error);
+    if (status == DIG_OK && !scene_given) {
+        status = read_tooth(campaign->scene, tooth_m, error);
+    }
+    for (size_t i = 0; status == DIG_OK && i < campaign->recordings; i++) {
+        status = add_dig(digs, campaign->recording[i].file, error);
+    }
+    free(campaign);
+    return status;
+}
+
 static enum dig_status load(const struct dig_rig_options *const options,
-                            struct dig_machine *const machine, double *const scene_tooth_m,
-                            struct dig_recording recording[], struct dig_error *const error)
+                            struct dig_machine *const machine, double *const tooth_m,
+                            struct digs *const digs, struct dig_error *const error)
 {
     enum dig_status status = dig_machine_read(options->machine, machine, error);
     if (status == DIG_OK && options->scene != NULL) {
-        struct dig_scene scene;
-        status = dig_scene_read(options->scene, &scene, error);
-        if (status == DIG_OK) {
-            *scene_tooth_m = dig_scene_tooth_m(&scene);
-        }
+        status = read_tooth(options->scene, tooth_m, error);
     }
     for (size_t i = 0; i < options->inputs && status == DIG_OK; i++) {
-        status = dig_recording_read(options->input[i], &recording[i], error);
+        const char *const input = options->input[i];
+        status                  = dig_campaign_is(input)
+                                      ? add_campaign(digs, input, options->scene != NULL || options->tooth_given,
+                                                     tooth_m, error)
+                                      : add_dig(digs, input, error);
     }
     // A file that cannot be opened is a bad argument here, not a failure of the work.
     return status == DIG_EIO ? DIG_EINVAL : status;
@@ -58,20 +117,22 @@ static void describe(const struct dig_machine *const machine, const double scene
 
 static int work(const struct dig_rig_options *const options)
 {
-    struct dig_error             error                         = { "" };
-    struct dig_machine           machine                       = { .name = "" };
-    struct dig_recording         recording[DIG_RIG_INPUTS_MAX] = { { .rows = 0 } };
-    struct dig_rig_track         track                         = { .rows = 0 };
-    struct dig_rig_track_options track_options                 = options->track;
+    struct dig_error             error         = { "" };
+    struct dig_machine           machine       = { .name = "" };
+    struct dig_rig_track         track         = { .rows = 0 };
+    struct dig_rig_track_options track_options = options->track;
+    struct digs *const           digs          = calloc(1, sizeof *digs);
+    if (digs == NULL) {
+        return complain(DIG_ENOMEM, &error);
+    }
     if (options->command == DIG_RIG_COMMAND_SERVE) {
         track_options.rate_Hz = DIG_RIG_TICK_Hz;
     }
 
-    enum dig_status status =
-        load(options, &machine, &track_options.scene_tooth_m, recording, &error);
+    enum dig_status status = load(options, &machine, &track_options.scene_tooth_m, digs, &error);
     if (status == DIG_OK) {
-        status = dig_rig_track_build(&machine, &track_options, options->inputs, recording, &track,
-                                     &error);
+        status = dig_rig_track_build(&machine, &track_options, digs->recordings, digs->recording,
+                                     &track, &error);
     }
     if (status == DIG_OK) {
         describe(&machine, track_options.scene_tooth_m, &track);
@@ -80,9 +141,7 @@ static int work(const struct dig_rig_options *const options)
                      : dig_rig_serve(&machine, options, &track, &error);
     }
     dig_rig_track_finish(&track);
-    for (size_t i = 0; i < options->inputs; i++) {
-        dig_recording_finish(&recording[i]);
-    }
+    digs_finish(digs);
     return status == DIG_OK ? EXIT_DONE : complain(status, &error);
 }
 

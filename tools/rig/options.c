@@ -15,7 +15,7 @@ static const char help_text[] =
     "\n"
     "  --machine M.yaml          the machine (config/machines)\n"
     "  --tooth-m L               pin to tooth of the recordings' bucket (default 0.09, the rig)\n"
-    "  --scene SCENE.yaml        take that from a scene instead\n"
+    "  --scene SCENE.yaml        take that from a scene instead (a campaign names its own)\n"
     "  --pin-start X,Z           bucket pin at the first contact, from the boom foot (default: "
     "the\n"
     "                            place that leaves the machine most room)\n"
@@ -180,6 +180,7 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
     case OPT_PIN: return pin_start(optarg, &options->track, error);
     case OPT_SEED: return seed(optarg, &options->seed, error);
     case OPT_TOOTH:
+        options->tooth_given = true;
         return number("tooth-m", optarg, 1e-3, 10.0, &options->track.scene_tooth_m, error);
     case OPT_RATE: return number("rate", optarg, 50.0, 1000.0, &options->track.rate_Hz, error);
     case OPT_SPEED: return number("speed", optarg, 0.01, 100.0, &options->speed, error);

@@ -1,0 +1,131 @@
+#include "files/campaign_yaml.h"
+
+#include "files/yaml.h"
+
+#include <assert.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct recording_text {
+    char          file[DIG_CAMPAIGN_PATH];
+    char          trajectory[DIG_NAME_SIZE];
+    enum dig_role role;
+    uint32_t      pass; // 0: not given
+};
+
+struct campaign_text {
+    char                  scene[DIG_CAMPAIGN_PATH];
+    char                  machine[DIG_CAMPAIGN_PATH];
+    struct recording_text recordings[DIG_CAMPAIGN_MAX];
+    uint32_t              recordings_count;
+};
+
+#define REQUIRED CYAML_FLAG_DEFAULT
+#define OPTIONAL CYAML_FLAG_OPTIONAL
+
+static const cyaml_strval_t roles[] = {
+    { "identify", DIG_ROLE_IDENTIFY },
+    { "fit", DIG_ROLE_FIT },
+    { "holdout", DIG_ROLE_HOLDOUT },
+};
+
+static const cyaml_schema_field_t recording_fields[] = {
+    CYAML_FIELD_STRING("file", REQUIRED, struct recording_text, file, 1),
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct recording_text, trajectory, 1),
+    CYAML_FIELD_ENUM("role", CYAML_FLAG_STRICT, struct recording_text, role, roles,
+                     sizeof roles / sizeof roles[0]),
+    CYAML_FIELD_UINT("pass", OPTIONAL, struct recording_text, pass),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t recording = { CYAML_VALUE_MAPPING(REQUIRED, struct recording_text,
+                                                                    recording_fields) };
+
+static const cyaml_schema_field_t fields[] = {
+    CYAML_FIELD_STRING("scene", REQUIRED, struct campaign_text, scene, 1),
+    CYAML_FIELD_STRING("machine", OPTIONAL, struct campaign_text, machine, 0),
+    CYAML_FIELD_SEQUENCE("recordings", REQUIRED, struct campaign_text, recordings, &recording, 1,
+                         DIG_CAMPAIGN_MAX),
+    CYAML_FIELD_IGNORE("source", OPTIONAL),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
+                                                                 struct campaign_text, fields) };
+
+// Puts the folder before a relative path. False when the result is too long.
+static bool resolve(const char *const folder, const char *const name, char path[DIG_CAMPAIGN_PATH])
+{
+    if (name[0] == '\0') {
+        path[0] = '\0';
+        return true;
+    }
+    const bool absolute = name[0] == '/';
+    const int  length   = snprintf(path, DIG_CAMPAIGN_PATH, "%s%s%s", absolute ? "" : folder,
+                                absolute ? "" : "/", name);
+    return length > 0 && length < DIG_CAMPAIGN_PATH;
+}
+
+static enum dig_status convert(const char *const yaml, const char *const folder,
+                               const struct campaign_text *const text,
+                               struct dig_campaign *const campaign, struct dig_error *const error)
+{
+    if (!resolve(folder, text->scene, campaign->scene)) {
+        return dig_yaml_refuse(yaml, "scene", error, "\"%s\", expected a shorter path",
+                               text->scene);
+    }
+    if (!resolve(folder, text->machine, campaign->machine)) {
+        return dig_yaml_refuse(yaml, "machine", error, "\"%s\", expected a shorter path",
+                               text->machine);
+    }
+    campaign->recordings = text->recordings_count;
+    for (size_t i = 0; i < campaign->recordings; i++) {
+        const struct recording_text *const   from = &text->recordings[i];
+        struct dig_campaign_recording *const to   = &campaign->recording[i];
+        if (!resolve(folder, from->file, to->file)) {
+            char key[64];
+            (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
+            return dig_yaml_refuse(yaml, key, error, "\"%s\", expected a shorter path", from->file);
+        }
+        memcpy(to->trajectory, from->trajectory, sizeof to->trajectory);
+        to->role = from->role;
+        to->pass = from->pass == 0 ? 1 : from->pass;
+    }
+    return DIG_OK;
+}
+
+bool dig_campaign_is(const char *const path)
+{
+    struct stat found;
+    return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign *const campaign,
+                                  struct dig_error *const error)
+{
+    assert(folder != NULL && campaign != NULL);
+
+    char yaml[DIG_CAMPAIGN_PATH];
+    if (!resolve(folder, "campaign.yaml", yaml)) {
+        return dig_error_set(error, DIG_EINVAL, "expected a shorter path than %s", folder);
+    }
+
+    cyaml_data_t   *data   = NULL;
+    enum dig_status status = dig_yaml_load(yaml, &schema, &data, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    // About a hundred kilobytes: too much for a stack that may be a thread's.
+    struct dig_campaign *const loaded = calloc(1, sizeof *loaded);
+    status                            = loaded != NULL ? convert(yaml, folder, data, loaded, error)
+                                                       : dig_error_set(error, DIG_ENOMEM, "%s", yaml);
+    if (status == DIG_OK) {
+        *campaign = *loaded;
+    }
+    free(loaded);
+    dig_yaml_free(&schema, data);
+    return status;
+}
