@@ -1,0 +1,211 @@
+// Tests for estimator/fit_nlopt.c and estimator/posterior.c
+
+#include "estimator/match.h"
+
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct made_options plain = { .relative_sd = 0.1, .packings = 1000 };
+
+static struct dig_match fit(const struct dig_curve_set *const   set,
+                            const struct dig_observation *const o, const int evaluations)
+{
+    struct dig_match match;
+    assert_int_equal(dig_match_nearest(set, o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, o, evaluations, &match), DIG_OK);
+    return match;
+}
+
+static struct dig_gravel random_gravel(uint64_t *const seed)
+{
+    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
+                                  1500 * pow(4000.0 / 1500.0, model_uniform(seed)) } };
+}
+
+// Observations read off the interpolated table itself have a gravel of distance 0, wherever it
+// lies.
+static void a_gravel_planted_between_the_grid_points_is_found(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set  = made_table(&plain);
+    uint64_t                    seed = 4;
+    for (int trial = 0; trial < 30; trial++) {
+        const struct dig_gravel planted = random_gravel(&seed);
+        struct dig_curve        curve;
+        assert_int_equal(dig_match_interpolate(set, &planted, MADE_SIMPLE_A, &curve), DIG_OK);
+        struct dig_observation o = made_observation(&planted, MADE_SIMPLE_A, 0.0);
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            o.moment_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
+        }
+        const struct dig_match match = fit(set, &o, 1500);
+        assert_true(match.distance <= match.nearest_distance);
+        assert_close(match.distance, 0.0, 0.01);
+
+        // Height is (.3 + friction) * density, the hump rolling * density: only ratios are told.
+        const double height = (0.3 + planted.value[0]) * planted.value[2];
+        const double hump   = planted.value[1] * planted.value[2];
+        assert_close((0.3 + match.gravel.value[0]) * match.gravel.value[2] / height, 1.0, 0.06);
+        assert_close(match.gravel.value[1] * match.gravel.value[2] / hump, 1.0, 0.15);
+    }
+    made_table_destroy(set);
+}
+
+static void with_one_density_friction_and_rolling_are_found_themselves(void **state)
+{
+    (void)state;
+    const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
+    struct dig_curve_set *const set = made_table(&one);
+    const struct dig_gravel     planted = { { 0.62, 0.33, 2500 } };
+    const struct dig_observation o      = made_observation(&planted, MADE_SIMPLE_A, 0.0);
+    const struct dig_match       match  = fit(set, &o, 600);
+    assert_close(match.gravel.value[0], 0.62, 0.005);
+    assert_close(match.gravel.value[1], 0.33, 0.01);
+    assert_close(match.gravel.value[2], 2500, 0.0);
+    assert_close(match.low.value[2], 2500, 0.0);
+    assert_true(match.low.value[0] < 0.62 && match.high.value[0] > 0.62);
+    assert_true(match.high.value[0] - match.low.value[0] < 0.3);
+    made_table_destroy(set);
+}
+
+static void more_evaluations_never_make_it_worse_and_few_are_enough_to_return(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const  set           = made_table(&plain);
+    const struct dig_gravel      planted       = { { 0.61, 0.5, 3000 } };
+    const struct dig_observation o             = made_observation(&planted, MADE_SIMPLE_A, 0.0);
+    const int                    evaluations[] = { 1, 2, 5, 30, 100, 400 };
+    for (size_t i = 0; i < sizeof evaluations / sizeof evaluations[0]; i++) {
+        const struct dig_match match = fit(set, &o, evaluations[i]);
+        assert_true(match.distance <= match.nearest_distance + 1e-12);
+        assert_int_equal(match.samples, DIG_MATCH_SAMPLES);
+    }
+    made_table_destroy(set);
+}
+
+static void a_hole_is_gone_round(void **state)
+{
+    (void)state;
+    const struct made_options    holed   = { .relative_sd = 0.1, .packings = 3, .hole = true };
+    struct dig_curve_set *const  set     = made_table(&holed);
+    const struct dig_gravel      planted = { { 0.52, 0.42, 2600 } }; // beside the hole
+    const struct dig_observation o       = made_observation(&planted, MADE_SIMPLE_A, 0.0);
+    const struct dig_match       match   = fit(set, &o, 400);
+    struct dig_curve             curve;
+    assert_int_equal(dig_match_interpolate(set, &match.gravel, MADE_SIMPLE_A, &curve), DIG_OK);
+    for (size_t s = 0; s < match.samples; s++) {
+        assert_int_equal(dig_match_interpolate(set, &match.sample[s], MADE_SIMPLE_A, &curve),
+                         DIG_OK);
+    }
+    made_table_destroy(set);
+}
+
+// Two gravels of one friction + rolling resist alike: the answer must be "anything along here".
+static void what_cannot_be_told_apart_has_a_wide_interval(void **state)
+{
+    (void)state;
+    const struct made_options one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
+    const struct made_options family = {
+        .family = 1.0, .relative_sd = 0.1, .packings = 1000, .one_density = true
+    };
+    struct dig_curve_set *const  told    = made_table(&one);
+    struct dig_curve_set *const  alike   = made_table(&family);
+    const struct dig_gravel      planted = { { 0.6, 0.55, 2500 } };
+    const struct dig_observation a       = made_observation(&planted, MADE_ACTUAL, 0.0);
+    const struct dig_observation b       = made_observation(&planted, MADE_ACTUAL, 1.0);
+    const struct dig_match       sure = fit(told, &a, 300), unsure = fit(alike, &b, 300);
+    assert_true(sure.high.value[0] - sure.low.value[0] < 0.3);
+    assert_true(unsure.high.value[0] - unsure.low.value[0] > 0.45);
+    assert_true(unsure.high.value[1] - unsure.low.value[1] > 0.45);
+
+    // All of them lie along the family, though.
+    for (size_t s = 0; s < unsure.samples; s++) {
+        assert_close(unsure.sample[s].value[0] + unsure.sample[s].value[1], 1.15, 0.45);
+    }
+    made_table_destroy(told);
+    made_table_destroy(alike);
+}
+
+// Gravels drawn from the prior, digs disturbed as the table says: nine of ten lie in the interval.
+static void ninety_per_cent_of_gravels_lie_in_their_interval(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set          = made_table(&plain);
+    const int                   trials       = getenv("DIG_TEST_QUICK") != NULL ? 40 : 200;
+    uint64_t                    seed         = 99;
+    int                         in[DIG_AXES] = { 0 };
+    for (int trial = 0; trial < trials; trial++) {
+        const struct dig_gravel planted = random_gravel(&seed);
+        struct dig_observation  o       = made_observation(&planted, MADE_ACTUAL, 0.0);
+        made_disturb(&o, 0.1, &seed);
+        const struct dig_match match = fit(set, &o, 30);
+        for (int a = 0; a < DIG_AXES; a++) {
+            assert_true(match.low.value[a] <= match.mean.value[a] &&
+                        match.mean.value[a] <= match.high.value[a]);
+            in[a] +=
+                planted.value[a] >= match.low.value[a] && planted.value[a] <= match.high.value[a]
+                    ? 1
+                    : 0;
+        }
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        print_message("axis %d: %d of %d in the 90 %% interval\n", a, in[a], trials);
+        assert_close((double)in[a] / trials, 0.9, trials < 100 ? 0.13 : 0.06);
+    }
+    made_table_destroy(set);
+}
+
+static void between_the_grid_points_a_dig_is_judged_again(void **state)
+{
+    (void)state;
+    const struct made_options    quiet   = { .relative_sd = 0.004, .packings = 1000 };
+    struct dig_curve_set *const  set     = made_table(&quiet);
+    const struct dig_gravel      planted = { { 0.6, 0.55, 2500 } };
+    const struct dig_observation o       = made_observation(&planted, MADE_SIMPLE_A, 0.0);
+    struct dig_match             match;
+    assert_int_equal(dig_match_nearest(set, &o, 2.5, &match), DIG_OK);
+    assert_true(match.outside);
+    assert_int_equal(dig_fit_refine(set, &o, 2000, &match), DIG_OK);
+    assert_false(match.outside);
+    made_table_destroy(set);
+}
+
+static void refusals_leave_the_match_alone(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set = made_table(&plain);
+    struct dig_observation      o   = made_observation(&set->gravel[9], MADE_SIMPLE_A, 0.0);
+    struct dig_match            match;
+    assert_int_equal(dig_match_nearest(set, &o, 2.5, &match), DIG_OK);
+    struct dig_match before;
+    memcpy(&before, &match, sizeof before);
+    assert_int_equal(dig_fit_refine(set, &o, 0, &match), DIG_EINVAL);
+    o.moment_Nm[4] = NAN;
+    assert_int_equal(dig_fit_refine(set, &o, 100, &match), DIG_EINVAL);
+    o.moment_Nm[4] = 0.0;
+    assert_memory_equal(&match, &before, sizeof match);
+    match.valid = false;
+    assert_int_equal(dig_fit_refine(set, &o, 100, &match), DIG_EINVAL);
+    match.valid   = true;
+    match.nearest = (int)set->entries;
+    assert_int_equal(dig_fit_refine(set, &o, 100, &match), DIG_EINVAL);
+    made_table_destroy(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gravel_planted_between_the_grid_points_is_found),
+        cmocka_unit_test(with_one_density_friction_and_rolling_are_found_themselves),
+        cmocka_unit_test(more_evaluations_never_make_it_worse_and_few_are_enough_to_return),
+        cmocka_unit_test(a_hole_is_gone_round),
+        cmocka_unit_test(what_cannot_be_told_apart_has_a_wide_interval),
+        cmocka_unit_test(ninety_per_cent_of_gravels_lie_in_their_interval),
+        cmocka_unit_test(between_the_grid_points_a_dig_is_judged_again),
+        cmocka_unit_test(refusals_leave_the_match_alone),
+    };
+    return cmocka_run_group_tests_name("fit_nlopt", tests, NULL, NULL);
+}
