@@ -43,13 +43,13 @@ struct sweep {
 };
 
 // The first failure is the one that is told; the sweep goes on with the other beds.
-static void note_failure(struct sweep *const s, const struct dig_job *const job,
+static void note_failure(struct sweep *const s, const struct dig_job *const job, const size_t digs,
                          const char *const why)
 {
-    s->state->failed += job->digs;
+    s->state->failed += digs;
     if (s->status == DIG_OK) {
         s->status = dig_error_set(
-            s->error, DIG_EIO, "friction %g, rolling %g, %g kg/m3, packing %zu: %.300s",
+            s->error, DIG_EIO, "friction %g, rolling %g, %g kg/m3, packing %zu: %.400s",
             job->gravel.value[0], job->gravel.value[1], job->gravel.value[2], job->packing, why);
     }
 }
@@ -98,7 +98,7 @@ static void strike_out(struct dig_job *const job, const size_t trajectory)
 
 static enum dig_status store_curve(struct sweep *const s, struct dig_worker *const w,
                                    const struct dig_message *const m,
-                                   struct dig_force_row *const     rows)
+                                   struct dig_force_row *const rows, struct dig_error *const error)
 {
     struct dig_run_origin origin = {
         .gravel     = w->job.gravel,
@@ -116,7 +116,7 @@ static enum dig_status store_curve(struct sweep *const s, struct dig_worker *con
         (void)strftime(origin.made_utc, sizeof origin.made_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
     }
     const struct dig_recording recording = { .rows = m->rows, .row = rows };
-    return dig_store_put(s->store, &origin, &recording, s->error);
+    return dig_store_put(s->store, &origin, &recording, error);
 }
 
 // One message of a worker. A table that cannot be written ends the sweep.
@@ -126,11 +126,16 @@ static void take_message(struct sweep *const s, struct dig_worker *const w,
     switch (m->kind) {
     case DIG_MESSAGE_PROGRESS: w->fraction = m->fraction; break;
     case DIG_MESSAGE_CURVE: {
-        const enum dig_status status = store_curve(s, w, m, rows);
+        struct dig_error      error  = { "" };
+        const enum dig_status status = store_curve(s, w, m, rows, &error);
+        if (status == DIG_EINVAL) {
+            note_failure(s, &w->job, 1, error.text); // a curve no table takes
+            break;
+        }
         if (status != DIG_OK) {
-            s->status   = status;
+            s->status   = dig_error_set(s->error, status, "%s", error.text);
             s->stopping = true;
-            return;
+            break;
         }
         strike_out(&w->job, m->trajectory);
         s->state->digs_done++;
@@ -139,7 +144,7 @@ static void take_message(struct sweep *const s, struct dig_worker *const w,
     }
     case DIG_MESSAGE_FAILURE:
         w->ended = true;
-        note_failure(s, &w->job, m->text);
+        note_failure(s, &w->job, w->job.digs, m->text);
         break;
     case DIG_MESSAGE_END: w->ended = true; break;
     }
@@ -194,7 +199,7 @@ static void reap(struct sweep *const s, struct dig_worker *const w)
     } else if (attempts >= ATTEMPTS_MAX) {
         char why[80];
         (void)snprintf(why, sizeof why, "the worker was killed by signal %d, twice", signal);
-        note_failure(s, &job, why);
+        note_failure(s, &job, job.digs, why);
     }
 }
 
