@@ -1,0 +1,158 @@
+// Tests for estimator/phase.c
+
+#include "estimator/phase.h"
+
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+static const double dt_s     = 0.005;
+static const double sigma_Nm = 100.0;
+
+struct run {
+    struct dig_phase_state        state;
+    struct dig_estimator_settings settings;
+    uint64_t                      seed;
+    int                           touched, lost, gone;
+};
+
+static struct run start(void)
+{
+    return (struct run){ .settings = dig_estimator_settings_default(), .seed = 8 };
+}
+
+// Holds a moment for a while, with the noise that sigma says.
+static void hold(struct run *const run, const double moment_Nm, const double seconds)
+{
+    for (double t_s = 0.0; t_s < seconds; t_s += dt_s) {
+        const double noisy_Nm = moment_Nm + sigma_Nm * model_normal(&run->seed);
+        switch (dig_phase_step(&run->state, &run->settings, dt_s, noisy_Nm, sigma_Nm)) {
+        case DIG_EVENT_TOUCHED: run->touched++; break;
+        case DIG_EVENT_LOST: run->lost++; break;
+        case DIG_EVENT_GONE: run->gone++; break;
+        case DIG_EVENT_NONE:
+        default: break;
+        }
+    }
+}
+
+static void a_dig_runs_through_all_phases_once(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 0.0, 5.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_AIR);
+    hold(&run, 1000.0, 0.2);
+    assert_int_equal(run.state.phase, DIG_PHASE_CONTACT);
+    hold(&run, 2000.0, 5.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_DIG);
+    hold(&run, 0.0, 0.9);
+    assert_int_equal(run.state.phase, DIG_PHASE_EXIT);
+    hold(&run, 0.0, 1.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_AIR);
+    assert_int_equal(run.touched, 1);
+    assert_int_equal(run.gone, 1);
+    assert_int_equal(run.lost, 0);
+}
+
+static void an_hour_of_noise_is_no_contact(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 0.0, 3600.0);
+    hold(&run, 50.0, 600.0); // half a sigma of bias
+    assert_int_equal(run.touched, 0);
+}
+
+static void single_samples_decide_nothing(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 0.0, 1.0);
+    for (int i = 0; i < 100; i++) {
+        hold(&run, 3000.0, dt_s);
+        hold(&run, 0.0, 1.0);
+    }
+    assert_int_equal(run.touched, 0);
+}
+
+static void a_hesitation_shorter_than_the_exit_hold_is_one_dig(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 2000.0, 3.0);
+    hold(&run, 0.0, 0.7);
+    assert_int_equal(run.state.phase, DIG_PHASE_EXIT);
+    hold(&run, 2000.0, 3.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_DIG);
+    hold(&run, 0.0, 3.0);
+    assert_int_equal(run.touched, 1);
+    assert_int_equal(run.gone, 1);
+}
+
+static void near_the_threshold_it_does_not_flicker(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 2000.0, 2.0);
+    hold(&run, 3.0 * sigma_Nm, 60.0); // on the threshold, twice the other one
+    assert_int_equal(run.state.phase, DIG_PHASE_DIG);
+    assert_int_equal(run.touched, 1);
+    assert_int_equal(run.gone + run.lost, 0);
+}
+
+static void a_touch_that_does_not_last_is_lost(void **state)
+{
+    (void)state;
+    struct run run              = start();
+    run.settings.contact_hold_s = 0.3;
+    hold(&run, 500.0, 0.65);
+    assert_int_equal(run.state.phase, DIG_PHASE_CONTACT);
+    hold(&run, 0.0, 1.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_AIR);
+    assert_int_equal(run.lost, 1);
+    assert_int_equal(run.gone, 0);
+}
+
+static void a_dig_ended_from_outside_waits_for_free_air(void **state)
+{
+    (void)state;
+    struct run run = start();
+    hold(&run, 2000.0, 3.0);
+    dig_phase_end(&run.state);
+    hold(&run, 2000.0, 20.0); // the bucket carries what it dug
+    assert_int_equal(run.state.phase, DIG_PHASE_EXIT);
+    hold(&run, 0.0, 3.0);
+    assert_int_equal(run.state.phase, DIG_PHASE_AIR);
+    assert_int_equal(run.gone, 0);
+    hold(&run, 2000.0, 1.0);
+    assert_int_equal(run.touched, 2);
+}
+
+static void bias_is_learnt_in_air_only_and_only_when_asked(void **state)
+{
+    (void)state;
+    struct run off = start(), on = start();
+    on.settings.air_bias_s = 2.0;
+    hold(&off, 100.0, 30.0);
+    hold(&on, 100.0, 30.0);
+    assert_close(off.state.bias_Nm, 0.0, 0.0);
+    assert_close(on.state.bias_Nm, 100.0, 10.0);
+
+    hold(&on, 5000.0, 30.0);
+    assert_close(on.state.bias_Nm, 100.0, 25.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dig_runs_through_all_phases_once),
+        cmocka_unit_test(an_hour_of_noise_is_no_contact),
+        cmocka_unit_test(single_samples_decide_nothing),
+        cmocka_unit_test(a_hesitation_shorter_than_the_exit_hold_is_one_dig),
+        cmocka_unit_test(near_the_threshold_it_does_not_flicker),
+        cmocka_unit_test(a_touch_that_does_not_last_is_lost),
+        cmocka_unit_test(a_dig_ended_from_outside_waits_for_free_air),
+        cmocka_unit_test(bias_is_learnt_in_air_only_and_only_when_asked),
+    };
+    return cmocka_run_group_tests_name("phase", tests, NULL, NULL);
+}
