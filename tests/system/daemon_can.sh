@@ -1,0 +1,93 @@
+#!/bin/bash
+# SocketCAN inside User Mode Linux, where a bus exists. The rig serves one dig on CAN and on Modbus at
+# once; a daemon on each must find the same.
+. tests/system/daemon_lib.bash
+
+if [ "${1-}" != inside ]; then
+    digs
+    DIG_DATA=$work tools/vcan/with-vcan -t 200 "$0" inside
+    exit
+fi
+cp "$DIG_DATA"/* "$work"
+
+# Two LCM networks: the daemons do not know of each other.
+can=$lcm tcp=${lcm/:2/:4}
+# The rig runs without noise here: what is left between CAN and Modbus is CAN's quantisation. A machine
+# whose sensors are perfect makes the published sigma just that.
+sed -E 's/(pressure_sigma_Pa:) *[0-9.e+]+/\1 1/; s/(angle_sigma_rad:) *[0-9.e+-]+/\1 1e-9/' "$machine" >"$work/perfect.yaml"
+config can "{kind: can, can: {interface: vcan0, dbc: $PWD/config/can/zx200.dbc, map: $PWD/config/signals/zx200_can.yaml}}"
+sed -i "s|^machine:.*|machine: perfect.yaml|" "$work/can.yaml"
+config absent "{kind: can, can: {interface: vcan7, dbc: $PWD/config/can/zx200.dbc, map: $PWD/config/signals/zx200_can.yaml}}"
+lcm=$tcp
+config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", map: $PWD/config/signals/modbus_default.yaml}}"
+
+# A bus that is not there at first: the interface is made while the daemon waits.
+start "$work/absent.log" "$BIN/digsightd" -c "$work/absent.yaml"
+absent=$started
+check "an interface that is absent is said" wait_for 10 grep -q "can vcan7: cannot be opened: No such device" "$work/absent.log"
+ip link add vcan7 type vcan
+ip link set vcan7 up
+start "$work/rig7.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --can vcan7
+rig=$started
+check "and found when it comes" wait_for 10 grep -q "running (can vcan7)" "$work/absent.log"
+ip link set vcan7 down
+check "an interface that goes down is said" wait_for 10 grep -q "can vcan7: .*Network is down" "$work/absent.log"
+ip link set vcan7 up
+check "and taken up again" wait_for 15 eval '[ "$(grep -c "running (can vcan7)" "$work/absent.log")" -ge 2 ]'
+stop "$absent"
+check "SIGTERM ends it with exit status 0" [ "$status" = 0 ]
+stop "$rig"
+
+before=$(cat /sys/class/net/vcan0/statistics/tx_packets)
+lcm=$can; log can; logger_can=$logger
+lcm=$tcp; log tcp; logger_tcp=$logger
+start "$work/candump.log" candump -e vcan0,0:0,#FFFFFFFF
+dump=$started
+start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
+daemon_can=$started
+start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon_tcp=$started
+"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --no-noise --can vcan0 \
+    --modbus-tcp "127.0.0.1:$port" --json >"$work/rig.json" 2>"$work/rig.err"
+sleep 1
+stop "$daemon_can"
+stop "$daemon_tcp"
+stop "$dump"
+logger=$logger_can; read_log can
+logger=$logger_tcp; read_log tcp
+
+sent=$(sed -E 's/.*"can_sent": ([0-9]+).*/\1/' "$work/rig.json")
+check "the bus carried the rig's frames and no other" \
+    [ $(($(cat /sys/class/net/vcan0/statistics/tx_packets) - before)) = "$sent" ]
+check "candump saw the rig's four messages and no other" \
+    [ "$(awk '/vcan0/ { print $2 }' "$work/candump.log" | sort -u | tr '\n' ' ')" = "18FF79E8 18FF7DE8 18FF7EE8 18FF84E8 " ]
+check "every frame was received" [ "$(last health "$work/can.txt" $h_frames)" = "$sent" ]
+check "none was malformed" [ "$(last health "$work/can.txt" $h_malformed)" = 0 ]
+check "pressures and angles are paired as they were sent" \
+    eval 'within "$(last samples "$work/can.txt" 2)" $((sent * 35 / 100)) $((sent / 2))'
+check "the gravel is identified over CAN" identified "$work/can.txt"
+check "and over Modbus" identified "$work/tcp.txt"
+
+# Each CAN estimate against Modbus' at the same instant, in sigmas of CAN's quantisation. Modbus' own
+# is 200 times finer. Return sides hold back_Pa, which lies on CAN's grid and is off by nothing, so the
+# difference is a good deal less than one sigma.
+compare=$(awk '
+    $1 != "estimate" { next }
+    FNR == NR { t[n] = $2; m[n++] = $6; next }
+    {
+        while (i < n - 2 && t[i + 1] < $2) i++
+        if ($2 < t[i] || $2 > t[i + 1] || t[i + 1] - t[i] > 0.05) next
+        w = ($2 - t[i]) / (t[i + 1] - t[i])
+        d = ($6 - m[i] - w * (m[i + 1] - m[i])) / $7
+        sum += d; square += d * d; count++
+        if (d * d > worst * worst) worst = d
+    }
+    END { printf "%d %.3f %.3f %.3f", count, sum / count, sqrt(square / count), worst }' "$work/tcp.txt" "$work/can.txt")
+echo "      estimates compared, mean, rms and worst difference in sigmas: $compare"
+# shellcheck disable=SC2086 # four words
+set -- $compare
+check "enough estimates are compared" within "$1" 1000 1e9
+check "CAN and Modbus give the same estimates within quantisation: mean" within "$2" -0.3 0.3
+check "CAN and Modbus give the same estimates within quantisation: rms" within "$3" 0.3 1
+check "CAN and Modbus give the same estimates within quantisation: worst" within "$4" -5 5
+finish

@@ -1,0 +1,120 @@
+# What the daemon's system tests share. Sourced with the repository's root as working directory and BIN
+# set (default build/bin). Gives $work (a folder that goes away), $scene, $machine, $lcm (an LCM network
+# of this test alone), $port (for a Modbus server), and the functions below.
+#
+# LCM wants a route for its multicast group. Where there is none and none can be added, the test moves
+# into a network namespace of its own, whose loopback carries it; that needs no privilege.
+set -u
+BIN=${BIN:-build/bin}
+helpers=$BIN/../tests/system
+scene=config/scenes/rig.yaml
+machine=config/machines/zx200_trench.yaml
+passed=0 failed=0 children=()
+
+if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
+    ip link set lo up multicast on 2>/dev/null
+    if ! ip route add 239.255.76.67 dev lo 2>/dev/null; then
+        [ -z "${DIG_IN_NAMESPACE-}" ] || { echo "no multicast"; echo "0 passed, 1 failed"; exit 1; }
+        DIG_IN_NAMESPACE=1 exec unshare -Urn "$0" "$@"
+    fi
+fi
+
+work=$(mktemp -d)
+lcm="udpm://239.255.76.67:$((20000 + $$ % 10000))?ttl=0"
+port=$((30000 + $$ % 10000))
+
+stop() { # PID [SIGNAL]: ends a process we started; its exit status is kept in $status
+    kill -"${2:-TERM}" "$1" 2>/dev/null
+    wait "$1" 2>/dev/null
+    status=$?
+    local left=() pid
+    for pid in "${children[@]-}"; do [ "$pid" = "$1" ] || left+=("$pid"); done
+    children=("${left[@]-}")
+}
+
+cleanup() {
+    local pid
+    for pid in "${children[@]-}"; do [ -n "$pid" ] && stop "$pid"; done
+    [ -n "${DIG_KEEP-}" ] && echo "kept $work" || rm -rf "$work"
+}
+trap cleanup EXIT
+
+# Starts a command in the background; its pid is in $started.
+start() { # OUTPUT COMMAND…
+    "${@:2}" >"$1" 2>&1 </dev/null &
+    started=$!
+    children+=("$started")
+}
+
+check() { # SENTENCE COMMAND…
+    if "${@:2}"; then
+        passed=$((passed + 1))
+        echo "ok    $1"
+    else
+        failed=$((failed + 1))
+        echo "FAIL  $1"
+    fi
+}
+
+finish() {
+    if [ "$failed" -gt 0 ]; then
+        for f in "$work"/*.log "$work"/*.err; do
+            [ -f "$f" ] && { echo "--- $f"; tail -n 30 "$f"; }
+        done
+    fi
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+}
+
+wait_for() { # SECONDS COMMAND…: until it succeeds
+    local i
+    for ((i = 0; i < $1 * 10; i++)); do
+        "${@:2}" >/dev/null 2>&1 && return 0
+        sleep 0.1
+    done
+    return 1
+}
+
+config() { # NAME INPUT [MORE]: writes $work/NAME.yaml; INPUT is the input's mapping
+    cat >"$work/$1.yaml" <<YAML
+table: table.sqlite
+machine: $PWD/$machine
+input: $2
+lcm: {url: "$lcm"}
+${3-}
+YAML
+}
+
+log() { # NAME: starts recording LCM into $work/NAME.lcm
+    # At many times real time the default receive buffer of the kernel is too small for the logger.
+    start "$work/logger.log" lcm-logger --lcm-url="$lcm&recv_buf_size=4000000" "$work/$1.lcm"
+    logger=$started
+    sleep 0.5
+}
+
+read_log() { # NAME: ends the recording and prints it into $work/NAME.txt
+    sleep 0.3
+    stop "$logger" INT
+    "$helpers/daemon_log" "$work/$1.lcm" >"$work/$1.txt" 2>"$work/$1.err"
+}
+
+digs() { # makes the table and the digs, whose truth is friction 0.5, rolling 0.4, density 2200
+    "$helpers/daemon_data" "$scene" "$work" >"$work/data.log" 2>&1
+}
+
+last() { # KIND FILE FIELD: a field of the last line of a kind
+    awk -v kind="$1" -v field="$3" '$1 == kind { value = $field } END { print value }' "$2"
+}
+
+within() { # VALUE LOW HIGH
+    awk -v v="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(v != "" && v >= low && v <= high) }'
+}
+
+identified() { # FILE: the last match is near the truth
+    within "$(last match "$1" 6)" 0.38 0.62 && within "$(last match "$1" 9)" 0.30 0.50 &&
+        within "$(last match "$1" 12)" 1750 2500 && [ "$(last match "$1" 3)" = 0 ]
+}
+
+# Fields of a health line, for last().
+h_state=2 h_frames=4 h_malformed=5 h_nan=6 h_not_available=7 h_out_of_range=8 h_frozen=9 h_missing=10
+h_reconnects=11 h_digs=12 h_matches=13 h_lost=14

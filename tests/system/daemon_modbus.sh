@@ -1,0 +1,27 @@
+#!/bin/bash
+# The rig's Modbus TCP server and the daemon: a bus that comes late, a dig, a bus that goes away.
+. tests/system/daemon_lib.bash
+
+digs
+config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
+    "time_scale: 4"
+log tcp
+start "$work/daemon.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+check "a bus that is absent is said" wait_for 5 grep -q "waiting for bus" "$work/daemon.log"
+check "and why" grep -q "127.0.0.1:$port.*refused" "$work/daemon.log"
+"$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
+    --modbus-tcp "127.0.0.1:$port" --speed 4 --json >"$work/rig.json" 2>"$work/rig.err"
+check "a bus that appears later is found" grep -q "running" "$work/daemon.log"
+check "a bus that goes away is said" wait_for 5 eval '[ "$(grep -c "waiting for bus" "$work/daemon.log")" -ge 2 ]'
+stop "$daemon"
+check "SIGTERM ends it with exit status 0" [ "$status" = 0 ]
+read_log tcp
+check "the gravel is identified" identified "$work/tcp.txt"
+check "the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/tcp.txt")" -ge 10 ]
+check "health is published while the bus is absent" grep -q '^health waiting_for_bus' "$work/tcp.txt"
+check "health names the trouble" grep -q '^health waiting_for_bus .*refused' "$work/tcp.txt"
+check "only functions that read were asked for" \
+    eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/rig.json" &&
+          grep -q "\"modbus_refused\": {}" "$work/rig.json"'
+finish

@@ -1,0 +1,37 @@
+#!/bin/bash
+# A recording through the daemon onto LCM, and the log of that through the daemon again.
+. tests/system/daemon_lib.bash
+
+digs
+"$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
+config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
+config again "{kind: replay, replay: {file: csv.lcm, speed: 5}}"
+
+check "--check loads everything and says what it found" \
+    eval '"$BIN/digsightd" -c "$work/csv.yaml" --check >"$work/check.txt" &&
+          grep -q "scene rig" "$work/check.txt" && grep -q "zx200_trench" "$work/check.txt"'
+
+log csv
+"$BIN/digsightd" -c "$work/csv.yaml" 2>"$work/daemon.log"
+check "a replay ends by itself with exit status 0" [ $? = 0 ]
+read_log csv
+rows=$(($(grep -vc '^#' "$work/run.csv") - 1))
+# LCM promises nothing: a receiver that does not get its turn in time loses messages.
+check "the lines of the recording are published as samples" \
+    within "$(last samples "$work/csv.txt" 2)" $((rows * 98 / 100)) "$rows"
+check "the gravel is identified from the simple dig" identified "$work/csv.txt"
+check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
+check "the actual dig is predicted while it goes on" \
+    [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
+check "the last prediction says that it is over" [ "$(last prediction "$work/csv.txt" 2)" = 0 ]
+check "both digs are counted" [ "$(last health "$work/csv.txt" $h_digs)" = 2 ]
+check "health goes from waiting over running to stopping" \
+    [ "$(awk '/^health/ && $2 != was { was = $2; print $2 }' "$work/csv.txt" | sort -u | tr '\n' ' ')" = \
+      "running stopping waiting_for_bus " ]
+check "nothing was lost" [ "$(last health "$work/csv.txt" $h_lost)" = 0 ]
+
+log again
+"$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
+read_log again
+check "the log of the daemon is accepted as a recording and gives the gravel again" identified "$work/again.txt"
+finish
