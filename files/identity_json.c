@@ -1,0 +1,154 @@
+#include "files/identity_json.h"
+
+#include "files/yaml.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static void put_gravel(FILE *const to, const char *const name, const struct dig_gravel *const g)
+{
+    (void)fprintf(to, "\"%s\": {", name);
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                      g->value[a]);
+    }
+    (void)fprintf(to, "},\n ");
+}
+
+void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
+{
+    assert(to != NULL && identity != NULL);
+    (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu,\n ",
+                  identity->scene_hash, identity->trajectory, identity->digs);
+    put_gravel(to, "gravel", &identity->gravel);
+    put_gravel(to, "mean", &identity->mean);
+    put_gravel(to, "low", &identity->low);
+    put_gravel(to, "high", &identity->high);
+    put_gravel(to, "nearest", &identity->nearest);
+    (void)fprintf(to,
+                  "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
+                  "\"outside\": %s,\n \"samples\": [",
+                  identity->distance, identity->nearest_distance, identity->noise_floor,
+                  identity->outside ? "true" : "false");
+    for (size_t i = 0; i < identity->samples; i++) {
+        const double *const v = identity->sample[i].value;
+        (void)fprintf(to, "%s[%.9g, %.9g, %.9g]", i == 0 ? "" : ",\n  ", v[0], v[1], v[2]);
+    }
+    (void)fprintf(to, "]}\n");
+}
+
+#define REQUIRED CYAML_FLAG_DEFAULT
+
+struct gravel_text {
+    double friction, rolling, density_kgpm3;
+};
+
+struct sample_text {
+    double   value[DIG_AXES];
+    uint32_t value_count;
+};
+
+struct identity_text {
+    char               scene_hash[65];
+    char               trajectory[DIG_NAME_SIZE];
+    uint32_t           digs;
+    struct gravel_text gravel, mean, low, high, nearest;
+    double             distance, nearest_distance, noise_floor;
+    bool               outside;
+    struct sample_text samples[DIG_IDENTITY_SAMPLES_MAX];
+    uint32_t           samples_count;
+};
+
+static const cyaml_schema_field_t gravel_fields[] = {
+    CYAML_FIELD_FLOAT("friction", REQUIRED, struct gravel_text, friction),
+    CYAML_FIELD_FLOAT("rolling", REQUIRED, struct gravel_text, rolling),
+    CYAML_FIELD_FLOAT("density_kgpm3", REQUIRED, struct gravel_text, density_kgpm3),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
+static const cyaml_schema_value_t sample = { CYAML_VALUE_SEQUENCE_FIXED(
+    REQUIRED, struct sample_text, &number, DIG_AXES) };
+
+#define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
+
+static const cyaml_schema_field_t fields[] = {
+    CYAML_FIELD_STRING("scene_hash", REQUIRED, struct identity_text, scene_hash, 64),
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, trajectory, 1),
+    CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, digs),
+    GRAVEL(gravel),
+    GRAVEL(mean),
+    GRAVEL(low),
+    GRAVEL(high),
+    GRAVEL(nearest),
+    CYAML_FIELD_FLOAT("distance", REQUIRED, struct identity_text, distance),
+    CYAML_FIELD_FLOAT("nearest_distance", REQUIRED, struct identity_text, nearest_distance),
+    CYAML_FIELD_FLOAT("noise_floor", REQUIRED, struct identity_text, noise_floor),
+    CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, outside),
+    CYAML_FIELD_SEQUENCE("samples", REQUIRED, struct identity_text, samples, &sample, 0,
+                         DIG_IDENTITY_SAMPLES_MAX),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
+                                                                 struct identity_text, fields) };
+
+static struct dig_gravel gravel_of(const struct gravel_text *const text)
+{
+    return (struct dig_gravel){ { text->friction, text->rolling, text->density_kgpm3 } };
+}
+
+static bool is_gravel(const struct dig_gravel *const g)
+{
+    return isfinite(g->value[0]) && isfinite(g->value[1]) && isfinite(g->value[2]) &&
+           g->value[DIG_AXIS_FRICTION] >= 0.0 && g->value[DIG_AXIS_ROLLING] >= 0.0 &&
+           g->value[DIG_AXIS_DENSITY_kgpm3] > 0.0;
+}
+
+enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
+                                  struct dig_error *const error)
+{
+    assert(path != NULL && identity != NULL);
+    cyaml_data_t   *data   = NULL;
+    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+
+    const struct identity_text *const text = data;
+    struct dig_identity               read = {
+                      .digs             = text->digs,
+                      .gravel           = gravel_of(&text->gravel),
+                      .mean             = gravel_of(&text->mean),
+                      .low              = gravel_of(&text->low),
+                      .high             = gravel_of(&text->high),
+                      .nearest          = gravel_of(&text->nearest),
+                      .distance         = text->distance,
+                      .nearest_distance = text->nearest_distance,
+                      .noise_floor      = text->noise_floor,
+                      .outside          = text->outside,
+                      .samples          = text->samples_count,
+    };
+    memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
+    memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
+    for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
+        memcpy(read.sample[i].value, text->samples[i].value, sizeof read.sample[i].value);
+        if (!is_gravel(&read.sample[i])) {
+            status = dig_yaml_refuse(path, "samples", error,
+                                     "the %zu-th is no gravel, expected friction and rolling >= 0, "
+                                     "density > 0",
+                                     i + 1);
+        }
+    }
+    if (status == DIG_OK && !is_gravel(&read.gravel)) {
+        status = dig_yaml_refuse(path, "gravel", error,
+                                 "is no gravel, expected friction and rolling >= 0, density > 0");
+    }
+    if (status == DIG_OK) {
+        *identity = read;
+    }
+    dig_yaml_free(&schema, data);
+    return status;
+}

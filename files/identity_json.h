@@ -1,0 +1,38 @@
+// A gravel that was identified, as a JSON file (docs/formats.md): written by `digloop identify
+// --json`, read back by `digloop predict --identified`.
+
+#ifndef DIG_FILES_IDENTITY_JSON_H
+#define DIG_FILES_IDENTITY_JSON_H
+
+#include "core/curve.h"
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#define DIG_IDENTITY_SAMPLES_MAX 64
+
+struct dig_identity {
+    char              scene_hash[65];            // of the table it was identified with
+    char              trajectory[DIG_NAME_SIZE]; // of the dig it was identified on
+    size_t            digs;                      // how many of them were pooled
+    struct dig_gravel gravel;                    // between the grid points
+    struct dig_gravel mean, low, high;           // posterior mean and 5 %, 95 % of each axis
+    struct dig_gravel nearest;                   // entry of the table
+    double            distance;                  // relative Euclidean norm to the fitted curve
+    double            nearest_distance;          // to the nearest entry
+    double            noise_floor;               // what another packing would be away
+    bool              outside;                   // none of the table's gravels
+    size_t            samples;                   // gravels that stand for the posterior
+    struct dig_gravel sample[DIG_IDENTITY_SAMPLES_MAX];
+};
+
+/// One JSON object and a line feed.
+void dig_identity_write(FILE *to, const struct dig_identity *identity);
+
+/// DIG_EINVAL names file, line, key and what was expected; DIG_EIO: it cannot be opened. Writes on
+/// success only.
+DIG_MUST_CHECK enum dig_status dig_identity_read(const char *path, struct dig_identity *identity,
+                                                 struct dig_error *error);
+
+#endif // DIG_FILES_IDENTITY_JSON_H
