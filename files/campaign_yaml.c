@@ -120,8 +120,11 @@ enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign 
     }
     // About a hundred kilobytes: too much for a stack that may be a thread's.
     struct dig_campaign *const loaded = calloc(1, sizeof *loaded);
-    status                            = loaded != NULL ? convert(yaml, folder, data, loaded, error)
-                                                       : dig_error_set(error, DIG_ENOMEM, "%s", yaml);
+    if (loaded == NULL) {
+        dig_yaml_free(&schema, data);
+        return dig_error_set(error, DIG_ENOMEM, "%s", yaml);
+    }
+    status = convert(yaml, folder, data, loaded, error);
     if (status == DIG_OK) {
         *campaign = *loaded;
     }

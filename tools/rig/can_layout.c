@@ -1,6 +1,7 @@
 #include "tools/rig/can_layout.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 // A signal in whole bits, not_available when it is not valid, one less where it does not fit.
@@ -40,7 +41,7 @@ struct dig_rig_can_frame dig_rig_can_pressures(const struct dig_sample *const sa
 struct dig_rig_can_frame dig_rig_can_angles(const struct dig_sample *const sample)
 {
     struct dig_rig_can_frame frame = blank(0x18FF7DE8);
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         const enum dig_signal signal = (enum dig_signal)(DIG_SIGNAL_BOOM_rad + i);
         put_le(&frame.data[2 * i], raw_of(sample, signal, 0.0004, -10.0, 0xFFFF));
     }

@@ -15,9 +15,11 @@ static const double swing_rad     = 0.35;
 static const double dump_phi_rad  = -70.0 * DIG_RAD_PER_DEG;
 static const double dump_more_rad = 0.17; // at least, however open the bucket is already
 static const double hold_s        = 0.5;
-static const double move_s        = 1.2;
-static const double approach_s    = 1.6;
-static const double dump_s        = 1.5;
+// No faster than this, so that in the air the links' inertia stays small beside their weight.
+static const double least_move_s   = 1.2;
+static const double most_mps2      = 0.7;
+static const double most_radps2    = 1.0;
+static const double quintic_factor = 5.7735; // peak acceleration of a rest-to-rest move, T^2 / way
 
 struct builder {
     struct dig_rig_frame *frame;
@@ -65,11 +67,19 @@ static double left(const double s)
 
 enum load { LOAD_HELD, LOAD_FADING };
 
+static double duration_s(const struct state *const from, const struct state *const to)
+{
+    const double way_m    = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]);
+    const double turn_rad = fabs(to->at[2] - from->at[2]);
+    return fmax(least_move_s, fmax(sqrt(quintic_factor * way_m / most_mps2),
+                                   sqrt(quintic_factor * turn_rad / most_radps2)));
+}
+
 // Moves from `from` to `to` in about seconds: the polynomial of degree five that has both rates and
 // no acceleration at its ends. `from` itself is not emitted, `to` is.
-static bool move(struct builder *const builder, const struct state *const from,
-                 const struct state *const to, const double seconds,
-                 const struct dig_rig_wrench soil, const enum load load)
+static bool move_in(struct builder *const builder, const struct state *const from,
+                    const struct state *const to, const double seconds,
+                    const struct dig_rig_wrench soil, const enum load load)
 {
     const size_t n = (size_t)lround(seconds / DIG_RIG_STEP_s);
     const double T = (double)n * DIG_RIG_STEP_s;
@@ -94,6 +104,19 @@ static bool move(struct builder *const builder, const struct state *const from,
         }
     }
     return true;
+}
+
+static bool move(struct builder *const builder, const struct state *const from,
+                 const struct state *const to, const struct dig_rig_wrench soil,
+                 const enum load load)
+{
+    return move_in(builder, from, to, duration_s(from, to), soil, load);
+}
+
+static bool hold(struct builder *const builder, const struct state *const at)
+{
+    const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
+    return move_in(builder, at, at, hold_s, none, LOAD_HELD);
 }
 
 // One row of a recording at machine scale, pin relative to the origin (rig coordinates).
@@ -191,12 +214,10 @@ static bool approach(struct builder *const builder, const struct state *const co
     const struct state          hover = rest(X_m, Z_m + hover_teeth * tooth_m, phi - swing_rad);
     const struct state          dip   = rest(X_m + 0.15 * tooth_m, Z_m + dip_teeth * tooth_m, phi);
 
-    const bool         first = builder->frames == 0;
-    const struct state start = first ? hover : *now;
-    const bool ok = move(builder, &start, &hover, first ? hold_s : move_s, none, LOAD_HELD) &&
-                    move(builder, &hover, &dip, move_s, none, LOAD_HELD) &&
-                    move(builder, &dip, &hover, move_s, none, LOAD_HELD) &&
-                    move(builder, &hover, contact, approach_s, none, LOAD_HELD);
+    const bool ok = (builder->frames == 0 || move(builder, now, &hover, none, LOAD_HELD)) &&
+                    hold(builder, &hover) && move(builder, &hover, &dip, none, LOAD_HELD) &&
+                    move(builder, &dip, &hover, none, LOAD_HELD) &&
+                    move(builder, &hover, contact, none, LOAD_HELD);
     if (ok) {
         builder->frames--; // the recording's first row is the contact itself
     }
@@ -218,10 +239,10 @@ static bool leave(struct builder *const builder, const struct state *const end,
     const struct state lowered = rest(end->at[0], Z_m - 0.2 * tooth_m, dump - 0.5 * swing_rad);
 
     *now = lowered;
-    return move(builder, end, &lifted, move_s, load, LOAD_HELD) &&
-           move(builder, &lifted, &dumped, dump_s, load, LOAD_FADING) &&
-           move(builder, &dumped, &curled, move_s, none, LOAD_HELD) &&
-           move(builder, &curled, &lowered, move_s, none, LOAD_HELD);
+    return move(builder, end, &lifted, load, LOAD_HELD) &&
+           move(builder, &lifted, &dumped, load, LOAD_FADING) &&
+           move(builder, &dumped, &curled, none, LOAD_HELD) &&
+           move(builder, &curled, &lowered, none, LOAD_HELD);
 }
 
 // Back to where the whole path began, so that it can be played in a loop.
@@ -230,8 +251,7 @@ static bool go_home(struct builder *const builder, const struct state *const now
     const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
     const struct dig_rig_pose   home = builder->frame[0].pose;
     const struct state          to   = rest(home.X_m, home.Z_m, home.phi_rad);
-    return move(builder, now, &to, move_s, none, LOAD_HELD) &&
-           move(builder, &to, &to, hold_s, none, LOAD_HELD);
+    return move(builder, now, &to, none, LOAD_HELD) && hold(builder, &to);
 }
 
 static bool add_dig(struct builder *const builder, const struct dig_rig_path_options *const options,

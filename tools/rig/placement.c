@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Every so many frames of the path: 40 ms, a few millimetres of pin and a few noise grains of
-// force.
-static const size_t stride = 40;
+// Every so many frames of the path: 10 ms, less than the force between grains takes to peak.
+static const size_t stride = 10;
 
 // Out of a joint's or a cylinder's range is worse than any load: a smaller load would not help.
 static const double out_of_range = 1e6;
