@@ -7,14 +7,20 @@
 #include <stdint.h>
 #include <string.h>
 
-static void put_gravel(FILE *const to, const char *const name, const struct dig_gravel *const g)
+static void put_gravel(FILE *const to, const struct dig_gravel *const g)
 {
-    (void)fprintf(to, "\"%s\": {", name);
     for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "{" : ", ", dig_axis_name((enum dig_axis)a),
                       g->value[a]);
     }
-    (void)fprintf(to, "},\n ");
+    (void)fputs("}", to);
+}
+
+static void put_named(FILE *const to, const char *const name, const struct dig_gravel *const g)
+{
+    (void)fprintf(to, "\"%s\": ", name);
+    put_gravel(to, g);
+    (void)fputs(",\n ", to);
 }
 
 void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
@@ -22,19 +28,19 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
     assert(to != NULL && identity != NULL);
     (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu,\n ",
                   identity->scene_hash, identity->trajectory, identity->digs);
-    put_gravel(to, "gravel", &identity->gravel);
-    put_gravel(to, "mean", &identity->mean);
-    put_gravel(to, "low", &identity->low);
-    put_gravel(to, "high", &identity->high);
-    put_gravel(to, "nearest", &identity->nearest);
+    put_named(to, "gravel", &identity->gravel);
+    put_named(to, "mean", &identity->mean);
+    put_named(to, "low", &identity->low);
+    put_named(to, "high", &identity->high);
+    put_named(to, "nearest", &identity->nearest);
     (void)fprintf(to,
                   "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
                   "\"outside\": %s,\n \"samples\": [",
                   identity->distance, identity->nearest_distance, identity->noise_floor,
                   identity->outside ? "true" : "false");
     for (size_t i = 0; i < identity->samples; i++) {
-        const double *const v = identity->sample[i].value;
-        (void)fprintf(to, "%s[%.9g, %.9g, %.9g]", i == 0 ? "" : ",\n  ", v[0], v[1], v[2]);
+        (void)fputs(i == 0 ? "" : ",\n  ", to);
+        put_gravel(to, &identity->sample[i]);
     }
     (void)fprintf(to, "]}\n");
 }
@@ -45,11 +51,6 @@ struct gravel_text {
     double friction, rolling, density_kgpm3;
 };
 
-struct sample_text {
-    double   value[DIG_AXES];
-    uint32_t value_count;
-};
-
 struct identity_text {
     char               scene_hash[65];
     char               trajectory[DIG_NAME_SIZE];
@@ -57,7 +58,7 @@ struct identity_text {
     struct gravel_text gravel, mean, low, high, nearest;
     double             distance, nearest_distance, noise_floor;
     bool               outside;
-    struct sample_text samples[DIG_IDENTITY_SAMPLES_MAX];
+    struct gravel_text samples[DIG_IDENTITY_SAMPLES_MAX];
     uint32_t           samples_count;
 };
 
@@ -68,9 +69,8 @@ static const cyaml_schema_field_t gravel_fields[] = {
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
-static const cyaml_schema_value_t sample = { CYAML_VALUE_SEQUENCE_FIXED(
-    REQUIRED, struct sample_text, &number, DIG_AXES) };
+static const cyaml_schema_value_t sample = { CYAML_VALUE_MAPPING(REQUIRED, struct gravel_text,
+                                                                 gravel_fields) };
 
 #define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
 
@@ -134,7 +134,7 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
     memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
     for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
-        memcpy(read.sample[i].value, text->samples[i].value, sizeof read.sample[i].value);
+        read.sample[i] = gravel_of(&text->samples[i]);
         if (!is_gravel(&read.sample[i])) {
             status = dig_yaml_refuse(path, "samples", error,
                                      "the %zu-th is no gravel, expected friction and rolling >= 0, "
