@@ -22,7 +22,7 @@ struct dig_record {
 /// A prediction, and how far it is good.
 struct dig_outlook {
     struct dig_prediction prediction;
-    int64_t               time_ns;    // CLOCK_MONOTONIC
+    int64_t               time_ns;    // of the estimate it was made from
     int64_t               expires_ns; // CLOCK_MONOTONIC
     uint32_t              dig_count;  // of the dig whose gravel it assumes
 };
