@@ -1,0 +1,122 @@
+// Tests for files/identity_json.c
+
+#include "files/identity_json.h"
+
+#include "tests/testlib.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const path = "build/test_identity.json";
+
+static struct dig_identity example(void)
+{
+    struct dig_identity id = {
+        .trajectory       = "simpleA",
+        .digs             = 3,
+        .gravel           = { { 0.512345, 0.4, 2345.6 } },
+        .mean             = { { 0.52, 0.41, 2300.0 } },
+        .low              = { { 0.4, 0.3, 2000.0 } },
+        .high             = { { 0.6, 0.5, 2600.0 } },
+        .nearest          = { { 0.5, 0.5, 2500.0 } },
+        .distance         = 0.11,
+        .nearest_distance = 0.12,
+        .noise_floor      = 0.2,
+        .outside          = true,
+        .samples          = 2,
+        .sample           = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
+    };
+    memset(id.scene_hash, 'a', 64);
+    return id;
+}
+
+static void write_text(const char *const text)
+{
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    (void)fputs(text, file);
+    (void)fclose(file);
+}
+
+static void what_was_written_is_read_back(void **state)
+{
+    (void)state;
+    const struct dig_identity id   = example();
+    FILE *const               file = fopen(path, "w");
+    assert_non_null(file);
+    dig_identity_write(file, &id);
+    (void)fclose(file);
+
+    struct dig_identity back  = { 0 };
+    struct dig_error    error = { "" };
+    if (dig_identity_read(path, &back, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_string_equal(back.scene_hash, id.scene_hash);
+    assert_string_equal(back.trajectory, "simpleA");
+    assert_int_equal(back.digs, 3);
+    assert_int_equal(back.samples, 2);
+    assert_true(back.outside);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(back.gravel.value[a], id.gravel.value[a], 1e-6);
+        assert_close(back.low.value[a], id.low.value[a], 1e-6);
+        assert_close(back.high.value[a], id.high.value[a], 1e-6);
+        assert_close(back.nearest.value[a], id.nearest.value[a], 1e-6);
+        assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
+    }
+    assert_close(back.noise_floor, 0.2, 1e-9);
+    (void)remove(path);
+}
+
+// Each defect names the file and the key, and leaves what was there.
+static void defects_are_refused_by_name(void **state)
+{
+    (void)state;
+    char                      good[4096];
+    const struct dig_identity id   = example();
+    FILE *const               file = tmpfile();
+    dig_identity_write(file, &id);
+    rewind(file);
+    good[fread(good, 1, sizeof good - 1, file)] = '\0';
+    (void)fclose(file);
+
+    const struct {
+        const char *was, *is, *names;
+    } defect[] = {
+        { "\"outside\": true", "\"outside\": 7e", "outside" },
+        { "\"digs\": 3", "\"digs\": -3", "digs" },
+        { "\"distance\": 0.11,", "", "distance" },
+        { "\"friction\": 0.55,", "\"friction\": -0.55,", "samples" },
+        { "2345.6", "nan", "density_kgpm3" },
+        { "\"simpleA\"", "\"a name that is far too long for any trajectory\"", "trajectory" },
+        { "{\"scene_hash\"", "{\"scene\"", "scene" },
+    };
+    for (size_t i = 0; i < sizeof defect / sizeof defect[0]; i++) {
+        char              bad[4096];
+        const char *const at = strstr(good, defect[i].was);
+        assert_non_null(at);
+        (void)snprintf(bad, sizeof bad, "%.*s%s%s", (int)(at - good), good, defect[i].is,
+                       at + strlen(defect[i].was));
+        write_text(bad);
+        struct dig_identity untouched = { .digs = 42 };
+        struct dig_error    error     = { "" };
+        assert_int_equal(dig_identity_read(path, &untouched, &error), DIG_EINVAL);
+        assert_int_equal(untouched.digs, 42);
+        if (strstr(error.text, path) == NULL || strstr(error.text, defect[i].names) == NULL) {
+            fail_msg("\"%s\" does not name %s", error.text, defect[i].names);
+        }
+    }
+    (void)remove(path);
+    struct dig_identity untouched = { .digs = 42 };
+    assert_int_equal(dig_identity_read(path, &untouched, NULL), DIG_EIO);
+    assert_int_equal(untouched.digs, 42);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_written_is_read_back),
+        cmocka_unit_test(defects_are_refused_by_name),
+    };
+    return cmocka_run_group_tests_name("identity_json", tests, NULL, NULL);
+}
