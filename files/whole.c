@@ -1,7 +1,11 @@
+// realpath() is X/Open's, not POSIX's.
+#define _XOPEN_SOURCE 700 // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+
 #include "files/whole.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -86,26 +90,49 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
     return DIG_OK;
 }
 
+// The program's own output, under either of its names. Opened anew it would be cut, and renamed
+// over it would be gone.
+static bool is_stdout(const char *const path)
+{
+    return strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0;
+}
+
+static FILE *open_stdout(void)
+{
+    const int fd = dup(STDOUT_FILENO);
+    return fd >= 0 ? fdopen(fd, "wb") : NULL;
+}
+
 enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
                              struct dig_error *const error)
 {
     assert(out != NULL && path != NULL);
 
     *out = (struct dig_out){ 0 };
+
+    // A link is followed: what it points to is replaced, not the link.
     struct stat target;
-    const int   direct = stat(path, &target) == 0 && !S_ISREG(target.st_mode);
-    const int   length = snprintf(out->path, sizeof out->path, "%s", path);
+    const bool  there  = stat(path, &target) == 0;
+    char *const real   = there && S_ISREG(target.st_mode) ? realpath(path, NULL) : NULL;
+    const int   length = snprintf(out->path, sizeof out->path, "%s", real != NULL ? real : path);
+    free(real);
     if (length < 0 || (size_t)length + sizeof ".part" > sizeof out->path) {
         return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
-    if (!direct) {
-        memcpy(out->part, path, (size_t)length);
+
+    if (is_stdout(path)) {
+        out->file = open_stdout();
+    } else if (there && !S_ISREG(target.st_mode)) {
+        out->file = fopen(out->path, "wb");
+    } else {
+        memcpy(out->part, out->path, (size_t)length);
         memcpy(out->part + length, ".part", sizeof ".part");
+        out->file = fopen(out->part, "wb");
     }
-    out->file = fopen(direct ? out->path : out->part, "wb");
     if (out->file == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", direct ? out->path : out->part,
-                             strerror(errno));
+        const int why = errno;
+        out->part[0]  = '\0';
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(why));
     }
     return DIG_OK;
 }

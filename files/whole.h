@@ -17,11 +17,12 @@ DIG_MUST_CHECK enum dig_status dig_file_read(const char *path, char **text, size
                                              struct dig_error *error);
 
 /// A file being written. It stands beside the target as PATH.part until dig_out_commit(), so that
-/// no half file is ever taken for a whole one. A target that is no regular file (/dev/stdout, a
-/// pipe) is written directly.
+/// no half file is ever taken for a whole one. "-" and /dev/stdout are the program's output;
+/// another target that is no regular file (a pipe, a device) is written directly; a link is
+/// followed.
 struct dig_out {
     FILE *file;
-    char  path[PATH_MAX];
+    char  path[PATH_MAX]; // of the file itself, links followed
     char  part[PATH_MAX]; // "" when written directly
 };
 

@@ -5,7 +5,7 @@
 #include "files/whole.h"
 #include "tests/scratch.h"
 
-#include <stdbool.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 
 #define FORCE "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n"
@@ -276,6 +276,59 @@ static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state
     assert_int_equal(rmdir(scratch_path("folder")), 0);
 }
 
+// The program's output is written where it points to, after what stands there, and stays what it
+// is.
+static void standard_output_is_written_to_and_not_replaced(void **state)
+{
+    (void)state;
+    struct stat before, after;
+    assert_int_equal(lstat("/dev/stdout", &before), 0);
+    const int kept = dup(STDOUT_FILENO);
+    const int file = open(scratch_path("stdout.txt"), O_WRONLY | O_CREAT, 0666);
+    assert_true(kept >= 0 && file >= 0);
+    (void)fflush(stdout);
+    assert_int_equal(dup2(file, STDOUT_FILENO), STDOUT_FILENO);
+    static const char *const names[] = { "/dev/stdout", "-" };
+    enum dig_status          status  = DIG_OK;
+    for (size_t i = 0; i < 2 && status == DIG_OK; i++) {
+        struct dig_out out;
+        status = dig_out_open(&out, names[i], NULL);
+        if (status == DIG_OK) {
+            (void)fprintf(out.file, "line %zu\n", i);
+            status = dig_out_commit(&out, NULL);
+        }
+    }
+    (void)dup2(kept, STDOUT_FILENO);
+    (void)close(kept);
+    (void)close(file);
+    assert_int_equal(status, DIG_OK);
+    size_t      size = 0;
+    char *const text = scratch_read(scratch_path("stdout.txt"), &size);
+    assert_string_equal(text, "line 0\nline 1\n");
+    free(text);
+    assert_int_equal(lstat("/dev/stdout", &after), 0);
+    assert_int_equal(before.st_mode, after.st_mode);
+    assert_true(before.st_ino == after.st_ino);
+}
+
+static void a_link_is_followed_and_stays_a_link(void **state)
+{
+    (void)state;
+    struct dig_out out;
+    struct stat    link;
+    assert_int_equal(symlink(scratch_write("target.txt", "old"), scratch_path("link.txt")), 0);
+    assert_int_equal(dig_out_open(&out, scratch_path("link.txt"), NULL), DIG_OK);
+    assert_true(scratch_exists("target.txt.part"));
+    (void)fputs("new", out.file);
+    assert_int_equal(dig_out_commit(&out, NULL), DIG_OK);
+    size_t      size = 0;
+    char *const text = scratch_read(scratch_path("target.txt"), &size);
+    assert_string_equal(text, "new");
+    free(text);
+    assert_int_equal(lstat(scratch_path("link.txt"), &link), 0);
+    assert_true(S_ISLNK(link.st_mode));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -288,6 +341,8 @@ int main(void)
         cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
         cmocka_unit_test(a_bed_is_read_back_bit_by_bit),
         cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
+        cmocka_unit_test(standard_output_is_written_to_and_not_replaced),
+        cmocka_unit_test(a_link_is_followed_and_stays_a_link),
     };
     return cmocka_run_group_tests_name("recording_csv", tests, scratch_setup, scratch_teardown);
 }

@@ -490,10 +490,9 @@ static int with_output(const struct arguments *const a,
                                                       struct dig_error *error),
                        const void *const context)
 {
-    struct dig_error error = { "" };
-    struct dig_out   out   = { .file = NULL };
-    enum dig_status  status =
-        dig_out_open(&out, a->output != NULL ? a->output : "/dev/stdout", &error);
+    struct dig_error error  = { "" };
+    struct dig_out   out    = { .file = NULL };
+    enum dig_status  status = dig_out_open(&out, a->output != NULL ? a->output : "-", &error);
     if (status == DIG_OK) {
         status = write(context, out.file, &error);
     }

@@ -1,0 +1,90 @@
+#!/bin/bash
+# digtable as an analyst uses it, with the real engine on a small scene: digs, a table made in pieces
+# and in one go, killed and resumed, and everything that shows it.
+. tests/system/digtable_lib.bash
+
+dig=(--trajectory scrape --friction .5 --rolling .2 --density 2500)
+grid=tests/data/formats/grid.yaml # 6 points x 2 packings x 1 trajectory
+
+digtable --help
+check "--help ends with 0 and shows examples" eval 'is $code 0 && grep -q "^examples:" $work/out && [ ! -s $work/err ]'
+digtable --version
+check "--version names the program" eval 'is $code 0 && grep -qE "^digtable [0-9]+\.[0-9]+\.[0-9]+$" $work/out'
+
+digtable dig $scene "${dig[@]}" --seed 3 --save-bed "$work/bed.csv" -o "$work/a.csv"
+check "a dig writes a force recording" eval 'is $code 0 && head -1 $work/a.csv | grep -q "^t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm$"'
+check "it tells progress to stderr and nothing to stdout" eval '[ -s $work/err ] && [ ! -s $work/out ]'
+digtable dig $scene "${dig[@]}" --seed 3 -o "$work/b.csv"
+check "the same command gives the same bytes" cmp "$work/a.csv" "$work/b.csv"
+digtable dig $scene "${dig[@]}" --seed 4 -o "$work/c.csv"
+check "another seed gives another dig" eval '! cmp -s $work/a.csv $work/c.csv'
+digtable dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$work/d.csv"
+check "the bed saved, dug again, gives the dig it was saved from" cmp "$work/a.csv" "$work/d.csv"
+digtable dig $scene "${dig[@]}" --seed 3 --young 2e7 -o "$work/e.csv"
+check "stiffer grains give another dig" eval 'is $code 0 && ! cmp -s $work/a.csv $work/e.csv'
+digtable dig $scene "${dig[@]}" --seed 3 -o /dev/stdout
+check "-o /dev/stdout writes to stdout" cmp "$work/a.csv" "$work/out"
+
+digtable generate $scene $grid -o "$work/whole.sqlite" -j 2
+check "generate fills a table" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
+digtable check "$work/whole.sqlite" --complete
+check "which is sound and complete" eval 'is $code 0 && grep -q "6 points, 6 entries, 12 runs; 0 holes" $work/out'
+digtable check "$work/whole.sqlite" --json
+check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0}"'
+digtable generate $scene $grid -o "$work/whole.sqlite"
+check "a second time there is nothing to do" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
+
+# In pieces: one packing, a time limit, an interruption, a kill, and one worker instead of two.
+digtable generate $scene $grid -o "$work/parts.sqlite" --packings 1 -j 1
+check "--packings overrides the grid" eval 'is $code 0 && grep -q "6 of 6 digs" $work/err'
+digtable generate $scene $grid -o "$work/parts.sqlite" --time-limit 0
+check "--time-limit tells what is left" eval 'is $code 0 && grep -q "6 of 12 digs.*6 left (time limit)" $work/err'
+digtable check "$work/parts.sqlite" --complete
+check "an incomplete table fails --complete only when packings differ" is "$code" 0
+
+"$BIN/digtable" generate $scene $grid -o "$work/parts.sqlite" -j 1 2>"$work/err" &
+pid=$!
+sleep 0.3
+kill -INT $pid
+wait $pid
+code=$?
+check "Ctrl-C ends it with 1, or 0 if it was done" eval '[ $code = 1 ] || [ $code = 0 ]'
+digtable check "$work/parts.sqlite"
+check "and leaves a sound table" is "$code" 0
+
+"$BIN/digtable" generate $scene $grid -o "$work/parts.sqlite" -j 2 2>"$work/err" &
+pid=$!
+sleep 0.3
+kill -KILL $pid 2>/dev/null
+wait $pid 2>/dev/null
+digtable generate $scene $grid -o "$work/parts.sqlite" -j 2
+check "after kill -9 the same command finishes the table" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
+digtable check "$work/parts.sqlite" --complete
+check "which is sound and complete again" is "$code" 0
+digtable export "$work/whole.sqlite" --runs -o "$work/whole.csv"
+digtable export "$work/parts.sqlite" --runs -o "$work/parts.csv"
+check "runs made in pieces equal those made in one go, byte by byte" cmp "$work/whole.csv" "$work/parts.csv"
+digtable export "$work/whole.sqlite" -o "$work/whole.csv"
+digtable export "$work/parts.sqlite"
+check "and so do the curves, to a file as to stdout" cmp "$work/whole.csv" "$work/out"
+check "a curve has 256 points" is "$(wc -l <"$work/whole.csv")" $((1 + 6 * 256))
+
+digtable list "$work/whole.sqlite"
+check "list shows every entry" eval 'is $code 0 && is "$(grep -c "2500" $work/out)" 6'
+digtable list "$work/whole.sqlite" --json
+check "list --json" eval 'is $code 0 && grep -q "\"trajectories\": \[\"scrape\"\]" $work/out && is "$(grep -c "\"entry\": " $work/out)" 6 && grep -q "\"packings\": {\"scrape\": 2}" $work/out'
+digtable show "$work/whole.sqlite" 3
+check "show draws a curve" eval 'is $code 0 && grep -q "friction 0.6, rolling 0.1, 2500 kg/m3; scrape, 2 packings" $work/out && grep -q "\*" $work/out'
+cp "$work/out" "$work/by_number"
+digtable show "$work/whole.sqlite" --friction .6 --rolling .1 --density 2500 --trajectory scrape --channel My
+check "and finds it by its gravel" cmp "$work/out" "$work/by_number"
+digtable show "$work/whole.sqlite" 3 --csv
+check "show --csv" eval 'is $code 0 && is "$(wc -l <$work/out)" 257 && head -1 $work/out | grep -q "^progress,t_s,My_Nm,My_sd_Nm,"'
+digtable show "$work/whole.sqlite" 3 --json
+check "show --json" eval 'is $code 0 && grep -q "\"My_sd_Nm\": \[" $work/out'
+
+# What SQLite's own tool sees, for those who look with it.
+check "sqlite3 finds the table intact" is "$(sqlite3 "$work/whole.sqlite" 'PRAGMA integrity_check')" ok
+check "and every run's origin" is "$(sqlite3 "$work/whole.sqlite" "SELECT count(*) FROM run WHERE engine = 'kernel' AND grains > 0 AND wall_s > 0 AND made_utc LIKE '20__-__-__T__:__:__Z'")" 12
+check "no file is left beside a table" eval '! ls $work | grep -E "journal$|wal$|\.part$"'
+finish

@@ -1,0 +1,146 @@
+#!/bin/bash
+# Every bad input is refused with exit 2, a message that says where and what was expected, and no output
+# file left behind.
+. tests/system/digtable_lib.bash
+
+grid=tests/data/formats/grid.yaml
+dig=(--trajectory scrape --friction .5 --rolling .2 --density 2500)
+out=$work/output
+
+# refused DESCRIPTION WORDS ARGUMENTS…: exit 2, the words on stderr, nothing on stdout, no output.
+refused() {
+    local what=$1 words=$2
+    shift 2
+    rm -rf "$out" "$out.part" "$out-journal"
+    digtable "$@"
+    check "$what" eval 'is $code 2 && grep -qE -- "$words" "$work/err" && [ ! -s "$work/out" ] && ! ls "$work" | grep -q "^output"'
+}
+
+# changed SED-SCRIPT FILE NAME: a changed copy.
+changed() { sed -E "$1" "$2" >"$work/$3"; }
+
+refused "no command" "expected a command"
+refused "an unknown command" "frob: unknown command" frob
+refused "an unknown option" "--frob: unknown option" dig $scene --frob
+refused "an option without its value" "needs a value" dig $scene "${dig[@]}" -o
+refused "an option of another command" "list takes no --seed" list x.sqlite --seed 1
+refused "too many arguments" "one argument too many" list a b
+refused "too few arguments" "expected SCENE.yaml GRID.yaml" generate $scene
+refused "dig without -o" "-o CURVE.csv missing" dig $scene "${dig[@]}"
+refused "dig without a density" "--density missing" dig $scene --trajectory scrape --friction .5 --rolling .5 -o "$out"
+refused "generate without -o" "-o TABLE.sqlite missing" generate $scene $grid
+refused "a friction that is none" "--friction high: expected 0 to 3" dig $scene --friction high
+refused "a friction that is nan" "--friction nan: expected 0 to 3" dig $scene --friction nan
+refused "a density in g/cm3" "--density 2.5: expected kg/m3, 100 to 20000" dig $scene --density 2.5
+refused "a negative seed" "--seed -1: expected a whole number" dig $scene --seed -1
+refused "no workers" "--jobs 0: expected 1 to" generate $scene $grid -j 0
+refused "an engine that is not built in" "--engine ode: expected kernel" generate $scene $grid --engine ode -o "$out"
+refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
+refused "a scene that is not there" "absent.yaml: No such file" dig "$work/absent.yaml" "${dig[@]}" -o "$out"
+refused "a grid that is not there" "absent.yaml: No such file" generate $scene "$work/absent.yaml" -o "$out"
+refused "a scene that is a folder" "directory" dig "$work" "${dig[@]}" -o "$out"
+
+# Scenes: every line of the good one in turn is spoiled; each is told by its line.
+lines=$(wc -l <$scene)
+spoiled=0 told=0
+for n in $(seq 1 "$lines"); do
+    sed -n "${n}p" $scene | grep -qE '^ *(- )?\{?[a-z0-9_A-Z]+:' || continue
+    sed -E "${n}s/([a-zA-Z0-9_]+):/\1_:/" $scene >"$work/spoiled.yaml"
+    rm -f "$out"
+    digtable dig "$work/spoiled.yaml" "${dig[@]}" -o "$out"
+    spoiled=$((spoiled + 1))
+    if [ $code = 2 ] && grep -qE "spoiled.yaml:$n: .*unknown key, expected one of" "$work/err" && [ ! -e "$out" ]; then told=$((told + 1)); else cat "$work/err"; fi
+done
+check "a key misspelt on any of $spoiled lines is told by its line" is $told $spoiled
+missing=0 told=0
+for key in name bucket box_m packing material gravity_mps2 time_step_s output_s trajectories; do
+    awk -v k="^$key:" '$0 ~ k { skip = 1; next } /^[a-z]/ { skip = 0 } !skip' $scene >"$work/short.yaml"
+    digtable dig "$work/short.yaml" "${dig[@]}" -o "$out"
+    missing=$((missing + 1))
+    if [ $code = 2 ] && grep -qE "short.yaml:[0-9]+: $key: missing, expected" "$work/err" && [ ! -e "$out" ]; then told=$((told + 1)); else cat "$work/err"; fi
+done
+check "each of $missing missing keys is named" is $told $missing
+changed 's/young_Pa: .*/young_Pa: stiff/' $scene s.yaml
+refused "a text for a number" 's.yaml:22: material.young_Pa: "stiff", expected a number' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/young_Pa: .*/young_Pa: nan/' $scene s.yaml
+refused "not a number" 's.yaml:22: material.young_Pa: "nan", expected a number' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/young_Pa: .*/young_Pa: -5/' $scene s.yaml
+refused "a negative modulus" 's.yaml:22: material.young_Pa: -5, expected > 0' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/x: \[0, 1.0\]/x: [1, 0]/' $scene s.yaml
+refused "a box inside out" 's.yaml:11: box_m.x: \[1, 0\], expected' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/^name: tub/name: tub\nname: tub/' $scene s.yaml
+refused "a key given twice" 's.yaml:2: name: again .first on line 1., expected once' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/phases:/phases: [/' $scene s.yaml
+refused "broken YAML" 's.yaml:[0-9]+: .*expected YAML' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+: >"$work/s.yaml"
+refused "an empty scene" 's.yaml:1: empty, expected YAML' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+head -c 300 /dev/urandom >"$work/s.yaml"
+refused "random bytes for a scene" 's.yaml:[0-9]+: ' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+
+# Grids.
+changed 's/friction: .*/friction: [0.6, 0.3]/' $grid g.yaml
+refused "an axis that does not ascend" 'g.yaml:1: friction\[1\]: 0.3 after 0.6, expected ascending' generate $scene "$work/g.yaml" -o "$out"
+changed 's/2500/2.5/' $grid g.yaml
+refused "a density in g/cm3 in a grid" 'g.yaml:3: density_kgpm3\[0\]: 2.5, expected 100 to 20000' generate $scene "$work/g.yaml" -o "$out"
+changed 's/scrape/waltz/' $grid g.yaml
+refused "a grid's trajectory the scene lacks" 'g.yaml:5: trajectories\[0\]: "waltz", expected one of the scene.s: scrape' generate $scene "$work/g.yaml" -o "$out"
+changed '/packings/d' $grid g.yaml
+refused "a grid without packings" 'g.yaml:1: packings: missing, expected a whole number' generate $scene "$work/g.yaml" -o "$out"
+
+# Beds.
+printf 'x_m,y_m,z_m\n0,0,0\n' >"$work/bed.csv"
+refused "a bed without radii" 'bed.csv:1: column radius_m: missing, expected' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+printf 'x_m,y_m,z_m,radius_m\n0.5,0,0.03,0.03\n0.6,0,zero,0.03\n' >"$work/bed.csv"
+refused "a bed with a text" 'bed.csv:3: column z_m: "zero", expected a finite number' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+refused "a bed that is not there" 'absent.csv: No such file' dig $scene "${dig[@]}" --bed "$work/absent.csv" -o "$out"
+
+# Tables.
+printf 'friction: [0.3]\nrolling: [0.1]\ndensity_kgpm3: [2500]\npackings: 2\n' >"$work/small.yaml"
+digtable generate $scene "$work/small.yaml" -o "$work/good.sqlite"
+check "a small good table is made" is "$code" 0
+before=$(sha256sum <"$work/good.sqlite")
+changed 's/young_Pa: .*/young_Pa: 6.0e+6/; s/^name: tub/name: stiffer/' $scene other.yaml
+digtable generate "$work/other.yaml" "$work/small.yaml" -o "$work/good.sqlite"
+check "a table of another scene is refused, both named" eval 'is $code 2 && grep -qE "holds \"tub\" \([0-9a-f]{12}.*not \"stiffer\" \([0-9a-f]{12}" $work/err'
+check "and is left as it was" is "$(sha256sum <"$work/good.sqlite")" "$before"
+
+# spoil SQL: a copy of the good table, spoiled.
+spoil() {
+    cp "$work/good.sqlite" "$work/bad.sqlite"
+    sqlite3 "$work/bad.sqlite" "$1" >/dev/null
+}
+for command in list check show export "export --runs"; do
+    arguments=($command "$work/bad.sqlite")
+    [ "$command" = show ] && arguments+=(0)
+    spoil 'PRAGMA user_version = 2'
+    refused "$command: a table of another version" 'bad.sqlite: user_version: table format 2, expected 1' "${arguments[@]}"
+    spoil 'PRAGMA application_id = 7'
+    refused "$command: another program's database" 'bad.sqlite: not a digsight table .application_id 7, expected' "${arguments[@]}"
+    spoil "UPDATE scene SET canonical = canonical || 'x'"
+    refused "$command: a scene that was edited" 'bad.sqlite: scene.hash: [0-9a-f]{64}, expected [0-9a-f]{64}' "${arguments[@]}"
+    head -c 9000 "$work/good.sqlite" >"$work/bad.sqlite"
+    refused "$command: a table cut short" 'bad.sqlite: damaged: .*expected an intact table' "${arguments[@]}"
+    echo "friction,rolling" >"$work/bad.sqlite"
+    refused "$command: a text file" 'bad.sqlite: not a digsight table, expected a file made by digtable' "${arguments[@]}"
+    rm "$work/bad.sqlite"
+    refused "$command: no file" 'bad.sqlite: No such file' "${arguments[@]}"
+done
+spoil "UPDATE entry SET mean = x'00'"
+refused "a curve of the wrong size" 'bad.sqlite: entry.mean, entry.spread: expected 768 finite float32 each' list "$work/bad.sqlite"
+spoil "UPDATE entry SET spread = mean"
+refused "an entry that is not its runs' spread" 'bad.sqlite: entry: .*differs from its 2 runs, expected' check "$work/bad.sqlite"
+spoil "UPDATE run SET curve = CAST(substr(curve, 1, 100) AS BLOB)"
+refused "a run of the wrong size" 'bad.sqlite: run.curve: 100 bytes for' export "$work/bad.sqlite" --runs -o "$out"
+spoil 'PRAGMA user_version = 2'
+refused "generate into a table of another version" 'user_version: table format 2, expected 1' generate $scene "$work/small.yaml" -o "$work/bad.sqlite"
+refused "an entry there is not" 'no such entry' show "$work/good.sqlite" 7
+refused "a trajectory there is not" 'no such trajectory' show "$work/good.sqlite" 0 --trajectory waltz
+
+# Where the output cannot be written the work has failed: exit 1.
+digtable dig $scene "${dig[@]}" -o "$work/no/such/folder/x.csv"
+check "an output folder that is not there" eval 'is $code 1 && grep -q "No such file" $work/err'
+digtable generate $scene $grid -o "$work/no/such/folder/x.sqlite"
+check "a table's folder that is not there" eval 'is $code 1 && grep -q "No such file" $work/err'
+digtable list "$work/good.sqlite"
+check "and the good table is still good" is "$code" 0
+finish
