@@ -4,12 +4,13 @@
 
 #include "tests/testlib.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static struct dig_sample sample_of(const double boom, const double arm, const double bucket)
 {
     struct dig_sample sample = {
-        .value = { boom, arm, bucket, 12.4e6, 1.0e6, 0.0, 34.3e6, 0.1e6, 40.0e6, 0.05, 45.0 },
+        .value = { boom, arm, bucket, 12.4e6, 1.0e6, 0.0, 34.2e6, 0.2e6, 40.0e6, 0.05, 45.0 },
     };
     for (int s = 0; s < DIG_SIGNALS; s++) {
         sample.valid[s] = true;
@@ -25,19 +26,13 @@ static void assert_frame(const struct dig_rig_can_frame frame, const uint32_t id
 }
 
 // (12.4 + 10) / 0.2 = 112 = 0x70; (1 + 10) / 0.2 = 55 = 0x37; 10 / 0.2 = 50 = 0x32;
-// 44.3 / 0.2 = 221.5 -> 222 = 0xDE; 10.1 / 0.2 = 50.5 -> 51 = 0x33; 50 / 0.2 = 250 = 0xFA.
+// 44.2 / 0.2 = 221 = 0xDD; 10.2 / 0.2 = 51 = 0x33; 50 / 0.2 = 250 = 0xFA.
 static void pressures_are_the_bytes_worked_by_hand(void **state)
 {
     (void)state;
     const struct dig_sample sample  = sample_of(0.0, 0.0, 0.0);
-    const uint8_t           bytes[] = { 0x70, 0x37, 0x32, 0xDE, 0x33, 0xFA, 0xFF, 0xFF };
-    // 44.3 / 0.2 and 10.1 / 0.2 lie on the half in decimal, to either side of it in binary.
-    struct dig_rig_can_frame frame = dig_rig_can_pressures(&sample);
-    assert_true(frame.data[3] == 0xDD || frame.data[3] == 0xDE);
-    assert_true(frame.data[4] == 0x32 || frame.data[4] == 0x33);
-    frame.data[3] = bytes[3];
-    frame.data[4] = bytes[4];
-    assert_frame(frame, 0x18FF79E8, bytes);
+    const uint8_t           bytes[] = { 0x70, 0x37, 0x32, 0xDD, 0x33, 0xFA, 0xFF, 0xFF };
+    assert_frame(dig_rig_can_pressures(&sample), 0x18FF79E8, bytes);
 }
 
 // (0.5 + 10) / 0.0004 = 26250 = 0x668A; (-1.2 + 10) / 0.0004 = 22000 = 0x55F0;
@@ -99,6 +94,33 @@ static void values_beyond_a_field_stand_at_its_end(void **state)
     assert_int_equal(dig_rig_can_pressures(&far).data[1], 0x00);
 }
 
+// The example of the formats is what candump shows of this sample, oldest frame first.
+static void example_of_the_formats_is_what_is_sent(void **state)
+{
+    (void)state;
+    const struct dig_sample        sample   = sample_of(0.5, -1.2, -0.0004);
+    const struct dig_rig_can_frame frames[] = { dig_rig_can_angles(&sample),
+                                                dig_rig_can_pressures(&sample),
+                                                dig_rig_can_tilt(&sample),
+                                                dig_rig_can_state(&sample, 42) };
+    FILE *const                    file     = fopen("tests/data/formats/rig_can.log", "r");
+    assert_non_null(file);
+    for (size_t i = 0; i < sizeof frames / sizeof frames[0]; i++) {
+        char id[16];
+        char data[32];
+        char expected_id[16];
+        char expected_data[32] = "";
+        assert_int_equal(fscanf(file, "%*s %*s %15[0-9A-F]#%31[0-9A-F]", id, data), 2);
+        (void)snprintf(expected_id, sizeof expected_id, "%08X", (unsigned)frames[i].id);
+        for (size_t b = 0; b < 8; b++) {
+            (void)snprintf(&expected_data[2 * b], 3, "%02X", (unsigned)frames[i].data[b]);
+        }
+        assert_string_equal(id, expected_id);
+        assert_string_equal(data, expected_data);
+    }
+    (void)fclose(file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -108,6 +130,7 @@ int main(void)
         cmocka_unit_test(state_is_the_bytes_worked_by_hand),
         cmocka_unit_test(what_is_not_known_is_all_ones),
         cmocka_unit_test(values_beyond_a_field_stand_at_its_end),
+        cmocka_unit_test(example_of_the_formats_is_what_is_sent),
     };
     return cmocka_run_group_tests_name("rig CAN layout", tests, NULL, NULL);
 }

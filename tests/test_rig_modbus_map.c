@@ -4,6 +4,8 @@
 
 #include "tests/testlib.h"
 
+#include <stdio.h>
+
 static void registers_are_those_worked_by_hand(void **state)
 {
     (void)state;
@@ -20,6 +22,32 @@ static void registers_are_those_worked_by_hand(void **state)
     const uint16_t expected[DIG_RIG_REGISTERS] = { 65535, 5123, 0xCF2C, 0xFFFF, 0xFE0C, 12400,
                                                    1000,  0,    34300,  1235,   0,      453 };
     assert_memory_equal(registers, expected, sizeof expected);
+}
+
+static void example_of_the_formats_is_what_is_read(void **state)
+{
+    (void)state;
+    struct dig_sample sample = {
+        .value = { 0.5123, -1.25, -0.00012, 12.4e6, 1.0e6, 0.0, 34.3e6, 1.2346e6, 499.0, -0.05,
+                   45.25 },
+    };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        sample.valid[s] = true;
+    }
+    uint16_t registers[DIG_RIG_REGISTERS];
+    dig_rig_modbus_encode(&sample, 65535, registers);
+    FILE *const file = fopen("tests/data/formats/rig_registers.csv", "r");
+    assert_non_null(file);
+    char header[200];
+    assert_non_null(fgets(header, sizeof header, file));
+    for (int i = 0; i < DIG_RIG_REGISTERS; i++) {
+        int      number = -1;
+        unsigned raw    = 0;
+        assert_int_equal(fscanf(file, "%d,%u,%*[^\n]", &number, &raw), 2);
+        assert_int_equal(number, i);
+        assert_int_equal(raw, registers[i]);
+    }
+    (void)fclose(file);
 }
 
 static void what_is_not_known_has_its_own_number(void **state)
@@ -53,6 +81,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(registers_are_those_worked_by_hand),
+        cmocka_unit_test(example_of_the_formats_is_what_is_read),
         cmocka_unit_test(what_is_not_known_has_its_own_number),
         cmocka_unit_test(values_beyond_a_register_stand_at_its_end),
     };
