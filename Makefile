@@ -54,7 +54,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup demo tables test check check-unit check-asan check-tsan check-valgrind coverage lint layers \
+.PHONY: all setup demo tables test check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -136,9 +136,10 @@ check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make t
 check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 
+ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan \
-	    CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
+	    CFLAGS="$(ASAN_FLAGS)"
 
 check-tsan: ## The threaded units under ThreadSanitizer
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/tsan test_src="$(threaded_tests)" \
@@ -148,6 +149,15 @@ check-valgrind: $(test_bins) ## The unit tests under memcheck
 	$(Q)scripts/setup.sh valgrind
 	$(Q)for t in $(test_bins); do echo "$$t"; \
 	    DIG_TEST_QUICK=1 valgrind -q --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
+
+FUZZ_S ?= 60
+fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S seconds
+	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
+	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
+
+$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
 
 coverage: ## Line and branch coverage per source file
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/cov CFLAGS="-O0 -g --coverage"

@@ -1,0 +1,264 @@
+// Every reader of a file against damaged files: mutates good examples at random and reads them,
+// under AddressSanitizer and UBSan. A reader must end with a status; a refusal must say why.
+//
+//   fuzz_files SECONDS [SEED]
+//
+// Prints, per reader, how many files it took and refused. A crash leaves the file in the work
+// folder.
+
+#include "files/grid_yaml.h"
+#include "files/identity_json.h"
+#include "files/lcm_log.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "files/scene_yaml.h"
+#include "firmware_host/config.h"
+#include "firmware_host/dbc.h"
+#include "firmware_host/signal_map.h"
+#include "tables/load.h"
+
+#include <dirent.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define SIZE_MAX_B (1 << 20)
+
+static enum dig_status read_scene(const char *const path, struct dig_error *const e)
+{
+    struct dig_scene scene;
+    return dig_scene_read(path, &scene, e);
+}
+
+static enum dig_status read_grid(const char *const path, struct dig_error *const e)
+{
+    struct dig_grid grid;
+    return dig_grid_read(path, &grid, e);
+}
+
+static enum dig_status read_machine(const char *const path, struct dig_error *const e)
+{
+    struct dig_machine machine;
+    return dig_machine_read(path, &machine, e);
+}
+
+static enum dig_status read_force(const char *const path, struct dig_error *const e)
+{
+    struct dig_recording  r      = { 0 };
+    const enum dig_status status = dig_recording_read(path, &r, e);
+    dig_recording_finish(&r);
+    return status;
+}
+
+static enum dig_status read_machine_recording(const char *const path, struct dig_error *const e)
+{
+    struct dig_machine_recording r      = { 0 };
+    const enum dig_status        status = dig_machine_recording_read(path, &r, e);
+    dig_machine_recording_finish(&r);
+    return status;
+}
+
+static enum dig_status read_bed(const char *const path, struct dig_error *const e)
+{
+    size_t                n         = 0;
+    double               *column[4] = { NULL, NULL, NULL, NULL };
+    const enum dig_status status =
+        dig_bed_read(path, &n, &column[0], &column[1], &column[2], &column[3], e);
+    for (int i = 0; i < 4; i++) {
+        free(column[i]);
+    }
+    return status;
+}
+
+static enum dig_status read_identity(const char *const path, struct dig_error *const e)
+{
+    struct dig_identity id;
+    return dig_identity_read(path, &id, e);
+}
+
+static enum dig_status read_dbc(const char *const path, struct dig_error *const e)
+{
+    struct dig_dbc        dbc    = { 0 };
+    const enum dig_status status = dig_dbc_read(path, &dbc, e);
+    dig_dbc_finish(&dbc);
+    return status;
+}
+
+static enum dig_status read_map(const char *const path, struct dig_error *const e)
+{
+    struct dig_signal_map map;
+    return dig_signal_map_read(path, NULL, &map, e);
+}
+
+static enum dig_status read_config(const char *const path, struct dig_error *const e)
+{
+    struct dig_config config;
+    return dig_config_read(path, &config, e);
+}
+
+static enum dig_status read_log(const char *const path, struct dig_error *const e)
+{
+    const struct dig_lcm_log_reader all    = { .context = NULL };
+    struct dig_machine_recording    r      = { 0 };
+    const enum dig_status           status = dig_lcm_log_read(path, &r, e);
+    dig_machine_recording_finish(&r);
+    return status == DIG_OK ? dig_lcm_log_each(path, &all, e) : status;
+}
+
+static enum dig_status read_table(const char *const path, struct dig_error *const e)
+{
+    struct dig_curve_set *set    = NULL;
+    const enum dig_status status = dig_table_load(path, &set, e);
+    dig_curve_set_destroy(set);
+    return status;
+}
+
+static struct {
+    const char *name, *example;
+    enum dig_status (*read)(const char *path, struct dig_error *error);
+    char  *good;
+    size_t size;
+    long   taken, refused;
+} target[] = {
+    { "scene", "config/scenes/rig.yaml", read_scene, NULL, 0, 0, 0 },
+    { "grid", "config/grids/coarse.yaml", read_grid, NULL, 0, 0, 0 },
+    { "machine", "config/machines/zx200.yaml", read_machine, NULL, 0, 0, 0 },
+    { "force recording", "tests/data/formats/force_recording.csv", read_force, NULL, 0, 0, 0 },
+    { "machine recording", "tests/data/formats/machine_recording.csv", read_machine_recording, NULL,
+      0, 0, 0 },
+    { "bed", "tests/data/formats/bed.csv", read_bed, NULL, 0, 0, 0 },
+    { "identity", "tests/data/formats/identity.json", read_identity, NULL, 0, 0, 0 },
+    { "dbc", "config/can/zx200.dbc", read_dbc, NULL, 0, 0, 0 },
+    { "signal map", "config/signals/modbus_default.yaml", read_map, NULL, 0, 0, 0 },
+    { "daemon config", "tests/data/formats/digsightd.yaml", read_config, NULL, 0, 0, 0 },
+    { "LCM log", "tests/data/formats/daemon.lcm", read_log, NULL, 0, 0, 0 },
+    { "table", "tests/data/formats/table.sqlite", read_table, NULL, 0, 0, 0 },
+};
+enum { TARGETS = sizeof target / sizeof target[0] };
+
+static uint64_t state;
+
+static uint64_t next(void) // splitmix64, Steele, Lea and Flood 2014
+{
+    uint64_t z = (state += 0x9E3779B97F4A7C15u);
+    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+static size_t below(const size_t n)
+{
+    return n == 0 ? 0 : (size_t)(next() % n);
+}
+
+static const char *const tokens[] = { "nan",  "-inf", "1e999", "-1", "0", "[",  "]",  "{",    "}",
+                                      ":",    ",",    "\n",    "\"", "#", "~",  "|",  "9e99", "%s",
+                                      "\xff", "&a",   "*a",    "-",  ";", "\t", "''", "- - -" };
+
+// One to eight edits: a byte, a token, a cut, a repeat, an end.
+static size_t mutate(char *const text, size_t size)
+{
+    for (size_t edits = 1 + below(8); edits > 0; edits--) {
+        const size_t at = below(size + 1);
+        switch (below(5)) {
+        case 0:
+            if (at < size) {
+                text[at] = (char)next();
+            }
+            break;
+        case 1: {
+            const char *const token  = tokens[below(sizeof tokens / sizeof tokens[0])];
+            const size_t      length = strlen(token);
+            if (size + length < SIZE_MAX_B) {
+                memmove(text + at + length, text + at, size - at);
+                memcpy(text + at, token, length);
+                size += length;
+            }
+            break;
+        }
+        case 2: {
+            const size_t length = below(size - at < 40 ? size - at + 1 : 40);
+            memmove(text + at, text + at + length, size - at - length);
+            size -= length;
+            break;
+        }
+        case 3: {
+            const size_t length = below(size - at < 200 ? size - at + 1 : 200);
+            if (size + length < SIZE_MAX_B) {
+                memmove(text + at + length, text + at, size - at);
+                size += length;
+            }
+            break;
+        }
+        default:
+            if (below(8) == 0) {
+                size = at;
+            }
+            break;
+        }
+    }
+    return size;
+}
+
+static int load_examples(void)
+{
+    for (int i = 0; i < TARGETS; i++) {
+        FILE *const file = fopen(target[i].example, "rb");
+        if (file == NULL) {
+            (void)fprintf(stderr, "%s: missing\n", target[i].example);
+            return -1;
+        }
+        target[i].good = malloc(SIZE_MAX_B);
+        target[i].size = fread(target[i].good, 1, SIZE_MAX_B / 2, file);
+        (void)fclose(file);
+        struct dig_error error = { "" };
+        if (target[i].read(target[i].example, &error) != DIG_OK) {
+            (void)fprintf(stderr, "%s: refused: %s\n", target[i].example, error.text);
+            return -1;
+        }
+    }
+    return 0;
+}
+
+int main(const int argc, char *argv[])
+{
+    const double seconds = argc > 1 ? atof(argv[1]) : 10.0;
+    state                = argc > 2 ? strtoull(argv[2], NULL, 0) : 1;
+    static char text[SIZE_MAX_B];
+    char        path[256];
+    (void)snprintf(path, sizeof path, "%s/fuzz.%llu", getenv("FUZZ_DIR") ? getenv("FUZZ_DIR") : ".",
+                   (unsigned long long)state);
+    if (load_examples() != 0) {
+        return 1;
+    }
+    const time_t end = time(NULL) + (time_t)seconds;
+    for (long n = 0; time(NULL) < end; n++) {
+        const int i = (int)(n % TARGETS);
+        memcpy(text, target[i].good, target[i].size);
+        const size_t size = mutate(text, target[i].size);
+        FILE *const  file = fopen(path, "wb");
+        if (file == NULL || fwrite(text, 1, size, file) != size || fclose(file) != 0) {
+            perror(path);
+            return 1;
+        }
+        struct dig_error      error  = { "" };
+        const enum dig_status status = target[i].read(path, &error);
+        if (status != DIG_OK && error.text[0] == '\0') {
+            (void)fprintf(stderr, "%s: %s refused without a word (%s)\n", path, target[i].name,
+                          dig_status_str(status));
+            return 1;
+        }
+        target[i].taken += status == DIG_OK ? 1 : 0;
+        target[i].refused += status == DIG_OK ? 0 : 1;
+    }
+    (void)remove(path);
+    for (int i = 0; i < TARGETS; i++) {
+        (void)printf("%-18s %7ld taken %7ld refused\n", target[i].name, target[i].taken,
+                     target[i].refused);
+        free(target[i].good);
+    }
+    (void)printf("%d passed, 0 failed\n", TARGETS);
+    return 0;
+}
