@@ -106,8 +106,77 @@ static void soil_of_the_track_is_the_recording_s_at_scale(void **state)
     dig_recording_finish(&recording);
 }
 
-// Virtual work has no gauge: the moment about the bucket pin must come back from the bucket
-// cylinder alone, by the balance of powers along the track when nothing else moves.
+// What the cylinders and the soil put in, the links have as height and speed: the whole run in one
+// sum, with none of the differences the pushes were made of.
+static void cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links(void **state)
+{
+    (void)state;
+    const struct dig_machine     machine   = read_machine("zx200_trench");
+    struct dig_rig_track_options options   = dig_rig_track_options_default();
+    struct dig_recording         recording = read_recording(SIMPLE);
+    struct dig_rig_track         track;
+    struct dig_error             error = { "" };
+    options.rate_Hz                    = 1000.0;
+    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
+                     DIG_OK);
+
+    double work_J  = 0.0; // of cylinders and soil
+    double turned  = 0.0; // all work without its sign, as a measure
+    double first_J = 0.0;
+    double worst_J = 0.0;
+    double most_J  = 0.0; // of kinetic energy, so that it is known to be looked at
+    for (size_t i = 1; i + 1 < track.rows; i++) {
+        const struct dig_rig_row *const row = &track.row[i];
+        for (int j = 0; j < DIG_JOINTS && i > 1; j++) {
+            const struct dig_cylinder *const c = &machine.cylinder[j];
+            double                           length_m[2];
+            double                           push_N = 0.0;
+            for (int k = 0; k < 2; k++) {
+                const struct dig_rig_row *const at = &track.row[i - 1 + (size_t)k];
+                assert_int_equal(dig_rig_cylinder_m(&machine, (enum dig_joint)j, at->joints.rad[j],
+                                                    &length_m[k]),
+                                 DIG_OK);
+                push_N += 0.5 * c->count *
+                          (at->pressures.head_Pa[j] * dig_cylinder_head_m2(c) -
+                           at->pressures.rod_Pa[j] * dig_cylinder_rod_m2(c));
+            }
+            work_J += push_N * (length_m[1] - length_m[0]);
+            turned += fabs(push_N * (length_m[1] - length_m[0]));
+        }
+        if (i > 1) {
+            const struct dig_rig_row *const was = &track.row[i - 1];
+            work_J +=
+                0.5 * (row->soil.FX_N + was->soil.FX_N) * (row->pose.X_m - was->pose.X_m) +
+                0.5 * (row->soil.FZ_N + was->soil.FZ_N) * (row->pose.Z_m - was->pose.Z_m) +
+                0.5 * (row->soil.M_Nm + was->soil.M_Nm) * (row->pose.phi_rad - was->pose.phi_rad);
+        }
+
+        double height_J = 0.0;
+        double speed_J  = 0.0;
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            const enum dig_joint  link    = (enum dig_joint)j;
+            const struct dig_vec2 here    = dig_rig_com_m(&machine, &row->joints, link);
+            const struct dig_vec2 a       = dig_rig_com_m(&machine, &track.row[i - 1].joints, link);
+            const struct dig_vec2 b       = dig_rig_com_m(&machine, &track.row[i + 1].joints, link);
+            const double          v_mps   = hypot(b.x - a.x, b.y - a.y) / (2.0 * track.step_s);
+            const double          w_radps = (dig_rig_attitude_rad(&track.row[i + 1].joints, link) -
+                                    dig_rig_attitude_rad(&track.row[i - 1].joints, link)) /
+                                   (2.0 * track.step_s);
+            height_J += machine.link[j].mass_kg * 9.81 * here.y;
+            speed_J += 0.5 * machine.link[j].mass_kg * v_mps * v_mps +
+                       0.5 * machine.link[j].inertia_kgm2 * w_radps * w_radps;
+        }
+        first_J = i == 1 ? height_J + speed_J : first_J;
+        most_J  = fmax(most_J, speed_J);
+        worst_J = fmax(worst_J, fabs(work_J - (height_J + speed_J - first_J)));
+    }
+    assert_true(most_J > 100.0);
+    assert_true(turned > 1e3);
+    assert_true(worst_J < 0.005 * most_J);
+    dig_rig_track_finish(&track);
+    dig_recording_finish(&recording);
+}
+
 static void inertia_is_a_small_part_of_a_slow_dig(void **state)
 {
     (void)state;
@@ -253,6 +322,7 @@ int main(void)
         cmocka_unit_test(simple_then_actual_fit_the_trench_machine_below_relief),
         cmocka_unit_test(stiffest_reference_dig_fits_the_trench_machine),
         cmocka_unit_test(soil_of_the_track_is_the_recording_s_at_scale),
+        cmocka_unit_test(cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links),
         cmocka_unit_test(inertia_is_a_small_part_of_a_slow_dig),
         cmocka_unit_test(dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit),
         cmocka_unit_test(dig_that_lifts_or_tips_the_machine_is_refused),
