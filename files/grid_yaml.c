@@ -161,7 +161,8 @@ enum dig_status dig_grid_trajectories(const char *const path, const struct dig_g
     for (size_t i = 0; i < n; i++) {
         const struct dig_trajectory *const t = dig_scene_find(scene, grid->trajectory[i]);
         if (t == NULL) {
-            char key[64], names[DIG_TRAJECTORY_MAX * (DIG_NAME_SIZE + 2)];
+            char key[64];
+            char names[DIG_TRAJECTORY_MAX * (DIG_NAME_SIZE + 2)];
             (void)snprintf(key, sizeof key, "trajectories[%zu]", i);
             return dig_yaml_refuse(path, key, error, "\"%s\", expected one of the scene's: %s",
                                    grid->trajectory[i], names_of(scene, sizeof names, names));

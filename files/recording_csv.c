@@ -99,6 +99,35 @@ static struct dig_force_row force_row(const double v[const FORCE_COLUMNS])
     };
 }
 
+static enum dig_status no_memory(const char *const path, const size_t rows,
+                                 struct dig_error *const error)
+{
+    (void)dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, rows);
+    return DIG_ENOMEM;
+}
+
+static enum dig_status take_force_rows(const struct dig_csv *const csv, const char *const path,
+                                       struct dig_recording *const recording,
+                                       struct dig_error *const     error)
+{
+    enum dig_status status = check_rows(csv, path, error);
+    if (status == DIG_OK) {
+        status = check_rate(csv, true, path, error);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_force_row *const row = malloc(csv->rows * sizeof *row);
+    if (row == NULL) {
+        return no_memory(path, csv->rows, error);
+    }
+    for (size_t i = 0; i < csv->rows; i++) {
+        row[i] = force_row(csv->value + i * csv->columns);
+    }
+    *recording = (struct dig_recording){ .rows = csv->rows, .row = row };
+    return DIG_OK;
+}
+
 enum dig_status dig_recording_read(const char *const path, struct dig_recording *const recording,
                                    struct dig_error *const error)
 {
@@ -106,27 +135,43 @@ enum dig_status dig_recording_read(const char *const path, struct dig_recording 
 
     struct dig_csv  csv;
     enum dig_status status = dig_csv_read(path, FORCE_COLUMNS, force_column, &csv, error);
+    if (status == DIG_OK) {
+        status = take_force_rows(&csv, path, recording, error);
+        dig_csv_finish(&csv);
+    }
+    return status;
+}
+
+static struct dig_sample sample_row(const double v[const DIG_SIGNALS + 1])
+{
+    struct dig_sample sample = { .time_ns = llround(v[0] * 1e9) };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        sample.valid[s] = !isnan(v[s + 1]);
+        sample.value[s] = sample.valid[s] ? v[s + 1] : 0.0;
+    }
+    return sample;
+}
+
+static enum dig_status take_machine_rows(const struct dig_csv *const csv, const char *const path,
+                                         struct dig_machine_recording *const recording,
+                                         struct dig_error *const             error)
+{
+    enum dig_status status = check_rows(csv, path, error);
+    if (status == DIG_OK) {
+        status = check_rate(csv, false, path, error);
+    }
     if (status != DIG_OK) {
         return status;
     }
-    status = check_rows(&csv, path, error);
-    if (status == DIG_OK) {
-        status = check_rate(&csv, true, path, error);
+    struct dig_sample *const row = malloc(csv->rows * sizeof *row);
+    if (row == NULL) {
+        return no_memory(path, csv->rows, error);
     }
-    struct dig_force_row *const row = malloc(csv.rows * sizeof *row);
-    if (status == DIG_OK && row == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv.rows);
+    for (size_t i = 0; i < csv->rows; i++) {
+        row[i] = sample_row(csv->value + i * csv->columns);
     }
-    if (status == DIG_OK) {
-        for (size_t i = 0; i < csv.rows; i++) {
-            row[i] = force_row(csv.value + i * csv.columns);
-        }
-        *recording = (struct dig_recording){ .rows = csv.rows, .row = row };
-    } else {
-        free(row);
-    }
-    dig_csv_finish(&csv);
-    return status;
+    *recording = (struct dig_machine_recording){ .rows = csv->rows, .row = row };
+    return DIG_OK;
 }
 
 enum dig_status dig_machine_recording_read(const char *const                   path,
@@ -139,31 +184,10 @@ enum dig_status dig_machine_recording_read(const char *const                   p
     machine_columns(column);
     struct dig_csv  csv;
     enum dig_status status = dig_csv_read(path, DIG_SIGNALS + 1, column, &csv, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = check_rows(&csv, path, error);
     if (status == DIG_OK) {
-        status = check_rate(&csv, false, path, error);
+        status = take_machine_rows(&csv, path, recording, error);
+        dig_csv_finish(&csv);
     }
-    struct dig_sample *const row = calloc(csv.rows, sizeof *row);
-    if (status == DIG_OK && row == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv.rows);
-    }
-    if (status == DIG_OK) {
-        for (size_t i = 0; i < csv.rows; i++) {
-            const double *const v = csv.value + i * csv.columns;
-            row[i].time_ns        = llround(v[0] * 1e9);
-            for (int s = 0; s < DIG_SIGNALS; s++) {
-                row[i].valid[s] = !isnan(v[s + 1]);
-                row[i].value[s] = row[i].valid[s] ? v[s + 1] : 0.0;
-            }
-        }
-        *recording = (struct dig_machine_recording){ .rows = csv.rows, .row = row };
-    } else {
-        free(row);
-    }
-    dig_csv_finish(&csv);
     return status;
 }
 

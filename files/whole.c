@@ -15,8 +15,9 @@
 
 static enum dig_status read_stream(FILE *const file, char **const text, size_t *const size)
 {
-    size_t room = 1 << 16, used = 0;
-    char  *all = malloc(room);
+    size_t room = 1 << 16;
+    size_t used = 0;
+    char  *all  = malloc(room);
     while (all != NULL) {
         used += fread(all + used, 1, room - 1 - used, file);
         if (used < room - 1) {

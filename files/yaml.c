@@ -46,7 +46,9 @@ static enum dig_status load_text(const char *const path, const char *const text,
         return DIG_OK;
     }
     for (char *c = log.text; *c != '\0'; c++) {
-        *c = *c == '\n' ? ' ' : *c;
+        if (*c == '\n') {
+            *c = ' ';
+        }
     }
     return dig_error_set(error, err == CYAML_ERR_OOM ? DIG_ENOMEM : DIG_EINVAL, "%s:1: %s: %s",
                          path, cyaml_strerror(err), log.text);

@@ -279,6 +279,8 @@ static enum dig_status check_scalar(const struct check *const check, const yaml_
                          stands(node, sizeof seen, seen), wanted(schema));
 }
 
+// These call each other as deep as the schema nests, which is finite; the document, with its
+// aliases, need not be.
 static enum dig_status check_value(const struct check *check, const yaml_node_t *node,
                                    const cyaml_schema_value_t *schema, const struct key *key);
 
@@ -331,11 +333,13 @@ static int line_before(const struct check *const check, const yaml_node_t *const
     return 0;
 }
 
+// NOLINTNEXTLINE(misc-no-recursion)
 static enum dig_status check_mapping(const struct check *const check, const yaml_node_t *const map,
                                      const cyaml_schema_value_t *const schema,
                                      const struct key *const           at)
 {
-    char list[200] = "", seen[80];
+    char list[200] = "";
+    char seen[80];
     if (map->type != YAML_MAPPING_NODE) {
         return refuse(check, line_of(map), at, "%s, expected a mapping of %s",
                       stands(map, sizeof seen, seen), keys_of(schema, sizeof list, list));
@@ -374,6 +378,7 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
     return DIG_OK;
 }
 
+// NOLINTNEXTLINE(misc-no-recursion)
 static enum dig_status check_list(const struct check *const check, const yaml_node_t *const list,
                                   const cyaml_schema_value_t *const schema,
                                   const struct key *const           at)
@@ -404,6 +409,7 @@ static enum dig_status check_list(const struct check *const check, const yaml_no
     return DIG_OK;
 }
 
+// NOLINTNEXTLINE(misc-no-recursion)
 static enum dig_status check_value(const struct check *const check, const yaml_node_t *const node,
                                    const cyaml_schema_value_t *const schema,
                                    const struct key *const           key)

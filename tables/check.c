@@ -15,7 +15,8 @@
 static bool agree(const float a[], const float b[])
 {
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        double most = 0.0, off = 0.0;
+        double most = 0.0;
+        double off  = 0.0;
         for (size_t i = c * DIG_CURVE_POINTS; i < (c + 1) * DIG_CURVE_POINTS; i++) {
             most = fmax(most, fabs((double)b[i]));
             off  = fmax(off, fabs((double)a[i] - (double)b[i]));
@@ -27,46 +28,42 @@ static bool agree(const float a[], const float b[])
     return true;
 }
 
+// Room for one entry computed anew.
+struct scratch {
+    struct dig_ensemble ensemble;
+    struct dig_curve    curve;
+};
+
 static enum dig_status check_entry(struct dig_store *const           store,
                                    const struct dig_curve_set *const set, const size_t entry,
-                                   const size_t trajectory, struct dig_error *const error)
+                                   const size_t trajectory, struct scratch *const scratch,
+                                   struct dig_error *const error)
 {
-    const size_t                   at       = entry * set->trajectories + trajectory;
-    const struct dig_gravel *const gravel   = &set->gravel[entry];
-    sqlite3_int64                  id       = 0;
-    struct dig_ensemble *const     ensemble = calloc(1, sizeof *ensemble);
-    struct dig_curve *const        curve    = calloc(1, sizeof *curve);
-    enum dig_status                status   = ensemble != NULL && curve != NULL
-                                                  ? dig_gravel_find(store, gravel, &id, error)
-                                                  : dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    const size_t                   at     = entry * set->trajectories + trajectory;
+    const struct dig_gravel *const gravel = &set->gravel[entry];
+    sqlite3_int64                  id     = 0;
+    enum dig_status                status = dig_gravel_find(store, gravel, &id, error);
     if (status == DIG_OK) {
-        status = dig_entry_derive(store, id, trajectory, ensemble, error);
+        status = dig_entry_derive(store, id, trajectory, &scratch->ensemble, error);
     }
-    if (status == DIG_OK) {
-        dig_ensemble_curve(ensemble, curve);
-        const struct dig_curve *const stored = &set->curve[at];
-        const bool                    same   = (size_t)set->packings[at] == ensemble->packings &&
-                          agree(&stored->mean[0][0], &curve->mean[0][0]) &&
-                          (ensemble->packings == 1 || agree(&stored->sd[0][0], &curve->sd[0][0]));
-        if (ensemble->packings > 0 && !same) {
-            status =
-                dig_error_set(error, DIG_EINVAL,
-                              "%s: entry: friction %g, rolling %g, %g kg/m3 on %s: differs "
-                              "from its %zu runs, expected their mean and spread",
-                              store->path, gravel->value[0], gravel->value[1], gravel->value[2],
-                              set->trajectory[trajectory].name, ensemble->packings);
-        } else if (ensemble->packings == 0 && set->packings[at] > 0) {
-            status =
-                dig_error_set(error, DIG_EINVAL,
-                              "%s: entry: friction %g, rolling %g, %g kg/m3 on %s: has no run, "
-                              "expected %d",
-                              store->path, gravel->value[0], gravel->value[1], gravel->value[2],
-                              set->trajectory[trajectory].name, set->packings[at]);
-        }
+    if (status != DIG_OK) {
+        return status;
     }
-    free(ensemble);
-    free(curve);
-    return status;
+    const size_t runs = scratch->ensemble.packings;
+    dig_ensemble_curve(&scratch->ensemble, &scratch->curve);
+    const struct dig_curve *const stored = &set->curve[at];
+    const struct dig_curve *const actual = &scratch->curve;
+    const bool                    same   = (size_t)set->packings[at] == runs &&
+                      (runs == 0 || agree(&stored->mean[0][0], &actual->mean[0][0])) &&
+                      (runs < 2 || agree(&stored->sd[0][0], &actual->sd[0][0]));
+    if (!same) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: entry: friction %g, rolling %g, %g kg/m3 on %s: of %d packings, "
+                             "differs from its %zu runs, expected their mean and spread",
+                             store->path, gravel->value[0], gravel->value[1], gravel->value[2],
+                             set->trajectory[trajectory].name, set->packings[at], runs);
+    }
+    return DIG_OK;
 }
 
 static struct dig_store_report count(const struct dig_curve_set *const set)
@@ -105,15 +102,21 @@ enum dig_status dig_store_check(struct dig_store *const        store,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_curve_set *set = NULL;
-    status                    = dig_sql_load(store->db, store->path, &store->head, &set, error);
-    for (size_t e = 0; status == DIG_OK && e < set->entries; e++) {
+    struct dig_curve_set *set     = NULL;
+    struct scratch *const scratch = calloc(1, sizeof *scratch);
+    if (scratch == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    } else {
+        status = dig_sql_load(store->db, store->path, &store->head, &set, error);
+    }
+    for (size_t e = 0; status == DIG_OK && set != NULL && e < set->entries; e++) {
         for (size_t t = 0; status == DIG_OK && t < set->trajectories; t++) {
-            status = check_entry(store, set, e, t, error);
+            status = check_entry(store, set, e, t, scratch, error);
         }
     }
+    free(scratch);
     (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-    if (status == DIG_OK) {
+    if (status == DIG_OK && set != NULL) {
         *report = count(set);
     }
     dig_curve_set_destroy(set);

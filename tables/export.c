@@ -227,11 +227,13 @@ void dig_export_curve_plot(const struct dig_curve_set *const set, const size_t e
     const size_t                  at    = entry * set->trajectories + trajectory;
     const struct dig_curve *const curve = &set->curve[at];
     const double *const           v     = set->gravel[entry].value;
-    double                        low = 0.0, high = 0.0;
+    double                        low   = 0.0;
+    double                        high  = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double mean = (double)curve->mean[channel][k], sd = (double)curve->sd[channel][k];
-        low  = fmin(low, mean - sd);
-        high = fmax(high, mean + sd);
+        const double mean = (double)curve->mean[channel][k];
+        const double sd   = (double)curve->sd[channel][k];
+        low               = fmin(low, mean - sd);
+        high              = fmax(high, mean + sd);
     }
     const double step = high > low ? (high - low) / (PLOT_ROWS - 1) : 1.0;
 

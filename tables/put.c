@@ -19,48 +19,43 @@ static enum dig_status prepare(const struct dig_store *const store, const char *
                                                                         : refuse(store, error);
 }
 
-// The samples as they are stored, little endian; *bytes is malloc'ed.
-static enum dig_status pack_recording(const struct dig_recording *const r, uint8_t **const bytes,
-                                      double *const step_s, struct dig_error *const error)
+static enum dig_status check_recording(const struct dig_recording *const r, const double step_s,
+                                       struct dig_error *const error)
 {
-    if (r->rows < 2 || r->rows > DIG_WINDOWS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "recording: %zu rows, expected 2 to %d", r->rows,
-                             DIG_WINDOWS_MAX);
-    }
-    const double    spacing_s = (r->row[r->rows - 1].t_s - r->row[0].t_s) / (double)(r->rows - 1);
-    float *const    value     = malloc(DIG_CHANNELS * r->rows * sizeof *value);
-    uint8_t *const  packed    = malloc(DIG_CHANNELS * r->rows * 4);
-    enum dig_status status =
-        value != NULL && packed != NULL
-            ? DIG_OK
-            : dig_error_set(error, DIG_ENOMEM, "recording: no memory for %zu rows", r->rows);
-    for (size_t i = 0; status == DIG_OK && i < r->rows; i++) {
-        const struct dig_force_row *const row = &r->row[i];
-        const double off_s                    = row->t_s - (r->row[0].t_s + (double)i * spacing_s);
-        if (!(spacing_s > 0.0) || !(fabs(off_s) <= 0.01 * spacing_s)) {
-            status = dig_error_set(error, DIG_EINVAL,
-                                   "recording: row %zu: t_s %.9g, expected evenly spaced times",
-                                   i + 1, row->t_s);
-            break;
+    for (size_t i = 0; i < r->rows; i++) {
+        const struct dig_force_row *const row   = &r->row[i];
+        const double                      off_s = row->t_s - (r->row[0].t_s + (double)i * step_s);
+        if (!(step_s > 0.0) || !(fabs(off_s) <= 0.01 * step_s)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "recording: row %zu: t_s %.9g, expected evenly spaced times",
+                                 i + 1, row->t_s);
         }
         if (!isfinite(row->My_Nm) || !isfinite(row->Fx_N) || !isfinite(row->Fz_N)) {
-            status = dig_error_set(error, DIG_EINVAL,
-                                   "recording: row %zu: expected finite forces and moment", i + 1);
-            break;
+            return dig_error_set(error, DIG_EINVAL,
+                                 "recording: row %zu: expected finite forces and moment", i + 1);
         }
-        value[DIG_CHANNEL_MY_Nm * r->rows + i] = (float)row->My_Nm;
-        value[DIG_CHANNEL_FX_N * r->rows + i]  = (float)row->Fx_N;
-        value[DIG_CHANNEL_FZ_N * r->rows + i]  = (float)row->Fz_N;
     }
-    if (status == DIG_OK) {
+    return DIG_OK;
+}
+
+// The samples as they are stored, little endian, malloc'ed; NULL without memory.
+static uint8_t *pack_recording(const struct dig_recording *const r)
+{
+    float *const   value  = malloc(DIG_CHANNELS * r->rows * sizeof *value);
+    uint8_t *const packed = malloc(DIG_CHANNELS * r->rows * 4);
+    if (value != NULL && packed != NULL) {
+        for (size_t i = 0; i < r->rows; i++) {
+            value[DIG_CHANNEL_MY_Nm * r->rows + i] = (float)r->row[i].My_Nm;
+            value[DIG_CHANNEL_FX_N * r->rows + i]  = (float)r->row[i].Fx_N;
+            value[DIG_CHANNEL_FZ_N * r->rows + i]  = (float)r->row[i].Fz_N;
+        }
         dig_floats_pack(DIG_CHANNELS * r->rows, value, packed);
-        *bytes  = packed;
-        *step_s = spacing_s;
-    } else {
-        free(packed);
+        free(value);
+        return packed;
     }
     free(value);
-    return status;
+    free(packed);
+    return NULL;
 }
 
 // Makes the gravel's row where there is none yet, and finds its key.
@@ -133,7 +128,8 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
 {
     enum { NUMBERS = DIG_CHANNELS * DIG_CURVE_POINTS };
     struct dig_curve curve;
-    uint8_t          mean[NUMBERS * 4], spread[NUMBERS * 4];
+    uint8_t          mean[NUMBERS * 4];
+    uint8_t          spread[NUMBERS * 4];
     dig_ensemble_curve(e, &curve);
     dig_floats_pack(NUMBERS, &curve.mean[0][0], mean);
     dig_floats_pack(NUMBERS, &curve.sd[0][0], spread);
@@ -160,29 +156,16 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     return status;
 }
 
-enum dig_status dig_store_put(struct dig_store *const            store,
-                              const struct dig_run_origin *const origin,
-                              const struct dig_recording *const  recording,
-                              struct dig_error *const            error)
+// All of it or, when it returns anything but DIG_OK, nothing: the caller rolls back.
+static enum dig_status put_in_transaction(struct dig_store *const            store,
+                                          const struct dig_run_origin *const origin,
+                                          const struct dig_recording *const  recording,
+                                          const double step_s, const uint8_t *const bytes,
+                                          struct dig_ensemble *const ensemble,
+                                          struct dig_error *const    error)
 {
-    assert(store != NULL && origin != NULL && recording != NULL);
-    assert(store->lock_fd >= 0 && origin->trajectory < store->head.trajectories);
-
-    uint8_t        *bytes  = NULL;
-    double          step_s = 0.0;
-    enum dig_status status = pack_recording(recording, &bytes, &step_s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
-    if (status != DIG_OK) {
-        free(bytes);
-        return status;
-    }
-    sqlite3_int64              gravel   = 0;
-    struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
-    status = ensemble != NULL ? make_gravel(store, &origin->gravel, &gravel, error)
-                              : dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    sqlite3_int64   gravel = 0;
+    enum dig_status status = make_gravel(store, &origin->gravel, &gravel, error);
     if (status == DIG_OK) {
         status = insert_run(store, gravel, origin, recording->rows, recording->row[0].t_s, step_s,
                             bytes, error);
@@ -193,11 +176,40 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     if (status == DIG_OK) {
         status = write_entry(store, gravel, origin->trajectory, ensemble, error);
     }
-    if (status == DIG_OK) {
-        status = dig_sql_run(store->db, store->path, "COMMIT", error);
+    return status == DIG_OK ? dig_sql_run(store->db, store->path, "COMMIT", error) : status;
+}
+
+enum dig_status dig_store_put(struct dig_store *const            store,
+                              const struct dig_run_origin *const origin,
+                              const struct dig_recording *const  recording,
+                              struct dig_error *const            error)
+{
+    assert(store != NULL && origin != NULL && recording != NULL);
+    assert(store->lock_fd >= 0 && origin->trajectory < store->head.trajectories);
+
+    const size_t rows = recording->rows;
+    if (rows < 2 || rows > DIG_WINDOWS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "recording: %zu rows, expected 2 to %d", rows,
+                             DIG_WINDOWS_MAX);
     }
+    const double step_s =
+        (recording->row[rows - 1].t_s - recording->row[0].t_s) / (double)(rows - 1);
+    enum dig_status status = check_recording(recording, step_s, error);
     if (status != DIG_OK) {
-        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+        return status;
+    }
+    uint8_t *const             bytes    = pack_recording(recording);
+    struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
+    if (bytes == NULL || ensemble == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
+    } else {
+        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+        if (status == DIG_OK) {
+            status = put_in_transaction(store, origin, recording, step_s, bytes, ensemble, error);
+            if (status != DIG_OK) {
+                (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+            }
+        }
     }
     free(ensemble);
     free(bytes);

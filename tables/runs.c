@@ -92,8 +92,8 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
     for (int a = 0; a < DIG_AXES; a++) {
         o->gravel.value[a] = sqlite3_column_double(s, a);
     }
-    const sqlite3_int64 packing    = sqlite3_column_int64(s, 3),
-                        trajectory = sqlite3_column_int64(s, 4);
+    const sqlite3_int64 packing    = sqlite3_column_int64(s, 3);
+    const sqlite3_int64 trajectory = sqlite3_column_int64(s, 4);
     const sqlite3_int64 windows    = sqlite3_column_int64(s, 11);
     o->packing                     = (size_t)packing;
     o->trajectory                  = (size_t)trajectory;

@@ -14,17 +14,18 @@
 #include <unistd.h>
 
 #define WRITER_WAIT_ms 60000
-#define LOCK_WAIT_s    2.0 // workers of a killed writer need a moment to die
+#define LOCK_PAUSE_ns  50000000
+#define LOCK_TRIES     40 // two seconds: workers of a killed writer need a moment to die
 
 static enum dig_status open_db(const char *const path, const int flags, sqlite3 **const db,
                                struct dig_error *const error)
 {
     sqlite3 *opened = NULL;
     if (sqlite3_open_v2(path, &opened, flags, NULL) != SQLITE_OK) {
-        const enum dig_status status = dig_error_set(
-            error, DIG_EIO, "%s: %s", path, opened != NULL ? sqlite3_errmsg(opened) : "no memory");
+        (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
+                            opened != NULL ? sqlite3_errmsg(opened) : "no memory");
         (void)sqlite3_close(opened);
-        return status;
+        return DIG_EIO;
     }
     const enum dig_status status = dig_sql_setup(opened, path, error);
     if (status != DIG_OK) {
@@ -75,12 +76,14 @@ static enum dig_status make_store(const char *const path, struct dig_store **con
 {
     struct dig_store *const made = calloc(1, sizeof *made);
     if (made == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        (void)dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        return DIG_ENOMEM;
     }
     made->lock_fd = -1;
     if (strlen(path) >= sizeof made->path) {
         free(made);
-        return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
+        (void)dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
+        return DIG_EINVAL;
     }
     memcpy(made->path, path, strlen(path) + 1);
     *store = made;
@@ -108,24 +111,27 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
 static enum dig_status lock(struct dig_store *const store, bool *const created,
                             struct dig_error *const error)
 {
-    *created       = access(store->path, F_OK) != 0;
-    store->lock_fd = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const bool absent = access(store->path, F_OK) != 0;
+    store->lock_fd    = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (store->lock_fd < 0) {
-        *created = false;
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    const struct timespec pause = { .tv_nsec = 50000000 };
-    for (double waited_s = 0.0; flock(store->lock_fd, LOCK_EX | LOCK_NB) != 0; waited_s += 0.05) {
+    const struct timespec pause = { .tv_nsec = LOCK_PAUSE_ns };
+    for (int tries = 0; flock(store->lock_fd, LOCK_EX | LOCK_NB) != 0; tries++) {
         if (errno != EWOULDBLOCK && errno != EINTR) {
             return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
         }
-        if (waited_s > LOCK_WAIT_s) {
+        if (tries >= LOCK_TRIES) {
             return dig_error_set(error, DIG_EIO,
                                  "%s: another process is adding to this table, expected one writer",
                                  store->path);
         }
         (void)nanosleep(&pause, NULL);
     }
+
+    // Not ours to remove if another writer filled it while we waited.
+    struct stat file;
+    *created = absent && fstat(store->lock_fd, &file) == 0 && file.st_size == 0;
     return DIG_OK;
 }
 

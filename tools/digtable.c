@@ -403,7 +403,8 @@ static void tell_sweep(void *const context, const struct dig_sweep_state *const 
 {
     struct progress_line *const line = context;
     if (is_due(line, false)) {
-        char elapsed[32], left[32];
+        char elapsed[32];
+        char left[32];
         (void)fprintf(stderr, "%s%zu of %zu digs, %zu running, %s elapsed, %s left",
                       line->tty ? "\r" : "", s->digs_done, s->digs_total, s->workers,
                       span(s->elapsed_s, sizeof elapsed, elapsed),
