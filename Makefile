@@ -38,7 +38,7 @@ messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
-threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c)
+threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c tests/test_rig_serve_modbus.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) \
              $(wildcard firmware_host/digsightd.c tools/rig/digrig.c)
@@ -166,7 +166,7 @@ coverage: ## Line and branch coverage per source file
 lint: layers $(BUILD)/messages/.made ## Layering, the compiler's analyzer, clang-tidy
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
-	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -n 4 sh -c \
+	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -n 1 sh -c \
 	    'clang-tidy --quiet "$$@" -- $(STD) $(lint_flags) 2>/dev/null' clang-tidy
 
 layers: ## Fail on an include that points the wrong way
