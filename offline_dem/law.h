@@ -38,7 +38,6 @@ struct dig_law {
     double reach_m;         // they touch below this distance
     double lever_i_m;       // from the centre to the contact at no overlap
     double lever_j_m;       // 0 for a wall
-    double lever_shrink;    // share of the overlap taken off the levers: 1/2, wall 1
     double normal_Npm;      // k_n = k_t
     double damping_Nspm;    // gamma_n = gamma_t
     double rolling_Nmprad;  // k_r
@@ -95,10 +94,9 @@ static inline struct dig_law dig_law_pair(const struct dig_law_material *const m
 {
     struct dig_law law =
         dig_law_make(material, ri_m * rj_m / (ri_m + rj_m), mi_kg * mj_kg / (mi_kg + mj_kg));
-    law.reach_m      = ri_m + rj_m;
-    law.lever_i_m    = ri_m;
-    law.lever_j_m    = rj_m;
-    law.lever_shrink = 0.5;
+    law.reach_m   = ri_m + rj_m;
+    law.lever_i_m = ri_m;
+    law.lever_j_m = rj_m;
     return law;
 }
 
@@ -110,7 +108,6 @@ static inline struct dig_law dig_law_wall(const struct dig_law_material *const m
     law.reach_m        = r_m;
     law.lever_i_m      = r_m;
     law.lever_j_m      = 0.0;
-    law.lever_shrink   = 1.0;
     return law;
 }
 
@@ -136,8 +133,8 @@ dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch
     const double load_N   = fabs(normal_N);
 
     // Slip of the contact point
-    const double ci_m = law.lever_i_m - law.lever_shrink * delta_m;
-    const double cj_m = law.lever_j_m > 0.0 ? law.lever_j_m - law.lever_shrink * delta_m : 0.0;
+    const double ci_m = law.lever_i_m - 0.5 * delta_m;
+    const double cj_m = law.lever_j_m > 0.0 ? law.lever_j_m - 0.5 * delta_m : 0.0;
     const double wx   = ci_m * t.ix_radps + cj_m * t.jx_radps;
     const double wy   = ci_m * t.iy_radps + cj_m * t.jy_radps;
     const double wz   = ci_m * t.iz_radps + cj_m * t.jz_radps;

@@ -12,16 +12,9 @@
 #include "offline_dem/law.h"
 #include "offline_dem/neighbour.h"
 #include "offline_dem/tool.h"
+#include "offline_dem/wall.h"
 
 #include <stdbool.h>
-
-#define DIG_WALLS_MAX 8
-
-/// Grains stay where normal . x >= offset_m; normal has length 1.
-struct dig_wall {
-    double normal[3];
-    double offset_m;
-};
 
 /// Force and moment of the grains on the tool, summed over steps.
 struct dig_wrench {
@@ -63,8 +56,8 @@ struct dig_world {
 /// Takes over *grains. The caller fills the fixed fields of a zeroed *world first.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);
 
-/// Tells the world that grains were taken out or moved by hand. Contacts are forgotten if
-/// `forget`, else they stay with their grains' names.
+/// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
+/// remade before the next step. Contacts stay with their grains.
 void dig_world_touched(struct dig_world *world);
 
 /// Removes grains for which drop[i] is not 0; the contacts between the others remember.
