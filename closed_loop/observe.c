@@ -61,15 +61,20 @@ static double path_distance(const struct dig_recording *const recording,
                             const double tooth_m)
 {
     enum { POINTS = 64 };
-    double x_m[POINTS], z_m[POINTS], mean_x_m = 0.0, mean_z_m = 0.0, turn2_m2 = 0.0;
-    size_t i = 0;
+    double x_m[POINTS];
+    double z_m[POINTS];
+    double mean_x_m = 0.0;
+    double mean_z_m = 0.0;
+    double turn2_m2 = 0.0;
+    size_t i        = 0;
     for (int k = 0; k < POINTS; k++) {
         const double progress = (double)k / (POINTS - 1);
         i                     = row_at(c, progress, i);
         const double f        = fraction_at(c, i, progress);
 
-        const struct dig_force_row *const a = &recording->row[i], *const b = a + 1;
-        const double theta_rad =
+        const struct dig_force_row *const a = &recording->row[i];
+        const struct dig_force_row *const b = a + 1;
+        const double                      theta_rad =
             (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
         const struct dig_pose pose =
             dig_trajectory_pose(t, dig_trajectory_time_s(t, tooth_m, progress));

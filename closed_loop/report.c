@@ -127,7 +127,9 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
                                 const char *const title, const char *const model,
                                 struct dig_error *const error)
 {
-    double x[DIG_CURVE_POINTS], low[DIG_CURVE_POINTS], high[DIG_CURVE_POINTS];
+    double x[DIG_CURVE_POINTS];
+    double low[DIG_CURVE_POINTS];
+    double high[DIG_CURVE_POINTS];
     double measured[DIG_CURVE_POINTS];
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         x[k]        = 100.0 * k / (DIG_CURVE_POINTS - 1);

@@ -121,8 +121,10 @@ void dig_curve_smooth(const size_t n, const double t_s[], const double y[], cons
     assert(half_s >= 0.0);
 
     // Two edges walk along the samples, each with the integral of the signal up to its sample.
-    size_t low = 0, high = 0;
-    double low_area = 0.0, high_area = 0.0;
+    size_t low       = 0;
+    size_t high      = 0;
+    double low_area  = 0.0;
+    double high_area = 0.0;
     for (size_t k = 0; k < n; k++) {
         const double from_s = fmax(t_s[k] - half_s, t_s[0]);
         const double to_s   = fmin(t_s[k] + half_s, t_s[n - 1]);

@@ -205,29 +205,29 @@ static void add_trajectory(struct text *const text, const struct dig_trajectory 
     }
 }
 
-size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t size,
-                           char text_out[const])
+// NOLINTNEXTLINE(readability-non-const-parameter): written through the struct below
+size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t size, char text[])
 {
     assert(scene != NULL);
-    struct text                      text = { text_out, size, 0 };
-    const struct dig_box *const      b    = &scene->box;
-    const struct dig_packing *const  p    = &scene->packing;
-    const struct dig_material *const m    = &scene->material;
+    struct text                      all = { text, size, 0 };
+    const struct dig_box *const      b   = &scene->box;
+    const struct dig_packing *const  p   = &scene->packing;
+    const struct dig_material *const m   = &scene->material;
 
-    add(&text, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
+    add(&all, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
     for (size_t i = 0; i < scene->bucket.points; i++) {
-        add(&text, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i], scene->bucket.z_m[i]);
+        add(&all, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i], scene->bucket.z_m[i]);
     }
-    add(&text, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m, b->y_min_m,
+    add(&all, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m, b->y_min_m,
         b->y_max_m, b->z_min_m, b->z_max_m);
-    add(&text, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction, p->fill_factor,
+    add(&all, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction, p->fill_factor,
         p->fall_mps, p->settle_s, p->relax_s);
-    add(&text, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa, m->poisson,
+    add(&all, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa, m->poisson,
         m->restitution, m->characteristic_velocity_mps);
-    add(&text, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n", scene->gravity_mps2,
+    add(&all, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n", scene->gravity_mps2,
         scene->time_step_s, scene->output_s);
     for (size_t i = 0; i < scene->trajectories; i++) {
-        add_trajectory(&text, &scene->trajectory[i]);
+        add_trajectory(&all, &scene->trajectory[i]);
     }
-    return text.length;
+    return all.length;
 }

@@ -7,6 +7,7 @@
 #include "files/recording_csv.h"
 #include "tables/load.h"
 
+#include <assert.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -143,7 +144,7 @@ static enum dig_status identify(const struct options *const       options,
                                 const struct dig_curve_set *const set,
                                 struct dig_error *const           error)
 {
-    struct dig_observation observation;
+    struct dig_observation observation = { .trajectory = 0 };
     struct dig_match       match;
     enum dig_status        status = observe_all(options, set, &observation, error);
     if (status != DIG_OK) {
@@ -249,6 +250,7 @@ static void put_array(FILE *const to, const char *const name, const float curve[
 static enum dig_status predict(const struct options *const       options,
                                const struct dig_curve_set *const set, struct dig_error *const error)
 {
+    assert(options->identified != NULL && options->trajectory != NULL);
     struct dig_identity id;
     enum dig_status     status = dig_identity_read(options->identified, &id, error);
     if (status != DIG_OK) {
@@ -297,7 +299,7 @@ static enum dig_status predict(const struct options *const       options,
 
 int main(const int argc, char *argv[])
 {
-    struct options   options = { 0 };
+    struct options   options = { .command = "", .table = "", .identified = "", .trajectory = "" };
     struct dig_error error   = { "" };
     if (parse(argc, argv, &options, &error) != DIG_OK) {
         (void)fprintf(stderr, "digloop: %s\nTry digloop --help.\n", error.text);

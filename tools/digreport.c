@@ -210,7 +210,8 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         goto done;
     }
     const int want_real   = find_trajectory(set, said->trajectory);
-    bool      have_simple = false, have_real = false;
+    bool      have_simple = false;
+    bool      have_real   = false;
     for (size_t i = 0; i < samples.rows; i++) {
         struct dig_estimate    estimate;
         struct dig_observation dig;
@@ -314,8 +315,9 @@ static enum dig_status fill_run(const struct options *const       options,
                                           : "identified no gravel");
     }
 
-    struct dig_observation simple, real;
-    status = measure(machine, set, log, &said, &simple, &real, error);
+    struct dig_observation simple = { .trajectory = 0 };
+    struct dig_observation real   = { .trajectory = 0 };
+    status                        = measure(machine, set, log, &said, &simple, &real, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -349,8 +351,8 @@ static enum dig_status fill_run(const struct options *const       options,
     const int        t     = find_trajectory(set, run->real.trajectory);
     // One grid point in from where the prediction begins: the curve is a gap before it.
     const double from = fmax(real.first, said.from + 1.0 / (DIG_CURVE_POINTS - 1));
-    dig_score_add(&score, &set->trajectory[t], set->tooth_m, from, real.last,
-                  run->real.measured_Nm, run->real.model_Nm, run->real.sigma_Nm);
+    dig_score_add(&score, &set->trajectory[t], set->tooth_m, from, real.last, run->real.measured_Nm,
+                  run->real.model_Nm, run->real.sigma_Nm);
     run->error       = dig_score_error(&score);
     run->noise_floor = dig_score_noise_floor(&score);
     return add_recordings(options, set, run, error);
