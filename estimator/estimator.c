@@ -97,7 +97,7 @@ static void forget_dig(struct dig_estimator *const e)
 {
     e->path          = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
     e->next_follower = 0;
-    e->trajectory    = -1;
+    e->choice        = (struct dig_choice){ .told = -1, .candidate = -1 };
     e->progress      = (double)NAN;
     e->off_path_m    = (double)NAN;
     dig_window_close(&e->window);
@@ -149,15 +149,9 @@ static struct dig_path_point rig_point(const struct dig_estimator *const e,
 static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
 {
     for (size_t i = 0; i < e->window.count; i++) {
-        (void)dig_path_add(&e->path, &e->window.pose[i]);
+        (void)dig_path_add(&e->path, &e->window.pose[i], false);
     }
-
-    // Long waiting in the air may have filled and thinned it; contact is its last vertex then too.
-    if (e->path.vertices == DIG_PATH_MAX) {
-        e->path.vertices--;
-    }
-    e->path.vertex[e->path.vertices] = *touched;
-    e->path.contact                  = e->path.vertices++;
+    dig_path_touch(&e->path, touched);
     for (size_t t = 0; t < e->set->trajectories; t++) {
         e->follower[t] = dig_follower_start(&e->route[t], &e->path, e->settings.path_limit_m);
     }
@@ -170,7 +164,8 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
     if (tracks == 0) {
         return;
     }
-    (void)dig_path_add(&e->path, point);
+    const bool in_soil = e->phase.phase == DIG_PHASE_CONTACT || e->phase.phase == DIG_PHASE_DIG;
+    (void)dig_path_add(&e->path, point, in_soil);
     e->next_follower     = (e->next_follower + 1) % tracks;
     const double limit_m = e->settings.path_limit_m;
     dig_follower_step(&e->route[e->next_follower], &e->path, limit_m,
@@ -180,16 +175,26 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
     for (size_t t = 0; t < tracks; t++) {
         track_of[t] = &e->follower[t].track;
     }
-    e->trajectory = dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, e->trajectory);
-    if (e->trajectory < 0) {
+    const int before = e->choice.told;
+    const int chosen =
+        dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, e->choice.candidate);
+    const int told = dig_choice_step(&e->choice, tracks, chosen);
+    if (told != before) {
+        e->progress = (double)NAN;
+    }
+    if (told < 0) {
         e->progress   = (double)NAN;
         e->off_path_m = (double)NAN;
         return;
     }
-    const struct dig_track *const track = &e->follower[e->trajectory].track;
-    const struct dig_place        place =
-        dig_route_place(&e->route[e->trajectory], track->dx_m, track->dz_m, point,
-                        fmax(track->progress - 0.1, 0.0), fmin(track->progress + 0.2, 1.0));
+    const struct dig_track *const track = &e->follower[told].track;
+
+    // Where it was a tick ago, or at its last vertex in soil.
+    const double behind = fmin(fmin(e->progress, 1.0), track->progress) - 0.1;
+    const double ahead  = fmax(fmax(e->progress, 0.0), track->progress) + 0.2;
+
+    const struct dig_place place =
+        dig_route_place(&e->route[told], track->dx_m, track->dz_m, point, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
 }
@@ -197,7 +202,7 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
 // The trajectory is done and the bucket has left its end.
 static bool path_is_over(const struct dig_estimator *const e)
 {
-    return e->trajectory >= 0 && e->progress >= 1.0 && e->off_path_m > e->settings.path_limit_m;
+    return e->choice.told >= 0 && e->progress >= 1.0 && e->off_path_m > e->settings.path_limit_m;
 }
 
 // The whole path decides which trajectory it was; an observation is made if it was one.
@@ -232,7 +237,8 @@ static void follow_dig(struct dig_estimator *const e, const double time_s, const
 {
     const double               lambda4 = pow(e->lambda, 4.0);
     const enum dig_phase_event event =
-        dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm);
+        dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
+                       wrench->slow_sigma_My_Nm);
     const struct dig_window_sample sample = {
         .time_s    = time_s / sqrt(e->lambda),
         .moment_Nm = (wrench->My_Nm - e->phase.bias_Nm) / lambda4,
@@ -298,7 +304,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .phi_rad    = front.attitude_rad[DIG_JOINT_BUCKET],
         .phase      = e->phase.phase,
         .dig_count  = e->digs,
-        .trajectory = e->trajectory,
+        .trajectory = e->choice.told,
         .progress   = e->progress,
         .off_path_m = e->off_path_m,
     };
@@ -357,7 +363,7 @@ void dig_estimator_predict(const struct dig_estimator *const estimator,
                            struct dig_prediction *const      prediction)
 {
     assert(estimator != NULL && prediction != NULL);
-    *prediction = predict_from(estimator, estimator->trajectory, estimator->progress);
+    *prediction = predict_from(estimator, estimator->choice.told, estimator->progress);
 }
 
 void dig_estimator_predict_whole(const struct dig_estimator *const estimator, const int trajectory,

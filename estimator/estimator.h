@@ -90,7 +90,7 @@ struct dig_prediction {
 struct dig_estimator_settings {
     // fixed at start
     double tick_s;         // nominal time between samples
-    double contact_sigmas; // My above this many sigma, sustained, is contact
+    double contact_sigmas; // My above this many sigma, sustained, is contact (phase.h)
     double contact_hold_s; // how long it must last
     double exit_hold_s;    // how long it must be gone
     double air_bias_s;     // time constant of the bias of My learnt in free air; 0: off

@@ -32,7 +32,7 @@ struct dig_estimator {
     struct dig_path        path;
     struct dig_follower    follower[DIG_TRAJECTORY_MAX];
     size_t                 next_follower; // the one whose turn it is to be refined
-    int                    trajectory;    // -1: not known
+    struct dig_choice      choice;        // the trajectory
     double                 progress;
     double                 off_path_m;
     struct dig_window      window;

@@ -7,16 +7,25 @@
 // vertex: what the prior on the shift weighs, in vertices.
 static const double anchor_weight = 2.5e-3;
 
-// Before contact the bucket may come from anywhere: only vertices this near count, in limit_m.
+// Before contact the bucket may come from anywhere: in the end only vertices this near count, in
+// limit_m. A fit begins with more, to be drawn along a leg dug before contact was felt.
 static const double lead_in_share = 0.1;
+static const double wide_in_share = 0.5;
 
 // What a contact far from the start of the route counts as, in distance: contact is noticed late,
 // but a fit that needs it very late is worse than one that does not.
-static const double anchor_share = 0.1;
+static const double anchor_share = 0.05;
+
+// The last vertices before contact are likely to lie on the route too: contact is noticed late.
+// What does not counts this much, and never more than limit_m; it may still have been air.
+enum { LEAD_VERTICES = 16 };
+
+// Turns of every follower for which a choice must hold before it is told.
+enum { CHOICE_TURNS = 24 };
 
 // Places of the route where contact may have been noticed, late as it is: where fits start from.
-enum { STARTS = 4, CHALLENGE_STEPS = 6 };
-static const double starts[STARTS] = { 0.0, 0.08, 0.2, 0.35 };
+enum { STARTS = 8, CHALLENGE_STEPS = 6 };
+static const double start_step = 0.05;
 
 // A vertex is looked for this far behind and ahead of the last one's place.
 static const double look_behind = 0.10;
@@ -101,23 +110,42 @@ static void thin(struct dig_path *const path)
     }
     path->vertices = kept;
     path->contact /= 2;
+    path->end = (path->end + 1) / 2;
     path->spacing_m *= 2.0;
 }
 
-bool dig_path_add(struct dig_path *const path, const struct dig_path_point *const point)
+static void append(struct dig_path *const path, const struct dig_path_point *const point)
 {
-    assert(path != NULL && point != NULL && path->spacing_m > 0.0);
-    if (path->vertices > 0) {
-        const struct dig_path_point step = minus(*point, path->vertex[path->vertices - 1]);
-        if (!(dot(step, step) >= path->spacing_m * path->spacing_m)) {
-            return false;
-        }
-    }
     if (path->vertices == DIG_PATH_MAX) {
         thin(path);
     }
     path->vertex[path->vertices++] = *point;
-    return true;
+}
+
+bool dig_path_add(struct dig_path *const path, const struct dig_path_point *const point,
+                  const bool in_soil)
+{
+    assert(path != NULL && point != NULL && path->spacing_m > 0.0);
+    bool away = true;
+    if (path->vertices > 0) {
+        const struct dig_path_point step = minus(*point, path->vertex[path->vertices - 1]);
+        away                             = dot(step, step) >= path->spacing_m * path->spacing_m;
+    }
+    if (away) {
+        append(path, point);
+    }
+    if (in_soil) {
+        path->end = path->vertices;
+    }
+    return away;
+}
+
+void dig_path_touch(struct dig_path *const path, const struct dig_path_point *const point)
+{
+    assert(path != NULL && point != NULL);
+    append(path, point);
+    path->contact = path->vertices - 1;
+    path->end     = path->vertices;
 }
 
 static struct dig_path_point route_at(const struct dig_route *const route, const double progress)
@@ -136,7 +164,7 @@ static struct dig_path_point route_at(const struct dig_route *const route, const
 struct dig_track dig_track_start(const struct dig_route *const route,
                                  const struct dig_path *const path, const double start)
 {
-    assert(route != NULL && path != NULL && path->contact < path->vertices);
+    assert(route != NULL && path != NULL && path->contact < path->end);
     const struct dig_path_point *const touched = &path->vertex[path->contact];
     const struct dig_path_point        place   = route_at(route, start);
     return (struct dig_track){
@@ -164,10 +192,10 @@ static void add_equation(struct normal *const normal, const struct dig_place *co
     normal->bz += place->off.z_m;
 }
 
-void dig_track_refine(const struct dig_route *const route, const struct dig_path *const path,
-                      const double limit_m, struct dig_track *const track)
+static void refine(const struct dig_route *const route, const struct dig_path *const path,
+                   const double limit_m, const double lead_in_m, struct dig_track *const track)
 {
-    assert(route != NULL && path != NULL && track != NULL);
+    assert(route != NULL && path != NULL && track != NULL && path->contact < path->end);
 
     // The anchor pulls weakly towards "contact was at the start".
     struct normal normal = {
@@ -176,48 +204,60 @@ void dig_track_refine(const struct dig_route *const route, const struct dig_path
         .bx = anchor_weight * (track->anchor_dx_m - track->dx_m),
         .bz = anchor_weight * (track->anchor_dz_m - track->dz_m),
     };
-    double sum_m2 = 0.0;
-    double last   = 0.0;
-    size_t used   = 0;
-    for (size_t i = 0; i < path->vertices; i++) {
+    double lead_m2 = 0.0;
+    double sum_m2  = 0.0;
+    double last    = 0.0;
+    for (size_t i = 0; i < path->end; i++) {
         const double           from = last - look_behind;
         const double           to   = last + look_ahead;
         const struct dig_place place =
             dig_route_place(route, track->dx_m, track->dz_m, &path->vertex[i], from, fmin(to, 1.0));
 
         if (i < path->contact) {
-            if (place.distance_m < lead_in_share * limit_m) {
+            if (i + LEAD_VERTICES >= path->contact) {
+                lead_m2 += pow(fmin(place.distance_m, limit_m), 2.0);
+            }
+            if (place.distance_m < lead_in_m) {
                 add_equation(&normal, &place);
                 last = place.progress;
             }
             continue;
         }
 
-        // Past its end the route says nothing about the bucket.
-        if (place.progress >= 1.0 && last >= 1.0 - look_behind) {
-            last = 1.0;
-            break;
+        // Past its end the route says nothing about the shift, but a bucket far off it is a miss.
+        const bool past = place.progress >= 1.0 && last >= 1.0 - look_behind;
+        if (past) {
+            sum_m2 += pow(fmin(place.distance_m, limit_m), 2.0);
+        } else {
+            add_equation(&normal, &place);
+            sum_m2 += place.distance_m * place.distance_m;
         }
-        add_equation(&normal, &place);
-        sum_m2 += place.distance_m * place.distance_m;
         last = place.progress;
-        used++;
     }
 
     const double det = normal.xx * normal.zz - normal.xz * normal.xz;
     track->dx_m += (normal.zz * normal.bx - normal.xz * normal.bz) / det;
     track->dz_m += (normal.xx * normal.bz - normal.xz * normal.bx) / det;
 
-    // A wrong shift may fit few vertices well: those left out at the end count as misses.
-    const size_t whole  = path->vertices - path->contact;
-    const double missed = (double)(whole - used) * limit_m * limit_m;
-    const double all_m  = sqrt((sum_m2 + missed) / (double)whole);
+    const double whole = (double)(path->end - path->contact);
+    const double anchor =
+        anchor_share * hypot(track->anchor_dx_m - track->dx_m, track->anchor_dz_m - track->dz_m);
 
-    track->rms_m    = used > 0 ? sqrt(sum_m2 / (double)used) : (double)NAN;
-    track->score_m  = hypot(all_m, anchor_share * hypot(track->anchor_dx_m - track->dx_m,
-                                                        track->anchor_dz_m - track->dz_m));
+    track->rms_m    = sqrt(sum_m2 / whole);
+    track->score_m  = hypot(sqrt((lead_m2 + sum_m2) / whole), anchor);
     track->progress = last;
-    track->used     = used;
+}
+
+// How near vertices before contact must lie to count in this step of a new fit.
+static double lead_in_m(const unsigned step, const double limit_m)
+{
+    return (step < CHALLENGE_STEPS / 2 ? wide_in_share : lead_in_share) * limit_m;
+}
+
+void dig_track_refine(const struct dig_route *const route, const struct dig_path *const path,
+                      const double limit_m, struct dig_track *const track)
+{
+    refine(route, path, limit_m, lead_in_share * limit_m, track);
 }
 
 struct dig_follower dig_follower_start(const struct dig_route *const route,
@@ -237,10 +277,11 @@ void dig_follower_step(const struct dig_route *const route, const struct dig_pat
     dig_track_refine(route, path, limit_m, track);
 
     if (follower->turn % CHALLENGE_STEPS == 0) {
-        const double start = starts[follower->turn / CHALLENGE_STEPS % STARTS];
+        const double start = start_step * (double)(follower->turn / CHALLENGE_STEPS % STARTS);
         *challenger        = dig_track_start(route, path, start);
     }
-    dig_track_refine(route, path, limit_m, challenger);
+    const unsigned step = follower->turn % CHALLENGE_STEPS;
+    refine(route, path, limit_m, lead_in_m(step, limit_m), challenger);
     follower->turn++;
     if (follower->turn % CHALLENGE_STEPS == 0 && challenger->score_m < track->score_m) {
         *track = *challenger;
@@ -250,16 +291,29 @@ void dig_follower_step(const struct dig_route *const route, const struct dig_pat
 struct dig_track dig_track_fit(const struct dig_route *const route,
                                const struct dig_path *const path, const double limit_m)
 {
-    enum { STEPS = 12 };
     struct dig_track best = { .score_m = INFINITY };
     for (size_t k = 0; k < STARTS; k++) {
-        struct dig_track track = dig_track_start(route, path, starts[k]);
-        for (int i = 0; i < STEPS; i++) {
-            dig_track_refine(route, path, limit_m, &track);
+        struct dig_track track = dig_track_start(route, path, start_step * (double)k);
+        for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
+            refine(route, path, limit_m, lead_in_m(step, limit_m), &track);
         }
         best = track.score_m < best.score_m ? track : best;
     }
+    for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
+        dig_track_refine(route, path, limit_m, &best);
+    }
     return best;
+}
+
+int dig_choice_step(struct dig_choice *const choice, const size_t tracks, const int chosen)
+{
+    assert(choice != NULL);
+    choice->held      = chosen == choice->candidate ? choice->held + 1 : 0;
+    choice->candidate = chosen;
+    if (choice->held >= tracks * CHOICE_TURNS) {
+        choice->told = chosen;
+    }
+    return choice->told;
 }
 
 int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
@@ -268,12 +322,12 @@ int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
     int    best   = -1;
     double best_m = INFINITY, second_m = INFINITY;
     for (size_t t = 0; t < tracks; t++) {
-        if (track[t]->score_m < best_m) {
+        if (track[t]->rms_m < best_m) {
             second_m = best_m;
-            best_m   = track[t]->score_m;
+            best_m   = track[t]->rms_m;
             best     = (int)t;
-        } else if (track[t]->score_m < second_m) {
-            second_m = track[t]->score_m;
+        } else if (track[t]->rms_m < second_m) {
+            second_m = track[t]->rms_m;
         }
     }
     if (best < 0 || !(track[best]->rms_m <= limit_m)) {
@@ -282,5 +336,5 @@ int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
     if (second_m - best_m >= tie_m) {
         return best;
     }
-    return sitting >= 0 && track[sitting]->score_m - best_m < tie_m ? sitting : -1;
+    return sitting >= 0 && track[sitting]->rms_m - best_m < tie_m ? sitting : -1;
 }

@@ -47,11 +47,11 @@ struct dig_place {
 struct dig_track {
     double dx_m, dz_m;
     double anchor_dx_m, anchor_dz_m; // the shift that puts the contact at the start
-    double rms_m;                    // NaN until fitted
-    double score_m;                  // rms with vertices left out as misses of limit_m, and a tenth
-                                     // of the shift from the anchor, in quadrature
-    double progress;                 // of the last vertex
-    size_t used;                     // vertices that lie on it, those past its end left out
+    double rms_m;   // of the vertices from contact to end, NaN until fitted; those past the route's
+                    // end count limit_m at most. What trajectories are compared by
+    double score_m; // that, the vertices just before contact and a twentieth of the shift from the
+                    // anchor, in quadrature. What shifts of one trajectory are compared by
+    double progress; // of the last vertex
 };
 
 /// A track kept up to date while the dig goes on, and a second fit from another start that replaces
@@ -66,6 +66,7 @@ struct dig_path {
     double                spacing_m; // doubles when the array is full
     size_t                vertices;
     size_t                contact; // first vertex in contact; those before it only help
+    size_t                end;     // vertices up to the last one in soil: what fits are made to
     struct dig_path_point vertex[DIG_PATH_MAX];
 };
 
@@ -74,8 +75,12 @@ struct dig_path {
 struct dig_place dig_route_place(const struct dig_route *route, double dx_m, double dz_m,
                                  const struct dig_path_point *point, double from, double to);
 
-/// Appends a vertex if it is spacing_m away from the last; true if it did.
-bool dig_path_add(struct dig_path *path, const struct dig_path_point *point);
+/// Appends a vertex if it is spacing_m away from the last; true if it did. in_soil: the soil is
+/// felt at this point.
+bool dig_path_add(struct dig_path *path, const struct dig_path_point *point, bool in_soil);
+
+/// Appends the vertex in which contact is noticed, however near the last.
+void dig_path_touch(struct dig_path *path, const struct dig_path_point *point);
 
 /// Starts a track with the shift that puts progress start of the route at the contact vertex.
 struct dig_track dig_track_start(const struct dig_route *route, const struct dig_path *path,
@@ -98,9 +103,20 @@ struct dig_track dig_track_fit(const struct dig_route *route, const struct dig_p
                                double limit_m);
 
 /// The track that fits best, or -1 when none is within limit_m or the best two cannot be told apart
-/// (their scores differ by less than tie_m). sitting: the choice so far, or -1; kept while it is
+/// (their rms differ by less than tie_m). sitting: the choice so far, or -1; kept while it is
 /// tied.
 int dig_track_choose(size_t tracks, const struct dig_track *const track[], double limit_m,
                      double tie_m, int sitting);
+
+/// What is told of a choice that is made anew every tick.
+struct dig_choice {
+    int    told;      // -1: not known
+    int    candidate; // the last tick's choice
+    size_t held;      // ticks it has been that
+};
+
+/// Tells a new choice once it has held for 24 steps of every track's follower, one follower a tick
+/// (0.36 s of three at 200 Hz); until then the old one. Returns what is told.
+int dig_choice_step(struct dig_choice *choice, size_t tracks, int chosen);
 
 #endif // DIG_ESTIMATOR_PATH_H

@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stddef.h>
 
+// What the statics lack, in sigmas of one sample.
+static const double unmodelled_share = 0.5;
+
 // Adds dt to a timer while its condition holds and tells whether it has held for long enough.
 static bool held(double *const held_s, const bool condition, const double dt_s,
                  const double needed_s)
@@ -31,16 +34,17 @@ static void learn_bias(struct dig_phase_state *const              state,
 enum dig_phase_event dig_phase_step(struct dig_phase_state *const              state,
                                     const struct dig_estimator_settings *const settings,
                                     const double dt_s, const double moment_Nm,
-                                    const double sigma_Nm)
+                                    const double sigma_Nm, const double slow_sigma_Nm)
 {
     assert(state != NULL && settings != NULL);
 
     const double share = dt_s / (settings->contact_hold_s + dt_s);
     state->filtered_Nm += (moment_Nm - state->bias_Nm - state->filtered_Nm) * share;
 
-    const double threshold_Nm = settings->contact_sigmas * sigma_Nm;
-    const bool   high         = state->filtered_Nm > threshold_Nm;
-    const bool   low          = state->filtered_Nm < 0.5 * threshold_Nm;
+    const double threshold_Nm =
+        settings->contact_sigmas * hypot(slow_sigma_Nm, unmodelled_share * sigma_Nm);
+    const bool high = state->filtered_Nm > threshold_Nm;
+    const bool low  = state->filtered_Nm < 0.5 * threshold_Nm;
 
     switch (state->phase) {
     case DIG_PHASE_AIR:

@@ -6,9 +6,10 @@
 //       |   < half threshold                              > threshold           |
 //       `-------------------------- gone for exit_hold_s -----------------------'
 //
-// The threshold is contact_sigmas times the moment's sigma of one sample; what is compared is the
-// moment low-passed over contact_hold_s, so single samples decide nothing. The half below is the
-// hysteresis.
+// What is compared is the moment low-passed over contact_hold_s, so single samples decide nothing.
+// The threshold is contact_sigmas times what that may be wrong by: the slow part of the sample's
+// sigma, which no filter takes away, and half the sigma for what the statics lack (inertia, seals).
+// The half threshold below is the hysteresis.
 
 #ifndef DIG_ESTIMATOR_PHASE_H
 #define DIG_ESTIMATOR_PHASE_H
@@ -31,7 +32,7 @@ struct dig_phase_state {
 /// Constant time.
 enum dig_phase_event dig_phase_step(struct dig_phase_state              *state,
                                     const struct dig_estimator_settings *settings, double dt_s,
-                                    double moment_Nm, double sigma_Nm);
+                                    double moment_Nm, double sigma_Nm, double slow_sigma_Nm);
 
 /// Ends a dig from outside (its path is over, whatever the bucket still carries): the phase is EXIT
 /// until the moment has gone, and cannot fall back to DIG.

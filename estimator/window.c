@@ -6,6 +6,9 @@
 // Between two samples the bucket moves less than this share of the route.
 #define LOOK 0.10
 
+// Steps forward smaller than this are noise of the angles.
+#define STANDING 0.004
+
 static void put(struct dig_window *const window, const size_t i,
                 const struct dig_window_sample *const sample)
 {
@@ -93,6 +96,12 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
         window->progress[i] = furthest;
         range.first         = furthest > 0.0 ? range.first : i;
         range.end           = i + 1;
+    }
+
+    // Broken off: what came after the bucket's last step forward is the way out.
+    while (furthest < 1.0 && range.end > range.first + 1 &&
+           window->progress[range.end - 2] > furthest - STANDING) {
+        range.end--;
     }
     return range;
 }
