@@ -5,7 +5,6 @@
 #include <assert.h>
 #include <errno.h>
 #include <inttypes.h>
-#include <lcm/eventlog.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,48 +25,108 @@ bool dig_lcm_log_is(const char *const path)
     return is;
 }
 
-// A log being read, and where it stands.
+// One event as it stands in the file: 28 bytes of header, then channel, then data.
+#define HEADER_BYTES  28
+#define CHANNEL_BYTES 256
+#define DATA_BYTES    (1 << 26)
+
+struct event {
+    uint64_t number;
+    int64_t  time_us;
+    char     channel[CHANNEL_BYTES];
+    int      size;
+    uint8_t *data;
+};
+
+// A log being read, and where it stands. The event's data grow as needed.
 struct reading {
     const char       *path;
-    lcm_eventlog_t   *log;
+    FILE             *file;
+    struct event      event;
+    size_t            room;
     struct dig_error *error;
 };
 
 static enum dig_status open_log(struct reading *const r)
 {
-    FILE *const file = fopen(r->path, "rb");
-    if (file == NULL) {
+    r->file = fopen(r->path, "rb");
+    if (r->file == NULL) {
         // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
         return dig_error_set(r->error, DIG_EIO, "%s: %s", r->path, strerror(errno));
     }
-    (void)fclose(file);
     if (!dig_lcm_log_is(r->path)) {
+        (void)fclose(r->file);
         return dig_error_set(r->error, DIG_EINVAL,
                              "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
                              r->path);
     }
-    r->log = lcm_eventlog_create(r->path, "r");
-    return r->log != NULL ? DIG_OK
-                          : dig_error_set(r->error, DIG_EIO, "%s: cannot be read", r->path);
+    return DIG_OK;
 }
 
-// After the last event: a log that was cut off ends like one that was closed; one that is damaged
-// does not reach its end.
-static enum dig_status check_end(const struct reading *const r)
+static void close_log(struct reading *const r)
 {
-    return feof(r->log->f) != 0
-               ? DIG_OK
-               : dig_error_set(r->error, DIG_EINVAL, "%s: damaged near byte %ld, expected an event",
-                               r->path, ftell(r->log->f));
+    (void)fclose(r->file);
+    free(r->event.data);
 }
 
-static enum dig_status refuse_message(const struct reading *const       r,
-                                      const lcm_eventlog_event_t *const event)
+static uint64_t big_endian(const uint8_t bytes[], const size_t count)
+{
+    uint64_t value = 0;
+    for (size_t i = 0; i < count; i++) {
+        value = (value << 8) | bytes[i];
+    }
+    return value;
+}
+
+static enum dig_status make_room(struct reading *const r, const size_t size)
+{
+    if (size > r->room) {
+        uint8_t *const grown = realloc(r->event.data, size);
+        if (grown == NULL) {
+            return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory", r->path);
+        }
+        r->event.data = grown;
+        r->room       = size;
+    }
+    return DIG_OK;
+}
+
+// *any becomes false at the end, which may also lie within an event: a logger that was killed.
+static enum dig_status next_event(struct reading *const r, bool *const any)
+{
+    uint8_t      header[HEADER_BYTES];
+    const long   at  = ftell(r->file);
+    const size_t got = fread(header, 1, sizeof header, r->file);
+    if (got < sizeof header) {
+        *any = false;
+        return DIG_OK;
+    }
+    const uint64_t channel_size = big_endian(header + 20, 4), size = big_endian(header + 24, 4);
+    if (memcmp(header, sync_word, sizeof sync_word) != 0 || channel_size < 1 ||
+        channel_size >= CHANNEL_BYTES || size > DATA_BYTES) {
+        return dig_error_set(r->error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event",
+                             r->path, at);
+    }
+    const enum dig_status status = make_room(r, (size_t)size + 1);
+    if (status != DIG_OK) {
+        return status;
+    }
+    r->event.number  = big_endian(header + 4, 8);
+    r->event.time_us = (int64_t)big_endian(header + 12, 8);
+    r->event.size    = (int)size;
+    *any             = fread(r->event.channel, 1, (size_t)channel_size, r->file) == channel_size &&
+           fread(r->event.data, 1, (size_t)size, r->file) == size;
+    r->event.channel[channel_size] = '\0';
+    return DIG_OK;
+}
+
+static enum dig_status refuse_message(const struct reading *const r,
+                                      const struct event *const   event)
 {
     return dig_error_set(r->error, DIG_ESCHEMA,
-                         "%s: event %" PRId64 ": %.40s is of another version of its type, expected "
+                         "%s: event %" PRIu64 ": %.40s is of another version of its type, expected "
                          "the one of this build (messages/*.lcm)",
-                         r->path, event->eventnum, event->channel);
+                         r->path, event->number, event->channel);
 }
 
 struct rows {
@@ -76,18 +135,18 @@ struct rows {
 };
 
 // One DIGSIGHT_SAMPLE as the next row.
-static enum dig_status add_row(const struct reading *const       r,
-                               const lcm_eventlog_event_t *const event, struct rows *const rows)
+static enum dig_status add_row(const struct reading *const r, const struct event *const event,
+                               struct rows *const rows)
 {
     digsight_sample_t message;
-    if (digsight_sample_t_decode(event->data, 0, event->datalen, &message) < 0) {
+    if (digsight_sample_t_decode(event->data, 0, event->size, &message) < 0) {
         return refuse_message(r, event);
     }
     enum dig_status status = DIG_OK;
     if (message.signals != DIG_SIGNALS) {
         status =
-            dig_error_set(r->error, DIG_EINVAL, "%s: event %" PRId64 ": %d signals, expected %d",
-                          r->path, event->eventnum, message.signals, DIG_SIGNALS);
+            dig_error_set(r->error, DIG_EINVAL, "%s: event %" PRIu64 ": %d signals, expected %d",
+                          r->path, event->number, message.signals, DIG_SIGNALS);
     } else if (rows->count > 0 && message.time_ns <= rows->row[rows->count - 1].time_ns) {
         // A repetition, or a second daemon's: a recording ascends.
     } else {
@@ -123,17 +182,13 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
     if (status != DIG_OK) {
         return status;
     }
-    lcm_eventlog_event_t *event = NULL;
-    while (status == DIG_OK && (event = lcm_eventlog_read_next_event(r.log)) != NULL) {
-        if (strcmp(event->channel, "DIGSIGHT_SAMPLE") == 0) {
-            status = add_row(&r, event, &rows);
+    for (bool any = true; status == DIG_OK && any;) {
+        status = next_event(&r, &any);
+        if (status == DIG_OK && any && strcmp(r.event.channel, "DIGSIGHT_SAMPLE") == 0) {
+            status = add_row(&r, &r.event, &rows);
         }
-        lcm_eventlog_free_event(event);
     }
-    if (status == DIG_OK) {
-        status = check_end(&r);
-    }
-    lcm_eventlog_destroy(r.log);
+    close_log(&r);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
@@ -154,17 +209,17 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
 // Decodes an event of one type and calls what wants it.
 #define HAND_ON(type)                                                                              \
     static enum dig_status hand_on_##type(const struct reading *const            r,                \
-                                          const lcm_eventlog_event_t *const      event,            \
+                                          const struct event *const              event,            \
                                           const struct dig_lcm_log_reader *const reader)           \
     {                                                                                              \
         digsight_##type##_t message;                                                               \
         if (reader->type == NULL) {                                                                \
             return DIG_OK;                                                                         \
         }                                                                                          \
-        if (digsight_##type##_t_decode(event->data, 0, event->datalen, &message) < 0) {            \
+        if (digsight_##type##_t_decode(event->data, 0, event->size, &message) < 0) {               \
             return refuse_message(r, event);                                                       \
         }                                                                                          \
-        reader->type(reader->context, event->timestamp, &message);                                 \
+        reader->type(reader->context, event->time_us, &message);                                   \
         digsight_##type##_t_decode_cleanup(&message);                                              \
         return DIG_OK;                                                                             \
     }
@@ -174,13 +229,12 @@ HAND_ON(match)
 HAND_ON(prediction)
 HAND_ON(health)
 
-static enum dig_status hand_on(const struct reading *const            r,
-                               const lcm_eventlog_event_t *const      event,
+static enum dig_status hand_on(const struct reading *const r, const struct event *const event,
                                const struct dig_lcm_log_reader *const reader)
 {
     static const struct {
         const char *channel;
-        enum dig_status (*hand_on)(const struct reading *, const lcm_eventlog_event_t *,
+        enum dig_status (*hand_on)(const struct reading *, const struct event *,
                                    const struct dig_lcm_log_reader *);
     } kinds[] = {
         { "DIGSIGHT_ESTIMATE", hand_on_estimate },
@@ -206,14 +260,12 @@ enum dig_status dig_lcm_log_each(const char *const                      path,
     if (status != DIG_OK) {
         return status;
     }
-    lcm_eventlog_event_t *event = NULL;
-    while (status == DIG_OK && (event = lcm_eventlog_read_next_event(r.log)) != NULL) {
-        status = hand_on(&r, event, reader);
-        lcm_eventlog_free_event(event);
+    for (bool any = true; status == DIG_OK && any;) {
+        status = next_event(&r, &any);
+        if (status == DIG_OK && any) {
+            status = hand_on(&r, &r.event, reader);
+        }
     }
-    if (status == DIG_OK) {
-        status = check_end(&r);
-    }
-    lcm_eventlog_destroy(r.log);
+    close_log(&r);
     return status;
 }

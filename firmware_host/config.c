@@ -264,9 +264,10 @@ static enum dig_status take_address(const struct work *const work, const char *c
         return dig_yaml_refuse(work->path, "input.modbus.address", work->error,
                                "\"%.60s\", expected HOST:PORT", text);
     }
-    memcpy(address->host, text, length);
-    address->host[length] = '\0';
-    address->port         = (int)port;
+    const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
+    memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
+    address->host[length - 2 * (size_t)brackets] = '\0';
+    address->port                                = (int)port;
     return DIG_OK;
 }
 

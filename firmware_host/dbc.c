@@ -300,8 +300,10 @@ double dig_dbc_value(const struct dig_dbc_signal *const signal, const uint64_t r
     if (!signal->is_signed) {
         return signal->factor * (double)raw + signal->offset;
     }
-    // Two's complement: a set top bit weighs -2^(bits-1) instead of +2^(bits-1).
+    // Two's complement, the magnitude of a negative value taken in whole numbers: a double has 53
+    // bits.
     const uint64_t top   = UINT64_C(1) << (signal->bits - 1);
-    const double   value = (double)(raw & (top - 1)) - ((raw & top) != 0 ? (double)top : 0.0);
+    const uint64_t below = ~raw & (top | (top - 1));
+    const double   value = (raw & top) != 0 ? -(double)(below + 1) : (double)raw;
     return signal->factor * value + signal->offset;
 }

@@ -1,0 +1,262 @@
+// Tests for firmware_host/assemble.c
+
+#include "firmware_host/assemble.h"
+
+#include "tests/testlib.h"
+
+#define MS 1000000LL
+
+// As CAN has it: pressures in group 0, angles in group 1, the optional pitch and the alive counter
+// in group 2.
+static const struct dig_assembler_settings can = {
+    .time_scale = 1.0,
+    .coherent_s = 0.006,
+    .frozen_s   = 0.5,
+    .optional_s = 1.0,
+    .has_alive  = true,
+    .groups     = 3,
+    .needed     = { true, true, false },
+};
+
+// As Modbus has it: all in one poll.
+static const struct dig_assembler_settings poll_settings = {
+    .time_scale = 1.0,
+    .coherent_s = 1.0,
+    .frozen_s   = 0.5,
+    .optional_s = 1.0,
+    .has_alive  = true,
+    .repeats    = true,
+    .groups     = 1,
+    .needed     = { true },
+};
+
+static struct dig_reading pressures(const int64_t time_ns, const double level)
+{
+    struct dig_reading r = { .time_ns = time_ns, .group = 0 };
+    for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i <= DIG_SIGNAL_BUCKET_ROD_Pa; i++) {
+        r.state[i] = DIG_READING_OK;
+        r.value[i] = level;
+    }
+    return r;
+}
+
+static struct dig_reading angles(const int64_t time_ns, const double level)
+{
+    struct dig_reading r = { .time_ns = time_ns, .group = 1 };
+    for (int i = DIG_SIGNAL_BOOM_rad; i <= DIG_SIGNAL_BUCKET_rad; i++) {
+        r.state[i] = DIG_READING_OK;
+        r.value[i] = level;
+    }
+    return r;
+}
+
+static struct dig_reading alive(const int64_t time_ns, const uint64_t counter)
+{
+    struct dig_reading r          = { .time_ns = time_ns, .group = 2 };
+    r.has_alive                   = true;
+    r.alive                       = counter;
+    r.state[DIG_SIGNAL_PITCH_rad] = DIG_READING_OK;
+    r.value[DIG_SIGNAL_PITCH_rad] = 0.1;
+    return r;
+}
+
+static struct dig_reading poll(const int64_t time_ns, const uint64_t counter)
+{
+    struct dig_reading       r = pressures(time_ns, 1.0);
+    const struct dig_reading a = angles(time_ns, 2.0);
+    for (int i = DIG_SIGNAL_BOOM_rad; i <= DIG_SIGNAL_BUCKET_rad; i++) {
+        r.state[i] = a.state[i];
+        r.value[i] = a.value[i];
+    }
+    r.has_alive = true;
+    r.alive     = counter;
+    return r;
+}
+
+// The daemon starts between the two frames of a cycle: what it pairs must still be one cycle's.
+static void frames_of_one_cycle_are_paired_wherever_it_starts(void **state)
+{
+    (void)state;
+    for (int begin = 0; begin < 2; begin++) {
+        struct dig_assembler a;
+        dig_assembler_init(&a, &can);
+        int samples = 0;
+        for (int i = begin; i < 100; i++) {
+            const int64_t      cycle = i / 2;
+            const int64_t      at_ns = 1000 * MS + cycle * 10 * MS + i % 2 * 200000;
+            struct dig_reading r =
+                i % 2 == 0 ? pressures(at_ns, (double)cycle) : angles(at_ns, (double)cycle);
+            struct dig_sample s;
+            if (dig_assembler_take(&a, &r, &s)) {
+                samples++;
+                assert_true(dig_sample_is_complete(&s));
+                assert_close(s.value[DIG_SIGNAL_BOOM_HEAD_Pa], (double)cycle, 0.0);
+                assert_close(s.value[DIG_SIGNAL_BOOM_rad], (double)cycle, 0.0);
+                assert_int_equal(s.time_ns, at_ns);
+            }
+        }
+        assert_in_range(samples, 49, 50);
+    }
+}
+
+static void nothing_comes_while_one_needed_message_is_missing(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &can);
+    struct dig_sample s = { .time_ns = 42 };
+    for (int64_t i = 0; i < 20; i++) {
+        const struct dig_reading r = pressures(1000 * MS + i * 10 * MS, 1.0);
+        assert_false(dig_assembler_take(&a, &r, &s));
+    }
+    assert_int_equal(s.time_ns, 42);
+
+    // It comes back: at once, and with the youngest pressures.
+    const struct dig_reading back = angles(1000 * MS + 191 * MS, 2.0);
+    assert_true(dig_assembler_take(&a, &back, &s));
+}
+
+static void what_is_no_number_is_missing_and_counted(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &can);
+    struct dig_reading p              = pressures(1000 * MS, 5.0);
+    p.state[DIG_SIGNAL_BOOM_HEAD_Pa]  = DIG_READING_NOT_AVAILABLE;
+    p.state[DIG_SIGNAL_ARM_ROD_Pa]    = DIG_READING_OUT_OF_RANGE;
+    p.state[DIG_SIGNAL_BUCKET_ROD_Pa] = DIG_READING_NAN;
+    p.value[DIG_SIGNAL_BUCKET_ROD_Pa] = NAN;
+    const struct dig_reading g        = angles(1001 * MS, 0.5);
+    struct dig_sample        s;
+    assert_false(dig_assembler_take(&a, &p, &s));
+    assert_true(dig_assembler_take(&a, &g, &s));
+    assert_false(dig_sample_is_complete(&s));
+    assert_false(s.valid[DIG_SIGNAL_BOOM_HEAD_Pa]);
+    assert_false(s.valid[DIG_SIGNAL_ARM_ROD_Pa]);
+    assert_close(s.value[DIG_SIGNAL_BUCKET_ROD_Pa], 0.0, 0.0);
+    assert_true(s.valid[DIG_SIGNAL_BOOM_ROD_Pa]);
+    assert_int_equal(a.drops.not_available, 1);
+    assert_int_equal(a.drops.out_of_range, 1);
+    assert_int_equal(a.drops.nan, 1);
+
+    // The next cycle is whole again.
+    const struct dig_reading p2 = pressures(1010 * MS, 5.0), g2 = angles(1011 * MS, 0.5);
+    assert_false(dig_assembler_take(&a, &p2, &s));
+    assert_true(dig_assembler_take(&a, &g2, &s));
+    assert_true(dig_sample_is_complete(&s));
+}
+
+static void an_optional_signal_comes_along_until_it_is_old(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &can);
+    const struct dig_reading tilt = alive(1000 * MS, 1);
+    struct dig_sample        s;
+    assert_false(dig_assembler_take(&a, &tilt, &s));
+    const struct dig_reading p = pressures(1010 * MS, 5.0), g = angles(1010 * MS, 0.5);
+    (void)dig_assembler_take(&a, &p, &s);
+    assert_true(dig_assembler_take(&a, &g, &s));
+    assert_true(s.valid[DIG_SIGNAL_PITCH_rad]);
+    assert_close(s.value[DIG_SIGNAL_PITCH_rad], 0.1, 0.0);
+    assert_false(s.valid[DIG_SIGNAL_TEMPERATURE_degC]);
+
+    struct dig_assembler_settings forgetful = can;
+    forgetful.optional_s                    = 0.005;
+    dig_assembler_init(&a, &forgetful);
+    (void)dig_assembler_take(&a, &tilt, &s);
+    (void)dig_assembler_take(&a, &p, &s);
+    assert_true(dig_assembler_take(&a, &g, &s));
+    assert_false(s.valid[DIG_SIGNAL_PITCH_rad]);
+}
+
+static void a_counter_that_stands_still_stops_samples_until_it_moves(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &can);
+    struct dig_sample s;
+    int               before = 0, during = 0, after = 0;
+    for (int64_t i = 0; i < 300; i++) {
+        const int64_t  at_ns = 1000 * MS + i * 10 * MS;
+        const uint64_t count = i < 100 ? (uint64_t)i : i < 200 ? 99 : (uint64_t)i;
+
+        const struct dig_reading c = alive(at_ns, count), p = pressures(at_ns, 1.0),
+                                 g = angles(at_ns, 1.0);
+        if (i % 5 == 0) {
+            (void)dig_assembler_take(&a, &c, &s);
+        }
+        int *const period = i < 100 ? &before : i < 200 ? &during : &after;
+        (void)dig_assembler_take(&a, &p, &s);
+        *period += dig_assembler_take(&a, &g, &s) ? 1 : 0;
+    }
+    assert_int_equal(before, 100);
+    assert_in_range(during, 45, 52); // half a second of grace
+    assert_int_equal(after, 100);
+    assert_in_range(a.drops.frozen, 90, 120);
+}
+
+static void a_poll_that_repeats_the_counter_gives_no_second_sample(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &poll_settings);
+    struct dig_sample s;
+    int               samples = 0;
+    for (int64_t i = 0; i < 90; i++) {
+        const struct dig_reading r = poll(1000 * MS + i * 5 * MS, (uint64_t)(i / 3));
+        samples += dig_assembler_take(&a, &r, &s) ? 1 : 0;
+    }
+    assert_int_equal(samples, 30);
+    assert_int_equal(a.drops.frozen, 0);
+
+    // From now on it stands still: silence, and after half a second it counts as frozen.
+    for (int64_t i = 90; i < 290; i++) {
+        const struct dig_reading r = poll(1000 * MS + i * 5 * MS, 29);
+        assert_false(dig_assembler_take(&a, &r, &s));
+    }
+    assert_in_range(a.drops.frozen, 90, 110);
+}
+
+static void time_scale_makes_a_fast_bench_look_like_the_machine(void **state)
+{
+    (void)state;
+    struct dig_assembler_settings fast = poll_settings;
+    fast.time_scale                    = 4.0;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &fast);
+    struct dig_sample s;
+    for (int64_t i = 0; i < 10; i++) {
+        const struct dig_reading r = poll(1000 * MS + i * 5 * MS, (uint64_t)i);
+        assert_true(dig_assembler_take(&a, &r, &s));
+        assert_int_equal(s.time_ns, 1000 * MS + i * 20 * MS);
+    }
+}
+
+static void time_that_goes_back_gives_no_sample(void **state)
+{
+    (void)state;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &poll_settings);
+    struct dig_sample        s;
+    const struct dig_reading one = poll(1000 * MS, 1), back = poll(999 * MS, 2),
+                             on = poll(1001 * MS, 3);
+    assert_true(dig_assembler_take(&a, &one, &s));
+    assert_false(dig_assembler_take(&a, &back, &s));
+    assert_true(dig_assembler_take(&a, &on, &s));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_of_one_cycle_are_paired_wherever_it_starts),
+        cmocka_unit_test(nothing_comes_while_one_needed_message_is_missing),
+        cmocka_unit_test(what_is_no_number_is_missing_and_counted),
+        cmocka_unit_test(an_optional_signal_comes_along_until_it_is_old),
+        cmocka_unit_test(a_counter_that_stands_still_stops_samples_until_it_moves),
+        cmocka_unit_test(a_poll_that_repeats_the_counter_gives_no_second_sample),
+        cmocka_unit_test(time_scale_makes_a_fast_bench_look_like_the_machine),
+        cmocka_unit_test(time_that_goes_back_gives_no_sample),
+    };
+    return cmocka_run_group_tests_name("assemble", tests, NULL, NULL);
+}

@@ -1,0 +1,200 @@
+// Tests for files/lcm_log.c, against logs written by LCM's own library.
+
+#include "files/lcm_log.h"
+
+#include "messages/digsight_sample_t.h"
+#include "tests/scratch.h"
+
+#include <lcm/eventlog.h>
+#include <stdlib.h>
+
+#define WITH_TYPE(type)                                                                            \
+    static void log_##type(lcm_eventlog_t *const log, const char *const channel,                   \
+                           const digsight_##type##_t *const message)                               \
+    {                                                                                              \
+        const int            size  = digsight_##type##_t_encoded_size(message);                    \
+        void *const          bytes = malloc((size_t)size);                                         \
+        char                 name[32];                                                             \
+        lcm_eventlog_event_t event = {                                                             \
+            .timestamp = 1, .datalen = size, .channel = name, .data = bytes                        \
+        };                                                                                         \
+        event.channellen = snprintf(name, sizeof name, "%s", channel);                             \
+        assert_int_equal(digsight_##type##_t_encode(bytes, 0, size, message), size);               \
+        assert_int_equal(lcm_eventlog_write_event(log, &event), 0);                                \
+        free(bytes);                                                                               \
+    }
+
+WITH_TYPE(sample)
+WITH_TYPE(match)
+
+static lcm_eventlog_t *begin(const char *const name)
+{
+    lcm_eventlog_t *const log = lcm_eventlog_create(scratch_path(name), "w");
+    assert_non_null(log);
+    return log;
+}
+
+static void put_sample(lcm_eventlog_t *const log, const int64_t time_ns, const int signals)
+{
+    double value[16]                = { 0.5 };
+    int8_t valid[16]                = { 1 };
+    value[DIG_SIGNAL_BOOM_HEAD_Pa]  = 1e6 + (double)time_ns;
+    valid[DIG_SIGNAL_BOOM_HEAD_Pa]  = 1;
+    value[DIG_SIGNAL_ARM_HEAD_Pa]   = 7.0; // not valid
+    const digsight_sample_t message = {
+        .time_ns = time_ns, .signals = signals, .value = value, .valid = valid
+    };
+    log_sample(log, "DIGSIGHT_SAMPLE", &message);
+}
+
+static void samples_become_a_recording_that_begins_at_zero(void **state)
+{
+    (void)state;
+    lcm_eventlog_t *const log = begin("good.lcm");
+    put_sample(log, 5000000000, DIG_SIGNALS);
+    put_sample(log, 5010000000, DIG_SIGNALS);
+    put_sample(log, 5010000000, DIG_SIGNALS); // a repetition
+    put_sample(log, 5020000000, DIG_SIGNALS);
+    lcm_eventlog_destroy(log);
+
+    assert_true(dig_lcm_log_is(scratch_path("good.lcm")));
+    struct dig_machine_recording r;
+    struct dig_error             error = { "" };
+    assert_int_equal(dig_lcm_log_read(scratch_path("good.lcm"), &r, &error), DIG_OK);
+    assert_int_equal(r.rows, 3);
+    assert_int_equal(r.row[0].time_ns, 0);
+    assert_int_equal(r.row[2].time_ns, 20000000);
+    assert_close(r.row[1].value[DIG_SIGNAL_BOOM_HEAD_Pa], 5011000000.0, 0.0);
+    assert_true(r.row[1].valid[DIG_SIGNAL_BOOM_rad]);
+    assert_false(r.row[1].valid[DIG_SIGNAL_ARM_HEAD_Pa]);
+    assert_close(r.row[1].value[DIG_SIGNAL_ARM_HEAD_Pa], 0.0, 0.0);
+    dig_machine_recording_finish(&r);
+}
+
+static void count_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
+{
+    int *const count = context;
+    assert_int_equal(time_us, 1);
+    assert_string_equal(m->trajectory, "simpleA");
+    assert_close(m->friction, 0.45, 0.0);
+    (*count)++;
+}
+
+static void other_messages_are_handed_on_one_by_one(void **state)
+{
+    (void)state;
+    char                   trajectory[] = "simpleA", table[] = "hash";
+    lcm_eventlog_t *const  log   = begin("match.lcm");
+    const digsight_match_t match = {
+        .valid = 1, .friction = 0.45, .trajectory = trajectory, .table = table
+    };
+    put_sample(log, 1, DIG_SIGNALS);
+    log_match(log, "DIGSIGHT_MATCH", &match);
+    log_match(log, "SOMETHING_ELSE", &match);
+    log_match(log, "DIGSIGHT_MATCH", &match);
+    lcm_eventlog_destroy(log);
+
+    int                             count  = 0;
+    const struct dig_lcm_log_reader reader = { .context = &count, .match = count_match };
+    assert_int_equal(dig_lcm_log_each(scratch_path("match.lcm"), &reader, NULL), DIG_OK);
+    assert_int_equal(count, 2);
+}
+
+// A logger that was killed leaves its last event unfinished: the rest counts.
+static void a_log_cut_off_in_its_last_event_is_read_up_to_there(void **state)
+{
+    (void)state;
+    lcm_eventlog_t *const log = begin("whole.lcm");
+    for (int64_t i = 0; i < 4; i++) {
+        put_sample(log, i, DIG_SIGNALS);
+    }
+    lcm_eventlog_destroy(log);
+    FILE *const file = fopen(scratch_path("whole.lcm"), "rb");
+    assert_non_null(file);
+    char         bytes[4096];
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
+    assert_int_equal(fclose(file), 0);
+    assert_in_range(size, 200, sizeof bytes - 1);
+
+    struct dig_machine_recording r;
+    (void)scratch_write_bytes("cut.lcm", bytes, size - 5);
+    assert_int_equal(dig_lcm_log_read(scratch_path("cut.lcm"), &r, NULL), DIG_OK);
+    assert_int_equal(r.rows, 3);
+    dig_machine_recording_finish(&r);
+}
+
+static void check_refused(const char *const name, const enum dig_status status,
+                          const char *const expected)
+{
+    struct dig_machine_recording r     = { .rows = 42 };
+    struct dig_error             error = { "" };
+    assert_int_equal(dig_lcm_log_read(scratch_path(name), &r, &error), status);
+    if (strstr(error.text, expected) == NULL) {
+        fail_msg("\"%s\" lacks \"%s\"", error.text, expected);
+    }
+    assert_int_equal(r.rows, 42);
+}
+
+static void defects_are_refused_and_write_nothing(void **state)
+{
+    (void)state;
+    check_refused("none.lcm", DIG_EIO, "none.lcm: No such file");
+    (void)scratch_write("text.lcm", "t_s,boom_rad\n");
+    assert_false(dig_lcm_log_is(scratch_path("text.lcm")));
+    check_refused("text.lcm", DIG_EINVAL, "text.lcm:1: does not begin with ED A1 DA 01");
+
+    lcm_eventlog_t *log = begin("few.lcm");
+    put_sample(log, 1, DIG_SIGNALS);
+    lcm_eventlog_destroy(log);
+    check_refused("few.lcm", DIG_EINVAL,
+                  "few.lcm: 1 samples on DIGSIGHT_SAMPLE, expected at least 2");
+
+    log = begin("other.lcm");
+    put_sample(log, 1, DIG_SIGNALS - 1);
+    lcm_eventlog_destroy(log);
+    check_refused("other.lcm", DIG_EINVAL, "event 0: 10 signals, expected 11");
+
+    // Another type's fingerprint under our channel's name: what an older build's log looks like.
+    char                   text[] = "";
+    const digsight_match_t match  = { .trajectory = text, .table = text };
+    log                           = begin("version.lcm");
+    log_match(log, "DIGSIGHT_SAMPLE", &match);
+    lcm_eventlog_destroy(log);
+    check_refused("version.lcm", DIG_ESCHEMA, "DIGSIGHT_SAMPLE is of another version of its type");
+
+    log = begin("damaged.lcm");
+    for (int64_t i = 0; i < 4; i++) {
+        put_sample(log, i, DIG_SIGNALS);
+    }
+    assert_int_equal(fseek(log->f, 200, SEEK_SET), 0);
+    static const char rubbish[300] = { 1, 2, 3 };
+    assert_int_equal(fwrite(rubbish, 1, sizeof rubbish, log->f), sizeof rubbish);
+    lcm_eventlog_destroy(log);
+    check_refused("damaged.lcm", DIG_EINVAL, "damaged.lcm: damaged at byte ");
+}
+
+// A length from a damaged header must not be believed.
+static void lengths_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    uint8_t header[40] = { 0xED, 0xA1, 0xDA, 0x01, [23] = 3, [28] = 'a', 'b', 'c' };
+    header[24]         = 0x7F;
+    (void)scratch_write_bytes("long.lcm", header, sizeof header);
+    check_refused("long.lcm", DIG_EINVAL, "long.lcm: damaged at byte 0, expected an event");
+    header[24] = 0;
+    header[20] = 0xFF;
+    (void)scratch_write_bytes("channel.lcm", header, sizeof header);
+    check_refused("channel.lcm", DIG_EINVAL, "channel.lcm: damaged at byte 0, expected an event");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(samples_become_a_recording_that_begins_at_zero),
+        cmocka_unit_test(other_messages_are_handed_on_one_by_one),
+        cmocka_unit_test(a_log_cut_off_in_its_last_event_is_read_up_to_there),
+        cmocka_unit_test(defects_are_refused_and_write_nothing),
+        cmocka_unit_test(lengths_that_cannot_be_are_refused),
+    };
+    return cmocka_run_group_tests_name("lcm_log", tests, scratch_setup, scratch_teardown);
+}
