@@ -1,0 +1,293 @@
+// Tests for firmware_host/input_modbus.c and the input thread, against libmodbus' own server on
+// loopback.
+
+#include "firmware_host/input.h"
+#include "firmware_host/signal_map.h"
+
+#include "tests/testlib.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <modbus/modbus.h>
+#include <netinet/in.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#define MS 1000000LL
+
+// A server of twelve input registers that counts what it is asked for.
+struct server {
+    int               listener, port;
+    modbus_mapping_t *mapping;
+    atomic_bool       stop;
+    atomic_bool       hang_up; // end the connection instead of answering
+    atomic_bool       refuse;  // answer with an exception
+    atomic_int        reads, writes, connections;
+    pthread_t         thread;
+};
+
+static void answer(struct server *const s, modbus_t *const bus)
+{
+    uint8_t query[MODBUS_TCP_MAX_ADU_LENGTH];
+    while (!atomic_load(&s->stop)) {
+        const int size = modbus_receive(bus, query);
+        if (size < 0) {
+            return;
+        }
+        const int function = query[modbus_get_header_length(bus)];
+        atomic_fetch_add(function == 3 || function == 4 ? &s->reads : &s->writes, 1);
+        if (atomic_load(&s->hang_up)) {
+            return;
+        }
+        if (atomic_load(&s->refuse)) {
+            (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
+        } else {
+            s->mapping->tab_input_registers[0]++;
+            (void)modbus_reply(bus, query, size, s->mapping);
+        }
+    }
+}
+
+static void *serve(void *const context)
+{
+    struct server *const s = context;
+    while (!atomic_load(&s->stop)) {
+        const int fd = accept(s->listener, NULL, NULL);
+        if (fd < 0) {
+            break;
+        }
+        atomic_fetch_add(&s->connections, 1);
+        modbus_t *const bus = modbus_new_tcp("127.0.0.1", s->port);
+        (void)modbus_set_socket(bus, fd);
+        (void)modbus_set_indication_timeout(bus, 0, 200000);
+        answer(s, bus);
+        modbus_close(bus);
+        modbus_free(bus);
+    }
+    return NULL;
+}
+
+static int listen_on(const int port, int *const bound)
+{
+    struct sockaddr_in address = { .sin_family      = AF_INET,
+                                   .sin_port        = htons((uint16_t)port),
+                                   .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    socklen_t          size    = sizeof address;
+    const int          fd = socket(AF_INET, SOCK_STREAM, 0), on = 1;
+    assert_true(fd >= 0);
+    assert_int_equal(setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on), 0);
+    assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
+    assert_int_equal(getsockname(fd, (struct sockaddr *)&address, &size), 0);
+    *bound = ntohs(address.sin_port);
+    return fd;
+}
+
+static void server_start(struct server *const s)
+{
+    static const uint16_t block[12] = { 0,    2856, 55076, 56552, 0,    8400,
+                                        1000, 1000, 4200,  1000,  2000, 450 };
+    s->mapping                      = modbus_mapping_new(0, 0, 12, 12);
+    assert_non_null(s->mapping);
+    memcpy(s->mapping->tab_input_registers, block, sizeof block);
+    assert_int_equal(listen(s->listener, 4), 0);
+    assert_int_equal(pthread_create(&s->thread, NULL, serve, s), 0);
+}
+
+static void server_stop(struct server *const s)
+{
+    atomic_store(&s->stop, true);
+    (void)shutdown(s->listener, SHUT_RDWR);
+    assert_int_equal(pthread_join(s->thread, NULL), 0);
+    (void)close(s->listener);
+    modbus_mapping_free(s->mapping);
+}
+
+struct client {
+    struct dig_signal_map map;
+    struct dig_input      input;
+    struct dig_ring       readings;
+    struct dig_latest     notes;
+    struct dig_reading    reading_memory[256];
+    struct dig_note       note_memory[3];
+    atomic_bool           stop;
+    pthread_t             thread;
+};
+
+static void *client_main(void *const context)
+{
+    dig_input_run(&((struct client *)context)->input);
+    return NULL;
+}
+
+static void client_start(struct client *const c, const int port)
+{
+    const struct dig_modbus_address address = {
+        .host = "127.0.0.1", .port = port, .unit = 1, .poll_s = 0.005
+    };
+    assert_int_equal(dig_signal_map_read("config/signals/modbus_default.yaml", NULL, &c->map, NULL),
+                     DIG_OK);
+    assert_int_equal(dig_input_modbus_create(&c->input, &address, &c->map), DIG_OK);
+    dig_ring_init(&c->readings, sizeof c->reading_memory[0], 256, c->reading_memory);
+    dig_latest_init(&c->notes, sizeof c->note_memory[0], c->note_memory);
+    c->input.readings = &c->readings;
+    c->input.notes    = &c->notes;
+    c->input.stop     = &c->stop;
+    assert_int_equal(pthread_create(&c->thread, NULL, client_main, c), 0);
+}
+
+static void client_stop(struct client *const c)
+{
+    atomic_store(&c->stop, true);
+    assert_int_equal(pthread_join(c->thread, NULL), 0);
+    dig_input_destroy(&c->input);
+}
+
+// Until the next reading, or for ten seconds.
+static bool next_reading(struct client *const c, struct dig_reading *const reading)
+{
+    for (int i = 0; i < 10000; i++) {
+        if (dig_ring_pop(&c->readings, reading)) {
+            return true;
+        }
+        const struct timespec pause = { .tv_nsec = MS };
+        (void)nanosleep(&pause, NULL);
+    }
+    return false;
+}
+
+static bool next_note(struct client *const c, struct dig_note *const note)
+{
+    for (int i = 0; i < 10000; i++) {
+        if (dig_latest_take(&c->notes, note)) {
+            return true;
+        }
+        const struct timespec pause = { .tv_nsec = MS };
+        (void)nanosleep(&pause, NULL);
+    }
+    return false;
+}
+
+static void the_block_is_polled_and_decoded_with_reads_only(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    client_start(&c, s.port);
+    struct dig_reading reading;
+    for (int i = 0; i < 20; i++) {
+        assert_true(next_reading(&c, &reading));
+    }
+    assert_true(reading.has_alive);
+    assert_close(reading.value[DIG_SIGNAL_BOOM_rad], 0.2856, 1e-12);
+    assert_close(reading.value[DIG_SIGNAL_ARM_rad], -1.0460, 1e-12);
+    assert_close(reading.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8.4e6, 1e-6);
+    assert_true(reading.time_ns <= dig_input_now_ns());
+    client_stop(&c);
+    server_stop(&s);
+    assert_true(atomic_load(&s.reads) >= 20);
+    assert_int_equal(atomic_load(&s.writes), 0);
+    assert_int_equal(atomic_load(&s.connections), 1);
+    assert_int_equal(atomic_load(&c.input.reconnects), 0);
+}
+
+static void a_server_that_comes_late_is_found_and_said(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port); // bound, not listening: refused
+    static struct client c;
+    c = (struct client){ 0 };
+    client_start(&c, s.port);
+    struct dig_note note;
+    assert_true(next_note(&c, &note));
+    assert_non_null(strstr(note.text, "Connection refused"));
+    assert_false(atomic_load(&c.input.connected));
+    server_start(&s);
+    struct dig_reading reading;
+    assert_true(next_reading(&c, &reading));
+    assert_true(next_note(&c, &note));
+    assert_string_equal(note.text, ""); // the trouble is over
+    client_stop(&c);
+    server_stop(&s);
+}
+
+static void a_connection_that_breaks_is_made_anew(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    client_start(&c, s.port);
+    struct dig_reading reading;
+    assert_true(next_reading(&c, &reading));
+    atomic_store(&s.hang_up, true);
+    while (atomic_load(&s.connections) < 2) {
+        const struct timespec pause = { .tv_nsec = MS };
+        (void)nanosleep(&pause, NULL);
+    }
+    atomic_store(&s.hang_up, false);
+    while (dig_ring_pop(&c.readings, &reading)) {
+    }
+    assert_true(next_reading(&c, &reading));
+    client_stop(&c);
+    server_stop(&s);
+    assert_true(atomic_load(&c.input.reconnects) >= 1);
+}
+
+static void a_refusal_is_counted_and_borne(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    client_start(&c, s.port);
+    struct dig_reading reading;
+    assert_true(next_reading(&c, &reading));
+    atomic_store(&s.refuse, true);
+    while (atomic_load(&c.input.malformed) < 2) {
+        const struct timespec pause = { .tv_nsec = MS };
+        (void)nanosleep(&pause, NULL);
+    }
+    atomic_store(&s.refuse, false);
+    while (dig_ring_pop(&c.readings, &reading)) {
+    }
+    assert_true(next_reading(&c, &reading));
+    client_stop(&c);
+    server_stop(&s);
+}
+
+static void what_cannot_be_polled_is_refused(void **state)
+{
+    (void)state;
+    struct dig_signal_map           can     = { .kind = DIG_MAP_CAN };
+    const struct dig_modbus_address address = { .host = "127.0.0.1", .port = 1, .poll_s = 0.01 };
+    struct dig_input                input   = { 0 };
+    assert_int_equal(dig_input_modbus_create(&input, &address, &can), DIG_EINVAL);
+    const struct dig_modbus_address never = { .host = "127.0.0.1", .port = 1 };
+    can.kind                              = DIG_MAP_MODBUS;
+    assert_int_equal(dig_input_modbus_create(&input, &never, &can), DIG_EINVAL);
+    assert_null(input.ops);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_block_is_polled_and_decoded_with_reads_only),
+        cmocka_unit_test(a_server_that_comes_late_is_found_and_said),
+        cmocka_unit_test(a_connection_that_breaks_is_made_anew),
+        cmocka_unit_test(a_refusal_is_counted_and_borne),
+        cmocka_unit_test(what_cannot_be_polled_is_refused),
+    };
+    return cmocka_run_group_tests_name("input_modbus", tests, NULL, NULL);
+}

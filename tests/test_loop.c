@@ -1,0 +1,354 @@
+// Tests for firmware_host/loop.c: the tick, with a real estimator and a table of formulas.
+
+#include "firmware_host/loop.h"
+
+#include "files/machine_yaml.h"
+#include "files/scene_yaml.h"
+#include "tests/testlib.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define MS      1000000LL
+#define GRAVELS 8
+
+// Counts what the tick allocates. A sanitizer brings its own allocator, and glibc's names are
+// needed.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define COUNTS_ALLOCATIONS 1
+extern void *__libc_malloc(size_t size);               // NOLINT(bugprone-reserved-identifier)
+extern void *__libc_calloc(size_t count, size_t size); // NOLINT(bugprone-reserved-identifier)
+extern void *__libc_realloc(void *old, size_t size);   // NOLINT(bugprone-reserved-identifier)
+static _Thread_local unsigned long allocations;
+
+void *malloc(const size_t size)
+{
+    allocations++;
+    return __libc_malloc(size);
+}
+
+void *calloc(const size_t count, const size_t size)
+{
+    allocations++;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *const old, const size_t size)
+{
+    allocations++;
+    return __libc_realloc(old, size);
+}
+#else
+#define COUNTS_ALLOCATIONS 0
+static const unsigned long allocations = 0;
+#endif
+
+// Everything a loop needs, and the other ends of its handoffs.
+struct bench {
+    struct dig_machine            machine;
+    struct dig_scene              scene;
+    struct dig_curve_set          set;
+    struct dig_gravel             gravel[GRAVELS];
+    double                        axis[DIG_AXES][2];
+    int                           cell[GRAVELS], packings[GRAVELS * DIG_TRAJECTORY_MAX];
+    struct dig_curve              curve[GRAVELS * DIG_TRAJECTORY_MAX];
+    struct dig_estimator_settings estimator_settings;
+    struct dig_estimator         *estimator;
+    struct dig_ring               readings, records, digs;
+    struct dig_latest             match, outlook, pulse;
+    struct dig_reading            reading_memory[1024];
+    struct dig_record             record_memory[1024];
+    struct dig_observation        dig_memory[4];
+    struct dig_match              match_memory[3];
+    struct dig_outlook            outlook_memory[3];
+    struct dig_pulse              pulse_memory[3];
+    struct dig_loop               loop;
+};
+
+static void fill_table(struct bench *const b)
+{
+    struct dig_curve_set *const set = &b->set;
+    set->tooth_m                    = dig_scene_tooth_m(&b->scene);
+    set->bucket_width_m             = b->scene.bucket.width_m;
+    set->young_Pa                   = b->scene.material.young_Pa;
+    set->smooth_half_s              = DIG_SMOOTH_HALF_s;
+    set->trajectories               = b->scene.trajectories;
+    memcpy(set->trajectory, b->scene.trajectory, sizeof set->trajectory);
+    set->entries  = GRAVELS;
+    set->gravel   = b->gravel;
+    set->packings = b->packings;
+    set->curve    = b->curve;
+    set->cell     = b->cell;
+    for (int axis = 0; axis < DIG_AXES; axis++) {
+        b->axis[axis][0]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 1500.0 : 0.3;
+        b->axis[axis][1]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 2500.0 : 0.9;
+        set->axis_count[axis] = 2;
+        set->axis[axis]       = b->axis[axis];
+    }
+    for (int g = 0; g < GRAVELS; g++) {
+        b->cell[g] = g;
+        b->gravel[g] =
+            (struct dig_gravel){ { b->axis[0][g / 4], b->axis[1][g / 2 % 2], b->axis[2][g % 2] } };
+        for (size_t t = 0; t < set->trajectories; t++) {
+            const size_t at = (size_t)g * set->trajectories + t;
+            b->packings[at] = 3;
+            for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+                b->curve[at].mean[DIG_CHANNEL_MY_Nm][p] = 0.1F * (float)(1 + g);
+                b->curve[at].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
+            }
+        }
+    }
+}
+
+static struct bench *bench_create(void)
+{
+    struct bench *const b = calloc(1, sizeof *b);
+    assert_non_null(b);
+    assert_int_equal(dig_machine_read("config/machines/zx200_trench.yaml", &b->machine, NULL),
+                     DIG_OK);
+    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &b->scene, NULL), DIG_OK);
+    fill_table(b);
+    b->estimator_settings = dig_estimator_settings_default();
+    b->estimator          = calloc(1, dig_estimator_size());
+    assert_non_null(b->estimator);
+    assert_int_equal(dig_estimator_init(b->estimator, &b->machine, &b->set, &b->estimator_settings),
+                     DIG_OK);
+    dig_ring_init(&b->readings, sizeof b->reading_memory[0], 1024, b->reading_memory);
+    dig_ring_init(&b->records, sizeof b->record_memory[0], 1024, b->record_memory);
+    dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
+    dig_latest_init(&b->match, sizeof b->match_memory[0], b->match_memory);
+    dig_latest_init(&b->outlook, sizeof b->outlook_memory[0], b->outlook_memory);
+    dig_latest_init(&b->pulse, sizeof b->pulse_memory[0], b->pulse_memory);
+    const struct dig_loop_settings settings = {
+        .assembler    = { .time_scale = 1.0,
+                          .coherent_s = 1.0,
+                          .optional_s = 1.0,
+                          .groups     = 1,
+                          .needed     = { true } },
+        .tick_s       = 0.005,
+        .stale_s      = 0.1,
+        .prediction_s = 0.05,
+    };
+    const struct dig_loop_ports ports = { &b->readings, &b->match,   &b->records,
+                                          &b->digs,     &b->outlook, &b->pulse };
+    dig_loop_init(&b->loop, &settings, &ports, b->estimator);
+    return b;
+}
+
+static void bench_destroy(struct bench *const b)
+{
+    free(b->estimator);
+    free(b);
+}
+
+// The bucket held still in the air.
+static struct dig_reading still(const int64_t time_ns)
+{
+    static const double value[DIG_SIGNALS] = { 0.2852, -1.046, -0.8984, 8.4e6, 1e6, 1e6,
+                                               4.2e6,  1e6,    2e6,     0,     45 };
+    struct dig_reading  r                  = { .time_ns = time_ns };
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        r.value[i] = value[i];
+        r.state[i] = DIG_READING_OK;
+    }
+    return r;
+}
+
+static struct dig_pulse pulse_of(struct bench *const b)
+{
+    struct dig_pulse pulse = { 0 };
+    assert_true(dig_latest_take(&b->pulse, &pulse));
+    return pulse;
+}
+
+static void a_whole_sample_becomes_an_estimate(void **state)
+{
+    (void)state;
+    struct bench *const      b = bench_create();
+    const struct dig_reading r = still(1000 * MS);
+    struct dig_record        record;
+    assert_true(dig_ring_push(&b->readings, &r));
+    dig_loop_tick(&b->loop, 1001 * MS);
+    assert_true(dig_ring_pop(&b->records, &record));
+    assert_true(record.has_estimate);
+    assert_true(record.estimate.time_ns == 1000 * MS);
+    assert_close(record.sample.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8.4e6, 0.0);
+    assert_false(dig_ring_pop(&b->records, &record));
+    const struct dig_pulse pulse = pulse_of(b);
+    assert_true(pulse.fresh);
+    assert_int_equal(pulse.ticks, 1);
+    assert_int_equal(pulse.missing, 0);
+    bench_destroy(b);
+}
+
+static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
+{
+    (void)state;
+    struct bench *const b           = bench_create();
+    struct dig_reading  r           = still(1000 * MS);
+    r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
+    struct dig_record record;
+    assert_true(dig_ring_push(&b->readings, &r));
+    dig_loop_tick(&b->loop, 1001 * MS);
+    assert_true(dig_ring_pop(&b->records, &record));
+    assert_false(record.has_estimate);
+    const struct dig_pulse pulse = pulse_of(b);
+    assert_false(pulse.fresh);
+    assert_int_equal(pulse.missing, 1);
+    assert_int_equal(pulse.drops.not_available, 1);
+    bench_destroy(b);
+}
+
+static void silence_is_missing_after_the_stale_time_only(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    dig_loop_tick(&b->loop, 995 * MS);
+    assert_int_equal(pulse_of(b).missing, 1);
+    const struct dig_reading r = still(1000 * MS);
+    assert_true(dig_ring_push(&b->readings, &r));
+    for (int64_t now = 1000; now <= 1200; now += 5) {
+        dig_loop_tick(&b->loop, now * MS);
+        assert_true(pulse_of(b).fresh == (now <= 1100));
+    }
+    assert_int_equal(b->loop.pulse.missing, 1 + 20);
+    bench_destroy(b);
+}
+
+static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    for (int64_t i = 0; i < 1100; i++) {
+        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        assert_true(dig_ring_push(&b->readings, &r));
+        dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
+    }
+    assert_int_equal(pulse_of(b).lost, 1100 - 1024);
+    bench_destroy(b);
+}
+
+static void one_tick_takes_a_bounded_number_of_readings(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    for (int64_t i = 0; i < DIG_READINGS_PER_TICK + 10; i++) {
+        const struct dig_reading r = still(1000 * MS + i * MS);
+        assert_true(dig_ring_push(&b->readings, &r));
+    }
+    struct dig_record record;
+    int               first = 0, second = 0;
+    dig_loop_tick(&b->loop, 1300 * MS);
+    while (dig_ring_pop(&b->records, &record)) {
+        first++;
+    }
+    dig_loop_tick(&b->loop, 1305 * MS);
+    while (dig_ring_pop(&b->records, &record)) {
+        second++;
+    }
+    assert_int_equal(first, DIG_READINGS_PER_TICK);
+    assert_int_equal(second, 10);
+    bench_destroy(b);
+}
+
+static void no_prediction_is_made_in_the_air(void **state)
+{
+    (void)state;
+    struct bench *const    b     = bench_create();
+    const struct dig_match match = { .valid = true, .gravel = b->gravel[3], .nearest = 3 };
+    struct dig_outlook     outlook;
+    dig_latest_put(&b->match, &match);
+    for (int64_t i = 0; i < 100; i++) {
+        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        assert_true(dig_ring_push(&b->readings, &r));
+        dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
+    }
+    assert_false(dig_latest_take(&b->match, &(struct dig_match){ 0 }));
+    assert_false(dig_latest_take(&b->outlook, &outlook));
+    bench_destroy(b);
+}
+
+static void a_tick_allocates_nothing(void **state)
+{
+    (void)state;
+    if (!COUNTS_ALLOCATIONS) {
+        skip();
+    }
+    struct bench *const    b      = bench_create();
+    const struct dig_match match  = { .valid = true, .gravel = b->gravel[3], .nearest = 3 };
+    const unsigned long    before = allocations;
+    for (int64_t i = 0; i < 2000; i++) {
+        struct dig_reading r = still(1000 * MS + i * 5 * MS);
+
+        // Pressures that come and go, so that digs begin and end.
+        r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
+        (void)dig_ring_push(&b->readings, &r);
+        if (i % 100 == 0) {
+            dig_latest_put(&b->match, &match);
+        }
+        dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
+    }
+    assert_true(allocations == before);
+    assert_true(b->loop.pulse.digs > 0);
+    bench_destroy(b);
+}
+
+struct run {
+    struct bench *bench;
+    atomic_bool   stop;
+};
+
+static void *run_main(void *const context)
+{
+    struct run *const run = context;
+    dig_loop_run(&run->bench->loop, &run->stop);
+    return NULL;
+}
+
+// The whole loop beside a producer and a consumer, for ThreadSanitizer; its pace only roughly,
+// since tests run on busy machines.
+static void the_loop_runs_beside_its_neighbours(void **state)
+{
+    (void)state;
+    struct run run = { .bench = bench_create() };
+    pthread_t  thread;
+    assert_int_equal(pthread_create(&thread, NULL, run_main, &run), 0);
+    struct timespec  t;
+    struct dig_pulse pulse     = { 0 };
+    int              estimates = 0;
+    for (int i = 0; i < 100; i++) {
+        (void)clock_gettime(CLOCK_MONOTONIC, &t);
+        const struct dig_reading r = still((int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+        assert_true(dig_ring_push(&run.bench->readings, &r));
+        const struct timespec pause = { .tv_nsec = 5 * MS };
+        (void)nanosleep(&pause, NULL);
+        struct dig_record record;
+        while (dig_ring_pop(&run.bench->records, &record)) {
+            estimates += record.has_estimate;
+        }
+        (void)dig_latest_take(&run.bench->pulse, &pulse);
+    }
+    atomic_store(&run.stop, true);
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    assert_in_range(estimates, 90, 100);
+    assert_in_range(pulse.ticks, 10, 1000);
+    assert_true(pulse.worst_tick_us > 0.0);
+    bench_destroy(run.bench);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_whole_sample_becomes_an_estimate),
+        cmocka_unit_test(a_sample_with_a_hole_is_passed_on_without_an_estimate),
+        cmocka_unit_test(silence_is_missing_after_the_stale_time_only),
+        cmocka_unit_test(a_publisher_that_does_not_keep_up_is_counted_not_waited_for),
+        cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),
+        cmocka_unit_test(no_prediction_is_made_in_the_air),
+        cmocka_unit_test(a_tick_allocates_nothing),
+        cmocka_unit_test(the_loop_runs_beside_its_neighbours),
+    };
+    return cmocka_run_group_tests_name("loop", tests, NULL, NULL);
+}
