@@ -9,6 +9,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { STARTS = 3 };
@@ -62,6 +63,7 @@ static struct dig_distance distance_at(const struct problem *const    problem,
     return dig_cell_distance(&cell, problem->observation);
 }
 
+// NOLINTNEXTLINE(readability-non-const-parameter): the signature is NLopt's
 static double objective(const unsigned n, const double *const x, double *const gradient,
                         void *const context)
 {
@@ -72,57 +74,76 @@ static double objective(const unsigned n, const double *const x, double *const g
     return distance_at(problem, &gravel).distance;
 }
 
+// Places to start from, the best first.
+struct starts {
+    size_t count;
+    double distance[STARTS];
+    double x[STARTS][DIG_AXES];
+};
+
+// Keeps a place among the others if it is good enough; the first, the nearest entry, stays first.
+static void keep_start(struct starts *const starts, const double distance, const double x[DIG_AXES])
+{
+    size_t place = starts->count;
+    while (place > 1 && distance < starts->distance[place - 1]) {
+        place--;
+    }
+    if (place >= STARTS) {
+        return;
+    }
+    starts->count = starts->count < STARTS ? starts->count + 1 : STARTS;
+    for (size_t s = starts->count - 1; s > place; s--) {
+        starts->distance[s] = starts->distance[s - 1];
+        for (unsigned d = 0; d < DIG_AXES; d++) {
+            starts->x[s][d] = starts->x[s - 1][d];
+        }
+    }
+    starts->distance[place] = distance;
+    for (unsigned d = 0; d < DIG_AXES; d++) {
+        starts->x[place][d] = x[d];
+    }
+}
+
+// Index of the axis's point that a gravel of the table stands on.
+static size_t index_on(const struct dig_curve_set *const set, const enum dig_axis axis,
+                       const double value)
+{
+    size_t at = 0;
+    while (at + 1 < set->axis_count[axis] && set->axis[axis][at] < value * (1.0 - 1e-9)) {
+        at++;
+    }
+    return at;
+}
+
 // The nearest entry and its best neighbours along the axes: a ridge may pass between two entries of
 // which the nearest is not the better start.
-static size_t choose_starts(const struct problem *const problem, double start[STARTS][DIG_AXES],
-                            double spacing[DIG_AXES])
+static struct starts choose_starts(const struct problem *const problem)
 {
     const struct dig_curve_set *const set = problem->set;
 
-    double best[STARTS] = { 0.0 };
-    size_t starts       = 1;
+    double nearest[DIG_AXES] = { 0.0 };
     for (unsigned d = 0; d < problem->dimensions; d++) {
         const enum dig_axis axis = problem->axis[d];
-        start[0][d]              = dig_axis_position(set, axis, problem->fixed.value[axis]);
-        spacing[d]               = 1.0 / (double)(set->axis_count[axis] - 1);
+        nearest[d]               = dig_axis_position(set, axis, problem->fixed.value[axis]);
     }
-    for (unsigned d = 0; d < 2 * problem->dimensions; d++) {
-        const enum dig_axis axis = problem->axis[d / 2];
-        size_t              at   = 0;
-        while (at + 1 < set->axis_count[axis] &&
-               set->axis[axis][at] < problem->fixed.value[axis] * (1.0 - 1e-9)) {
-            at++;
-        }
-        const bool down = d % 2 == 0;
+    struct starts starts = { .count = 0 };
+    keep_start(&starts, 0.0, nearest);
+
+    for (unsigned side = 0; side < 2 * problem->dimensions; side++) {
+        const unsigned      d    = side / 2;
+        const bool          down = side % 2 == 0;
+        const enum dig_axis axis = problem->axis[d];
+        const size_t        at   = index_on(set, axis, problem->fixed.value[axis]);
         if (down ? at == 0 : at + 1 >= set->axis_count[axis]) {
             continue;
         }
         struct dig_gravel gravel = problem->fixed;
         gravel.value[axis]       = set->axis[axis][down ? at - 1 : at + 1];
         const double distance    = distance_at(problem, &gravel).distance;
-        if (distance >= no_curve) {
-            continue;
-        }
-
-        // Insert behind the nearest, sorted by distance.
-        size_t place = starts < STARTS ? starts : STARTS;
-        while (place > 1 && distance < best[place - 1]) {
-            place--;
-        }
-        if (place >= STARTS) {
-            continue;
-        }
-        starts = starts < STARTS ? starts + 1 : STARTS;
-        for (size_t s = starts - 1; s > place; s--) {
-            best[s] = best[s - 1];
-            for (unsigned k = 0; k < problem->dimensions; k++) {
-                start[s][k] = start[s - 1][k];
-            }
-        }
-        best[place] = distance;
-        for (unsigned k = 0; k < problem->dimensions; k++) {
-            start[place][k] =
-                k == d / 2 ? dig_axis_position(set, axis, gravel.value[axis]) : start[0][k];
+        if (distance < no_curve) {
+            double x[DIG_AXES] = { nearest[0], nearest[1], nearest[2] };
+            x[d]               = dig_axis_position(set, axis, gravel.value[axis]);
+            keep_start(&starts, distance, x);
         }
     }
     return starts;
@@ -133,11 +154,11 @@ static enum dig_status improve(struct problem *const problem, const double start
                                const double step[], const int max_evaluations, double x[],
                                double *const distance)
 {
-    const nlopt_opt opt = nlopt_create(NLOPT_LN_SBPLX, problem->dimensions);
+    struct nlopt_opt_s *const opt = nlopt_create(NLOPT_LN_SBPLX, problem->dimensions);
     if (opt == NULL) {
         return DIG_ENOMEM;
     }
-    double at[DIG_AXES];
+    double at[DIG_AXES] = { 0.0 };
     for (unsigned d = 0; d < problem->dimensions; d++) {
         at[d] = start[d];
     }
@@ -178,16 +199,17 @@ enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
     struct problem   problem = make_problem(set, observation, match);
     double           best    = match->nearest_distance;
     if (problem.dimensions > 0) {
-        double       start[STARTS][DIG_AXES], step[DIG_AXES], x[DIG_AXES];
-        const size_t starts = choose_starts(&problem, start, step);
+        const struct starts starts         = choose_starts(&problem);
+        double              x[DIG_AXES]    = { 0.0 };
+        double              step[DIG_AXES] = { 0.0 };
         for (unsigned d = 0; d < problem.dimensions; d++) {
-            x[d]    = start[0][d];
-            step[d] = 0.4 * step[d];
+            x[d]    = starts.x[0][d];
+            step[d] = 0.4 / (double)(set->axis_count[problem.axis[d]] - 1);
         }
         int left = max_evaluations;
-        for (size_t s = 0; s < starts && left > 0; s++) {
-            const int             share  = s + 1 < starts ? (left + 1) / 2 : left;
-            const enum dig_status status = improve(&problem, start[s], step, share, x, &best);
+        for (size_t s = 0; s < starts.count && left > 0; s++) {
+            const int             share  = s + 1 < starts.count ? (left + 1) / 2 : left;
+            const enum dig_status status = improve(&problem, starts.x[s], step, share, x, &best);
             if (status != DIG_OK) {
                 return status;
             }

@@ -84,7 +84,7 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
         double weight = 1.0;
         size_t place  = 0;
         for (unsigned a = 0; a < DIG_AXES; a++) {
-            const bool upper = ((corner >> a) & 1u) != 0;
+            const bool upper = ((corner >> a) & 1U) != 0;
             weight *= upper ? fraction[a] : 1.0 - fraction[a];
             place = place * set->axis_count[a] + index[a] + (upper ? 1 : 0);
         }

@@ -35,7 +35,9 @@ enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
 struct dig_distance dig_cell_distance(const struct dig_cell *const        cell,
                                       const struct dig_observation *const observation)
 {
-    double miss2 = 0.0, floor2 = 0.0, whole2 = 0.0;
+    double miss2  = 0.0;
+    double floor2 = 0.0;
+    double whole2 = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         if (!is_measured(observation, k)) {
             continue;

@@ -319,8 +319,9 @@ int dig_choice_step(struct dig_choice *const choice, const size_t tracks, const 
 int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
                      const double limit_m, const double tie_m, const int sitting)
 {
-    int    best   = -1;
-    double best_m = INFINITY, second_m = INFINITY;
+    int    best     = -1;
+    double best_m   = INFINITY;
+    double second_m = INFINITY;
     for (size_t t = 0; t < tracks; t++) {
         if (track[t]->rms_m < best_m) {
             second_m = best_m;

@@ -26,7 +26,8 @@ struct likelihood {
 // Squared spread of one dig relative to the mean, over all entries of the trajectory.
 static double pooled_relative2(const struct dig_curve_set *const set, const size_t trajectory)
 {
-    double sd2 = 0.0, mean2 = 0.0;
+    double sd2   = 0.0;
+    double mean2 = 0.0;
     for (size_t e = 0; e < set->entries; e++) {
         const size_t slot = e * set->trajectories + trajectory;
         if (set->packings[slot] <= 0) {
@@ -35,7 +36,8 @@ static double pooled_relative2(const struct dig_curve_set *const set, const size
         const struct dig_curve *const curve = &set->curve[slot];
 
         // Each entry counts alike, however hard it resists.
-        double entry_sd2 = 0.0, entry_mean2 = 0.0;
+        double entry_sd2   = 0.0;
+        double entry_mean2 = 0.0;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             entry_sd2 += pow((double)curve->sd[DIG_CHANNEL_MY_Nm][k], 2.0);
             entry_mean2 += pow((double)curve->mean[DIG_CHANNEL_MY_Nm][k], 2.0);

@@ -104,7 +104,9 @@ enum dig_status dig_predict_curve(const struct dig_curve_set *const set,
     const double n = (double)cells;
     for (int c = 0; c < DIG_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            double sum = 0.0, sum2 = 0.0, within2 = 0.0;
+            double sum     = 0.0;
+            double sum2    = 0.0;
+            double within2 = 0.0;
             for (size_t i = 0; i < cells; i++) {
                 const double mean = dig_cell_mean(&cell[i], (enum dig_channel)c, k);
                 const double sd   = dig_cell_sd(&cell[i], (enum dig_channel)c, k);

@@ -134,8 +134,10 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
 
     const double first                       = window->progress[range.first];
     const double last                        = window->progress[range.end - 1];
-    double       moment_Nm[DIG_CURVE_POINTS] = { 0 }, sigma_Nm[DIG_CURVE_POINTS] = { 0 };
-    size_t       i = range.first, points = 0;
+    double       moment_Nm[DIG_CURVE_POINTS] = { 0 };
+    double       sigma_Nm[DIG_CURVE_POINTS]  = { 0 };
+    size_t       i                           = range.first;
+    size_t       points                      = 0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = (double)k / (DIG_CURVE_POINTS - 1);
         if (at < first || at > last) {

@@ -131,7 +131,8 @@ static void add_angle_variance(const struct dig_machine *const machine,
                                double slow_variance[PARTS])
 {
     const double    h_rad = fmax(sigma_rad, 1e-6);
-    struct readings more = *readings, less = *readings;
+    struct readings more  = *readings;
+    struct readings less  = *readings;
     more.joint_rad[joint] += h_rad;
     less.joint_rad[joint] -= h_rad;
     const struct dig_front front_more = dig_front_place(machine, more.joint_rad);
@@ -162,7 +163,8 @@ enum dig_status dig_wrench_solve(const struct dig_machine *const machine,
     const struct dig_front placed  = dig_front_place(machine, readings.joint_rad);
     struct balance         balance = solve_balance(machine, &readings, &placed);
 
-    double variance[PARTS] = { 0 }, slow_variance[PARTS] = { 0 };
+    double variance[PARTS]      = { 0 };
+    double slow_variance[PARTS] = { 0 };
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (int p = 0; p < PARTS; p++) {
             const double by_push = balance.by_moment[p][j] * balance.lever[j].arm_m;
