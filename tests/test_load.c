@@ -124,17 +124,18 @@ static void a_single_packing_takes_the_pooled_relative_spread(void **state)
     struct dig_store *const store = fixture_create("pool.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0); // mean 2, variance 2: one half of its square
     fixture_put(store, .3, .3, 1, 0, 3.0);
-    fixture_put(store, .5, .3, 0, 0, 4.0); // no spread, with twice the weight
+    fixture_put(store, .5, .3, 0, 0, 3.0); // mean 4, variance 1, with twice the weight
     fixture_put(store, .5, .3, 1, 0, 4.0);
-    fixture_put(store, .5, .3, 2, 0, 4.0);
+    fixture_put(store, .5, .3, 2, 0, 5.0);
     fixture_put(store, .9, .3, 0, 0, -10.0);
     fixture_put(store, .9, .3, 0, 1, 5.0); // nobody has a second packing on "push"
     dig_store_close(store);
     struct dig_curve_set *const set = load("pool.sqlite");
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         assert_close((double)curve_of(set, 0, 0)->sd[0][k], sqrt(2.0), 1e-5);
-        assert_close((double)curve_of(set, 1, 0)->sd[0][k], 0.0, 1e-6);
-        assert_close((double)curve_of(set, 2, 0)->sd[0][k], 10.0 * sqrt(0.5 / 3.0), 1e-4);
+        assert_close((double)curve_of(set, 1, 0)->sd[0][k], 1.0, 1e-6);
+        assert_close((double)curve_of(set, 2, 0)->sd[0][k], 10.0 * sqrt((0.5 + 2.0 / 16.0) / 3.0),
+                     1e-4);
         assert_close((double)curve_of(set, 2, 1)->sd[0][k], 1.0, 1e-5);
     }
     dig_curve_set_destroy(set);

@@ -71,6 +71,22 @@ static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **s
     dig_recording_finish(&r);
 }
 
+static void a_machine_recording_may_have_a_hole_and_its_times_are_rounded(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r = { 0 };
+    assert_int_equal(
+        dig_machine_recording_read(
+            scratch_write("hole.csv",
+                          MACHINE "2.01,,,,,,,,,\n2.02,,,,,,,,,\n2.03,,,,,,,,,\n2.065,,,,,,,,,\n"),
+            &r, NULL),
+        DIG_OK);
+    assert_int_equal(r.rows, 4);
+    assert_int_equal(r.row[0].time_ns, 2010000000);
+    assert_int_equal(r.row[3].time_ns, 2065000000);
+    dig_machine_recording_finish(&r);
+}
+
 static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **state)
 {
     (void)state;
@@ -334,6 +350,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_force_recording_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
+        cmocka_unit_test(a_machine_recording_may_have_a_hole_and_its_times_are_rounded),
         cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
         cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
         cmocka_unit_test(defects_of_machine_recordings_and_beds_are_told_too),

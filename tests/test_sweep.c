@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <time.h>
 
@@ -17,6 +18,7 @@ enum mischief {
     FAIL,            // in gravel of friction .5
     GIVE_NAN,        // in gravel of friction .5
     DAWDLE,          // a minute a dig, telling progress
+    SLEEP,           // a minute a dig, saying nothing
     REFUSE_TO_START, // the test fails when a worker is begun at all
 };
 static enum mischief mischief;
@@ -87,6 +89,9 @@ fake_dig(const struct dig_scene *const scene, const struct dig_gravel *const gra
     }
     if (mischief == FAIL && is_marked_gravel(gravel)) {
         return dig_error_set(error, DIG_EINVAL, "the grains have gone on strike");
+    }
+    if (mischief == SLEEP) {
+        (void)sleep(60);
     }
     for (int i = 0; mischief == DAWDLE && i < 6000; i++) {
         const struct timespec wait = { .tv_nsec = 10000000 };
@@ -300,12 +305,15 @@ static void a_killed_sweep_takes_its_workers_along_and_is_resumed(void **state)
 {
     (void)state;
     assert_int_equal(sweep_by("parent.sqlite", 1, 2).status, DIG_OK);
-    mischief          = DAWDLE;
+    mischief = SLEEP;
+    int alive[2]; // its other end is open as long as one of them lives
+    assert_int_equal(pipe(alive), 0);
     const pid_t child = fork();
     if (child == 0) {
         (void)sweep_by("parent.sqlite", 2, 3);
         _exit(0);
     }
+    (void)close(alive[1]);
     const struct timespec wait = { .tv_nsec = 20000000 };
     for (int i = 0; i < 500 && marks('d') < DIGS_A_PACKING + 3; i++) {
         (void)nanosleep(&wait, NULL);
@@ -314,7 +322,10 @@ static void a_killed_sweep_takes_its_workers_along_and_is_resumed(void **state)
     assert_int_equal(kill(child, SIGKILL), 0);
     assert_int_equal(waitpid(child, NULL, 0), child);
 
-    // A worker that lived on would hold no lock, but go on digging for a minute.
+    struct pollfd all_gone = { .fd = alive[0], .events = POLLIN };
+    assert_int_equal(poll(&all_gone, 1, 10000), 1);
+    (void)close(alive[0]);
+
     mischief               = NONE;
     const struct outcome o = sweep_by("parent.sqlite", 2, 3);
     assert_int_equal(o.status, DIG_OK);
