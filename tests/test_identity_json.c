@@ -2,12 +2,7 @@
 
 #include "files/identity_json.h"
 
-#include "tests/testlib.h"
-
-#include <stdio.h>
-#include <string.h>
-
-static const char *const path = "build/test_identity.json";
+#include "tests/scratch.h"
 
 static struct dig_identity example(void)
 {
@@ -30,18 +25,11 @@ static struct dig_identity example(void)
     return id;
 }
 
-static void write_text(const char *const text)
-{
-    FILE *const file = fopen(path, "w");
-    assert_non_null(file);
-    (void)fputs(text, file);
-    (void)fclose(file);
-}
-
 static void what_was_written_is_read_back(void **state)
 {
     (void)state;
     const struct dig_identity id   = example();
+    const char *const         path = scratch_path("id.json");
     FILE *const               file = fopen(path, "w");
     assert_non_null(file);
     dig_identity_write(file, &id);
@@ -65,7 +53,6 @@ static void what_was_written_is_read_back(void **state)
         assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
     }
     assert_close(back.noise_floor, 0.2, 1e-9);
-    (void)remove(path);
 }
 
 // Each defect names the file and the key, and leaves what was there.
@@ -97,7 +84,7 @@ static void defects_are_refused_by_name(void **state)
         assert_non_null(at);
         (void)snprintf(bad, sizeof bad, "%.*s%s%s", (int)(at - good), good, defect[i].is,
                        at + strlen(defect[i].was));
-        write_text(bad);
+        const char *const   path      = scratch_write("bad.json", bad);
         struct dig_identity untouched = { .digs = 42 };
         struct dig_error    error     = { "" };
         assert_int_equal(dig_identity_read(path, &untouched, &error), DIG_EINVAL);
@@ -106,9 +93,8 @@ static void defects_are_refused_by_name(void **state)
             fail_msg("\"%s\" does not name %s", error.text, defect[i].names);
         }
     }
-    (void)remove(path);
     struct dig_identity untouched = { .digs = 42 };
-    assert_int_equal(dig_identity_read(path, &untouched, NULL), DIG_EIO);
+    assert_int_equal(dig_identity_read(scratch_path("absent.json"), &untouched, NULL), DIG_EIO);
     assert_int_equal(untouched.digs, 42);
 }
 
@@ -118,5 +104,5 @@ int main(void)
         cmocka_unit_test(what_was_written_is_read_back),
         cmocka_unit_test(defects_are_refused_by_name),
     };
-    return cmocka_run_group_tests_name("identity_json", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("identity_json", tests, scratch_setup, scratch_teardown);
 }

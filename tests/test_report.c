@@ -3,7 +3,7 @@
 #include "closed_loop/report.h"
 
 #include "closed_loop/plot.h"
-#include "tests/testlib.h"
+#include "tests/scratch.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,9 +41,8 @@ static struct dig_report one_run(void)
 static char *slurp(FILE *const from)
 {
     rewind(from);
-    char *const  text = calloc(1, 1 << 20);
-    const size_t n    = fread(text, 1, (1 << 20) - 1, from);
-    text[n]           = '\0';
+    char *const text                          = calloc(1, 1 << 16);
+    text[fread(text, 1, (1 << 16) - 1, from)] = '\0';
     return text;
 }
 
@@ -51,13 +50,12 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
 {
     (void)state;
     const struct dig_report report = one_run();
-    const char *const       path   = "build/test_report.html";
+    const char *const       path   = scratch_path("page.html");
     struct dig_error        error  = { "" };
     assert_int_equal(dig_report_html(&report, path, &error), DIG_OK);
 
-    FILE *const file = fopen(path, "r");
-    assert_non_null(file);
-    char *const page = slurp(file);
+    size_t      size = 0;
+    char *const page = scratch_read(path, &size);
     assert_non_null(strstr(page, "A &lt;demo&gt; &amp; more"));
     assert_non_null(strstr(page, "0.123"));
     assert_non_null(strstr(page, "2100 – 2800"));
@@ -71,9 +69,7 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
         }
     }
     free(page);
-    (void)fclose(file);
-    (void)remove(path);
-    assert_int_not_equal(access("build/test_report.html.part", F_OK), 0);
+    assert_false(scratch_exists("page.html.part"));
 }
 
 static void the_terminal_gets_truth_estimate_interval_and_error(void **state)
@@ -114,13 +110,13 @@ static void without_gnuplot_it_says_so_and_leaves_nothing(void **state)
     const char *const       kept   = getenv("PATH");
     char *const             path   = strdup(kept == NULL ? "" : kept);
     (void)setenv("PATH", "/nonexistent", 1);
-    assert_int_equal(dig_report_html(&report, "build/none.html", &error), DIG_EIO);
+    assert_int_equal(dig_report_html(&report, scratch_path("none.html"), &error), DIG_EIO);
     (void)setenv("PATH", path, 1);
     free(path);
     assert_non_null(strstr(error.text, "gnuplot"));
-    assert_int_not_equal(access("build/none.html", F_OK), 0);
-    assert_int_not_equal(access("build/none.html.part", F_OK), 0);
-    assert_int_equal(dig_report_html(&report, "build/no/such/folder.html", &error), DIG_EIO);
+    assert_false(scratch_exists("none.html"));
+    assert_false(scratch_exists("none.html.part"));
+    assert_int_equal(dig_report_html(&report, scratch_path("no/such.html"), &error), DIG_EIO);
 }
 
 int main(void)
@@ -131,5 +127,5 @@ int main(void)
         cmocka_unit_test(json_holds_the_same),
         cmocka_unit_test(without_gnuplot_it_says_so_and_leaves_nothing),
     };
-    return cmocka_run_group_tests_name("report", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("report", tests, scratch_setup, scratch_teardown);
 }
