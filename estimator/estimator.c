@@ -3,8 +3,6 @@
 #include "core/units.h"
 #include "estimator/estimator_state.h"
 #include "estimator/linkage.h"
-#include "estimator/match.h"
-#include "estimator/predict.h"
 #include "estimator/wrench.h"
 
 #include <assert.h>
@@ -19,50 +17,6 @@ static const double least_progress = 0.2;
 
 // Filters step over longer gaps as if they were this long.
 static const double longest_step_s = 0.1;
-
-struct dig_estimator_settings dig_estimator_settings_default(void)
-{
-    return (struct dig_estimator_settings){
-        .tick_s         = 0.005,
-        .contact_sigmas = 3.0,
-        .contact_hold_s = 0.1,
-        .exit_hold_s    = 1.0,
-        .air_bias_s     = 0.0,
-        .path_limit_m   = 0.008,
-        .outside_floors = 2.5,
-    };
-}
-
-enum dig_status dig_estimator_settings_check(const struct dig_estimator_settings *const settings,
-                                             const char **const                         reason)
-{
-    assert(settings != NULL && reason != NULL);
-    const struct {
-        bool        ok;
-        const char *reason;
-    } rules[] = {
-        { settings->tick_s > 0.0 && settings->tick_s <= 0.1, "tick_s: expected > 0, at most 0.1" },
-        { settings->contact_sigmas >= 1.0 && settings->contact_sigmas <= 100.0,
-          "contact_sigmas: expected 1 to 100" },
-        { settings->contact_hold_s >= 0.0 && settings->contact_hold_s <= 10.0,
-          "contact_hold_s: expected 0 to 10" },
-        { settings->exit_hold_s >= 0.0 && settings->exit_hold_s <= 60.0,
-          "exit_hold_s: expected 0 to 60" },
-        { settings->air_bias_s >= 0.0 && settings->air_bias_s <= 3600.0,
-          "air_bias_s: expected 0 (off) to 3600" },
-        { settings->path_limit_m > 0.0 && settings->path_limit_m <= 1.0,
-          "path_limit_m: expected > 0, at most 1" },
-        { settings->outside_floors >= 1.0 && settings->outside_floors <= 100.0,
-          "outside_floors: expected 1 to 100" },
-    };
-    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
-        if (!rules[i].ok) {
-            *reason = rules[i].reason;
-            return DIG_EINVAL;
-        }
-    }
-    return DIG_OK;
-}
 
 size_t dig_estimator_size(void)
 {
@@ -321,54 +275,4 @@ bool dig_estimator_take_dig(struct dig_estimator *const   estimator,
     *observation               = estimator->observation;
     estimator->has_observation = false;
     return true;
-}
-
-void dig_estimator_give_match(struct dig_estimator *const   estimator,
-                              const struct dig_match *const match)
-{
-    assert(estimator != NULL && match != NULL);
-    const struct dig_curve_set *const set     = estimator->set;
-    const double                      lambda4 = pow(estimator->lambda, 4.0);
-    for (size_t t = 0; t < set->trajectories; t++) {
-        struct dig_outlook *const outlook = &estimator->outlook[t];
-        outlook->valid = dig_predict_curve(set, match, t, &outlook->curve) == DIG_OK;
-        if (outlook->valid) {
-            outlook->peak_Nm = lambda4 * dig_predict_peak_Nm(&outlook->curve);
-            outlook->energy_J =
-                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &outlook->curve);
-        }
-    }
-}
-
-// The prediction for one trajectory from `progress` to its end; valid = false without a match.
-static struct dig_prediction predict_from(const struct dig_estimator *const estimator,
-                                          const int trajectory, const double progress)
-{
-    struct dig_prediction p = { .valid = false, .trajectory = trajectory };
-    if (trajectory >= 0 && (size_t)trajectory < estimator->set->trajectories &&
-        estimator->outlook[trajectory].valid) {
-        const struct dig_outlook *const outlook = &estimator->outlook[trajectory];
-        p.valid                                 = true;
-        p.progress_now                          = progress;
-        p.from_progress                         = progress;
-        p.to_progress                           = 1.0;
-        p.peak_Nm                               = outlook->peak_Nm;
-        p.energy_J                              = outlook->energy_J;
-        dig_predict_points(&outlook->curve, estimator->lambda, &p);
-    }
-    return p;
-}
-
-void dig_estimator_predict(const struct dig_estimator *const estimator,
-                           struct dig_prediction *const      prediction)
-{
-    assert(estimator != NULL && prediction != NULL);
-    *prediction = predict_from(estimator, estimator->choice.told, estimator->progress);
-}
-
-void dig_estimator_predict_whole(const struct dig_estimator *const estimator, const int trajectory,
-                                 struct dig_prediction *const prediction)
-{
-    assert(estimator != NULL && prediction != NULL);
-    *prediction = predict_from(estimator, trajectory, 0.0);
 }

@@ -6,6 +6,8 @@
 #include "estimator/estimator.h"
 #include "estimator/path.h"
 #include "estimator/phase.h"
+#include "estimator/route.h"
+#include "estimator/track.h"
 #include "estimator/window.h"
 
 /// What the gravel given last will resist along one trajectory.

@@ -8,7 +8,8 @@
 
 #include "core/curve.h"
 #include "estimator/estimator.h"
-#include "estimator/path.h"
+#include "estimator/route.h"
+#include "estimator/track.h"
 
 #define DIG_WINDOW_BEFORE 1024
 

@@ -1,6 +1,6 @@
-// Tests for estimator/path.c
+// Tests for estimator/path.c, route.c and track.c
 
-#include "estimator/path.h"
+#include "estimator/track.h"
 
 #include "tests/made_table.h"
 #include "tests/model_front.h"

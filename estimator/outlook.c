@@ -1,0 +1,60 @@
+// The estimator's last stage: from the gravel given to predictions of digs.
+
+#include "estimator/estimator.h"
+#include "estimator/estimator_state.h"
+#include "estimator/match.h"
+#include "estimator/predict.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+void dig_estimator_give_match(struct dig_estimator *const   estimator,
+                              const struct dig_match *const match)
+{
+    assert(estimator != NULL && match != NULL);
+    const struct dig_curve_set *const set     = estimator->set;
+    const double                      lambda4 = pow(estimator->lambda, 4.0);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        struct dig_outlook *const outlook = &estimator->outlook[t];
+        outlook->valid = dig_predict_curve(set, match, t, &outlook->curve) == DIG_OK;
+        if (outlook->valid) {
+            outlook->peak_Nm = lambda4 * dig_predict_peak_Nm(&outlook->curve);
+            outlook->energy_J =
+                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &outlook->curve);
+        }
+    }
+}
+
+// The prediction for one trajectory from `progress` to its end; valid = false without a match.
+static struct dig_prediction predict_from(const struct dig_estimator *const estimator,
+                                          const int trajectory, const double progress)
+{
+    struct dig_prediction p = { .valid = false, .trajectory = trajectory };
+    if (trajectory >= 0 && (size_t)trajectory < estimator->set->trajectories &&
+        estimator->outlook[trajectory].valid) {
+        const struct dig_outlook *const outlook = &estimator->outlook[trajectory];
+        p.valid                                 = true;
+        p.progress_now                          = progress;
+        p.from_progress                         = progress;
+        p.to_progress                           = 1.0;
+        p.peak_Nm                               = outlook->peak_Nm;
+        p.energy_J                              = outlook->energy_J;
+        dig_predict_points(&outlook->curve, estimator->lambda, &p);
+    }
+    return p;
+}
+
+void dig_estimator_predict(const struct dig_estimator *const estimator,
+                           struct dig_prediction *const      prediction)
+{
+    assert(estimator != NULL && prediction != NULL);
+    *prediction = predict_from(estimator, estimator->choice.told, estimator->progress);
+}
+
+void dig_estimator_predict_whole(const struct dig_estimator *const estimator, const int trajectory,
+                                 struct dig_prediction *const prediction)
+{
+    assert(estimator != NULL && prediction != NULL);
+    *prediction = predict_from(estimator, trajectory, 0.0);
+}

@@ -1,0 +1,77 @@
+#include "estimator/route.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+
+struct dig_route dig_route_make(const struct dig_trajectory *const trajectory, const double tooth_m)
+{
+    assert(trajectory != NULL && trajectory->phases <= DIG_PHASES_MAX);
+    struct dig_route route  = { .corners = trajectory->phases + 1 };
+    double           time_s = 0.0;
+    for (size_t i = 0; i <= trajectory->phases; i++) {
+        const struct dig_pose pose = dig_trajectory_pose(trajectory, time_s);
+        route.corner[i] = (struct dig_path_point){ pose.x_m, pose.z_m, tooth_m * pose.theta_rad };
+        route.at_m[i]   = dig_trajectory_path_m(trajectory, tooth_m, time_s);
+        time_s += i < trajectory->phases ? trajectory->phase[i].duration_s : 0.0;
+    }
+    return route;
+}
+
+struct dig_place dig_route_place(const struct dig_route *const route, const double dx_m,
+                                 const double dz_m, const struct dig_path_point *const point,
+                                 const double from, const double to)
+{
+    assert(route != NULL && point != NULL && route->corners >= 2);
+    const double                whole_m = route->at_m[route->corners - 1];
+    const double                from_m  = from * whole_m;
+    const double                to_m    = to * whole_m;
+    const struct dig_path_point at      = { point->x_m - dx_m, point->z_m - dz_m, point->turn_m };
+
+    const struct dig_path_point nowhere = { 0.0, 0.0, 0.0 };
+    struct dig_place            best    = { .distance_m = INFINITY };
+    for (size_t i = 0; i + 1 < route->corners; i++) {
+        const double length_m = route->at_m[i + 1] - route->at_m[i];
+        if (!(length_m > 0.0) || route->at_m[i + 1] < from_m || route->at_m[i] > to_m) {
+            continue;
+        }
+        const struct dig_path_point leg =
+            dig_path_point_sub(route->corner[i + 1], route->corner[i]);
+        const struct dig_path_point rel     = dig_path_point_sub(at, route->corner[i]);
+        const double                leg2    = dig_path_point_dot(leg, leg);
+        const double                free_f  = dig_path_point_dot(rel, leg) / leg2;
+        const double                low_f   = fmax((from_m - route->at_m[i]) / length_m, 0.0);
+        const double                high_f  = fmin((to_m - route->at_m[i]) / length_m, 1.0);
+        const double                f       = fmin(fmax(free_f, low_f), high_f);
+        const bool                  is_lead = i == 0 && free_f < 0.0 && low_f <= 0.0;
+
+        // On the lead-in the foot lies before the start, where progress is still 0.
+        const struct dig_path_point off =
+            dig_path_point_add_scaled(rel, is_lead ? -free_f : -f, leg);
+        const double d_m = sqrt(dig_path_point_dot(off, off));
+        if (d_m < best.distance_m) {
+            const bool inside = is_lead || (free_f > 0.0 && free_f < 1.0);
+            best              = (struct dig_place){
+                             .progress   = (route->at_m[i] + f * length_m) / whole_m,
+                             .distance_m = d_m,
+                             .tangent = dig_path_point_add_scaled(nowhere, inside ? 1.0 / sqrt(leg2) : 0.0, leg),
+                             .off     = off,
+            };
+        }
+    }
+    return best;
+}
+
+struct dig_path_point dig_route_point(const struct dig_route *const route, const double progress)
+{
+    assert(route != NULL && route->corners >= 2);
+    const double at_m = progress * route->at_m[route->corners - 1];
+    size_t       i    = 0;
+    while (i + 2 < route->corners && route->at_m[i + 1] <= at_m) {
+        i++;
+    }
+    const double                length_m = route->at_m[i + 1] - route->at_m[i];
+    const double                f   = length_m > 0.0 ? (at_m - route->at_m[i]) / length_m : 0.0;
+    const struct dig_path_point leg = dig_path_point_sub(route->corner[i + 1], route->corner[i]);
+    return dig_path_point_add_scaled(route->corner[i], f, leg);
+}
