@@ -101,7 +101,8 @@ static enum dig_status next_event(struct reading *const r, bool *const any)
         *any = false;
         return DIG_OK;
     }
-    const uint64_t channel_size = big_endian(header + 20, 4), size = big_endian(header + 24, 4);
+    const uint64_t channel_size = big_endian(header + 20, 4);
+    const uint64_t size         = big_endian(header + 24, 4);
     if (memcmp(header, sync_word, sizeof sync_word) != 0 || channel_size < 1 ||
         channel_size >= CHANNEL_BYTES || size > DATA_BYTES) {
         return dig_error_set(r->error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event",
@@ -194,7 +195,7 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
                                rows.count);
     }
-    if (status != DIG_OK) {
+    if (status != DIG_OK || rows.row == NULL) {
         free(rows.row);
         return status;
     }

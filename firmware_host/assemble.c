@@ -73,7 +73,8 @@ static bool watch_alive(struct dig_assembler *const a, const struct dig_reading 
 // Every needed group came since the last sample, and they belong together.
 static bool is_due(const struct dig_assembler *const a)
 {
-    int64_t oldest = INT64_MAX, youngest = INT64_MIN;
+    int64_t oldest   = INT64_MAX;
+    int64_t youngest = INT64_MIN;
     for (unsigned g = 0; g < a->settings.groups; g++) {
         if (!a->settings.needed[g]) {
             continue;

@@ -1,6 +1,7 @@
 #include "firmware_host/config.h"
 
 #include "files/yaml.h"
+#include "firmware_host/config_text.h"
 
 #include <assert.h>
 #include <math.h>
@@ -11,176 +12,6 @@
 
 #define DEFAULT_LCM_URL "udpm://239.255.76.67:7667?ttl=0"
 
-// The file as it is written. Pointers: NULL where a key is absent.
-struct can_text {
-    char *interface, *dbc, *map;
-};
-
-struct modbus_text {
-    char   *address, *device, *parity, *map;
-    int    *baud, *unit;
-    double *poll_Hz;
-};
-
-struct replay_text {
-    char   *file;
-    double *speed;
-};
-
-struct input_text {
-    enum dig_input_kind kind;
-    struct can_text    *can;
-    struct modbus_text *modbus;
-    struct replay_text *replay;
-};
-
-struct realtime_text {
-    int  *priority, *cpu;
-    bool *lock_memory;
-};
-
-struct lcm_text {
-    char *url;
-};
-
-struct estimator_text {
-    double *sample_s, *contact_sigmas, *contact_hold_s, *exit_hold_s, *air_bias_s, *path_limit_m,
-        *outside_floors;
-};
-
-struct match_text {
-    int *max_evaluations;
-};
-
-struct identify_text {
-    char   **trajectories;
-    unsigned trajectories_count;
-};
-
-struct publish_text {
-    int    *estimate_every;
-    double *prediction_Hz;
-};
-
-struct config_text {
-    char                  *table, *machine, *scene;
-    struct input_text      input;
-    double                *tick_Hz, *stale_ms, *time_scale;
-    struct realtime_text  *realtime;
-    struct lcm_text       *lcm;
-    struct estimator_text *estimator;
-    struct match_text     *match;
-    struct identify_text  *identify;
-    struct publish_text   *publish;
-};
-
-#define REQUIRED CYAML_FLAG_DEFAULT
-#define POINTER  CYAML_FLAG_POINTER
-#define OPTIONAL (CYAML_FLAG_OPTIONAL | CYAML_FLAG_POINTER)
-
-#define TEXT(type, name, flags) CYAML_FIELD_STRING_PTR(#name, flags, struct type, name, 1, 1000)
-#define NUMBER(type, name)      CYAML_FIELD_FLOAT_PTR(#name, OPTIONAL, struct type, name)
-#define WHOLE(type, name)       CYAML_FIELD_INT_PTR(#name, OPTIONAL, struct type, name)
-#define PART(type, name)        CYAML_FIELD_MAPPING_PTR(#name, OPTIONAL, struct type, name, name##_fields)
-
-static const cyaml_strval_t kinds[] = {
-    { "can", DIG_INPUT_CAN },
-    { "modbus-tcp", DIG_INPUT_MODBUS_TCP },
-    { "modbus-rtu", DIG_INPUT_MODBUS_RTU },
-    { "replay", DIG_INPUT_REPLAY },
-};
-
-static const cyaml_schema_field_t can_fields[] = {
-    TEXT(can_text, interface, POINTER),
-    TEXT(can_text, dbc, POINTER),
-    TEXT(can_text, map, POINTER),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t modbus_fields[] = {
-    TEXT(modbus_text, address, OPTIONAL),
-    TEXT(modbus_text, device, OPTIONAL),
-    WHOLE(modbus_text, baud),
-    TEXT(modbus_text, parity, OPTIONAL),
-    WHOLE(modbus_text, unit),
-    TEXT(modbus_text, map, POINTER),
-    NUMBER(modbus_text, poll_Hz),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t replay_fields[] = {
-    TEXT(replay_text, file, POINTER),
-    NUMBER(replay_text, speed),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t input_fields[] = {
-    CYAML_FIELD_ENUM("kind", REQUIRED, struct input_text, kind, kinds, CYAML_ARRAY_LEN(kinds)),
-    PART(input_text, can),
-    PART(input_text, modbus),
-    PART(input_text, replay),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t realtime_fields[] = {
-    WHOLE(realtime_text, priority),
-    WHOLE(realtime_text, cpu),
-    CYAML_FIELD_BOOL_PTR("lock_memory", OPTIONAL, struct realtime_text, lock_memory),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t lcm_fields[] = {
-    TEXT(lcm_text, url, OPTIONAL),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t estimator_fields[] = {
-    NUMBER(estimator_text, sample_s),       NUMBER(estimator_text, contact_sigmas),
-    NUMBER(estimator_text, contact_hold_s), NUMBER(estimator_text, exit_hold_s),
-    NUMBER(estimator_text, air_bias_s),     NUMBER(estimator_text, path_limit_m),
-    NUMBER(estimator_text, outside_floors), CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t match_fields[] = {
-    WHOLE(match_text, max_evaluations),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_value_t name_value = { CYAML_VALUE_STRING(POINTER, char *, 1,
-                                                                    DIG_NAME_SIZE - 1) };
-
-static const cyaml_schema_field_t identify_fields[] = {
-    CYAML_FIELD_SEQUENCE("trajectories", POINTER, struct identify_text, trajectories, &name_value,
-                         1, DIG_TRAJECTORY_MAX),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t publish_fields[] = {
-    WHOLE(publish_text, estimate_every),
-    NUMBER(publish_text, prediction_Hz),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t config_fields[] = {
-    TEXT(config_text, table, POINTER),
-    TEXT(config_text, machine, POINTER),
-    TEXT(config_text, scene, OPTIONAL),
-    CYAML_FIELD_MAPPING("input", REQUIRED, struct config_text, input, input_fields),
-    NUMBER(config_text, tick_Hz),
-    NUMBER(config_text, stale_ms),
-    NUMBER(config_text, time_scale),
-    PART(config_text, realtime),
-    PART(config_text, lcm),
-    PART(config_text, estimator),
-    PART(config_text, match),
-    PART(config_text, identify),
-    PART(config_text, publish),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(POINTER, struct config_text,
-                                                                 config_fields) };
-
 // What is being read, for messages.
 struct work {
     const char        *path;
@@ -188,34 +19,54 @@ struct work {
     struct dig_error  *error;
 };
 
-// A number where given, within a range; *to holds the default.
-static enum dig_status take(const struct work *const work, const char *const key,
-                            const double *const from, const double least, const double most,
-                            double *const to)
+// A number where given, within its range; *to holds the default.
+struct number {
+    const char   *key;
+    const double *from;
+    double        least;
+    double        most;
+    double       *to;
+};
+
+static enum dig_status take_numbers(const struct work *const work, const size_t count,
+                                    const struct number number[])
 {
-    if (from == NULL) {
-        return DIG_OK;
+    for (size_t i = 0; i < count; i++) {
+        const struct number *const n = &number[i];
+        if (n->from == NULL) {
+            continue;
+        }
+        if (!(*n->from >= n->least && *n->from <= n->most)) {
+            return dig_yaml_refuse(work->path, n->key, work->error, "%g, expected %g … %g",
+                                   *n->from, n->least, n->most);
+        }
+        *n->to = *n->from;
     }
-    if (!(*from >= least && *from <= most)) {
-        return dig_yaml_refuse(work->path, key, work->error, "%g, expected %g … %g", *from, least,
-                               most);
-    }
-    *to = *from;
     return DIG_OK;
 }
 
-static enum dig_status take_whole(const struct work *const work, const char *const key,
-                                  const int *const from, const int least, const int most,
-                                  int *const to)
+struct whole {
+    const char *key;
+    const int  *from;
+    int         least;
+    int         most;
+    int        *to;
+};
+
+static enum dig_status take_wholes(const struct work *const work, const size_t count,
+                                   const struct whole whole[])
 {
-    if (from == NULL) {
-        return DIG_OK;
+    for (size_t i = 0; i < count; i++) {
+        const struct whole *const n = &whole[i];
+        if (n->from == NULL) {
+            continue;
+        }
+        if (*n->from < n->least || *n->from > n->most) {
+            return dig_yaml_refuse(work->path, n->key, work->error, "%d, expected %d … %d",
+                                   *n->from, n->least, n->most);
+        }
+        *n->to = *n->from;
     }
-    if (*from < least || *from > most) {
-        return dig_yaml_refuse(work->path, key, work->error, "%d, expected %d … %d", *from, least,
-                               most);
-    }
-    *to = *from;
     return DIG_OK;
 }
 
@@ -243,14 +94,6 @@ static enum dig_status take_path(const struct work *const work, const char *cons
     return DIG_OK;
 }
 
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        const enum dig_status tried = (call);                                                      \
-        if (tried != DIG_OK) {                                                                     \
-            return tried;                                                                          \
-        }                                                                                          \
-    } while (0)
-
 // "127.0.0.1:1502" or "[::1]:1502"
 static enum dig_status take_address(const struct work *const work, const char *const text,
                                     struct dig_modbus_address *const address)
@@ -274,166 +117,237 @@ static enum dig_status take_address(const struct work *const work, const char *c
 static enum dig_status take_parity(const struct work *const work, const char *const text,
                                    struct dig_modbus_address *const address)
 {
-    if (text == NULL) {
-        return DIG_OK;
+    static const char *const words[]   = { "none", "even", "odd" };
+    static const char        letters[] = { 'N', 'E', 'O' };
+    for (size_t i = 0; text != NULL && i < sizeof letters; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            address->parity = letters[i];
+            return DIG_OK;
+        }
     }
-    if (strcmp(text, "none") != 0 && strcmp(text, "even") != 0 && strcmp(text, "odd") != 0) {
-        return dig_yaml_refuse(work->path, "input.modbus.parity", work->error,
-                               "\"%.20s\", expected none, even or odd", text);
-    }
-    address->parity = text[0] == 'n' ? 'N' : text[0] == 'e' ? 'E' : 'O';
-    return DIG_OK;
+    return text == NULL ? DIG_OK
+                        : dig_yaml_refuse(work->path, "input.modbus.parity", work->error,
+                                          "\"%.20s\", expected none, even or odd", text);
 }
 
-static enum dig_status take_modbus(const struct work *const        work,
-                                   const struct modbus_text *const text)
+static enum dig_status take_server(const struct work *const            work,
+                                   const struct dig_modbus_text *const text)
 {
-    struct dig_config *const         config  = work->config;
-    struct dig_modbus_address *const address = &config->modbus;
-    const bool                       tcp     = config->kind == DIG_INPUT_MODBUS_TCP;
+    struct dig_modbus_address *const address = &work->config->modbus;
+    const bool                       tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
+    const char *const                key     = tcp ? "input.modbus.address" : "input.modbus.device";
     if ((tcp ? text->address : text->device) == NULL) {
-        return dig_yaml_refuse(work->path, tcp ? "input.modbus.address" : "input.modbus.device",
-                               work->error, "missing, expected %s",
+        return dig_yaml_refuse(work->path, key, work->error, "missing, expected %s",
                                tcp ? "HOST:PORT" : "a serial device");
     }
-    if (tcp) {
-        TRY(take_address(work, text->address, address));
-    } else {
-        TRY(take_text(work, "input.modbus.device", text->device, sizeof address->device,
-                      address->device));
-    }
-    double poll_Hz = 1.0 / config->tick_s;
-    TRY(take(work, "input.modbus.poll_Hz", text->poll_Hz, 1.0, 1000.0, &poll_Hz));
+    return tcp ? take_address(work, text->address, address)
+               : take_text(work, key, text->device, sizeof address->device, address->device);
+}
+
+static enum dig_status take_modbus(const struct work *const            work,
+                                   const struct dig_modbus_text *const text)
+{
+    struct dig_config *const         config   = work->config;
+    struct dig_modbus_address *const address  = &config->modbus;
+    double                           poll_Hz  = 1.0 / config->tick_s;
+    const struct number              number[] = {
+                     { "input.modbus.poll_Hz", text->poll_Hz, 1.0, 1000.0, &poll_Hz },
+    };
+    const struct whole whole[] = {
+        { "input.modbus.baud", text->baud, 1200, 4000000, &address->baud },
+        { "input.modbus.unit", text->unit, 0, 247, &address->unit },
+    };
+    enum dig_status status = take_server(work, text);
+    status = status == DIG_OK ? take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
+    status = status == DIG_OK ? take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
+    status = status == DIG_OK ? take_parity(work, text->parity, address) : status;
+    status =
+        status == DIG_OK ? take_path(work, "input.modbus.map", text->map, &config->map) : status;
+
     address->poll_s          = 1.0 / poll_Hz;
     config->estimator.tick_s = 1.0 / poll_Hz;
-    TRY(take_whole(work, "input.modbus.baud", text->baud, 1200, 4000000, &address->baud));
-    TRY(take_whole(work, "input.modbus.unit", text->unit, 0, 247, &address->unit));
-    TRY(take_parity(work, text->parity, address));
-    return take_path(work, "input.modbus.map", text->map, &config->map);
+    return status;
 }
 
-static enum dig_status take_input(const struct work *const       work,
-                                  const struct input_text *const text)
+static enum dig_status take_can(const struct work *const         work,
+                                const struct dig_can_text *const text)
 {
     struct dig_config *const config = work->config;
-    config->kind                    = text->kind;
-
-    const char *const part  = text->kind == DIG_INPUT_CAN      ? "input.can"
-                              : text->kind == DIG_INPUT_REPLAY ? "input.replay"
-                                                               : "input.modbus";
-    const void *const there = text->kind == DIG_INPUT_CAN      ? (const void *)text->can
-                              : text->kind == DIG_INPUT_REPLAY ? (const void *)text->replay
-                                                               : (const void *)text->modbus;
-    if (there == NULL) {
-        return dig_yaml_refuse(work->path, part, work->error,
-                               "missing, expected the settings of %s", kinds[text->kind].str);
-    }
-    if (text->kind == DIG_INPUT_CAN) {
-        config->estimator.tick_s = 0.01;
-        TRY(take_text(work, "input.can.interface", text->can->interface,
-                      sizeof config->can_interface, config->can_interface));
-        TRY(take_path(work, "input.can.dbc", text->can->dbc, &config->dbc));
-        return take_path(work, "input.can.map", text->can->map, &config->map);
-    }
-    if (text->kind == DIG_INPUT_REPLAY) {
-        TRY(take(work, "input.replay.speed", text->replay->speed, 0.01, 100.0,
-                 &config->replay_speed));
-        return take_path(work, "input.replay.file", text->replay->file, &config->replay);
-    }
-    return take_modbus(work, text->modbus);
+    config->estimator.tick_s        = 0.01; // the cycle of pressures and angles
+    enum dig_status status          = take_text(work, "input.can.interface", text->interface,
+                                                sizeof config->can_interface, config->can_interface);
+    status = status == DIG_OK ? take_path(work, "input.can.dbc", text->dbc, &config->dbc) : status;
+    return status == DIG_OK ? take_path(work, "input.can.map", text->map, &config->map) : status;
 }
 
-static enum dig_status take_estimator(const struct work *const           work,
-                                      const struct estimator_text *const text)
+static enum dig_status take_replay(const struct work *const            work,
+                                   const struct dig_replay_text *const text)
 {
-    struct dig_estimator_settings *const to = &work->config->estimator;
-    if (text != NULL) {
-        TRY(take(work, "estimator.sample_s", text->sample_s, 0.001, 0.1, &to->tick_s));
-        TRY(take(work, "estimator.contact_sigmas", text->contact_sigmas, 1.0, 1000.0,
-                 &to->contact_sigmas));
-        TRY(take(work, "estimator.contact_hold_s", text->contact_hold_s, 0.0, 10.0,
-                 &to->contact_hold_s));
-        TRY(take(work, "estimator.exit_hold_s", text->exit_hold_s, 0.0, 10.0, &to->exit_hold_s));
-        TRY(take(work, "estimator.air_bias_s", text->air_bias_s, 0.0, 1000.0, &to->air_bias_s));
-        TRY(take(work, "estimator.path_limit_m", text->path_limit_m, 1e-4, 10.0,
-                 &to->path_limit_m));
-        TRY(take(work, "estimator.outside_floors", text->outside_floors, 0.1, 1000.0,
-                 &to->outside_floors));
+    struct dig_config *const config   = work->config;
+    const struct number      number[] = {
+             { "input.replay.speed", text->speed, 0.01, 100.0, &config->replay_speed },
+    };
+    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    config->time_scale           = config->replay_speed;
+    return status == DIG_OK ? take_path(work, "input.replay.file", text->file, &config->replay)
+                            : status;
+}
+
+static enum dig_status refuse_absent(const struct work *const work, const char *const key)
+{
+    return dig_yaml_refuse(work->path, key, work->error, "missing, expected the settings of %s",
+                           dig_input_kind_name(work->config->kind));
+}
+
+static enum dig_status take_input(const struct work *const           work,
+                                  const struct dig_input_text *const text)
+{
+    work->config->kind = text->kind;
+    switch (text->kind) {
+    case DIG_INPUT_CAN:
+        return text->can != NULL ? take_can(work, text->can) : refuse_absent(work, "input.can");
+    case DIG_INPUT_REPLAY:
+        return text->replay != NULL ? take_replay(work, text->replay)
+                                    : refuse_absent(work, "input.replay");
+    case DIG_INPUT_MODBUS_TCP:
+    case DIG_INPUT_MODBUS_RTU: break;
     }
-    const char *reason = NULL;
-    if (dig_estimator_settings_check(to, &reason) != DIG_OK) {
+    return text->modbus != NULL ? take_modbus(work, text->modbus)
+                                : refuse_absent(work, "input.modbus");
+}
+
+static enum dig_status take_estimator(const struct work *const               work,
+                                      const struct dig_estimator_text *const text)
+{
+    struct dig_estimator_settings *const to       = &work->config->estimator;
+    const struct number                  number[] = {
+                         { "estimator.sample_s", text->sample_s, 0.001, 0.1, &to->tick_s },
+                         { "estimator.contact_sigmas", text->contact_sigmas, 1.0, 1000.0, &to->contact_sigmas },
+                         { "estimator.contact_hold_s", text->contact_hold_s, 0.0, 10.0, &to->contact_hold_s },
+                         { "estimator.exit_hold_s", text->exit_hold_s, 0.0, 10.0, &to->exit_hold_s },
+                         { "estimator.air_bias_s", text->air_bias_s, 0.0, 1000.0, &to->air_bias_s },
+                         { "estimator.path_limit_m", text->path_limit_m, 1e-4, 10.0, &to->path_limit_m },
+                         { "estimator.outside_floors", text->outside_floors, 0.1, 1000.0, &to->outside_floors },
+    };
+    const char           *reason = NULL;
+    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    if (status == DIG_OK && dig_estimator_settings_check(to, &reason) != DIG_OK) {
         return dig_yaml_refuse(work->path, "estimator", work->error, "%s", reason);
     }
-    return DIG_OK;
+    return status;
 }
 
-static enum dig_status take_realtime(const struct work *const          work,
-                                     const struct realtime_text *const text)
+static enum dig_status take_realtime(const struct work *const              work,
+                                     const struct dig_realtime_text *const text)
 {
-    if (text == NULL) {
-        return DIG_OK;
-    }
-    struct dig_rt_settings *const to = &work->config->realtime;
+    struct dig_rt_settings *const to      = &work->config->realtime;
+    const struct whole            whole[] = {
+                   { "realtime.priority", text->priority, 0, 99, &to->priority },
+                   { "realtime.cpu", text->cpu, -1, 1023, &to->cpu },
+    };
     if (text->lock_memory != NULL) {
         to->lock_memory = *text->lock_memory;
     }
-    TRY(take_whole(work, "realtime.priority", text->priority, 0, 99, &to->priority));
-    return take_whole(work, "realtime.cpu", text->cpu, -1, 1023, &to->cpu);
+    return take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
 }
 
-static enum dig_status take_rest(const struct work *const        work,
-                                 const struct config_text *const text)
+static enum dig_status take_identify(const struct work *const              work,
+                                     const struct dig_identify_text *const text)
 {
     struct dig_config *const config = work->config;
-    TRY(take_realtime(work, text->realtime));
-    if (text->lcm != NULL && text->lcm->url != NULL) {
-        TRY(take_text(work, "lcm.url", text->lcm->url, sizeof config->lcm_url, config->lcm_url));
-    }
-    if (text->match != NULL) {
-        TRY(take_whole(work, "match.max_evaluations", text->match->max_evaluations, 1, 1000000,
-                       &config->match_evaluations));
-    }
-    for (unsigned i = 0; text->identify != NULL && i < text->identify->trajectories_count; i++) {
-        TRY(take_text(work, "identify.trajectories", text->identify->trajectories[i], DIG_NAME_SIZE,
-                      config->identify_trajectory[i]));
+    enum dig_status          status = DIG_OK;
+    for (unsigned i = 0; status == DIG_OK && i < text->trajectories_count; i++) {
+        status = take_text(work, "identify.trajectories", text->trajectories[i], DIG_NAME_SIZE,
+                           config->identify_trajectory[i]);
         config->identify_trajectories = i + 1;
     }
-    if (text->publish != NULL) {
-        double prediction_Hz = 1.0 / config->prediction_s;
-        TRY(take_whole(work, "publish.estimate_every", text->publish->estimate_every, 1, 1000,
-                       &config->estimate_every));
-        TRY(take(work, "publish.prediction_Hz", text->publish->prediction_Hz, 0.1, 100.0,
-                 &prediction_Hz));
-        config->prediction_s = 1.0 / prediction_Hz;
-    }
-    return DIG_OK;
+    return status;
 }
 
-static enum dig_status take_all(const struct work *const work, const struct config_text *const text)
+static enum dig_status take_publish(const struct work *const             work,
+                                    const struct dig_publish_text *const text)
+{
+    struct dig_config *const config        = work->config;
+    double                   prediction_Hz = 1.0 / config->prediction_s;
+    const struct number      number[]      = {
+                  { "publish.prediction_Hz", text->prediction_Hz, 0.1, 100.0, &prediction_Hz },
+    };
+    const struct whole whole[] = {
+        { "publish.estimate_every", text->estimate_every, 1, 1000, &config->estimate_every },
+    };
+    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    config->prediction_s         = 1.0 / prediction_Hz;
+    return status == DIG_OK ? take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
+}
+
+static enum dig_status take_match(const struct work *const           work,
+                                  const struct dig_match_text *const text)
+{
+    const struct whole whole[] = {
+        { "match.max_evaluations", text->max_evaluations, 1, 1000000,
+          &work->config->match_evaluations },
+    };
+    return take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
+}
+
+// A part that is absent takes its defaults: nothing of it is given.
+static enum dig_status take_parts(const struct work *const            work,
+                                  const struct dig_config_text *const text)
+{
+    const struct dig_estimator_text no_estimator = { 0 };
+    const struct dig_realtime_text  no_realtime  = { 0 };
+    const struct dig_identify_text  no_identify  = { 0 };
+    const struct dig_publish_text   no_publish   = { 0 };
+    const struct dig_match_text     no_match     = { 0 };
+
+    enum dig_status status =
+        take_estimator(work, text->estimator != NULL ? text->estimator : &no_estimator);
+    if (status == DIG_OK) {
+        status = take_realtime(work, text->realtime != NULL ? text->realtime : &no_realtime);
+    }
+    if (status == DIG_OK) {
+        status = take_identify(work, text->identify != NULL ? text->identify : &no_identify);
+    }
+    if (status == DIG_OK) {
+        status = take_publish(work, text->publish != NULL ? text->publish : &no_publish);
+    }
+    if (status == DIG_OK) {
+        status = take_match(work, text->match != NULL ? text->match : &no_match);
+    }
+    if (status == DIG_OK && text->lcm != NULL && text->lcm->url != NULL) {
+        status = take_text(work, "lcm.url", text->lcm->url, sizeof work->config->lcm_url,
+                           work->config->lcm_url);
+    }
+    return status;
+}
+
+static enum dig_status take_top(const struct work *const            work,
+                                const struct dig_config_text *const text)
 {
     struct dig_config *const config   = work->config;
     double                   tick_Hz  = 1.0 / config->tick_s;
     double                   stale_ms = config->stale_s * 1e3;
-    TRY(take_path(work, "table", text->table, &config->table));
-    TRY(take_path(work, "machine", text->machine, &config->machine));
-    if (text->scene != NULL) {
-        TRY(take_text(work, "scene", text->scene, sizeof config->scene, config->scene));
+    const struct number      number[] = {
+             { "tick_Hz", text->tick_Hz, 100.0, 2000.0, &tick_Hz },
+             { "stale_ms", text->stale_ms, 1.0, 60e3, &stale_ms },
+             { "time_scale", text->time_scale, 0.01, 100.0, &config->time_scale },
+    };
+    enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    if (status == DIG_OK && text->time_scale != NULL && text->input.kind == DIG_INPUT_REPLAY) {
+        status = dig_yaml_refuse(work->path, "time_scale", work->error,
+                                 "given with a replay, expected input.replay.speed alone");
     }
-    TRY(take(work, "tick_Hz", text->tick_Hz, 100.0, 2000.0, &tick_Hz));
-    config->tick_s = 1.0 / tick_Hz;
-    TRY(take(work, "stale_ms", text->stale_ms, 1.0, 60e3, &stale_ms));
-    config->stale_s = stale_ms * 1e-3;
-    TRY(take_input(work, &text->input));
-    TRY(take(work, "time_scale", text->time_scale, 0.01, 100.0, &config->time_scale));
-    if (text->time_scale != NULL && config->kind == DIG_INPUT_REPLAY) {
-        return dig_yaml_refuse(work->path, "time_scale", work->error,
-                               "given with a replay, expected input.replay.speed alone");
+    if (status == DIG_OK && text->scene != NULL) {
+        status = take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
     }
-    if (config->kind == DIG_INPUT_REPLAY) {
-        config->time_scale = config->replay_speed;
-    }
-    TRY(take_estimator(work, text->estimator));
-    return take_rest(work, text);
+    status = status == DIG_OK ? take_path(work, "table", text->table, &config->table) : status;
+    status =
+        status == DIG_OK ? take_path(work, "machine", text->machine, &config->machine) : status;
+
+    config->tick_s           = 1.0 / tick_Hz;
+    config->estimator.tick_s = config->tick_s;
+    config->stale_s          = stale_ms * 1e-3;
+    return status;
 }
 
 static struct dig_config defaults(void)
@@ -460,14 +374,17 @@ enum dig_status dig_config_read(const char *const path, struct dig_config *const
 {
     assert(path != NULL && config != NULL);
     cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
+    enum dig_status status = dig_yaml_load(path, &dig_config_schema, &data, error);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_config loaded = defaults();
-    const struct work work   = { .path = path, .config = &loaded, .error = error };
-    status                   = take_all(&work, (const struct config_text *)data);
-    dig_yaml_free(&schema, data);
+    struct dig_config                   loaded = defaults();
+    const struct work                   work = { .path = path, .config = &loaded, .error = error };
+    const struct dig_config_text *const text = (const struct dig_config_text *)data;
+    status                                   = take_top(&work, text);
+    status = status == DIG_OK ? take_input(&work, &text->input) : status;
+    status = status == DIG_OK ? take_parts(&work, text) : status;
+    dig_yaml_free(&dig_config_schema, data);
     if (status == DIG_OK) {
         *config = loaded;
     }

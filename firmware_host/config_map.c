@@ -130,9 +130,10 @@ static const struct unit units[] = {
 
 static char kind_of(const size_t signal)
 {
-    return signal == DIG_SIGNAL_TEMPERATURE_degC                                     ? 't'
-           : signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_BUCKET_ROD_Pa ? 'p'
-                                                                                     : 'a';
+    if (signal == DIG_SIGNAL_TEMPERATURE_degC) {
+        return 't';
+    }
+    return signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_BUCKET_ROD_Pa ? 'p' : 'a';
 }
 
 // A scale that contradicts the DBC's unit is a slip, not a calibration: beyond a tenth it is

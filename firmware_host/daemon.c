@@ -197,7 +197,8 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
     assert(d != NULL && say != NULL);
     const struct dig_loaded *const    l   = &d->loaded;
     const struct dig_curve_set *const set = l->set;
-    char                              line[LINE], digs[LINE] = "";
+    char                              line[LINE];
+    char                              digs[LINE] = "";
     for (size_t t = 0; t < set->trajectories; t++) {
         const size_t used = strlen(digs);
         (void)snprintf(digs + used, sizeof digs - used, "%s%s%s", used > 0 ? ", " : "",

@@ -119,8 +119,9 @@ static enum dig_status read_signal(const struct place *const place, const char *
 
     struct dig_dbc_signal signal = { .line = place->line };
     char                  mux[8] = "";
-    char                  order = 0, sign = 0;
-    int                   used = 0;
+    char                  order  = 0;
+    char                  sign   = 0;
+    int                   used   = 0;
     if (dbc->messages == 0) {
         return refuse(place, text, "a BO_ line before the first SG_");
     }
@@ -283,7 +284,7 @@ uint64_t dig_dbc_raw(const struct dig_dbc_signal *const signal, const uint8_t da
     uint64_t raw = 0;
     unsigned bit = signal->start_bit;
     for (unsigned i = 0; i < signal->bits; i++) {
-        const uint64_t value = (data[bit / 8] >> (bit % 8)) & 1U;
+        const uint64_t value = ((unsigned)data[bit / 8] >> (bit % 8)) & 1U;
         if (signal->intel) {
             raw |= value << i;
             bit++;

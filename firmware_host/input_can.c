@@ -49,7 +49,8 @@ static int set_filters(const int fd, const struct dig_signal_map *const map)
         };
     }
     const can_err_mask_t errors = CAN_ERR_MASK;
-    const int            off = 0, on = 1;
+    const int            off    = 0;
+    const int            on     = 1;
     if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filter,
                    (socklen_t)(map->groups * sizeof filter[0])) != 0 ||
         setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
@@ -106,7 +107,8 @@ static int64_t stamp_of(struct msghdr *const message)
     const int64_t now_ns = dig_input_now_ns();
     for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
         if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {
-            struct timespec stamp, wall;
+            struct timespec stamp;
+            struct timespec wall;
             memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
             (void)clock_gettime(CLOCK_REALTIME, &wall);
             const int64_t age_ns = to_ns(&wall) - to_ns(&stamp);

@@ -81,10 +81,11 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     s->next_ns              = (now_ns > s->next_ns + period_ns ? now_ns : s->next_ns) + period_ns;
 
     uint16_t  registers[DIG_REGISTERS_MAX];
-    const int first = (int)map->first_register, count = (int)map->registers;
-    const int got = map->function == 3
-                        ? modbus_read_registers(s->bus, first, count, registers)
-                        : modbus_read_input_registers(s->bus, first, count, registers);
+    const int first = (int)map->first_register;
+    const int count = (int)map->registers;
+    const int got   = map->function == 3
+                          ? modbus_read_registers(s->bus, first, count, registers)
+                          : modbus_read_input_registers(s->bus, first, count, registers);
     if (got == count) {
         struct dig_reading reading;
         dig_signal_map_registers(map, registers, dig_input_now_ns(), &reading);

@@ -53,7 +53,8 @@ void dig_output_destroy(struct dig_output *const output)
 // of now).
 static int64_t utc_us(const int64_t time_ns)
 {
-    struct timespec wall, mono;
+    struct timespec wall;
+    struct timespec mono;
     (void)clock_gettime(CLOCK_REALTIME, &wall);
     (void)clock_gettime(CLOCK_MONOTONIC, &mono);
     const int64_t now_us = (int64_t)wall.tv_sec * 1000000 + wall.tv_nsec / 1000;
@@ -141,7 +142,8 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     const bool                    in_set  = m->nearest >= 0 && (size_t)m->nearest < set->entries;
     const struct dig_gravel       nothing = { { NAN, NAN, NAN } };
     const struct dig_gravel       nearest = in_set ? set->gravel[m->nearest] : nothing;
-    char                          name[TEXT_SIZE], table[TEXT_SIZE];
+    char                          name[TEXT_SIZE];
+    char                          table[TEXT_SIZE];
     (void)snprintf(name, sizeof name, "%s", trajectory_name(set, result->trajectory));
     (void)snprintf(table, sizeof table, "%s", set->scene_hash);
     const digsight_match_t message = {
@@ -206,7 +208,9 @@ enum dig_status dig_output_health(struct dig_output *const       output,
                                   const struct dig_health *const health)
 {
     assert(output != NULL && health != NULL);
-    char state[TEXT_SIZE], input[TEXT_SIZE], note[TEXT_SIZE];
+    char state[TEXT_SIZE];
+    char input[TEXT_SIZE];
+    char note[TEXT_SIZE];
     (void)snprintf(state, sizeof state, "%s", health->state);
     (void)snprintf(input, sizeof input, "%s", health->input);
     (void)snprintf(note, sizeof note, "%s", health->note);

@@ -47,7 +47,8 @@ void dig_rt_describe(const struct dig_rt_settings *const settings,
                      const struct dig_rt_grant *const grant, const size_t size, char text[])
 {
     assert(settings != NULL && grant != NULL && text != NULL);
-    char priority[48], cpu[48];
+    char priority[48];
+    char cpu[48];
     (void)snprintf(priority, sizeof priority, "SCHED_FIFO %d %s", settings->priority,
                    grant->realtime ? "granted" : "refused");
     (void)snprintf(cpu, sizeof cpu, "CPU %d %s", settings->cpu,

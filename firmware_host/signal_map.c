@@ -74,7 +74,8 @@ static uint64_t raw_of(const struct dig_signal_map *const map,
     if (entry->type == DIG_REGISTER_UINT16 || entry->type == DIG_REGISTER_INT16) {
         return registers[at];
     }
-    const uint64_t first = registers[at], second = registers[at + 1];
+    const uint64_t first  = registers[at];
+    const uint64_t second = registers[at + 1];
     return map->low_word_first ? (second << 16) | first : (first << 16) | second;
 }
 
