@@ -1,0 +1,46 @@
+#!/bin/sh
+# Runs the decks of this folder with LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts) and writes the
+# CSV files test_liggghts.c compares with. About a minute. Usage: ./make.sh
+set -eu
+cd "$(dirname "$0")"
+here=$PWD
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# One line a step: step and the columns of the one atom asked for.
+series() { # DUMP ID
+    awk -v id="$2" '/ITEM: TIMESTEP/ { getline step; next } /ITEM: ATOMS/ { rows = 1; next }
+        rows && $1 == id { $1 = step; gsub(" ", ","); sub(/,$/, ""); print } /ITEM: / { rows = 0 }' "$1"
+}
+columns=step,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm
+
+for deck in pair wall slide; do
+    liggghts -in "$here/in.$deck" > $deck.log
+    { echo $columns; series $deck.dump 1; } > "$here/$deck.csv"
+done
+
+# Grains of a CSV (x_m,y_m,z_m) as a data file for read_data.
+data() { # CSV HIGH_X HIGH_Y
+    awk -F, -v hx="$2" -v hy="$3" 'NR > 1 { line[n++] = $0 } END {
+        printf "grains\n\n%d atoms\n\n1 atom types\n\n-0.01 %s xlo xhi\n-0.01 %s ylo yhi\n-0.01 0.3 zlo zhi\n\nAtoms\n\n", n, hx, hy
+        for (k = 0; k < n; k++) { split(line[k], v, ","); print k + 1, 1, 0.0075, 2500, v[1], v[2], v[3] } }' "$1"
+}
+last() { # DUMP STEP: x,y,z of every atom at that step
+    awk -v want="$2" '/ITEM: TIMESTEP/ { getline step; rows = 0; next } /ITEM: ATOMS/ { rows = 1; next }
+        /ITEM: / { rows = 0 } rows && step == want { print $2 "," $3 "," $4 }' "$1"
+}
+
+data "$here/cluster_start.csv" 0.06 0.06 > cluster.data
+liggghts -in "$here/in.cluster" > cluster.log
+{ echo step,x_m,y_m,z_m
+  for step in 20 40 60 80 100 200 400; do last cluster.dump $step | sed "s/^/$step,/"; done
+} > "$here/cluster.csv"
+
+seed=0
+for prime in 15485867 67867967 86028121; do # LIGGGHTS takes primes only
+    seed=$((seed + 1))
+    liggghts -var seed $prime -in "$here/in.column" > column.log
+    { echo x_m,y_m,z_m; last column.dump 0; } > "$here/column_start_$seed.csv"
+    { echo x_m,y_m,z_m; last column.dump 12000; } > "$here/column_end_$seed.csv"
+done

@@ -1,0 +1,86 @@
+// What the tests of the discrete element engine share: the gravel of the reference, and worlds of a
+// few grains between a few walls.
+
+#ifndef DIG_TESTS_DEM_FIXTURE_H
+#define DIG_TESTS_DEM_FIXTURE_H
+
+#include "core/units.h"
+#include "offline_dem/world.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GRAIN_m    0.00375
+#define DENSITY    2500.0
+#define STEP_s     6.25e-5
+#define GRAIN_kg   (DENSITY * 4.0 / 3.0 * DIG_PI * GRAIN_m * GRAIN_m * GRAIN_m)
+#define GRAIN_kgm2 (0.4 * GRAIN_kg * GRAIN_m * GRAIN_m)
+#define GRAVITY    9.81
+
+/// The reference digs' material with these two frictions.
+static inline struct dig_law_material dem_material(const double friction, const double rolling)
+{
+    return (struct dig_law_material){
+        .young_Pa                    = 5e6,
+        .poisson                     = 0.2,
+        .restitution                 = 0.2,
+        .characteristic_velocity_mps = 2.0,
+        .friction                    = friction,
+        .rolling                     = rolling,
+    };
+}
+
+/// A world of n like grains at rest, without gravity, walls or tool.
+static inline struct dig_world dem_world(const size_t n, const double (*const x_m)[3],
+                                         const struct dig_law_material material)
+{
+    double *const work = calloc(4 * n + 1, sizeof *work);
+    assert_non_null(work);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            work[k * n + i] = x_m[i][k];
+        }
+        work[3 * n + i] = GRAIN_m;
+    }
+    struct dig_grains grains;
+    assert_int_equal(
+        dig_grains_create(n, work, work + n, work + 2 * n, work + 3 * n, DENSITY, &grains), DIG_OK);
+    free(work);
+    struct dig_world world = { .dt_s = STEP_s, .material = material, .isa = dig_kernel_best() };
+    dig_world_init(&world, &grains);
+    return world;
+}
+
+static inline void dem_add_wall(struct dig_world *const world, const double nx, const double ny,
+                                const double nz, const double offset_m)
+{
+    world->wall[world->walls++] = (struct dig_wall){ { nx, ny, nz }, offset_m };
+}
+
+static inline void dem_run(struct dig_world *const world, const size_t steps)
+{
+    for (size_t s = 0; s < steps; s++) {
+        assert_int_equal(dig_world_step(world), DIG_OK);
+    }
+}
+
+/// The grain that was number `name` at the beginning: grains change places.
+static inline struct dig_motion *dem_grain(const struct dig_world *const world, const uint32_t name)
+{
+    for (size_t i = 0; i < world->grains.n; i++) {
+        if (world->grains.name[i] == name) {
+            return &world->grains.motion[i];
+        }
+    }
+    fail_msg("no grain %u", (unsigned)name);
+    return NULL;
+}
+
+/// Less work where the tests run slowly: under sanitizers and valgrind.
+static inline bool dem_is_quick(void)
+{
+    return getenv("DIG_TEST_QUICK") != NULL;
+}
+
+#endif // DIG_TESTS_DEM_FIXTURE_H
