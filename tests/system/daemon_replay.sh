@@ -23,7 +23,10 @@ check "the gravel is identified from the simple dig" identified "$work/csv.txt"
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
-check "the last prediction says that it is over" [ "$(last prediction "$work/csv.txt" 2)" = 0 ]
+check "the end of the dig ends its prediction" grep -q '^prediction 0 ' "$work/csv.txt"
+check "in the air each dig is predicted whole" \
+    eval 'grep -q "^prediction 1 actual 0\.00000 " "$work/csv.txt" &&
+          grep -q "^prediction 1 simpleA 0\.00000 " "$work/csv.txt"'
 check "both digs are counted" [ "$(last health "$work/csv.txt" $h_digs)" = 2 ]
 check "health goes from waiting over running to stopping" \
     [ "$(awk '/^health/ && $2 != was { was = $2; print $2 }' "$work/csv.txt" | sort -u | tr '\n' ' ')" = \
