@@ -25,25 +25,26 @@ bool dig_lcm_log_is(const char *const path)
     return is;
 }
 
-// One event as it stands in the file: 28 bytes of header, then channel, then data.
+// One event as it stands in the file: 28 bytes of header, then channel, then data. Data are kept of
+// our channels only, whose messages are short.
 #define HEADER_BYTES  28
 #define CHANNEL_BYTES 256
-#define DATA_BYTES    (1 << 26)
+#define DATA_BYTES    16384
+#define OURS          "DIGSIGHT_"
 
 struct event {
     uint64_t number;
     int64_t  time_us;
     char     channel[CHANNEL_BYTES];
     int      size;
-    uint8_t *data;
+    uint8_t  data[DATA_BYTES];
 };
 
-// A log being read, and where it stands. The event's data grow as needed.
+// A log being read, and where it stands.
 struct reading {
     const char       *path;
     FILE             *file;
     struct event      event;
-    size_t            room;
     struct dig_error *error;
 };
 
@@ -56,17 +57,12 @@ static enum dig_status open_log(struct reading *const r)
     }
     if (!dig_lcm_log_is(r->path)) {
         (void)fclose(r->file);
-        return dig_error_set(r->error, DIG_EINVAL,
-                             "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
-                             r->path);
+        (void)dig_error_set(r->error, DIG_EINVAL,
+                            "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
+                            r->path);
+        return DIG_EINVAL;
     }
     return DIG_OK;
-}
-
-static void close_log(struct reading *const r)
-{
-    (void)fclose(r->file);
-    free(r->event.data);
 }
 
 static uint64_t big_endian(const uint8_t bytes[], const size_t count)
@@ -78,46 +74,44 @@ static uint64_t big_endian(const uint8_t bytes[], const size_t count)
     return value;
 }
 
-static enum dig_status make_room(struct reading *const r, const size_t size)
+static enum dig_status refuse_damage(const struct reading *const r, const long at)
 {
-    if (size > r->room) {
-        uint8_t *const grown = realloc(r->event.data, size);
-        if (grown == NULL) {
-            return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory", r->path);
-        }
-        r->event.data = grown;
-        r->room       = size;
-    }
-    return DIG_OK;
+    return dig_error_set(r->error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event",
+                         r->path, at);
 }
 
 // *any becomes false at the end, which may also lie within an event: a logger that was killed.
 static enum dig_status next_event(struct reading *const r, bool *const any)
 {
-    uint8_t      header[HEADER_BYTES];
-    const long   at  = ftell(r->file);
-    const size_t got = fread(header, 1, sizeof header, r->file);
-    if (got < sizeof header) {
+    struct event *const e  = &r->event;
+    const long          at = ftell(r->file);
+    uint8_t             header[HEADER_BYTES];
+    if (fread(header, 1, sizeof header, r->file) < sizeof header) {
         *any = false;
         return DIG_OK;
     }
     const uint64_t channel_size = big_endian(header + 20, 4);
     const uint64_t size         = big_endian(header + 24, 4);
     if (memcmp(header, sync_word, sizeof sync_word) != 0 || channel_size < 1 ||
-        channel_size >= CHANNEL_BYTES || size > DATA_BYTES) {
-        return dig_error_set(r->error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event",
-                             r->path, at);
+        channel_size >= CHANNEL_BYTES || size > INT32_MAX) {
+        return refuse_damage(r, at);
     }
-    const enum dig_status status = make_room(r, (size_t)size + 1);
-    if (status != DIG_OK) {
-        return status;
+    if (fread(e->channel, 1, (size_t)channel_size, r->file) < channel_size) {
+        *any = false;
+        return DIG_OK;
     }
-    r->event.number  = big_endian(header + 4, 8);
-    r->event.time_us = (int64_t)big_endian(header + 12, 8);
-    r->event.size    = (int)size;
-    *any             = fread(r->event.channel, 1, (size_t)channel_size, r->file) == channel_size &&
-           fread(r->event.data, 1, (size_t)size, r->file) == size;
-    r->event.channel[channel_size] = '\0';
+    e->channel[channel_size] = '\0';
+    e->number                = big_endian(header + 4, 8);
+    e->time_us               = (int64_t)big_endian(header + 12, 8);
+    e->size                  = (int)size;
+    if (strncmp(e->channel, OURS, strlen(OURS)) != 0) {
+        *any = fseek(r->file, (long)size, SEEK_CUR) == 0;
+        return DIG_OK;
+    }
+    if (size > DATA_BYTES) {
+        return refuse_damage(r, at);
+    }
+    *any = fread(e->data, 1, (size_t)size, r->file) == size;
     return DIG_OK;
 }
 
@@ -189,7 +183,7 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
             status = add_row(&r, &r.event, &rows);
         }
     }
-    close_log(&r);
+    (void)fclose(r.file);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
@@ -267,6 +261,6 @@ enum dig_status dig_lcm_log_each(const char *const                      path,
             status = hand_on(&r, &r.event, reader);
         }
     }
-    close_log(&r);
+    (void)fclose(r.file);
     return status;
 }

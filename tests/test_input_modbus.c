@@ -25,7 +25,7 @@ struct server {
     modbus_mapping_t *mapping;
     atomic_bool       stop;
     atomic_bool       hang_up; // end the connection instead of answering
-    atomic_bool       refuse;  // answer with an exception
+    atomic_int        refuse;  // answer so many requests with an exception
     atomic_int        reads, writes, connections;
     pthread_t         thread;
 };
@@ -43,7 +43,8 @@ static void answer(struct server *const s, modbus_t *const bus)
         if (atomic_load(&s->hang_up)) {
             return;
         }
-        if (atomic_load(&s->refuse)) {
+        if (atomic_load(&s->refuse) > 0) {
+            atomic_fetch_sub(&s->refuse, 1);
             (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
         } else {
             s->mapping->tab_input_registers[0]++;
@@ -254,15 +255,16 @@ static void a_refusal_is_counted_and_borne(void **state)
     client_start(&c, s.port);
     struct dig_reading reading;
     assert_true(next_reading(&c, &reading));
-    atomic_store(&s.refuse, true);
-    while (atomic_load(&c.input.malformed) < 2) {
+    atomic_store(&s.refuse, 3);
+    while (atomic_load(&c.input.malformed) < 3) {
         const struct timespec pause = { .tv_nsec = MS };
         (void)nanosleep(&pause, NULL);
     }
-    atomic_store(&s.refuse, false);
     while (dig_ring_pop(&c.readings, &reading)) {
     }
     assert_true(next_reading(&c, &reading));
+    assert_int_equal(atomic_load(&c.input.malformed), 3);
+    assert_int_equal(atomic_load(&s.connections), 1);
     client_stop(&c);
     server_stop(&s);
 }

@@ -181,6 +181,9 @@ static void lengths_that_cannot_be_are_refused(void **state)
     header[24]         = 0x7F;
     (void)scratch_write_bytes("long.lcm", header, sizeof header);
     check_refused("long.lcm", DIG_EINVAL, "long.lcm: damaged at byte 0, expected an event");
+    header[24] = 0xFF;
+    (void)scratch_write_bytes("long.lcm", header, sizeof header);
+    check_refused("long.lcm", DIG_EINVAL, "long.lcm: damaged at byte 0, expected an event");
     header[24] = 0;
     header[20] = 0xFF;
     (void)scratch_write_bytes("channel.lcm", header, sizeof header);

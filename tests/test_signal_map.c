@@ -146,6 +146,7 @@ static void wide_registers_signs_and_offsets_are_applied(void **state)
     assert_close(r.value[DIG_SIGNAL_ARM_rad], -1.0, 1e-12);
     assert_close(r.value[DIG_SIGNAL_BUCKET_rad], 0.5, 1e-12);
     assert_close(r.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8000000.0, 1e-6);
+    assert_int_equal(r.state[DIG_SIGNAL_BUCKET_HEAD_Pa], DIG_READING_OK); // 100 * 1e3 - 1e5
     assert_close(r.value[DIG_SIGNAL_BUCKET_HEAD_Pa], 0.0, 1e-6);
     assert_false(r.has_alive);
 
