@@ -32,6 +32,8 @@ modules   := closed_loop firmware_host offline_dem estimator tables files core
 src        = $(filter-out firmware_host/digsightd.c,$(wildcard $(1)/*.c $(1)/effects/*.c))
 rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c))
 tool_src  := $(wildcard tools/*.c)
+# The rest of a program too large for one file: tools/NAME/*.c belongs to tools/NAME.c.
+tool_parts := $(foreach t,$(tool_src),$(wildcard $(t:.c=)/*.c))
 test_src  := $(wildcard tests/test_*.c)
 testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
@@ -40,7 +42,7 @@ helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard test
 # Tests whose subject runs threads.
 threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c tests/test_rig_serve_modbus.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
-all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) \
+all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) $(tool_parts) \
              $(wildcard firmware_host/digsightd.c tools/rig/digrig.c)
 
 objs       = $(patsubst %.c,$(BUILD)/%.o,$(1))
@@ -112,6 +114,7 @@ $(BUILD)/tests/%.o:         CPPFLAGS += $(call foreign,cmocka lcm libmodbus libc
 $(BUILD)/bin/digsightd: $(BUILD)/firmware_host/digsightd.o
 $(BUILD)/bin/digrig:    $(BUILD)/tools/rig/digrig.o
 $(patsubst tools/%.c,$(BUILD)/bin/%,$(tool_src)): $(BUILD)/bin/%: $(BUILD)/tools/%.o
+$(foreach t,$(tool_parts),$(eval $(BUILD)/bin/$(notdir $(patsubst %/,%,$(dir $(t)))): $(call objs,$(t))))
 
 # Static libraries are searched in order; the group lets the order be alphabetical.
 link = $(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(1) -o $@

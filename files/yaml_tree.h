@@ -23,4 +23,20 @@ DIG_MUST_CHECK enum dig_status dig_yaml_check(const char *path, yaml_document_t 
 /// The node at a dotted key, or the deepest one on the way to it; *found says which.
 const yaml_node_t *dig_yaml_find(yaml_document_t *document, const char *key, int *found);
 
+/// The value of a name in a mapping node, or NULL.
+const yaml_node_t *dig_yaml_value(yaml_document_t *document, const yaml_node_t *map,
+                                  const char *name);
+
+/// The line a node begins on, from 1.
+static inline int dig_yaml_line_of(const yaml_node_t *const node)
+{
+    return (int)node->start_mark.line + 1;
+}
+
+/// The text of a scalar node.
+static inline const char *dig_yaml_text_of(const yaml_node_t *const scalar)
+{
+    return (const char *)scalar->data.scalar.value;
+}
+
 #endif // DIG_FILES_YAML_TREE_H

@@ -1,0 +1,52 @@
+// What digtable was asked to do, and how it says that it cannot.
+
+#ifndef DIG_TOOLS_DIGTABLE_ARGUMENTS_H
+#define DIG_TOOLS_DIGTABLE_ARGUMENTS_H
+
+#include "core/curve.h"
+#include "core/error.h"
+
+#include <signal.h>
+#include <stdbool.h>
+
+enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
+
+/// Every option of every command, with its default where it was not given.
+struct dig_arguments {
+    const char      *positional[2];
+    int              positionals;
+    const char      *output, *trajectory, *bed, *save_bed, *vtk;
+    double           gravel[DIG_AXES];        // NaN: not given
+    double           young_Pa;                // NaN: the scene's
+    unsigned long    seed, workers, packings; // 0 packings: the grid's
+    double           time_limit_s;
+    enum dig_channel channel;
+    bool             csv, json, runs, complete;
+    // Set by a signal: what is finished is kept.
+    const volatile sig_atomic_t *stop;
+};
+
+/// One command: which positional arguments and which long options it takes.
+struct dig_command {
+    const char *name;
+    int (*run)(const struct dig_arguments *a);
+    int         least, most; // positional arguments
+    const char *positional;
+    const char *options; // long names, each with a blank before and behind it
+};
+
+/// Reads the arguments behind the command's name; argv[0] is that name. EXIT_DONE, or what to exit
+/// with after a message.
+int dig_arguments_read(const struct dig_command *command, int argc, char **argv,
+                       struct dig_arguments *a);
+
+/// A whole number without sign, within the range.
+bool dig_cli_count(const char *text, unsigned long least, unsigned long most, unsigned long *value);
+
+/// Print to stderr and return the exit code: bad usage; bad input, which is the user's to mend but
+/// for a lack of memory; work that failed, be it for its input or not.
+__attribute__((format(printf, 1, 2))) int dig_cli_bad_usage(const char *format, ...);
+int dig_cli_bad_input(enum dig_status status, const struct dig_error *error);
+int dig_cli_work_failed(enum dig_status status, const struct dig_error *error);
+
+#endif // DIG_TOOLS_DIGTABLE_ARGUMENTS_H

@@ -1,0 +1,214 @@
+// digtable dig and digtable generate.
+
+#include "files/grid_yaml.h"
+#include "files/recording_csv.h"
+#include "files/scene_yaml.h"
+#include "offline_dem/dig.h"
+#include "offline_dem/sweep.h"
+#include "tables/store.h"
+#include "tools/digtable/commands.h"
+#include "tools/digtable/progress.h"
+
+#include <math.h>
+#include <stdio.h>
+
+struct dig_watch {
+    struct dig_progress_line     line;
+    double                       from_s;
+    const char                  *what;
+    const volatile sig_atomic_t *stop;
+};
+
+static int watch_dig(void *const context, const double done_s, const double total_s)
+{
+    struct dig_watch *const w = context;
+    if (dig_progress_is_due(&w->line)) {
+        char         left[32];
+        const double elapsed_s = dig_progress_now_s() - w->from_s;
+        const double left_s = done_s > 0.0 ? elapsed_s * (total_s - done_s) / done_s : (double)NAN;
+        (void)fprintf(stderr, "%s%s: %.2f of %.2f s simulated, %s left",
+                      dig_progress_start(&w->line), w->what, done_s, total_s,
+                      dig_progress_span(left_s, sizeof left, left));
+        dig_progress_end(&w->line, false);
+    }
+    return *w->stop == 0;
+}
+
+static enum dig_status get_bed(const struct dig_arguments *const a,
+                               const struct dig_scene *const     scene,
+                               const struct dig_gravel *const gravel, struct dig_bed *const bed,
+                               struct dig_error *const error)
+{
+    if (a->bed != NULL) {
+        return dig_bed_read(a->bed, &bed->grains, &bed->x_m, &bed->y_m, &bed->z_m, &bed->radius_m,
+                            error);
+    }
+    struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "bed", a->stop };
+    const struct dig_progress progress = { watch_dig, &watch };
+    const enum dig_status     status = dig_bed_pour(scene, gravel, a->seed, &progress, bed, error);
+    if (status == DIG_OK && watch.line.tty) {
+        dig_progress_end(&watch.line, true);
+    }
+    return status;
+}
+
+static enum dig_status dig_and_write(const struct dig_arguments *const a,
+                                     const struct dig_scene *const     scene,
+                                     const struct dig_gravel *const    gravel,
+                                     const struct dig_bed *const bed, struct dig_error *const error)
+{
+    struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "dig", a->stop };
+    const struct dig_progress progress  = { watch_dig, &watch };
+    struct dig_recording      recording = { 0 };
+    enum dig_status           status    = DIG_OK;
+    if (a->save_bed != NULL) {
+        status = dig_bed_write(a->save_bed, bed->grains, bed->x_m, bed->y_m, bed->z_m,
+                               bed->radius_m, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_dig_run(scene, gravel, bed, dig_scene_find(scene, a->trajectory), a->vtk,
+                             &progress, &recording, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_recording_write(a->output, &recording, error);
+    }
+    if (status == DIG_OK) {
+        (void)fprintf(stderr, "%s%zu grains, %zu samples, %.1f s -> %s",
+                      dig_progress_start(&watch.line), bed->grains, recording.rows,
+                      dig_progress_now_s() - watch.from_s, a->output);
+        dig_progress_end(&watch.line, true);
+    }
+    dig_recording_finish(&recording);
+    return status;
+}
+
+int dig_cli_dig(const struct dig_arguments *const a)
+{
+    if (a->trajectory == NULL || a->output == NULL) {
+        return dig_cli_bad_usage("dig: %s missing",
+                                 a->output == NULL ? "-o CURVE.csv" : "--trajectory NAME");
+    }
+    struct dig_gravel gravel;
+    for (int i = 0; i < DIG_AXES; i++) {
+        gravel.value[i] = a->gravel[i];
+        if (isnan(a->gravel[i])) {
+            static const char *const option[DIG_AXES] = { "--friction", "--rolling", "--density" };
+            return dig_cli_bad_usage("dig: %s missing", option[i]);
+        }
+    }
+    struct dig_error error = { "" };
+    struct dig_scene scene;
+    enum dig_status  status = dig_scene_read(a->positional[0], &scene, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    if (dig_scene_find(&scene, a->trajectory) == NULL) {
+        (void)fprintf(stderr,
+                      "digtable: %s: trajectories: no \"%s\", expected one of:", a->positional[0],
+                      a->trajectory);
+        for (size_t i = 0; i < scene.trajectories; i++) {
+            (void)fprintf(stderr, " %s", scene.trajectory[i].name);
+        }
+        (void)fputc('\n', stderr);
+        return EXIT_BAD_INPUT;
+    }
+    if (!isnan(a->young_Pa)) {
+        scene.material.young_Pa = a->young_Pa;
+    }
+
+    struct dig_bed bed = { 0 };
+    status             = get_bed(a, &scene, &gravel, &bed, &error);
+    if (status != DIG_OK) {
+        return a->bed != NULL ? dig_cli_bad_input(status, &error)
+                              : dig_cli_work_failed(status, &error);
+    }
+    status = dig_and_write(a, &scene, &gravel, &bed, &error);
+    dig_bed_finish(&bed);
+    return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
+}
+
+static void tell_sweep(void *const context, const struct dig_sweep_state *const s)
+{
+    struct dig_progress_line *const line = context;
+    if (dig_progress_is_due(line)) {
+        char elapsed[32];
+        char left[32];
+        (void)fprintf(stderr, "%s%zu of %zu digs, %zu running, %s elapsed, %s left",
+                      dig_progress_start(line), s->digs_done, s->digs_total, s->workers,
+                      dig_progress_span(s->elapsed_s, sizeof elapsed, elapsed),
+                      dig_progress_span(s->left_s, sizeof left, left));
+        dig_progress_end(line, false);
+    }
+}
+
+static int tell_end(const struct dig_arguments *const a, const struct dig_sweep_state *const s,
+                    const enum dig_status status, const struct dig_error *const error)
+{
+    char elapsed[32];
+    (void)fprintf(stderr, "%s: %zu of %zu digs, %s", a->output, s->digs_done, s->digs_total,
+                  dig_progress_span(s->elapsed_s, sizeof elapsed, elapsed));
+    if (s->digs_done < s->digs_total) {
+        (void)fprintf(stderr, "; %zu left%s, the same command goes on with them",
+                      s->digs_total - s->digs_done,
+                      status != DIG_OK ? ""
+                      : *a->stop != 0  ? " (interrupted)"
+                                       : " (time limit)");
+    }
+    (void)fputc('\n', stderr);
+    if (status != DIG_OK) {
+        if (s->failed > 0) {
+            (void)fprintf(stderr, "digtable: %zu digs failed, the first:\n", s->failed);
+        }
+        return dig_cli_work_failed(status, error);
+    }
+    return *a->stop != 0 && s->digs_done < s->digs_total ? EXIT_WORK_FAILED : EXIT_DONE;
+}
+
+int dig_cli_generate(const struct dig_arguments *const a)
+{
+    if (a->output == NULL) {
+        return dig_cli_bad_usage("generate: %s missing", "-o TABLE.sqlite");
+    }
+    struct dig_error error = { "" };
+    struct dig_scene scene;
+    struct dig_grid  grid;
+    enum dig_status  status = dig_scene_read(a->positional[0], &scene, &error);
+    if (status == DIG_OK) {
+        status = dig_grid_read(a->positional[1], &grid, &error);
+    }
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    struct dig_plan plan = { .packings = a->packings > 0 ? a->packings : grid.packings };
+    for (int i = 0; i < DIG_AXES; i++) {
+        plan.count[i] = grid.count[i];
+        plan.value[i] = grid.value[i];
+    }
+    status = dig_grid_trajectories(a->positional[1], &grid, &scene, &plan.trajectories,
+                                   plan.trajectory, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+
+    struct dig_store *store = NULL;
+    status                  = dig_store_create(a->output, &scene, &store, &error);
+    if (status != DIG_OK) {
+        return dig_cli_work_failed(status, &error);
+    }
+    struct dig_progress_line       line    = dig_progress_line();
+    const struct dig_engine        engine  = dig_engine_kernel();
+    const struct dig_sweep_options options = {
+        .workers      = a->workers,
+        .time_limit_s = a->time_limit_s,
+        .stop         = a->stop,
+        .tell         = tell_sweep,
+        .context      = &line,
+    };
+    struct dig_sweep_state state = { .digs_total = 0 };
+    status = dig_sweep_run(&scene, &plan, &engine, &options, store, &state, &error);
+    dig_store_close(store);
+    if (line.tty) {
+        dig_progress_end(&line, true);
+    }
+    return tell_end(a, &state, status, &error);
+}

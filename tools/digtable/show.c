@@ -1,0 +1,182 @@
+// digtable list, check, show and export.
+
+#include "files/whole.h"
+#include "tables/export.h"
+#include "tables/load.h"
+#include "tables/store.h"
+#include "tools/digtable/commands.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Results go to stdout, or whole or not at all to -o.
+static int with_output(const struct dig_arguments *const a,
+                       enum dig_status (*const write)(const void *context, FILE *file,
+                                                      struct dig_error *error),
+                       const void *const context)
+{
+    struct dig_error error  = { "" };
+    struct dig_out   out    = { .file = NULL };
+    enum dig_status  status = dig_out_open(&out, a->output != NULL ? a->output : "-", &error);
+    if (status == DIG_OK) {
+        status = write(context, out.file, &error);
+    }
+    if (status == DIG_OK) {
+        status = dig_out_commit(&out, &error);
+    }
+    dig_out_cancel(&out);
+    return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
+}
+
+int dig_cli_list(const struct dig_arguments *const a)
+{
+    struct dig_error      error  = { "" };
+    struct dig_curve_set *set    = NULL;
+    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    if (a->json) {
+        dig_export_list_json(set, stdout);
+    } else {
+        dig_export_list(set, stdout);
+    }
+    dig_curve_set_destroy(set);
+    return EXIT_DONE;
+}
+
+int dig_cli_check(const struct dig_arguments *const a)
+{
+    struct dig_error        error  = { "" };
+    struct dig_store       *store  = NULL;
+    struct dig_store_report report = { .entries = 0 };
+    enum dig_status         status = dig_store_open(a->positional[0], &store, &error);
+    if (status == DIG_OK) {
+        status = dig_store_check(store, &report, &error);
+    }
+    dig_store_close(store);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    if (a->json) {
+        (void)printf("{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
+                     "\"incomplete\": %zu}\n",
+                     report.points, report.entries, report.runs, report.holes, report.incomplete);
+    } else {
+        (void)printf("%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
+                     "entries with fewer packings\n",
+                     a->positional[0], report.points, report.entries, report.runs, report.holes,
+                     report.incomplete);
+    }
+    return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
+}
+
+// The entry asked for, by number or by gravel; set->entries when there is none.
+static size_t find_entry(const struct dig_arguments *const a, const struct dig_curve_set *const set)
+{
+    if (a->positionals == 2) {
+        unsigned long number = 0;
+        return dig_cli_count(a->positional[1], 0, set->entries - 1, &number) ? number
+                                                                             : set->entries;
+    }
+    size_t e = 0;
+    for (; e < set->entries; e++) {
+        bool same = true;
+        for (int i = 0; i < DIG_AXES; i++) {
+            same = same && fabs(set->gravel[e].value[i] - a->gravel[i]) <= 1e-9 * a->gravel[i];
+        }
+        if (same) {
+            break;
+        }
+    }
+    return e;
+}
+
+static int show(const struct dig_arguments *const a, const struct dig_curve_set *const set)
+{
+    const size_t entry = find_entry(a, set);
+    if (entry >= set->entries) {
+        return dig_cli_bad_usage("%s: no such entry, digtable list shows all", a->positional[0]);
+    }
+    size_t trajectory = 0;
+    while (trajectory < set->trajectories &&
+           (a->trajectory != NULL ? strcmp(a->trajectory, set->trajectory[trajectory].name) != 0
+                                  : set->packings[entry * set->trajectories + trajectory] == 0)) {
+        trajectory++;
+    }
+    if (trajectory >= set->trajectories ||
+        set->packings[entry * set->trajectories + trajectory] == 0) {
+        return dig_cli_bad_usage("%s: no such trajectory in this entry, digtable list shows all",
+                                 a->trajectory != NULL ? a->trajectory : a->positional[0]);
+    }
+    if (a->csv) {
+        dig_export_curve_csv(set, entry, trajectory, stdout);
+    } else if (a->json) {
+        dig_export_curve_json(set, entry, trajectory, stdout);
+    } else {
+        dig_export_curve_plot(set, entry, trajectory, a->channel, 72, stdout);
+    }
+    return EXIT_DONE;
+}
+
+int dig_cli_show(const struct dig_arguments *const a)
+{
+    for (int i = 0; i < DIG_AXES; i++) {
+        if (a->positionals < 2 && isnan(a->gravel[i])) {
+            return dig_cli_bad_usage("show: %s",
+                                     "name an ENTRY, or --friction, --rolling and --density");
+        }
+    }
+    struct dig_error      error  = { "" };
+    struct dig_curve_set *set    = NULL;
+    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    const int code = show(a, set);
+    dig_curve_set_destroy(set);
+    return code;
+}
+
+static enum dig_status write_curves(const void *const set, FILE *const file,
+                                    struct dig_error *const error)
+{
+    (void)error;
+    dig_export_curves(set, file);
+    return DIG_OK;
+}
+
+struct runs_to_write {
+    struct dig_store *store;
+};
+
+static enum dig_status write_runs(const void *const context, FILE *const file,
+                                  struct dig_error *const error)
+{
+    const struct runs_to_write *const runs = context;
+    return dig_export_runs(runs->store, file, error);
+}
+
+int dig_cli_export(const struct dig_arguments *const a)
+{
+    struct dig_error error = { "" };
+    if (a->runs) {
+        struct runs_to_write  runs   = { NULL };
+        const enum dig_status status = dig_store_open(a->positional[0], &runs.store, &error);
+        if (status != DIG_OK) {
+            return dig_cli_bad_input(status, &error);
+        }
+        const int code = with_output(a, write_runs, &runs);
+        dig_store_close(runs.store);
+        return code;
+    }
+    struct dig_curve_set *set    = NULL;
+    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    const int code = with_output(a, write_curves, set);
+    dig_curve_set_destroy(set);
+    return code;
+}
