@@ -53,13 +53,14 @@ static const struct dig_gravel   gravel = { { 0.6, 0.5, 2500 } };
 // How a dig is driven.
 struct drive {
     enum made_trajectory which;
-    double               stretch;  // 2: half as fast as Froude has it
-    double               pause_s;  // machine time stood still at 45 % of the way
-    double               until;    // progress at which the bucket is lifted out
-    double               carry_Nm; // moment of the load afterwards
-    double               drop;     // share of samples that arrive incomplete
-    bool                 sensors;  // the ZX200's steps and noise
-    uint64_t             seed;
+    double               stretch; // 2: half as fast as Froude has it
+    double               pause_s; // machine time stood still at 45 % of the way
+    double   back_s;   // rig time driven backwards at 60 % of the way, then again forwards
+    double   until;    // progress at which the bucket is lifted out
+    double   carry_Nm; // moment of the load afterwards
+    double   drop;     // share of samples that arrive incomplete
+    bool     sensors;  // the ZX200's steps and noise
+    uint64_t seed;
 };
 
 static const struct drive calm = {
@@ -198,7 +199,7 @@ static void dig(struct bench *const b, struct drive drive)
         pose.x_m -= 0.01 * left;
         tick(b, pose, 0.03 * left, 0.0, drive.drop, &drive.seed);
     }
-    double rig_s = 0.0, paused_s = 0.0, progress = 0.0;
+    double rig_s = 0.0, paused_s = 0.0, backed_s = 0.0, progress = 0.0;
     while (rig_s < duration_s && progress < drive.until) {
         progress               = dig_trajectory_path_m(&t, rig_tooth_m, rig_s) / whole_m;
         const double moment_Nm = 1e4 * made_moment_Nm(&gravel, drive.which, progress, 0.0);
@@ -206,6 +207,13 @@ static void dig(struct bench *const b, struct drive drive)
         look_ahead(b, &drive, progress);
         if (progress > 0.45 && paused_s < drive.pause_s) {
             paused_s += tick_s;
+        } else if (progress > 0.6 && backed_s <= 0.0 && drive.back_s > 0.0) {
+            while (backed_s < drive.back_s) { // the soil does not push back
+                backed_s += tick_s / sqrt(lambda);
+                tick(b, dig_trajectory_pose(&t, rig_s - backed_s), 0.0, 500.0, drive.drop,
+                     &drive.seed);
+            }
+            rig_s -= backed_s;
         } else {
             rig_s += tick_s / sqrt(lambda) / drive.stretch;
         }
@@ -274,6 +282,9 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         { "paused",
           { .which = MADE_SIMPLE_A, .stretch = 1, .pause_s = 8, .until = 1, .seed = 1 },
           0.03 },
+        { "stepped back",
+          { .which = MADE_ACTUAL, .stretch = 1, .back_s = 0.2, .until = 1, .seed = 1 },
+          0.07 }, // what was not felt while it went back is within the smoothing
         { "sensors",
           { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
           0.04 },
@@ -295,7 +306,7 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         struct bench *const b = bench_create(cases[i].drive.sensors);
         dig(b, cases[i].drive);
         const double error = observation_error(b, cases[i].drive.stretch, cases[i].drive.until);
-        print_message("%-10s: error %.4f, off path %.2f mm, %.3f to %.3f, known from %.3f, "
+        print_message("%-12s: error %.4f, off path %.2f mm, %.3f to %.3f, known from %.3f, "
                       "progress within %.3f\n",
                       cases[i].name, error, 1e3 * b->observation.off_path_m, b->observation.first,
                       b->observation.last, b->known_from, b->worst_progress);

@@ -198,6 +198,22 @@ static void the_nearest_place_is_the_nearest(void **state)
     }
 }
 
+// Coming down along the first leg's own line is no distance from the route, and no progress.
+static void the_way_to_the_start_is_on_the_route(void **state)
+{
+    (void)state;
+    const struct dig_trajectory t     = made_trajectory(MADE_SIMPLE_A);
+    const struct dig_route      route = dig_route_make(&t, tooth_m);
+    for (int i = 0; i < 50; i++) {
+        const struct dig_path_point p     = { t.start_x_m - 0.001 * i * 0.5 - 0.3,
+                                              t.start_z_m + 0.001 * i * 0.8660254 + 0.2,
+                                              tooth_m * t.theta0_rad };
+        const struct dig_place      place = dig_route_place(&route, -0.3, 0.2, &p, -0.1, 1.0);
+        assert_close(place.progress, 0.0, 0.0);
+        assert_close(place.distance_m, 0.0, 1e-5);
+    }
+}
+
 static void a_full_path_is_thinned_and_keeps_its_contact(void **state)
 {
     (void)state;
@@ -240,6 +256,7 @@ int main(void)
         cmocka_unit_test(a_follower_finds_its_way_while_the_dig_goes_on),
         cmocka_unit_test(the_nearest_place_is_the_nearest),
         cmocka_unit_test(a_choice_is_told_once_it_has_held),
+        cmocka_unit_test(the_way_to_the_start_is_on_the_route),
         cmocka_unit_test(a_full_path_is_thinned_and_keeps_its_contact),
     };
     return cmocka_run_group_tests_name("path", tests, NULL, NULL);

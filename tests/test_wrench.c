@@ -77,12 +77,12 @@ static void one_sigma_covers_two_thirds_with_the_zx200s_sensors(void **state)
 {
     (void)state;
     const struct {
-        double pressure_sigma_Pa, angle_sigma_rad;
-    } sensors[] = { { 5e4, 2e-4 }, { 2e5, 1e-3 }, { 0.0, 0.0 } };
+        double pressure_step_Pa, pressure_sigma_Pa, angle_sigma_rad;
+    } sensors[] = { { 2e5, 5e4, 2e-4 }, { 2e5, 2e5, 1e-3 }, { 2e5, 0.0, 0.0 }, { 0.0, 1e2, 4e-3 } };
     enum { TRIALS = 12000 };
     for (size_t s = 0; s < sizeof sensors / sizeof sensors[0]; s++) {
         struct dig_machine machine = model_machine();
-        machine.pressure_step_Pa   = 2e5;
+        machine.pressure_step_Pa   = sensors[s].pressure_step_Pa;
         machine.angle_step_rad     = 4e-4;
         machine.angle_sigma_rad    = sensors[s].angle_sigma_rad;
         for (int j = 0; j < DIG_JOINTS; j++) {
