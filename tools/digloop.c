@@ -1,6 +1,7 @@
 // digloop: which gravel resists like these recordings, and what that gravel will resist with.
 
 #include "closed_loop/observe.h"
+#include "closed_loop/score.h"
 #include "estimator/match.h"
 #include "estimator/predict.h"
 #include "files/identity_json.h"
@@ -26,32 +27,35 @@ static const char help[] =
     "usage:\n"
     "  digloop identify TABLE.sqlite RECORDING.csv… [--json]\n"
     "      which gravel: force recordings of one trajectory, pooled\n"
-    "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME [-o CURVE.csv] "
-    "[--json]\n"
-    "      what that gravel will resist along another trajectory, at the table's scale\n"
+    "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
+    "                  [-o CURVE.csv] [--measured RECORDING.csv] [--json]\n"
+    "      what that gravel will resist along another trajectory, at the table's scale; with a\n"
+    "      measured dig, how wrong that was: relative Euclidean norm of the moment, +-0.16 s\n"
     "  digloop --help | --version\n"
     "\n"
     "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
     "\n"
     "examples:\n"
     "  digloop identify tables/coarse.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
-    "  digloop predict tables/coarse.sqlite --identified id.json --trajectory actual -o next.csv\n";
+    "  digloop predict tables/coarse.sqlite --identified id.json --trajectory actual \\\n"
+    "          --measured actual_1.csv\n";
 
 struct options {
     const char *command, *table;
     int         recordings;
     char      **recording;
-    const char *identified, *trajectory, *out;
+    const char *identified, *trajectory, *out, *measured;
     bool        json;
 };
 
 static enum dig_status parse(const int argc, char *argv[], struct options *const options,
                              struct dig_error *const error)
 {
-    enum { IDENTIFIED = 256, TRAJECTORY, JSON, HELP, VERSION };
+    enum { IDENTIFIED = 256, TRAJECTORY, MEASURED, JSON, HELP, VERSION };
     static const struct option known[] = {
         { "identified", required_argument, NULL, IDENTIFIED },
         { "trajectory", required_argument, NULL, TRAJECTORY },
+        { "measured", required_argument, NULL, MEASURED },
         { "json", no_argument, NULL, JSON },
         { "help", no_argument, NULL, HELP },
         { "version", no_argument, NULL, VERSION },
@@ -64,6 +68,7 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
         case IDENTIFIED: o.identified = optarg; break;
         case TRAJECTORY: o.trajectory = optarg; break;
         case 'o': o.out = optarg; break;
+        case MEASURED: o.measured = optarg; break;
         case JSON: o.json = true; break;
         case HELP: (void)fputs(help, stdout); exit(EXIT_SUCCESS);
         case VERSION: (void)puts("digloop " DIG_VERSION); exit(EXIT_SUCCESS);
@@ -81,7 +86,7 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
     o.recordings = argc - optind - 2;
     if (strcmp(o.command, "identify") == 0) {
         if (o.recordings < 1 || o.recordings > RECORDINGS_MAX || o.identified != NULL ||
-            o.trajectory != NULL || o.out != NULL) {
+            o.trajectory != NULL || o.measured != NULL || o.out != NULL) {
             return dig_error_set(error, DIG_EINVAL,
                                  "identify: expected TABLE.sqlite and 1 to %d RECORDING.csv",
                                  RECORDINGS_MAX);
@@ -247,6 +252,42 @@ static void put_array(FILE *const to, const char *const name, const float curve[
     (void)fputs("]", to);
 }
 
+// How wrong the predicted curve is against a measured dig.
+static enum dig_status score_measured(const struct options *const       options,
+                                      const struct dig_curve_set *const set, const size_t t,
+                                      const struct dig_curve *const curve,
+                                      struct dig_score *const score, struct dig_error *const error)
+{
+    struct dig_recording   recording = { 0 };
+    struct dig_observation seen      = { .trajectory = 0 };
+    enum dig_status        status    = dig_recording_read(options->measured, &recording, error);
+    if (status == DIG_OK) {
+        struct dig_error why = { "" };
+        status               = dig_observe_recording(set, &recording, &seen, &why);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", options->measured, why.text);
+        }
+    }
+    dig_recording_finish(&recording);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if ((size_t)seen.trajectory != t) {
+        return dig_error_set(error, DIG_EINVAL, "%s: a dig along %s, expected one along %s",
+                             options->measured, set->trajectory[seen.trajectory].name,
+                             set->trajectory[t].name);
+    }
+    double predicted_Nm[DIG_CURVE_POINTS];
+    double sigma_Nm[DIG_CURVE_POINTS];
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        predicted_Nm[k] = (double)curve->mean[DIG_CHANNEL_MY_Nm][k];
+        sigma_Nm[k]     = (double)curve->sd[DIG_CHANNEL_MY_Nm][k];
+    }
+    dig_score_add(score, &set->trajectory[t], set->tooth_m, seen.first, seen.last, seen.moment_Nm,
+                  predicted_Nm, sigma_Nm);
+    return DIG_OK;
+}
+
 static enum dig_status predict(const struct options *const       options,
                                const struct dig_curve_set *const set, struct dig_error *const error)
 {
@@ -282,9 +323,17 @@ static enum dig_status predict(const struct options *const       options,
     if (options->out != NULL) {
         status = write_curve(options->out, set, &set->trajectory[t], &curve, error);
     }
+    struct dig_score score = { 0 };
+    if (status == DIG_OK && options->measured != NULL) {
+        status = score_measured(options, set, t, &curve, &score, error);
+    }
     if (status == DIG_OK && options->json) {
         (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",
                      set->trajectory[t].name, peak_Nm, energy_J);
+        if (options->measured != NULL) {
+            (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&score),
+                         dig_score_noise_floor(&score));
+        }
         put_array(stdout, "moment_Nm", curve.mean[DIG_CHANNEL_MY_Nm]);
         put_array(stdout, "sigma_Nm", curve.sd[DIG_CHANNEL_MY_Nm]);
         put_array(stdout, "force_x_N", curve.mean[DIG_CHANNEL_FX_N]);
@@ -293,6 +342,10 @@ static enum dig_status predict(const struct options *const       options,
     } else if (status == DIG_OK) {
         (void)printf("  %s: peak %.3f N·m, energy %.3f J at the table's scale\n",
                      set->trajectory[t].name, peak_Nm, energy_J);
+        if (options->measured != NULL) {
+            (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
+                         dig_score_error(&score), dig_score_noise_floor(&score));
+        }
     }
     return status;
 }
