@@ -56,7 +56,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup demo tables test check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
+.PHONY: all setup demo tables evaluate test check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -75,6 +75,9 @@ tables: all ## Compute what tables/coarse.sqlite lacks (hours of one core when i
 	    $(BUILD)/bin/digtable generate config/scenes/rig.yaml config/grids/$$grid.yaml \
 	        -o tables/coarse.sqlite || exit 1; done
 	$(Q)$(BUILD)/bin/digtable check tables/coarse.sqlite
+
+evaluate: all ## How right tables/coarse.sqlite is on digs of LIGGGHTS
+	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
 
 setup: ## Install everything any target needs
 	$(Q)scripts/setup.sh build demo test lint spy valgrind
