@@ -43,25 +43,25 @@ struct event {
 // A log being read, and where it stands.
 struct reading {
     const char       *path;
-    FILE             *file;
     struct event      event;
     struct dig_error *error;
 };
 
-static enum dig_status open_log(struct reading *const r)
+static enum dig_status open_log(const struct reading *const r, FILE **const opened)
 {
-    r->file = fopen(r->path, "rb");
-    if (r->file == NULL) {
+    FILE *const file = fopen(r->path, "rb");
+    if (file == NULL) {
         // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
         return dig_error_set(r->error, DIG_EIO, "%s: %s", r->path, strerror(errno));
     }
     if (!dig_lcm_log_is(r->path)) {
-        (void)fclose(r->file);
+        (void)fclose(file);
         (void)dig_error_set(r->error, DIG_EINVAL,
                             "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
                             r->path);
         return DIG_EINVAL;
     }
+    *opened = file;
     return DIG_OK;
 }
 
@@ -81,12 +81,12 @@ static enum dig_status refuse_damage(const struct reading *const r, const long a
 }
 
 // *any becomes false at the end, which may also lie within an event: a logger that was killed.
-static enum dig_status next_event(struct reading *const r, bool *const any)
+static enum dig_status next_event(FILE *const file, struct reading *const r, bool *const any)
 {
     struct event *const e  = &r->event;
-    const long          at = ftell(r->file);
+    const long          at = ftell(file);
     uint8_t             header[HEADER_BYTES];
-    if (fread(header, 1, sizeof header, r->file) < sizeof header) {
+    if (fread(header, 1, sizeof header, file) < sizeof header) {
         *any = false;
         return DIG_OK;
     }
@@ -96,7 +96,7 @@ static enum dig_status next_event(struct reading *const r, bool *const any)
         channel_size >= CHANNEL_BYTES || size > INT32_MAX) {
         return refuse_damage(r, at);
     }
-    if (fread(e->channel, 1, (size_t)channel_size, r->file) < channel_size) {
+    if (fread(e->channel, 1, (size_t)channel_size, file) < channel_size) {
         *any = false;
         return DIG_OK;
     }
@@ -105,13 +105,13 @@ static enum dig_status next_event(struct reading *const r, bool *const any)
     e->time_us               = (int64_t)big_endian(header + 12, 8);
     e->size                  = (int)size;
     if (strncmp(e->channel, OURS, strlen(OURS)) != 0) {
-        *any = fseek(r->file, (long)size, SEEK_CUR) == 0;
+        *any = fseek(file, (long)size, SEEK_CUR) == 0;
         return DIG_OK;
     }
     if (size > DATA_BYTES) {
         return refuse_damage(r, at);
     }
-    *any = fread(e->data, 1, (size_t)size, r->file) == size;
+    *any = fread(e->data, 1, (size_t)size, file) == size;
     return DIG_OK;
 }
 
@@ -173,17 +173,18 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
     assert(path != NULL && recording != NULL);
     struct reading  r      = { .path = path, .error = error };
     struct rows     rows   = { 0 };
-    enum dig_status status = open_log(&r);
+    FILE           *file   = NULL;
+    enum dig_status status = open_log(&r, &file);
     if (status != DIG_OK) {
         return status;
     }
     for (bool any = true; status == DIG_OK && any;) {
-        status = next_event(&r, &any);
+        status = next_event(file, &r, &any);
         if (status == DIG_OK && any && strcmp(r.event.channel, "DIGSIGHT_SAMPLE") == 0) {
             status = add_row(&r, &r.event, &rows);
         }
     }
-    (void)fclose(r.file);
+    (void)fclose(file);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
@@ -251,16 +252,17 @@ enum dig_status dig_lcm_log_each(const char *const                      path,
 {
     assert(path != NULL && reader != NULL);
     struct reading  r      = { .path = path, .error = error };
-    enum dig_status status = open_log(&r);
+    FILE           *file   = NULL;
+    enum dig_status status = open_log(&r, &file);
     if (status != DIG_OK) {
         return status;
     }
     for (bool any = true; status == DIG_OK && any;) {
-        status = next_event(&r, &any);
+        status = next_event(file, &r, &any);
         if (status == DIG_OK && any) {
             status = hand_on(&r, &r.event, reader);
         }
     }
-    (void)fclose(r.file);
+    (void)fclose(file);
     return status;
 }

@@ -178,16 +178,18 @@ static void lengths_that_cannot_be_are_refused(void **state)
 {
     (void)state;
     uint8_t header[40] = { 0xED, 0xA1, 0xDA, 0x01, [23] = 3, [28] = 'a', 'b', 'c' };
-    header[24]         = 0x7F;
-    (void)scratch_write_bytes("long.lcm", header, sizeof header);
-    check_refused("long.lcm", DIG_EINVAL, "long.lcm: damaged at byte 0, expected an event");
-    header[24] = 0xFF;
+    header[24]         = 0xFF;
     (void)scratch_write_bytes("long.lcm", header, sizeof header);
     check_refused("long.lcm", DIG_EINVAL, "long.lcm: damaged at byte 0, expected an event");
     header[24] = 0;
     header[20] = 0xFF;
     (void)scratch_write_bytes("channel.lcm", header, sizeof header);
     check_refused("channel.lcm", DIG_EINVAL, "channel.lcm: damaged at byte 0, expected an event");
+
+    uint8_t ours[40] = { 0xED, 0xA1, 0xDA, 0x01, [23] = 9, [26] = 0xFF };
+    memcpy(ours + 28, "DIGSIGHT_", 9);
+    (void)scratch_write_bytes("ours.lcm", ours, sizeof ours);
+    check_refused("ours.lcm", DIG_EINVAL, "ours.lcm: damaged at byte 0, expected an event");
 }
 
 int main(void)
