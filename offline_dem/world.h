@@ -63,8 +63,9 @@ void dig_world_touched(struct dig_world *world);
 /// Removes grains for which drop[i] is not 0; the contacts between the others remember.
 DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const unsigned char drop[]);
 
-/// One step. The tool, if any, must stand where it is at the new positions' time. DIG_ENOMEM, or
-/// DIG_EINVAL when a grain's position is not a number any more: the time step was too long.
+/// One step. The tool, if any, stands where it is at the time of the present positions. DIG_ENOMEM,
+/// or DIG_EINVAL when a grain moves farther than its radius in a step or is nowhere any more: the
+/// time step was too long.
 DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);

@@ -1,0 +1,219 @@
+// The hot loops and the world around them: the same bits from every variant, and what mechanics
+// conserves.
+
+#include "tests/dem_fixture.h"
+
+#include "offline_dem/random.h"
+
+#include <math.h>
+
+#define SIDE   5
+#define GRAINS ((size_t)SIDE * SIDE * SIDE)
+
+// A cloud that falls in on itself, with spin, in no gravity.
+static struct dig_world make_cloud(const uint64_t seed, const double restitution)
+{
+    struct dig_random random = { .state = seed };
+    double            x[GRAINS][3];
+    for (size_t i = 0; i < GRAINS; i++) {
+        const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE };
+        for (size_t k = 0; k < 3; k++) {
+            x[i][k] = 2.2 * GRAIN_m * ((double)at[k] - 0.5 * (SIDE - 1)) +
+                      dig_random_between(&random, -0.05, 0.05) * GRAIN_m;
+        }
+    }
+    struct dig_world world     = dem_world(GRAINS, (const double(*)[3])x, dem_material(0.5, 0.3));
+    world.material.restitution = restitution;
+    for (size_t i = 0; i < GRAINS; i++) {
+        struct dig_motion *const m = &world.grains.motion[i];
+        for (size_t k = 0; k < 3; k++) {
+            m->v_mps[k]   = -20.0 * m->x_m[k] + dig_random_between(&random, -0.2, 0.2);
+            m->w_radps[k] = dig_random_between(&random, -50.0, 50.0);
+        }
+    }
+    return world;
+}
+
+static void cross(const double a[], const double b[], double out[3])
+{
+    for (size_t k = 0; k < 3; k++) {
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    }
+}
+
+static void sum_momenta(const struct dig_world *const world, double p[3], double l[3])
+{
+    for (size_t k = 0; k < 3; k++) {
+        p[k] = 0.0;
+        l[k] = 0.0;
+    }
+    for (size_t i = 0; i < world->grains.n; i++) {
+        const struct dig_motion *const m = &world->grains.motion[i];
+        double                         orbital[3];
+        cross(m->x_m, m->v_mps, orbital);
+        for (size_t k = 0; k < 3; k++) {
+            p[k] += GRAIN_kg * m->v_mps[k];
+            l[k] += GRAIN_kg * orbital[k] + GRAIN_kgm2 * m->w_radps[k];
+        }
+    }
+}
+
+static size_t touching(const struct dig_world *const world)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < world->pair[0].n; c++) {
+        count += fabs(world->pair[0].memory[0][c]) > 0.0;
+    }
+    return count;
+}
+
+static void every_variant_gives_the_same_bits(void **state)
+{
+    (void)state;
+    struct dig_world first = make_cloud(1, 0.3);
+    first.isa              = DIG_ISA_BASE;
+    dem_run(&first, 600);
+    for (enum dig_isa isa = DIG_ISA_AVX2; isa <= dig_kernel_best(); isa++) {
+        struct dig_world other = make_cloud(1, 0.3);
+        other.isa              = isa;
+        dem_run(&other, 600);
+        assert_memory_equal(first.grains.motion, other.grains.motion,
+                            GRAINS * sizeof *first.grains.motion);
+        assert_memory_equal(first.grains.name, other.grains.name,
+                            GRAINS * sizeof *first.grains.name);
+        dig_world_finish(&other);
+    }
+    dig_world_finish(&first);
+}
+
+static void momentum_and_angular_momentum_are_kept(void **state)
+{
+    (void)state;
+    struct dig_world world = make_cloud(2, 0.5);
+    double           p0[3], l0[3], p1[3], l1[3];
+    sum_momenta(&world, p0, l0);
+    size_t contacts = 0;
+    for (int k = 0; k < 20; k++) {
+        dem_run(&world, 40);
+        contacts += touching(&world);
+    }
+    assert_true(contacts > GRAINS);
+    sum_momenta(&world, p1, l1);
+    for (size_t k = 0; k < 3; k++) {
+        assert_close(p1[k], p0[k], 1e-13);
+        assert_close(l1[k], l0[k], 1e-14);
+    }
+    dig_world_finish(&world);
+}
+
+static void collisions_take_energy_away(void **state)
+{
+    (void)state;
+    struct dig_world world   = make_cloud(3, 0.5);
+    const double     first_J = dig_grains_kinetic_J(&world.grains);
+    dem_run(&world, 4000);
+    const double last_J = dig_grains_kinetic_J(&world.grains);
+    assert_true(last_J < 0.5 * first_J);
+    assert_true(last_J > 0.0);
+    dig_world_finish(&world);
+}
+
+// Elastic and smooth, nothing is lost: what the springs hold for a while they give back.
+static void without_damping_and_friction_energy_comes_back(void **state)
+{
+    (void)state;
+    struct dig_world world  = make_cloud(4, 0.999999);
+    world.material.friction = 0.0;
+    world.material.rolling  = 0.0;
+    world.dt_s              = STEP_s / 4.0;
+    const double first_J    = dig_grains_kinetic_J(&world.grains);
+    dem_run(&world, 16000);
+    assert_int_equal(touching(&world), 0);
+    assert_close(dig_grains_kinetic_J(&world.grains) / first_J, 1.0, 2e-3);
+    dig_world_finish(&world);
+}
+
+// Remaking the lists at every step, with all grains put in order again, changes what is summed
+// first and nothing else: contacts go on remembering.
+static void lists_can_be_remade_at_any_time(void **state)
+{
+    (void)state;
+    struct dig_world lazy  = make_cloud(5, 0.3);
+    struct dig_world eager = make_cloud(5, 0.3);
+    for (int s = 0; s < 120; s++) {
+        dig_neighbours_finish(&eager.near_list);
+        dig_world_touched(&eager);
+        dem_run(&eager, 1);
+    }
+    dem_run(&lazy, 120);
+    assert_true(lazy.list_rebuilds < 20);
+    assert_int_equal(eager.list_rebuilds, 120);
+    for (uint32_t i = 0; i < GRAINS; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            assert_close(dem_grain(&eager, i)->x_m[k], dem_grain(&lazy, i)->x_m[k], 1e-11);
+            assert_close(dem_grain(&eager, i)->w_radps[k], dem_grain(&lazy, i)->w_radps[k], 1e-5);
+        }
+    }
+    dig_world_finish(&lazy);
+    dig_world_finish(&eager);
+}
+
+static void a_step_that_is_too_long_is_noticed(void **state)
+{
+    (void)state;
+    struct dig_world world = make_cloud(6, 0.3);
+    world.dt_s             = 1e-2;
+    enum dig_status status = DIG_OK;
+    for (int s = 0; s < 5000 && status == DIG_OK; s++) {
+        status = dig_world_step(&world);
+    }
+    assert_int_equal(status, DIG_EINVAL);
+    dig_world_finish(&world);
+}
+
+static void grains_taken_out_leave_the_others_contacts_alone(void **state)
+{
+    (void)state;
+    // Three in a row under gravity on a wall, and one far away that is taken out.
+    const double     x[4][3] = { { 0.0, 0.0, 10.0 * GRAIN_m },
+                                 { 0.0, 0.0, 1.0 * GRAIN_m },
+                                 { 0.0, 0.0, 3.0 * GRAIN_m },
+                                 { 0.0, 0.0, 5.0 * GRAIN_m } };
+    struct dig_world world   = dem_world(4, x, dem_material(0.5, 0.5));
+    world.gravity_mps2[0]    = 0.5;
+    world.gravity_mps2[2]    = -GRAVITY;
+    dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
+    dem_run(&world, 200);
+    unsigned char drop[4] = { 0 };
+    double        before  = 0.0;
+    for (size_t c = 0; c < world.pair[0].n; c++) {
+        before += fabs(world.pair[0].memory[0][c]);
+    }
+    for (size_t i = 0; i < 4; i++) {
+        drop[i] = world.grains.name[i] == 0;
+    }
+    assert_int_equal(dig_world_drop(&world, drop), DIG_OK);
+    assert_int_equal(world.grains.n, 3);
+    dem_run(&world, 1);
+    double after = 0.0;
+    for (size_t c = 0; c < world.pair[0].n; c++) {
+        after += fabs(world.pair[0].memory[0][c]);
+    }
+    assert_true(before > 0.0);
+    assert_close(after / before, 1.0, 0.1);
+    dig_world_finish(&world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_variant_gives_the_same_bits),
+        cmocka_unit_test(momentum_and_angular_momentum_are_kept),
+        cmocka_unit_test(collisions_take_energy_away),
+        cmocka_unit_test(without_damping_and_friction_energy_comes_back),
+        cmocka_unit_test(lists_can_be_remade_at_any_time),
+        cmocka_unit_test(a_step_that_is_too_long_is_noticed),
+        cmocka_unit_test(grains_taken_out_leave_the_others_contacts_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,165 @@
+// The neighbour list against looking at every pair.
+
+#include "offline_dem/neighbour.h"
+#include "offline_dem/random.h"
+#include "tests/testlib.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define GRAINS 500
+
+struct scatter {
+    struct dig_grains grains;
+    double            margin_m[GRAINS];
+};
+
+// Two radii, a few fast grains with wide margins, one thrown far away.
+static struct scatter make_scatter(const uint64_t seed)
+{
+    struct dig_random random = { .state = seed };
+    struct scatter    s;
+    double            x[GRAINS], y[GRAINS], z[GRAINS], r[GRAINS];
+    for (size_t i = 0; i < GRAINS; i++) {
+        x[i]          = dig_random_between(&random, 0.0, 0.06);
+        y[i]          = dig_random_between(&random, -0.03, 0.03);
+        z[i]          = dig_random_between(&random, 0.0, 0.04);
+        r[i]          = dig_random_next(&random) % 2 == 0 ? 0.003 : 0.005;
+        s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.01) : 0.0006;
+    }
+    x[7] = 12.0;
+    assert_int_equal(dig_grains_create(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
+    assert_int_equal(s.grains.kinds, 2);
+    return s;
+}
+
+static bool is_near(const struct scatter *const s, const size_t i, const size_t j)
+{
+    const double *const a     = s->grains.motion[i].x_m;
+    const double *const b     = s->grains.motion[j].x_m;
+    const double        gap_m = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]) -
+                         s->grains.kind[s->grains.of[i]].radius_m -
+                         s->grains.kind[s->grains.of[j]].radius_m;
+    return gap_m < s->margin_m[i] + s->margin_m[j];
+}
+
+static void every_near_pair_is_listed_once_and_no_other(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        struct scatter        s    = make_scatter(seed);
+        struct dig_neighbours list = { 0 };
+        assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+        unsigned char *const seen = calloc((size_t)GRAINS * GRAINS, 1);
+        assert_non_null(seen);
+        for (size_t i = 0; i < GRAINS; i++) {
+            for (uint32_t k = list.start[i]; k < list.start[i + 1]; k++) {
+                const size_t j = list.other[k];
+                seen[(i < j ? i : j) * GRAINS + (i < j ? j : i)]++;
+            }
+        }
+        size_t pairs = 0;
+        for (size_t i = 0; i < GRAINS; i++) {
+            assert_int_equal(seen[i * GRAINS + i], 0);
+            for (size_t j = i + 1; j < GRAINS; j++) {
+                assert_int_equal(seen[i * GRAINS + j], is_near(&s, i, j));
+                pairs += seen[i * GRAINS + j];
+            }
+        }
+        assert_true(pairs > GRAINS);
+        free(seen);
+        dig_neighbours_finish(&list);
+        dig_grains_finish(&s.grains);
+    }
+}
+
+static void a_list_can_be_built_again_for_other_grains(void **state)
+{
+    (void)state;
+    struct dig_neighbours list = { 0 };
+    struct scatter        s    = make_scatter(1);
+    assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+    unsigned char drop[GRAINS] = { 0 };
+    for (size_t i = 3; i < GRAINS; i++) {
+        drop[i] = 1;
+    }
+    dig_grains_drop(&s.grains, drop);
+    assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+    assert_int_equal(list.n, 3);
+    assert_true(list.start[3] <= 3);
+    dig_neighbours_finish(&list);
+    dig_grains_finish(&s.grains);
+}
+
+static void the_order_is_a_permutation_along_the_cells(void **state)
+{
+    (void)state;
+    struct scatter s = make_scatter(3);
+    uint32_t       order[GRAINS];
+    bool           seen[GRAINS] = { false };
+    assert_int_equal(dig_neighbours_order(&s.grains, 0.01, order), DIG_OK);
+    double path_m = 0.0, unsorted_m = 0.0;
+    for (size_t k = 0; k < GRAINS; k++) {
+        assert_true(order[k] < GRAINS);
+        assert_false(seen[order[k]]);
+        seen[order[k]] = true;
+        if (k > 0) {
+            const double *const a = s.grains.motion[order[k - 1]].x_m;
+            const double *const b = s.grains.motion[order[k]].x_m;
+            const double *const c = s.grains.motion[k - 1].x_m;
+            const double *const d = s.grains.motion[k].x_m;
+            path_m += fmin(0.1, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+            unsorted_m += fmin(0.1, hypot(hypot(c[0] - d[0], c[1] - d[1]), c[2] - d[2]));
+        }
+    }
+    assert_true(path_m < 0.75 * unsorted_m);
+    assert_int_equal(dig_grains_reorder(&s.grains, order), DIG_OK);
+    for (size_t k = 0; k < GRAINS; k++) {
+        assert_int_equal(s.grains.name[k], order[k]);
+    }
+    dig_grains_finish(&s.grains);
+}
+
+static void no_grains_make_an_empty_list(void **state)
+{
+    (void)state;
+    struct dig_grains     none = { 0 };
+    struct dig_neighbours list = { 0 };
+    assert_int_equal(dig_neighbours_build(&none, NULL, &list), DIG_OK);
+    assert_int_equal(list.start[0], 0);
+    dig_neighbours_finish(&list);
+    dig_neighbours_finish(&list);
+    dig_neighbours_finish(NULL);
+}
+
+static void too_many_radii_and_senseless_ones_are_refused(void **state)
+{
+    (void)state;
+    double            at[DIG_KINDS_MAX + 1] = { 0.0 };
+    double            r[DIG_KINDS_MAX + 1];
+    struct dig_grains untouched = { .n = 77 };
+    for (size_t i = 0; i <= DIG_KINDS_MAX; i++) {
+        r[i] = 0.001 * (double)(i + 1);
+    }
+    assert_int_equal(dig_grains_create(DIG_KINDS_MAX + 1, at, at, at, r, 2500.0, &untouched),
+                     DIG_EINVAL);
+    r[1] = -1.0;
+    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
+    r[1]  = 0.001;
+    at[1] = NAN;
+    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
+    assert_int_equal(untouched.n, 77);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_near_pair_is_listed_once_and_no_other),
+        cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
+        cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
+        cmocka_unit_test(no_grains_make_an_empty_list),
+        cmocka_unit_test(too_many_radii_and_senseless_ones_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
