@@ -117,7 +117,7 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
 
 /// One tick. DIG_ESTALE: an incomplete sample or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
-/// for the tick in which a dig ends (up to a millisecond: alignment, resampling).
+/// for the tick in which a dig ends (one to two milliseconds: alignment, resampling).
 DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estimator,
                                                   const struct dig_sample *sample,
                                                   struct dig_estimate     *estimate);

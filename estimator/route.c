@@ -28,37 +28,43 @@ struct dig_place dig_route_place(const struct dig_route *const route, const doub
     const double                to_m    = to * whole_m;
     const struct dig_path_point at      = { point->x_m - dx_m, point->z_m - dz_m, point->turn_m };
 
-    const struct dig_path_point nowhere = { 0.0, 0.0, 0.0 };
-    struct dig_place            best    = { .distance_m = INFINITY };
+    // Squared distances decide; roots are drawn once, of the nearest.
+    struct dig_place best    = { .distance_m = INFINITY };
+    double           best_m2 = INFINITY;
+    double           scale   = 0.0; // of the best leg to its unit tangent, 0 at a corner
     for (size_t i = 0; i + 1 < route->corners; i++) {
-        const double length_m = route->at_m[i + 1] - route->at_m[i];
-        if (!(length_m > 0.0) || route->at_m[i + 1] < from_m || route->at_m[i] > to_m) {
+        const double at_m     = route->at_m[i];
+        const double length_m = route->at_m[i + 1] - at_m;
+        if (!(length_m > 0.0) || at_m + length_m < from_m || at_m > to_m) {
             continue;
         }
         const struct dig_path_point leg =
             dig_path_point_sub(route->corner[i + 1], route->corner[i]);
-        const struct dig_path_point rel     = dig_path_point_sub(at, route->corner[i]);
-        const double                leg2    = dig_path_point_dot(leg, leg);
-        const double                free_f  = dig_path_point_dot(rel, leg) / leg2;
-        const double                low_f   = fmax((from_m - route->at_m[i]) / length_m, 0.0);
-        const double                high_f  = fmin((to_m - route->at_m[i]) / length_m, 1.0);
-        const double                f       = fmin(fmax(free_f, low_f), high_f);
-        const bool                  is_lead = i == 0 && free_f < 0.0 && low_f <= 0.0;
+        const struct dig_path_point rel    = dig_path_point_sub(at, route->corner[i]);
+        const double                leg2   = dig_path_point_dot(leg, leg);
+        const double                free_f = dig_path_point_dot(rel, leg) / leg2;
+        const double                low_f  = from_m > at_m ? (from_m - at_m) / length_m : 0.0;
+        const double high_f  = to_m < at_m + length_m ? (to_m - at_m) / length_m : 1.0;
+        const double raised  = free_f > low_f ? free_f : low_f;
+        const double f       = raised < high_f ? raised : high_f;
+        const bool   is_lead = i == 0 && free_f < 0.0 && low_f <= 0.0;
 
         // On the lead-in the foot lies before the start, where progress is still 0.
         const struct dig_path_point off =
             dig_path_point_add_scaled(rel, is_lead ? -free_f : -f, leg);
-        const double d_m = sqrt(dig_path_point_dot(off, off));
-        if (d_m < best.distance_m) {
-            const bool inside = is_lead || (free_f > 0.0 && free_f < 1.0);
-            best              = (struct dig_place){
-                             .progress   = (route->at_m[i] + f * length_m) / whole_m,
-                             .distance_m = d_m,
-                             .tangent = dig_path_point_add_scaled(nowhere, inside ? 1.0 / sqrt(leg2) : 0.0, leg),
-                             .off     = off,
-            };
+        const double d_m2 = dig_path_point_dot(off, off);
+        if (d_m2 < best_m2) {
+            best_m2       = d_m2;
+            best.progress = (at_m + f * length_m) / whole_m;
+            best.tangent  = leg;
+            best.off      = off;
+            scale         = is_lead || (free_f > 0.0 && free_f < 1.0) ? 1.0 / sqrt(leg2) : 0.0;
         }
     }
+    best.distance_m = sqrt(best_m2);
+    best.tangent.x_m *= scale;
+    best.tangent.z_m *= scale;
+    best.tangent.turn_m *= scale;
     return best;
 }
 
