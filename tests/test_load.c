@@ -239,6 +239,40 @@ static void what_is_no_table_is_refused(void **state)
     assert_null(set);
 }
 
+// The table and its journal as they stand on the disk in the middle of a transaction: what is left
+// of a computer that lost its power.
+static void a_transaction_cut_short_is_rolled_back(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("cut.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    dig_store_close(store);
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(scratch_path("cut.sqlite"), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db,
+                                  "PRAGMA cache_size = 1; BEGIN; UPDATE gravel SET friction = 0.7; "
+                                  "UPDATE entry SET mean = zeroblob(3072); "
+                                  "UPDATE run SET curve = zeroblob(200000);",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
+    static const char *const names[][2] = { { "cut.sqlite", "hot.sqlite" },
+                                            { "cut.sqlite-journal", "hot.sqlite-journal" } };
+    for (size_t i = 0; i < 2; i++) {
+        size_t      size  = 0;
+        char *const bytes = scratch_read(scratch_path(names[i][0]), &size);
+        assert_true(size > 0);
+        (void)scratch_write_bytes(names[i][1], bytes, size);
+        free(bytes);
+    }
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+
+    struct dig_curve_set *const set = load("hot.sqlite");
+    assert_close(set->gravel[0].value[DIG_AXIS_FRICTION], .3, 0.0);
+    assert_close((double)curve_of(set, 0, 0)->mean[0][100], 1.0, 1e-6);
+    dig_curve_set_destroy(set);
+    assert_false(scratch_exists("hot.sqlite-journal"));
+}
+
 // Cut at every page and flipped at places spread over the file: a set or a refusal, never more.
 static void a_damaged_file_never_does_worse_than_a_refusal(void **state)
 {
@@ -287,6 +321,7 @@ int main(void)
         cmocka_unit_test(the_grid_knows_its_axes_and_its_holes),
         cmocka_unit_test(damage_is_refused_and_named),
         cmocka_unit_test(what_is_no_table_is_refused),
+        cmocka_unit_test(a_transaction_cut_short_is_rolled_back),
         cmocka_unit_test(a_damaged_file_never_does_worse_than_a_refusal),
     };
     return cmocka_run_group_tests_name("load", tests, scratch_setup, scratch_teardown);
