@@ -9,8 +9,21 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #define STACK_BYTES (64 * 1024)
+
+// What is mapped later is locked too only where no limit stands in its way: beyond a limit the
+// mapping itself would fail, and a thread or LCM with it.
+static bool lock_memory(void)
+{
+    struct rlimit limit;
+    const bool    unlimited =
+        getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+    const bool all = unlimited || geteuid() == 0;
+    return mlockall(all ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0;
+}
 
 // Touched once, the stack's pages stay: with mlockall() in memory, without it at least mapped.
 static void prefault_stack(void)
@@ -27,7 +40,7 @@ struct dig_rt_grant dig_rt_enter(const struct dig_rt_settings *const settings)
     assert(settings != NULL);
     struct dig_rt_grant grant = { 0 };
     if (settings->lock_memory) {
-        grant.memory_locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+        grant.memory_locked = lock_memory();
     }
     if (settings->cpu >= 0 && settings->cpu < CPU_SETSIZE) {
         cpu_set_t cpus;
