@@ -174,6 +174,11 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const   set,
                                    struct dig_match *const             match)
 {
     assert(set != NULL && observation != NULL && match != NULL);
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (set->axis_count[a] == 0) {
+            return DIG_ENOMATCH;
+        }
+    }
     const struct likelihood l    = start(set, observation);
     const struct fine       fine = make_fine(set);
 

@@ -463,6 +463,50 @@ static void bad_samples_are_refused_and_change_nothing(void **state)
     bench_destroy(b);
 }
 
+// Samples no machine could give, wandering and jumping: nothing that is no number comes out, and a
+// good dig afterwards is observed as if nothing had been.
+static void whatever_comes_in_only_numbers_go_out(void **state)
+{
+    (void)state;
+    struct bench *const b      = bench_create(true);
+    uint64_t            seed   = 31;
+    struct dig_sample   sample = { .time_ns = 1 };
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        sample.valid[s] = true;
+    }
+    const int samples = getenv("DIG_TEST_QUICK") != NULL ? 20000 : 200000;
+    for (int i = 0; i < samples; i++) {
+        sample.time_ns += model_uniform(&seed) < 0.001 ? 60000000000 : 5000000;
+        for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
+            const bool   angle = s < DIG_SIGNAL_BOOM_HEAD_Pa;
+            const double step  = (angle ? 0.01 : 1e5) * model_normal(&seed);
+            const bool   jump  = model_uniform(&seed) < 2e-4;
+            const double most  = angle ? 3.0 : 4e7;
+            sample.value[s] =
+                jump ? most * (2.0 * model_uniform(&seed) - 1.0) : sample.value[s] + step;
+            sample.value[s] = fmin(fmax(sample.value[s], angle ? -most : 0.0), most);
+        }
+        struct dig_estimate    e;
+        struct dig_observation o;
+        assert_int_equal(dig_estimator_step(b->estimator, &sample, &e), DIG_OK);
+        assert_true(isfinite(e.wrench.My_Nm) && isfinite(e.wrench.sigma_My_Nm));
+        assert_true(isfinite(e.wrench.Fx_N) && isfinite(e.wrench.sigma_Fx_N));
+        assert_true(isfinite(e.pin_X_m) && isfinite(e.phi_rad));
+        assert_true(e.trajectory < 0 || (e.progress >= 0.0 && e.progress <= 1.0));
+        if (dig_estimator_take_dig(b->estimator, &o)) {
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                assert_true(isfinite(o.moment_Nm[k]) && o.sigma_Nm[k] >= 0.0);
+            }
+        }
+    }
+
+    b->time_s = 1e-9 * (double)sample.time_ns;
+    dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .seed = 5 });
+    assert_int_equal(b->observations, 1);
+    assert_true(observation_error(b, 1.0, 1.0) < 0.04);
+    bench_destroy(b);
+}
+
 static void init_refuses_what_cannot_work_and_writes_nothing(void **state)
 {
     (void)state;
@@ -517,6 +561,7 @@ int main(void)
         cmocka_unit_test(no_tick_allocates),
         cmocka_unit_test(a_dig_longer_than_the_window_is_still_observed),
         cmocka_unit_test(bad_samples_are_refused_and_change_nothing),
+        cmocka_unit_test(whatever_comes_in_only_numbers_go_out),
         cmocka_unit_test(init_refuses_what_cannot_work_and_writes_nothing),
     };
     return cmocka_run_group_tests_name("estimator", tests, NULL, NULL);

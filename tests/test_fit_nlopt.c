@@ -173,6 +173,22 @@ static void between_the_grid_points_a_dig_is_judged_again(void **state)
     made_table_destroy(set);
 }
 
+// Entries without a grid behind them: the nearest stands, and nothing is claimed about it.
+static void scattered_entries_keep_their_nearest(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const  set = made_table(&plain);
+    const struct dig_observation o   = made_observation(&set->gravel[9], MADE_SIMPLE_A, 0.0);
+    for (int a = 0; a < DIG_AXES; a++) {
+        set->axis_count[a] = 0;
+    }
+    const struct dig_match match = fit(set, &o, 100);
+    assert_int_equal(match.nearest, 9);
+    assert_int_equal(match.samples, 0);
+    assert_close(match.gravel.value[0], set->gravel[9].value[0], 0.0);
+    made_table_destroy(set);
+}
+
 static void refusals_leave_the_match_alone(void **state)
 {
     (void)state;
@@ -205,6 +221,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_told_apart_has_a_wide_interval),
         cmocka_unit_test(ninety_per_cent_of_gravels_lie_in_their_interval),
         cmocka_unit_test(between_the_grid_points_a_dig_is_judged_again),
+        cmocka_unit_test(scattered_entries_keep_their_nearest),
         cmocka_unit_test(refusals_leave_the_match_alone),
     };
     return cmocka_run_group_tests_name("fit_nlopt", tests, NULL, NULL);
