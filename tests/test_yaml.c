@@ -228,7 +228,7 @@ static void damaged_bytes_never_do_worse_than_a_refusal(void **state)
     static const char evil[] = "\x01\xff:{[&*!|>-%@'\"\n#\t ,";
     char              text[] = GOOD;
     for (size_t i = 0; i + 1 < sizeof text; i++) {
-        for (size_t e = 0; e + 1 < sizeof evil; e++) {
+        for (size_t e = i % 3; e + 1 < sizeof evil; e += 3) {
             const char kept = text[i];
             text[i]         = evil[e];
 

@@ -22,6 +22,10 @@ digtable dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$work/d.csv"
 check "the bed saved, dug again, gives the dig it was saved from" cmp "$work/a.csv" "$work/d.csv"
 digtable dig $scene "${dig[@]}" --seed 3 --young 2e7 -o "$work/e.csv"
 check "stiffer grains give another dig" eval 'is $code 0 && ! cmp -s $work/a.csv $work/e.csv'
+digtable dig $scene "${dig[@]}" --seed 3 --vtk "$work/pictures" -o "$work/f.csv"
+check "--vtk makes its folder, and pictures change nothing" eval 'is $code 0 && cmp $work/a.csv $work/f.csv && ls $work/pictures | grep -q "\.vt"'
+digtable dig $scene "${dig[@]}" --seed 3 --vtk "$work/no/such" -o "$work/g.csv"
+check "or says that it cannot" eval 'is $code 1 && grep -q "no/such: No such file" $work/err && [ ! -e $work/g.csv ]'
 digtable dig $scene "${dig[@]}" --seed 3 -o /dev/stdout
 check "-o /dev/stdout writes to stdout" cmp "$work/a.csv" "$work/out"
 

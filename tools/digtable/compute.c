@@ -9,8 +9,11 @@
 #include "tools/digtable/commands.h"
 #include "tools/digtable/progress.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 struct dig_watch {
     struct dig_progress_line     line;
@@ -114,6 +117,12 @@ int dig_cli_dig(const struct dig_arguments *const a)
     }
     if (!isnan(a->young_Pa)) {
         scene.material.young_Pa = a->young_Pa;
+    }
+
+    // Before the minutes of pouring: a folder that cannot be should not cost them.
+    if (a->vtk != NULL && mkdir(a->vtk, 0777) != 0 && errno != EEXIST) {
+        (void)fprintf(stderr, "digtable: --vtk %s: %s\n", a->vtk, strerror(errno));
+        return EXIT_WORK_FAILED;
     }
 
     struct dig_bed bed = { 0 };
