@@ -9,6 +9,8 @@
 #include <string.h>
 
 #define ATTEMPTS 100000 // for one grain, before the column is called full
+#define GROWTH   1.1    // what a full column grows by
+#define TALLEST  2.0    // times the height the solid fraction asks for
 
 // Cells so small that no two grains share one: looking two cells around finds every overlap.
 struct cells {
@@ -54,10 +56,11 @@ static bool is_free(const struct cells *const cells, const ptrdiff_t at[3], cons
     return true;
 }
 
-static enum dig_status insert(struct cells *const cells, const double high_m[3], const double d_m,
+static enum dig_status insert(struct cells *const cells, double high_m[3], const double d_m,
                               const uint64_t seed, const size_t n, double *const position[3])
 {
-    struct dig_random random = { .state = seed };
+    const double      tallest_m = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * TALLEST;
+    struct dig_random random    = { .state = seed };
     for (size_t i = 0; i < n; i++) {
         int attempt = 0;
         for (; attempt < ATTEMPTS; attempt++) {
@@ -77,7 +80,11 @@ static enum dig_status insert(struct cells *const cells, const double high_m[3],
             }
         }
         if (attempt == ATTEMPTS) {
-            return DIG_EUNREACHABLE;
+            high_m[2] = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * GROWTH;
+            if (high_m[2] > tallest_m) {
+                return DIG_EUNREACHABLE;
+            }
+            i--; // the same grain again
         }
     }
     return DIG_OK;
@@ -90,7 +97,7 @@ enum dig_status dig_packing_insert(const struct dig_scene *const scene, const ui
     const double                d_m = scene->material.diameter_m;
     const double                column =
         (box->z_max_m - box->z_min_m) * scene->packing.fill_factor / scene->packing.solid_fraction;
-    const double high_m[3] = { box->x_max_m - 0.5 * d_m, box->y_max_m - 0.5 * d_m,
+    double       high_m[3] = { box->x_max_m - 0.5 * d_m, box->y_max_m - 0.5 * d_m,
                                box->z_min_m + column - 0.5 * d_m };
     struct cells cells     = {
             .low_m  = { box->x_min_m + 0.5 * d_m, box->y_min_m + 0.5 * d_m, box->z_min_m + 0.5 * d_m },
@@ -101,7 +108,8 @@ enum dig_status dig_packing_insert(const struct dig_scene *const scene, const ui
         if (!(high_m[a] > cells.low_m[a])) {
             return DIG_EUNREACHABLE;
         }
-        cells.count[a] = (ptrdiff_t)((high_m[a] - cells.low_m[a]) / cells.edge_m) + 1;
+        const double span_m = (high_m[a] - cells.low_m[a]) * (a == 2 ? TALLEST : 1.0);
+        cells.count[a]      = (ptrdiff_t)(span_m / cells.edge_m) + 1;
         total *= (size_t)cells.count[a];
     }
     cells.grain            = calloc(total, sizeof *cells.grain);

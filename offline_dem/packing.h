@@ -13,9 +13,9 @@
 size_t dig_packing_grains(const struct dig_scene *scene);
 
 /// Random sequential insertion of n grains, all inside the box's walls and the column that holds
-/// them at the scene's solid fraction; x, y, z [n] are written on success only. DIG_EUNREACHABLE
-/// when they do not fit (the fraction is above what random insertion reaches, about 0.38);
-/// DIG_ENOMEM.
+/// them at the scene's solid fraction. A column that is full before, as narrow ones are, grows by a
+/// tenth at a time, up to twice its height. x, y, z [n] are written on success only;
+/// DIG_EUNREACHABLE when the grains still do not fit, DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_packing_insert(const struct dig_scene *scene, uint64_t seed,
                                                   size_t n, double x_m[], double y_m[],
                                                   double z_m[]);

@@ -1,0 +1,232 @@
+// Whole digs in a box of a few hundred grains: what is recorded, what is refused, what repeats.
+
+#include "tests/dem_fixture.h"
+
+#include "offline_dem/dig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static struct dig_scene small_scene(void)
+{
+    return (struct dig_scene){
+        .name         = "small",
+        .bucket       = { .points  = 5,
+                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
+                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
+                          .width_m = 0.028 },
+        .box          = { 0.0, 0.08, -0.0225, 0.0225, 0.0, 0.03 },
+        .packing      = { 0.3, 0.694, 0.3, 0.3, 0.1 },
+        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
+        .gravity_mps2 = GRAVITY,
+        .time_step_s  = STEP_s,
+        .output_s     = 0.005,
+        .trajectories = 1,
+        .trajectory   = { { .name      = "scratch",
+                            .start_x_m = 0.03,
+                            .start_z_m = 0.08,
+                            .phases    = 3,
+                            .phase     = { { "down", 0.2, 0.0, -0.13, 0.0 },
+                                           { "drag", 0.3, 0.06, 0.0, 0.0 },
+                                           { "curl", 0.1, 0.0, 0.0, 0.5 } } } },
+    };
+}
+
+static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+
+static struct dig_bed pour(const struct dig_scene *const scene)
+{
+    struct dig_bed bed;
+    assert_int_equal(dig_bed_pour(scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
+    return bed;
+}
+
+static void a_dig_is_recorded_from_air_to_its_end(void **state)
+{
+    (void)state;
+    const struct dig_scene             scene = small_scene();
+    const struct dig_trajectory *const t     = &scene.trajectory[0];
+    struct dig_bed                     bed   = pour(&scene);
+    struct dig_recording               r     = { 0 };
+    assert_int_equal(dig_dig_run(&scene, &gravel, &bed, t, NULL, NULL, &r, NULL), DIG_OK);
+    assert_int_equal(r.rows, 120);
+    for (size_t k = 0; k < r.rows; k++) {
+        // A window holds the forces after its first to after its last step.
+        assert_close(r.row[k].t_s, 0.005 * (double)k + 40.5 * STEP_s, 1e-12);
+        const struct dig_pose pose = dig_trajectory_pose(t, r.row[k].t_s);
+        assert_close(r.row[k].pin_x_m, pose.x_m, 1e-15);
+        assert_close(r.row[k].pin_z_m, pose.z_m, 1e-15);
+        assert_close(r.row[k].theta_deg, pose.theta_rad / DIG_RAD_PER_DEG, 1e-12);
+    }
+    // In the air nothing; in the bed the soil lifts the tooth, then holds the drag back.
+    assert_close(r.row[2].Fx_N, 0.0, 0.0);
+    assert_close(r.row[2].My_Nm, 0.0, 0.0);
+    double Fx_N = 0.0, Fz_N = 0.0, My_Nm = 0.0;
+    for (size_t k = 60; k < 100; k++) {
+        Fx_N += r.row[k].Fx_N;
+        My_Nm += r.row[k].My_Nm;
+    }
+    for (size_t k = 30; k < 40; k++) {
+        Fz_N += r.row[k].Fz_N;
+    }
+    assert_true(Fx_N < 0.0);
+    assert_true(My_Nm > 0.0);
+    assert_true(Fz_N > 0.0);
+    dig_recording_finish(&r);
+    dig_bed_finish(&bed);
+}
+
+static void the_same_dig_twice_gives_the_same_bits(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    struct dig_bed         bed   = pour(&scene);
+    struct dig_recording   r[2]  = { { 0 }, { 0 } };
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(
+            dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
+            DIG_OK);
+    }
+    assert_int_equal(r[0].rows, r[1].rows);
+    assert_memory_equal(r[0].row, r[1].row, r[0].rows * sizeof *r[0].row);
+    dig_recording_finish(&r[0]);
+    dig_recording_finish(&r[1]);
+    dig_bed_finish(&bed);
+}
+
+static void expect_refusal(const struct dig_scene *const scene, const struct dig_gravel *const g,
+                           const struct dig_bed *const bed, const char *const word)
+{
+    struct dig_recording r     = { .rows = 77 };
+    struct dig_error     error = { { 0 } };
+    assert_int_equal(dig_dig_run(scene, g, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
+                     DIG_EINVAL);
+    assert_int_equal(r.rows, 77);
+    assert_null(r.row);
+    if (strstr(error.text, word) == NULL) {
+        fail_msg("\"%s\" does not name %s", error.text, word);
+    }
+}
+
+static void what_cannot_be_computed_is_refused_by_name(void **state)
+{
+    (void)state;
+    struct dig_scene     scene = small_scene();
+    double               at[2] = { 0.01, 0.03 }, radius[2] = { GRAIN_m, GRAIN_m };
+    const struct dig_bed bed = { 2, at, at, at, radius };
+
+    expect_refusal(&scene, &(struct dig_gravel){ { -0.1, 0.5, DENSITY } }, &bed, "friction");
+    expect_refusal(&scene, &(struct dig_gravel){ { 0.5, NAN, DENSITY } }, &bed, "rolling");
+    expect_refusal(&scene, &(struct dig_gravel){ { 0.5, 0.5, 0.0 } }, &bed, "density_kgpm3");
+    scene.material.young_Pa = -1.0;
+    expect_refusal(&scene, &gravel, &bed, "young_Pa");
+
+    struct dig_bed   poured = { .grains = 77 };
+    struct dig_error error  = { { 0 } };
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, NULL, &poured, &error), DIG_EINVAL);
+    assert_int_equal(poured.grains, 77);
+    assert_non_null(strstr(error.text, "young_Pa"));
+
+    scene     = small_scene();
+    radius[1] = NAN;
+    expect_refusal(&scene, &gravel, &bed, "bed");
+    radius[1] = GRAIN_m;
+    // Two grains in the same place: the law throws them apart faster than the step can follow.
+    scene.time_step_s = 0.01;
+    at[1]             = 0.0101;
+    expect_refusal(&scene, &gravel, &bed, "time_step_s");
+}
+
+static int stop_soon(void *const context, const double done_s, const double total_s)
+{
+    int *const calls = context;
+    assert_true(done_s >= 0.0 && done_s <= total_s);
+    return ++*calls < 3;
+}
+
+static void a_dig_that_is_stopped_writes_nothing(void **state)
+{
+    (void)state;
+    const struct dig_scene    scene    = small_scene();
+    int                       calls    = 0;
+    const struct dig_progress progress = { stop_soon, &calls };
+    struct dig_bed            bed      = { .grains = 77 };
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, &progress, &bed, NULL), DIG_ESTALE);
+    assert_int_equal(bed.grains, 77);
+    assert_int_equal(calls, 3);
+
+    bed                    = pour(&scene);
+    calls                  = 0;
+    struct dig_recording r = { .rows = 77 };
+    assert_int_equal(
+        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, &progress, &r, NULL),
+        DIG_ESTALE);
+    assert_int_equal(r.rows, 77);
+    assert_int_equal(calls, 3);
+    dig_bed_finish(&bed);
+}
+
+static void pictures_are_written_where_they_are_wanted(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    double                 x[1] = { 0.03 }, y[1] = { 0.0 }, z[1] = { GRAIN_m }, r[1] = { GRAIN_m };
+    const struct dig_bed   bed   = { 1, x, y, z, r };
+    char                   dir[] = "/tmp/dig_test_XXXXXX";
+    struct dig_recording   made  = { 0 };
+    assert_non_null(mkdtemp(dir));
+    assert_int_equal(
+        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL), DIG_OK);
+    dig_recording_finish(&made);
+    const char *const name[] = { "grains", "bucket" };
+    for (int frame = 0; frame < 6; frame++) {
+        for (int k = 0; k < 2; k++) {
+            char path[128], line[64];
+            (void)snprintf(path, sizeof path, "%s/%s_%04d.vtk", dir, name[k], frame);
+            FILE *const file = fopen(path, "r");
+            assert_non_null(file);
+            assert_non_null(fgets(line, sizeof line, file));
+            assert_string_equal(line, "# vtk DataFile Version 3.0\n");
+            (void)fclose(file);
+            (void)unlink(path);
+        }
+    }
+    (void)rmdir(dir);
+    // The folder is gone: the dig says so and writes nothing.
+    made = (struct dig_recording){ .rows = 77 };
+    assert_int_equal(
+        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL), DIG_EIO);
+    assert_int_equal(made.rows, 77);
+}
+
+// Measured on beds of the reference: quiet at 3.1e-5 s for 5 MPa and 1.25e-5 s for 150 MPa, warming
+// up at 2e-5 s for 150 MPa.
+static void the_derived_step_is_short_enough_and_not_wasteful(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    assert_close(dig_time_step_s(&scene, DENSITY), STEP_s, 0.0);
+    scene.time_step_s   = 0.0;
+    const double soft_s = dig_time_step_s(&scene, DENSITY);
+    assert_true(soft_s > 2.5e-5 && soft_s < 6e-5);
+    scene.material.young_Pa = 1.5e8;
+    const double stiff_s    = dig_time_step_s(&scene, DENSITY);
+    assert_true(stiff_s > 0.8e-5 && stiff_s <= 1.25e-5);
+    // A grain half as large has half the time.
+    scene.material.diameter_m *= 0.5;
+    assert_close(dig_time_step_s(&scene, DENSITY), 0.5 * stiff_s, 1e-3 * stiff_s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dig_is_recorded_from_air_to_its_end),
+        cmocka_unit_test(the_same_dig_twice_gives_the_same_bits),
+        cmocka_unit_test(what_cannot_be_computed_is_refused_by_name),
+        cmocka_unit_test(a_dig_that_is_stopped_writes_nothing),
+        cmocka_unit_test(pictures_are_written_where_they_are_wanted),
+        cmocka_unit_test(the_derived_step_is_short_enough_and_not_wasteful),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,177 @@
+// Insertion of grains, and what is left of them once they lie.
+
+#include "tests/dem_fixture.h"
+
+#include "offline_dem/dig.h"
+#include "offline_dem/packing.h"
+
+#include <math.h>
+
+// A box of about 8 x 6 x 4 grains.
+static struct dig_scene small_scene(void)
+{
+    return (struct dig_scene){
+        .name         = "small",
+        .bucket       = { .points  = 5,
+                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
+                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
+                          .width_m = 0.028 },
+        .box          = { 0.0, 0.06, -0.0225, 0.0225, 0.0, 0.03 },
+        .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
+        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
+        .gravity_mps2 = GRAVITY,
+        .time_step_s  = STEP_s,
+        .output_s     = 0.005,
+        .trajectories = 1,
+        .trajectory   = { { .name      = "scratch",
+                            .start_x_m = 0.03,
+                            .start_z_m = 0.06,
+                            .phases    = 1,
+                            .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
+    };
+}
+
+static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+
+static void inserted_grains_are_inside_and_apart(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    const size_t           n     = dig_packing_grains(&scene);
+    double                 x[512], y[512], z[512];
+    assert_in_range(n, 100, 512);
+    // The volume poured is what fill_factor says, to a grain.
+    assert_close((double)n * GRAIN_kg / DENSITY, 0.694 * 0.06 * 0.045 * 0.03, GRAIN_kg / DENSITY);
+    assert_int_equal(dig_packing_insert(&scene, 1, n, x, y, z), DIG_OK);
+    double top_m = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        assert_true(x[i] >= GRAIN_m && x[i] <= 0.06 - GRAIN_m);
+        assert_true(fabs(y[i]) <= 0.0225 - GRAIN_m);
+        assert_true(z[i] >= GRAIN_m);
+        top_m = fmax(top_m, z[i] + GRAIN_m);
+        for (size_t j = 0; j < i; j++) {
+            assert_true(hypot(hypot(x[i] - x[j], y[i] - y[j]), z[i] - z[j]) >= 2.0 * GRAIN_m);
+        }
+    }
+    assert_true(top_m <= 0.03 * 0.694 / 0.3);
+}
+
+static void a_seed_names_a_packing(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    double                 x[3][3], y[3], z[3];
+    for (uint64_t k = 0; k < 3; k++) {
+        assert_int_equal(dig_packing_insert(&scene, k == 2 ? 8 : 7, 3, x[k], y, z), DIG_OK);
+    }
+    assert_memory_equal(x[0], x[1], sizeof x[0]);
+    assert_true(fabs(x[0][0] - x[2][0]) > 0.0);
+}
+
+static void a_column_that_is_full_grows(void **state)
+{
+    (void)state;
+    struct dig_scene scene       = small_scene();
+    scene.packing.solid_fraction = 0.45; // above what random insertion reaches
+    const size_t n               = dig_packing_grains(&scene);
+    double       x[512], y[512], z[512];
+    assert_int_equal(dig_packing_insert(&scene, 1, n, x, y, z), DIG_OK);
+    double top_m = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        top_m = fmax(top_m, z[i]);
+    }
+    assert_true(top_m > 0.03 * 0.694 / 0.45 && top_m < 2.0 * 0.03 * 0.694 / 0.45);
+}
+
+static void what_cannot_fit_is_refused_and_nothing_written(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.box.y_max_m      = scene.box.y_min_m + 1.9 * GRAIN_m;
+    double x[512] = { 0.0 }, y[512] = { 0.0 }, z[512] = { 0.0 };
+    assert_int_equal(dig_packing_insert(&scene, 1, 100, x, y, z), DIG_EUNREACHABLE);
+    scene = small_scene();
+    assert_int_equal(dig_packing_insert(&scene, 1, 512, x, y, z), DIG_EUNREACHABLE);
+    for (size_t i = 0; i < 512; i++) {
+        assert_true(fabs(x[i]) + fabs(y[i]) + fabs(z[i]) <= 0.0);
+    }
+}
+
+static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    struct dig_bed         bed;
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
+    assert_in_range(bed.grains, 100, dig_packing_grains(&scene));
+    double *const at = calloc(3 * bed.grains, sizeof *at);
+    assert_non_null(at);
+    double(*const x)[3] = (double(*)[3])at;
+    for (size_t i = 0; i < bed.grains; i++) {
+        x[i][0] = bed.x_m[i];
+        x[i][1] = bed.y_m[i];
+        x[i][2] = bed.z_m[i];
+        // Levelling lets the bed give by much less than a grain.
+        assert_true(bed.z_m[i] < 0.03 - 0.9 * GRAIN_m);
+        assert_true(bed.z_m[i] > 0.9 * GRAIN_m);
+        assert_true(bed.x_m[i] > 0.9 * GRAIN_m && bed.x_m[i] < 0.06 - 0.9 * GRAIN_m);
+        assert_true(fabs(bed.y_m[i]) < 0.0225 - 0.9 * GRAIN_m);
+    }
+    // Left alone, the floor and the walls carry it, and it does not warm up.
+    struct dig_world world = dem_world(bed.grains, (const double(*)[3])x, dem_material(0.5, 0.5));
+    world.gravity_mps2[2]  = -GRAVITY;
+    dem_add_wall(&world, 1.0, 0.0, 0.0, 0.0);
+    dem_add_wall(&world, -1.0, 0.0, 0.0, -0.06);
+    dem_add_wall(&world, 0.0, 1.0, 0.0, -0.0225);
+    dem_add_wall(&world, 0.0, -1.0, 0.0, -0.0225);
+    dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
+    dem_run(&world, 4000);
+    double early_J = 0.0, late_J = 0.0, weight_N = 0.0;
+    for (int k = 0; k < 2000; k++) {
+        dem_run(&world, 1);
+        early_J += dig_grains_kinetic_J(&world.grains);
+        weight_N -= world.on_walls.f_N[2] / 2000.0;
+    }
+    dem_run(&world, dem_is_quick() ? 2000 : 16000);
+    for (int k = 0; k < 2000; k++) {
+        dem_run(&world, 1);
+        late_J += dig_grains_kinetic_J(&world.grains);
+    }
+    const double all_N = (double)bed.grains * GRAIN_kg * GRAVITY;
+    assert_close(weight_N, all_N, 0.005 * all_N);
+    assert_true(late_J <= 2.0 * early_J);
+    // Ten thousandths of what the bed would gain by sinking a grain.
+    assert_true(late_J / 2000.0 < 1e-4 * all_N * GRAIN_m);
+    dig_world_finish(&world);
+    free(at);
+    dig_bed_finish(&bed);
+    dig_bed_finish(&bed);
+    dig_bed_finish(NULL);
+}
+
+static void pouring_twice_gives_the_same_bits(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    struct dig_bed         a, b;
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &a, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &b, NULL), DIG_OK);
+    assert_int_equal(a.grains, b.grains);
+    assert_memory_equal(a.x_m, b.x_m, a.grains * sizeof *a.x_m);
+    assert_memory_equal(a.z_m, b.z_m, a.grains * sizeof *a.z_m);
+    dig_bed_finish(&a);
+    dig_bed_finish(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(inserted_grains_are_inside_and_apart),
+        cmocka_unit_test(a_seed_names_a_packing),
+        cmocka_unit_test(a_column_that_is_full_grows),
+        cmocka_unit_test(what_cannot_fit_is_refused_and_nothing_written),
+        cmocka_unit_test(a_poured_bed_is_level_and_lies_on_its_floor),
+        cmocka_unit_test(pouring_twice_gives_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
