@@ -154,7 +154,7 @@ check-tsan: ## The threaded units under ThreadSanitizer
 check-valgrind: $(test_bins) ## The unit tests under memcheck
 	$(Q)scripts/setup.sh valgrind
 	$(Q)for t in $(test_bins); do echo "$$t"; \
-	    DIG_TEST_QUICK=1 valgrind -q --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
+	    DIG_TEST_QUICK=1 valgrind -q --child-silent-after-fork=yes --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
 
 FUZZ_S ?= 60
 fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S seconds
