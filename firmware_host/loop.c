@@ -40,17 +40,18 @@ static void take_sample(struct dig_loop *const loop, const struct dig_sample *co
 static void hand_on(struct dig_loop *const loop, const int64_t now_ns, const double lives_s)
 {
     struct dig_outlook *const outlook = &loop->outlook;
-    outlook->time_ns                  = now_ns;
+    outlook->time_ns                  = loop->estimate.time_ns;
     outlook->expires_ns               = now_ns + ns(lives_s);
     outlook->dig_count                = loop->match_dig;
     dig_latest_put(loop->ports.outlook, outlook);
 }
 
-// In the air, what each of the table's digs would resist with, one trajectory after the other.
+// In the air, what each of the table's digs would resist with, one trajectory after the other. Not
+// in a tick that has just said that a dig is over: the slot holds one outlook.
 static void look_ahead(struct dig_loop *const loop, const int64_t now_ns)
 {
     if (loop->settings.trajectories == 0 || loop->estimate.phase != DIG_PHASE_AIR ||
-        now_ns - loop->ahead_ns < ns(loop->settings.ahead_s)) {
+        loop->predicted_ns == now_ns || now_ns - loop->ahead_ns < ns(loop->settings.ahead_s)) {
         return;
     }
     loop->ahead = (loop->ahead + 1) % loop->settings.trajectories;

@@ -253,21 +253,51 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     bench_destroy(b);
 }
 
-static void no_prediction_is_made_in_the_air(void **state)
+// The bucket held in the air for a while, with a gravel known or not.
+static int outlooks_in_the_air(struct bench *const b, const struct dig_match *const match,
+                               bool seen[DIG_TRAJECTORY_MAX])
+{
+    int                outlooks = 0;
+    struct dig_outlook outlook;
+    if (match != NULL) {
+        dig_latest_put(&b->match, match);
+    }
+    for (int64_t i = 0; i < 400; i++) {
+        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        assert_true(dig_ring_push(&b->readings, &r));
+        dig_loop_tick(&b->loop, 1001 * MS + i * 5 * MS);
+        if (dig_latest_take(&b->outlook, &outlook)) {
+            outlooks++;
+            assert_true(outlook.prediction.valid);
+            assert_close(outlook.prediction.from_progress, 0.0, 0.0);
+            assert_close(outlook.prediction.to_progress, 1.0, 0.0);
+            assert_true(outlook.time_ns == 1000 * MS + i * 5 * MS);
+            assert_true(outlook.expires_ns > outlook.time_ns);
+            seen[outlook.prediction.trajectory] = true;
+        }
+    }
+    return outlooks;
+}
+
+static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void **state)
 {
     (void)state;
     struct bench *const    b     = bench_create();
     const struct dig_match match = { .valid = true, .gravel = b->gravel[3], .nearest = 3 };
-    struct dig_outlook     outlook;
-    dig_latest_put(&b->match, &match);
-    for (int64_t i = 0; i < 100; i++) {
-        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
-        assert_true(dig_ring_push(&b->readings, &r));
-        dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
-    }
-    assert_false(dig_latest_take(&b->match, &(struct dig_match){ 0 }));
-    assert_false(dig_latest_take(&b->outlook, &outlook));
+    bool                   seen[DIG_TRAJECTORY_MAX] = { false };
+    b->loop.settings.ahead_s                        = 0.5;
+    b->loop.settings.trajectories                   = (int)b->set.trajectories;
+    assert_int_equal(outlooks_in_the_air(b, NULL, seen), 0);
     bench_destroy(b);
+
+    struct bench *const known         = bench_create();
+    known->loop.settings.ahead_s      = 0.5;
+    known->loop.settings.trajectories = (int)known->set.trajectories;
+    assert_in_range(outlooks_in_the_air(known, &match, seen), 3, 5);
+    for (size_t t = 0; t < known->set.trajectories; t++) {
+        assert_true(seen[t]);
+    }
+    bench_destroy(known);
 }
 
 static void a_tick_allocates_nothing(void **state)
@@ -346,7 +376,7 @@ int main(void)
         cmocka_unit_test(silence_is_missing_after_the_stale_time_only),
         cmocka_unit_test(a_publisher_that_does_not_keep_up_is_counted_not_waited_for),
         cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),
-        cmocka_unit_test(no_prediction_is_made_in_the_air),
+        cmocka_unit_test(in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known),
         cmocka_unit_test(a_tick_allocates_nothing),
         cmocka_unit_test(the_loop_runs_beside_its_neighbours),
     };
