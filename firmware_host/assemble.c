@@ -112,8 +112,6 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
     const int64_t time_ns = machine_time(a, reading->time_ns);
     const bool    news    = watch_alive(a, reading, time_ns);
     if (a->frozen) {
-        // What a dead sender repeats must not pair up with what comes when it lives again.
-        a->fresh[reading->group] = false;
         a->drops.frozen++;
         return false;
     }
