@@ -171,6 +171,26 @@ static void a_step_that_is_too_long_is_noticed(void **state)
     dig_world_finish(&world);
 }
 
+// Two grains that turn about the same axis like one body do not roll on each other: no torque, and
+// the tangential slip is what gears would feel, not what rolling friction is about.
+static void grains_that_turn_alike_do_not_roll(void **state)
+{
+    (void)state;
+    const double     x[2][3] = { { 0.0, 0.0, 0.0 }, { 1.99 * GRAIN_m, 0.0, 0.0 } };
+    struct dig_world world   = dem_world(2, x, dem_material(0.0, 0.5));
+    for (int i = 0; i < 2; i++) {
+        world.grains.motion[i].w_radps[2] = 20.0;
+    }
+    dem_run(&world, 5);
+    assert_close(dem_grain(&world, 0)->w_radps[2], 20.0, 1e-12);
+    // Against each other they do, and both are slowed alike.
+    dem_grain(&world, 1)->w_radps[2] = -20.0;
+    dem_run(&world, 1);
+    assert_true(dem_grain(&world, 0)->w_radps[2] < 19.99);
+    assert_close(dem_grain(&world, 1)->w_radps[2], -dem_grain(&world, 0)->w_radps[2], 1e-12);
+    dig_world_finish(&world);
+}
+
 static void grains_taken_out_leave_the_others_contacts_alone(void **state)
 {
     (void)state;
@@ -213,6 +233,7 @@ int main(void)
         cmocka_unit_test(without_damping_and_friction_energy_comes_back),
         cmocka_unit_test(lists_can_be_remade_at_any_time),
         cmocka_unit_test(a_step_that_is_too_long_is_noticed),
+        cmocka_unit_test(grains_that_turn_alike_do_not_roll),
         cmocka_unit_test(grains_taken_out_leave_the_others_contacts_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
