@@ -115,19 +115,34 @@ static size_t index_on(const struct dig_curve_set *const set, const enum dig_axi
     return at;
 }
 
-// The nearest entry and its best neighbours along the axes: a ridge may pass between two entries of
-// which the nearest is not the better start.
-static struct starts choose_starts(const struct problem *const problem)
+static void position_of(const struct problem *const problem, const struct dig_gravel *const gravel,
+                        double x[DIG_AXES])
+{
+    for (unsigned d = 0; d < problem->dimensions; d++) {
+        const enum dig_axis axis = problem->axis[d];
+        x[d]                     = dig_axis_position(problem->set, axis, gravel->value[axis]);
+    }
+}
+
+// The nearest entry; the middle of the posterior, which lies in the right valley where there are
+// several; and the nearest's best neighbours along the axes: a ridge may pass between two entries
+// of which the nearest is not the better start.
+static struct starts choose_starts(const struct problem *const    problem,
+                                   const struct dig_gravel *const middle)
 {
     const struct dig_curve_set *const set = problem->set;
 
     double nearest[DIG_AXES] = { 0.0 };
-    for (unsigned d = 0; d < problem->dimensions; d++) {
-        const enum dig_axis axis = problem->axis[d];
-        nearest[d]               = dig_axis_position(set, axis, problem->fixed.value[axis]);
-    }
+    position_of(problem, &problem->fixed, nearest);
     struct starts starts = { .count = 0 };
     keep_start(&starts, 0.0, nearest);
+
+    const double at_middle = distance_at(problem, middle).distance;
+    if (at_middle < no_curve) {
+        double x[DIG_AXES] = { 0.0 };
+        position_of(problem, middle, x);
+        keep_start(&starts, at_middle, x);
+    }
 
     for (unsigned side = 0; side < 2 * problem->dimensions; side++) {
         const unsigned      d    = side / 2;
@@ -195,11 +210,17 @@ enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
         return DIG_EINVAL;
     }
 
-    struct dig_match refined = *match;
-    struct problem   problem = make_problem(set, observation, match);
-    double           best    = match->nearest_distance;
+    // A table of scattered points has no cell to be unsure in: the nearest entry stands.
+    struct dig_match      refined = *match;
+    const enum dig_status judged  = dig_posterior_fill(set, observation, &refined);
+    if (judged != DIG_OK && judged != DIG_ENOMATCH) {
+        return judged;
+    }
+
+    struct problem problem = make_problem(set, observation, match);
+    double         best    = match->nearest_distance;
     if (problem.dimensions > 0) {
-        const struct starts starts         = choose_starts(&problem);
+        const struct starts starts         = choose_starts(&problem, &refined.mean);
         double              x[DIG_AXES]    = { 0.0 };
         double              step[DIG_AXES] = { 0.0 };
         for (unsigned d = 0; d < problem.dimensions; d++) {
@@ -225,10 +246,11 @@ enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
         refined.outside     = at_best.distance > match->outside_floors * at_best.noise_floor;
     }
 
-    // A table of scattered points has no cell to be unsure in: the nearest entry stands.
-    const enum dig_status status = dig_posterior_fill(set, observation, &refined);
-    if (status != DIG_OK && status != DIG_ENOMATCH) {
-        return status;
+    // The smallest distance and the posterior weigh errors differently; an interval that left out
+    // the gravel it belongs to would only puzzle.
+    for (int a = 0; a < DIG_AXES; a++) {
+        refined.low.value[a]  = fmin(refined.low.value[a], refined.gravel.value[a]);
+        refined.high.value[a] = fmax(refined.high.value[a], refined.gravel.value[a]);
     }
     *match = refined;
     return DIG_OK;

@@ -38,10 +38,11 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set   *s
                                                  const struct dig_observation *observation,
                                                  double outside_floors, struct dig_match *match);
 
-/// From a nearest match on between the grid points, and the posterior of the gravel; judges again
-/// whether the gravel is outside the table. Allocates (in NLopt); never call it in the tick. At
-/// most max_evaluations of the distance, then the posterior on a fixed grid: some ten milliseconds
-/// and 200 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;
+/// From a nearest match on between the grid points, and the posterior of the gravel (low and high
+/// widened where needed to hold the gravel of the smallest distance); judges again whether the
+/// gravel is outside the table. Allocates (in NLopt); never call it in the tick. At most
+/// max_evaluations of the distance, then the posterior on a fixed grid: some ten milliseconds and
+/// 200 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;
 /// DIG_ENOMEM. Then *match is unchanged.
 DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set   *set,
                                               const struct dig_observation *observation,
