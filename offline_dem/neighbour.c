@@ -136,7 +136,8 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
     const double        far_m    = radius_m + radius_max_m + 2.0 * margin_m[i];
     const double        own_m    = radius_m + margin_m[i];
     size_t              count    = *used;
-    ptrdiff_t           low[3], high[3];
+    ptrdiff_t           low[3];
+    ptrdiff_t           high[3];
     for (int a = 0; a < 3; a++) {
         low[a]  = clamp_cell(g, a, x[a] - far_m);
         high[a] = clamp_cell(g, a, x[a] + far_m);
@@ -188,7 +189,8 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
     }
 
     // Cells as wide as the reach of a resting pair: most grains then search 27 cells.
-    double radius_max_m = 0.0, margin_min_m = INFINITY;
+    double radius_max_m = 0.0;
+    double margin_min_m = INFINITY;
     for (size_t i = 0; i < n; i++) {
         radius_max_m = fmax(radius_max_m, grains->kind[grains->of[i]].radius_m);
         margin_min_m = fmin(margin_min_m, margin_m[i]);

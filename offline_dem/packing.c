@@ -32,7 +32,8 @@ size_t dig_packing_grains(const struct dig_scene *const scene)
 static bool is_free(const struct cells *const cells, const ptrdiff_t at[3], const double p[3],
                     const double d_m, const double *const position[3])
 {
-    ptrdiff_t low[3], high[3];
+    ptrdiff_t low[3];
+    ptrdiff_t high[3];
     for (int a = 0; a < 3; a++) {
         low[a]  = at[a] > 2 ? at[a] - 2 : 0;
         high[a] = at[a] + 2 < cells->count[a] ? at[a] + 2 : cells->count[a] - 1;

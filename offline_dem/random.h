@@ -12,10 +12,10 @@ struct dig_random {
 
 static inline uint64_t dig_random_next(struct dig_random *const random)
 {
-    random->state += 0x9E3779B97F4A7C15u;
+    random->state += 0x9E3779B97F4A7C15U;
     uint64_t z = random->state;
-    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
     return z ^ (z >> 31);
 }
 

@@ -62,7 +62,6 @@ static void resolve_edges(const struct dig_tool *const tool, const double radius
             const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
             if (tie && (remembers(list, near->contact[p]) ||
                         (!remembers(list, near->contact[q]) && p < q))) {
-                hand_over(list, near->contact[q], near->contact[p]);
                 near->counts[q] = false;
                 continue;
             }
@@ -158,7 +157,8 @@ static void apply(struct dig_world *const w, const struct dig_contacts *const li
 {
     for (size_t c = 0; c < count; c++) {
         struct dig_load *const load = &w->grains.load[list->i[first + c]];
-        double                 f[3], t[3];
+        double                 f[3];
+        double                 t[3];
         for (int k = 0; k < 3; k++) {
             f[k] = block->out[k][c];
             t[k] = block->out[6 + k][c];

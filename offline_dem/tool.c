@@ -63,7 +63,8 @@ static bool is_inside(const struct dig_bucket *const bucket, const double x, con
 {
     bool inside = false;
     for (size_t a = 0, b = bucket->points - 1; a < bucket->points; b = a++) {
-        const double za = bucket->z_m[a], zb = bucket->z_m[b];
+        const double za = bucket->z_m[a];
+        const double zb = bucket->z_m[b];
         if ((za > z) != (zb > z) &&
             x < bucket->x_m[a] + (z - za) / (zb - za) * (bucket->x_m[b] - bucket->x_m[a])) {
             inside = !inside;
@@ -82,7 +83,8 @@ static void closest_on_polygon(const struct dig_bucket *const bucket, const doub
     }
     double best_m2 = INFINITY;
     for (size_t a = 0, b = bucket->points - 1; a < bucket->points; b = a++) {
-        double ex, ez;
+        double ex;
+        double ez;
         closest_on_segment(bucket, b, a, x, z, &ex, &ez);
         const double m2 = (x - ex) * (x - ex) + (z - ez) * (z - ez);
         if (m2 < best_m2) {
