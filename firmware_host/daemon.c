@@ -269,10 +269,10 @@ static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signa
     }
 }
 
-enum dig_status dig_daemon_run(struct dig_daemon *const d, void (*const say)(const char *line),
-                               struct dig_error *const  error)
+enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_voice *const voice,
+                               struct dig_error *const error)
 {
-    assert(d != NULL && say != NULL);
+    assert(d != NULL && voice != NULL && voice->say != NULL);
 
     // Blocked before the first thread starts, so that every thread inherits it and only we see
     // them.
@@ -289,7 +289,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, void (*const say)(con
     (void)pthread_attr_init(&attributes);
     (void)pthread_attr_setstacksize(&attributes, STACK_BYTES);
     (void)sem_init(&d->granted, 0, 0);
-    d->publisher.say = say;
+    d->publisher.voice = *voice;
 
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < sizeof mains / sizeof mains[0] && status == DIG_OK; i++) {
@@ -306,7 +306,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, void (*const say)(con
             }
             d->publisher.grant = d->grant;
             dig_rt_describe(&d->loaded.config.realtime, &d->grant, sizeof line, line);
-            say(line);
+            voice->say(line);
         }
     }
     (void)pthread_attr_destroy(&attributes);

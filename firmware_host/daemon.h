@@ -9,6 +9,7 @@
 
 #include "core/machine.h"
 #include "firmware_host/config.h"
+#include "firmware_host/publish.h"
 #include "firmware_host/signal_map.h"
 
 struct dig_daemon;
@@ -25,9 +26,9 @@ void dig_daemon_destroy(struct dig_daemon *daemon);
 /// What was loaded, for people, as lines through say.
 void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char *line));
 
-/// Runs until SIGTERM or SIGINT, or until a replay has ended and all of it is published. Lines for
-/// people go through say. DIG_EIO: a thread could not be started.
+/// Runs until SIGTERM or SIGINT, or until a replay has ended and all of it is published. DIG_EIO: a
+/// thread could not be started.
 DIG_MUST_CHECK enum dig_status
-dig_daemon_run(struct dig_daemon *daemon, void (*say)(const char *line), struct dig_error *error);
+dig_daemon_run(struct dig_daemon *daemon, const struct dig_voice *voice, struct dig_error *error);
 
 #endif // DIG_FIRMWARE_HOST_DAEMON_H

@@ -3,20 +3,20 @@
 #include "firmware_host/daemon.h"
 
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
-#include <string.h>
+#include <unistd.h>
 
 enum { EXIT_DONE, EXIT_FAILED, EXIT_USAGE };
 
 static const char help[] =
     "Usage: digsightd -c CONFIG.yaml [--check]\n"
     "\n"
-    "Reads cylinder pressures and joint angles from CAN or Modbus (or plays a recording), "
-    "computes\n"
-    "the soil's moment on the bucket, identifies the gravel from a simple dig, and publishes the\n"
-    "predicted resistance of the digs that follow over LCM. It only listens: no CAN frame is "
-    "sent,\n"
-    "and of Modbus only the read functions 3 and 4 are used. Its output is advice.\n"
+    "Reads cylinder pressures and joint angles from CAN or Modbus (or plays a recording),\n"
+    "computes the soil's moment on the bucket, identifies the gravel from a simple dig, and\n"
+    "publishes the predicted resistance of the digs that follow over LCM. It only listens: no\n"
+    "CAN frame is sent, and of Modbus only the read functions 3 and 4 are used. Its output is\n"
+    "advice.\n"
     "\n"
     "  -c, --config FILE  the configuration (docs/formats.md)\n"
     "      --check        load everything the configuration names, say what was found, exit\n"
@@ -30,12 +30,22 @@ static const char help[] =
     "Examples:\n"
     "  digsightd -c config/digsightd.yaml --check\n"
     "  digsightd -c config/digsightd_can.yaml\n"
-    "  lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm    # record what it "
-    "publishes\n";
+    "  lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm    # record it\n";
 
 static void say(const char *const line)
 {
     (void)fprintf(stderr, "digsightd: %s\n", line);
+}
+
+// On a terminal the last line shows where things stand; a line that is said goes above it.
+static void say_above(const char *const line)
+{
+    (void)fprintf(stderr, "\r\033[Kdigsightd: %s\n", line);
+}
+
+static void show(const char *const line)
+{
+    (void)fprintf(stderr, "\r\033[K%s", line);
 }
 
 static void tell(const char *const line)
@@ -84,7 +94,11 @@ int main(const int argc, char *argv[])
     }
     dig_daemon_describe(daemon, check ? tell : say);
     if (!check) {
-        status = dig_daemon_run(daemon, say, &error);
+        const bool             terminal = isatty(STDERR_FILENO) != 0;
+        const struct dig_voice voice    = { .say  = terminal ? say_above : say,
+                                            .show = terminal ? show : NULL };
+        status                          = dig_daemon_run(daemon, &voice, &error);
+        (void)fputs(terminal ? "\n" : "", stderr);
     }
     dig_daemon_destroy(daemon);
     if (status != DIG_OK) {

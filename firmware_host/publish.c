@@ -21,7 +21,7 @@ __attribute__((format(printf, 2, 3))) static void say(const struct dig_publisher
     // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
     (void)vsnprintf(line, sizeof line, format, args);
     va_end(args);
-    p->say(line);
+    p->voice.say(line);
 }
 
 // Joins LCM, or says why not and tries again later.
@@ -69,6 +69,9 @@ static void publish_records(struct dig_publisher *const p)
     struct dig_record            record;
     int                          burst = 0;
     while (dig_ring_pop(p->records, &record)) {
+        if (record.has_estimate) {
+            p->estimate = record.estimate;
+        }
         const bool due = p->records_seen++ % (uint64_t)p->config->estimate_every == 0;
         if (due && p->output != NULL) {
             check_sent(p, dig_output_record(p->output, p->set, &record));
@@ -188,6 +191,31 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     }
 }
 
+static void show(struct dig_publisher *const p, const int64_t now_ns)
+{
+    static const char *const phases[] = { "air", "contact", "dig", "exit" };
+    if (p->voice.show == NULL || now_ns < p->next_show_ns) {
+        return;
+    }
+    p->next_show_ns                     = now_ns + NS_PER_S / 2;
+    const struct dig_estimate *const e  = &p->estimate;
+    const bool                       on = e->trajectory >= 0 && p->records_seen > 0;
+    char                             gravel[64];
+    char                             line[256];
+    (void)snprintf(gravel, sizeof gravel, "gravel not known");
+    if (p->any_result) {
+        const struct dig_gravel *const g = &p->result.match.gravel;
+        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3",
+                       g->value[DIG_AXIS_FRICTION], g->value[DIG_AXIS_ROLLING],
+                       g->value[DIG_AXIS_DENSITY_kgpm3]);
+    }
+    (void)snprintf(line, sizeof line, "%s | %s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
+                   p->state, phases[e->phase], on ? " " : "",
+                   on ? p->set->trajectory[e->trajectory].name : "", 1e-3 * e->wrench.My_Nm, gravel,
+                   p->health.frames);
+    p->voice.show(line);
+}
+
 static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
 {
     const int64_t interval_ns = dig_notify_watchdog_ns();
@@ -201,7 +229,7 @@ static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
 
 void dig_publisher_run(struct dig_publisher *const p)
 {
-    assert(p != NULL && p->say != NULL);
+    assert(p != NULL && p->voice.say != NULL);
     const struct timespec pause    = { .tv_nsec = (long)(p->config->tick_s * 1e9) };
     bool                  stopping = false;
     while (!stopping) {
@@ -214,6 +242,7 @@ void dig_publisher_run(struct dig_publisher *const p)
         publish_matches(p, now_ns);
         publish_health(p, now_ns, stopping);
         feed_watchdog(p, now_ns);
+        show(p, now_ns);
         if (!stopping) {
             (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, NULL);
         }

@@ -11,6 +11,13 @@
 #define DIG_STATE_RUNNING  "running"
 #define DIG_STATE_STOPPING "stopping"
 
+/// How the daemon speaks to a person. say: every line worth an eye, at most a few a second. show:
+/// where things stand, twice a second, each line in place of the one before; NULL: no one looks.
+struct dig_voice {
+    void (*say)(const char *line);
+    void (*show)(const char *line);
+};
+
 /// Its other ends are the tick's, the matcher's and the input's.
 struct dig_publisher {
     const struct dig_config    *config;
@@ -25,8 +32,7 @@ struct dig_publisher {
     struct dig_latest          *fit_notes;   // in
     const atomic_bool          *stop;
     struct dig_rt_grant         grant;
-    /// Called for every line worth a person's eye, on this thread; at most a few a second.
-    void (*say)(const char *line);
+    struct dig_voice            voice; // used on this thread
 
     // the thread's own
     struct dig_output    *output;
@@ -38,7 +44,9 @@ struct dig_publisher {
     int64_t               next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_say_ns;
     int64_t               lcm_pause_ns;
     int64_t               said_drops;
+    int64_t               next_show_ns;
     uint64_t              records_seen;
+    struct dig_estimate   estimate; // the last one
 };
 
 /// The thread: returns after *stop, when all that was left is published.

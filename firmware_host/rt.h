@@ -17,8 +17,8 @@ struct dig_rt_grant {
     bool realtime, memory_locked, pinned;
 };
 
-/// For the calling thread (priority, cpu) and the process (memory). Touches 64 KiB of stack, so that
-/// no page of it is fetched in a tick.
+/// For the calling thread (priority, cpu) and the process (memory). Touches 64 KiB of stack, so
+/// that no page of it is fetched in a tick.
 struct dig_rt_grant dig_rt_enter(const struct dig_rt_settings *settings);
 
 /// One line for people: "SCHED_FIFO 80 granted, memory locked, any CPU".
