@@ -6,7 +6,12 @@
 if [ "${1-}" != inside ]; then
     digs
     DIG_DATA=$work tools/vcan/with-vcan -t 200 "$0" inside
-    exit
+    status=$?
+    if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
+        echo "0 passed, 0 failed, 1 skipped (User Mode Linux does not start here)"
+        exit 0
+    fi
+    exit "$status"
 fi
 cp "$DIG_DATA"/* "$work"
 
