@@ -1,5 +1,6 @@
 #include "files/lcm_log.h"
 
+#include "files/lcm_layout.h"
 #include "messages/digsight_sample_t.h"
 
 #include <assert.h>
@@ -124,6 +125,13 @@ static enum dig_status refuse_message(const struct reading *const r,
                          r->path, event->number, event->channel);
 }
 
+// The fields of messages/*.lcm, in their order; files/lcm_layout.h says what the letters mean.
+static const char sample_layout[]     = "884DB";
+static const char estimate_layout[]   = "881188888888814s88";
+static const char match_layout[]      = "88114ss4888888888888888";
+static const char prediction_layout[] = "8818s48884DDDD88";
+static const char health_layout[]     = "88sss11888888888888448";
+
 struct rows {
     size_t             count, room;
     struct dig_sample *row;
@@ -134,7 +142,8 @@ static enum dig_status add_row(const struct reading *const r, const struct event
                                struct rows *const rows)
 {
     digsight_sample_t message;
-    if (digsight_sample_t_decode(event->data, 0, event->size, &message) < 0) {
+    if (!dig_lcm_fits(sample_layout, event->data, (size_t)event->size) ||
+        digsight_sample_t_decode(event->data, 0, event->size, &message) < 0) {
         return refuse_message(r, event);
     }
     enum dig_status status = DIG_OK;
@@ -212,7 +221,8 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
         if (reader->type == NULL) {                                                                \
             return DIG_OK;                                                                         \
         }                                                                                          \
-        if (digsight_##type##_t_decode(event->data, 0, event->size, &message) < 0) {               \
+        if (!dig_lcm_fits(type##_layout, event->data, (size_t)event->size) ||                      \
+            digsight_##type##_t_decode(event->data, 0, event->size, &message) < 0) {               \
             return refuse_message(r, event);                                                       \
         }                                                                                          \
         reader->type(reader->context, event->time_us, &message);                                   \

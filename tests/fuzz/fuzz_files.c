@@ -98,9 +98,22 @@ static enum dig_status read_config(const char *const path, struct dig_error *con
     return dig_config_read(path, &config, e);
 }
 
+#define IGNORE(type)                                                                               \
+    static void ignore_##type(void *context, int64_t time_us, const digsight_##type##_t *message)  \
+    {                                                                                              \
+        (void)context, (void)time_us, (void)message;                                               \
+    }
+IGNORE(estimate)
+IGNORE(match)
+IGNORE(prediction)
+IGNORE(health)
+
 static enum dig_status read_log(const char *const path, struct dig_error *const e)
 {
-    const struct dig_lcm_log_reader all    = { .context = NULL };
+    const struct dig_lcm_log_reader all    = { .estimate   = ignore_estimate,
+                                               .match      = ignore_match,
+                                               .prediction = ignore_prediction,
+                                               .health     = ignore_health };
     struct dig_machine_recording    r      = { 0 };
     const enum dig_status           status = dig_lcm_log_read(path, &r, e);
     dig_machine_recording_finish(&r);
