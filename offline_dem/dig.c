@@ -108,6 +108,10 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
     if (status != DIG_OK) {
         return status;
     }
+    if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
+                             trajectory->phases, DIG_PHASES_MAX);
+    }
     struct dig_grains grains;
     status = dig_grains_create(bed->grains, bed->x_m, bed->y_m, bed->z_m, bed->radius_m,
                                gravel->value[DIG_AXIS_DENSITY_kgpm3], &grains);

@@ -25,8 +25,10 @@ struct dig_progress {
     void *context;
 };
 
-/// Pours and levels a bed of this gravel. Minutes of one core for 7000 grains are normal; seconds
-/// with a fast machine. DIG_EINVAL when the scene or the gravel cannot be computed.
+/// Pours and levels a bed of this gravel: 4 s of one core with AVX-512 for 7000 grains, half a
+/// minute without. *bed and *error (which may be NULL) as everywhere: the bed is written on success
+/// only. DIG_EINVAL when the scene or the gravel cannot be computed or the scene's time step is too
+/// long for it, DIG_EUNREACHABLE when the grains do not fit, DIG_ESTALE when stopped, DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
@@ -34,14 +36,17 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
 
 void dig_bed_finish(struct dig_bed *bed);
 
-/// Drives the bucket through the trajectory in a copy of the bed. vtk_dir NULL: no pictures.
+/// Drives the bucket through the trajectory in a copy of the bed. 12 s of one core with AVX-512 for
+/// 3 s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging
+/// (offline_dem/vtk.h); NULL: none. Refusals as above, a bed that cannot be and a trajectory
+/// without phases among them, and DIG_EIO when a picture cannot be written.
 DIG_MUST_CHECK enum dig_status
 dig_dig_run(const struct dig_scene *scene, const struct dig_gravel *gravel,
             const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
             const struct dig_progress *progress, struct dig_recording *recording,
             struct dig_error *error);
 
-/// The step a dig is computed with, s: the scene's, or derived from the Rayleigh and contact times.
+/// The step a dig is computed with, s: the scene's, or derived (docs/numerics_dem.md).
 double dig_time_step_s(const struct dig_scene *scene, double density_kgpm3);
 
 #endif // DIG_OFFLINE_DEM_DIG_H

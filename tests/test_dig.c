@@ -138,6 +138,28 @@ static void what_cannot_be_computed_is_refused_by_name(void **state)
     expect_refusal(&scene, &gravel, &bed, "time_step_s");
 }
 
+static void a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not(void **state)
+{
+    (void)state;
+    struct dig_scene     scene = small_scene();
+    const struct dig_bed empty = { 0 };
+    struct dig_recording r     = { 0 };
+    assert_int_equal(
+        dig_dig_run(&scene, &gravel, &empty, &scene.trajectory[0], NULL, NULL, &r, NULL), DIG_OK);
+    for (size_t k = 0; k < r.rows; k++) {
+        assert_close(r.row[k].Fx_N, 0.0, 0.0);
+        assert_close(r.row[k].My_Nm, 0.0, 0.0);
+    }
+    dig_recording_finish(&r);
+
+    struct dig_error            error = { { 0 } };
+    const struct dig_trajectory none  = { .name = "none" };
+    assert_int_equal(dig_dig_run(&scene, &gravel, &empty, &none, NULL, NULL, &r, &error),
+                     DIG_EINVAL);
+    assert_non_null(strstr(error.text, "trajectory"));
+    assert_null(r.row);
+}
+
 static int stop_soon(void *const context, const double done_s, const double total_s)
 {
     int *const calls = context;
@@ -224,6 +246,7 @@ int main(void)
         cmocka_unit_test(a_dig_is_recorded_from_air_to_its_end),
         cmocka_unit_test(the_same_dig_twice_gives_the_same_bits),
         cmocka_unit_test(what_cannot_be_computed_is_refused_by_name),
+        cmocka_unit_test(a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not),
         cmocka_unit_test(a_dig_that_is_stopped_writes_nothing),
         cmocka_unit_test(pictures_are_written_where_they_are_wanted),
         cmocka_unit_test(the_derived_step_is_short_enough_and_not_wasteful),
