@@ -172,8 +172,8 @@ coverage: ## Line and branch coverage per source file
 lint: layers $(BUILD)/messages/.made ## Layering, the compiler's analyzer, clang-tidy
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
-	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -n 1 sh -c \
-	    'clang-tidy --quiet "$$@" -- $(STD) $(lint_flags) 2>/dev/null' clang-tidy
+	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
+	    clang-tidy --quiet {} -- $(STD) $(lint_flags) 2>/dev/null
 
 layers: ## Fail on an include that points the wrong way
 	$(Q)./scripts/check_layers.sh

@@ -11,49 +11,43 @@ static int64_t int32_at(const uint8_t data[])
     return bits <= INT32_MAX ? (int64_t)bits : (int64_t)bits - ((int64_t)1 << 32);
 }
 
+// What the next field takes of the `left` bytes at data; false when its number cannot be. *count is
+// how many elements the arrays that follow have.
+static bool field_bytes(const char field, const uint8_t data[], const size_t left,
+                        size_t *const count, size_t *const bytes)
+{
+    const int64_t number = left >= 4 ? int32_at(data) : -1;
+    switch (field) {
+    case '8': *bytes = 8; return true;
+    case '1': *bytes = 1; return true;
+    case 'D': *bytes = 8 * *count; return true;
+    case 'B': *bytes = *count; return true;
+    case '4':
+        *bytes = 4;
+        *count = number > 0 ? (size_t)number : 0;
+        return number >= 0 && (size_t)number <= INT32_MAX / 8;
+    case 's':
+        // A string ends with its NUL, which its length counts.
+        *bytes = 4 + (size_t)number;
+        return number >= 1 && *bytes <= left && data[*bytes - 1] == '\0';
+    default: assert(!"a layout has no such field"); return false;
+    }
+}
+
 bool dig_lcm_fits(const char *const layout, const uint8_t data[], const size_t size)
 {
     assert(layout != NULL && data != NULL);
+    if (size < FINGERPRINT_BYTES) {
+        return false;
+    }
     size_t at    = FINGERPRINT_BYTES;
     size_t count = 0;
     for (const char *field = layout; *field != '\0'; field++) {
-        if (at > size) {
+        size_t bytes = 0;
+        if (!field_bytes(*field, data + at, size - at, &count, &bytes) || bytes > size - at) {
             return false;
         }
-        const size_t left = size - at;
-        size_t       need = 0;
-        switch (*field) {
-        case '8': need = 8; break;
-        case '1': need = 1; break;
-        case '4':
-        case 's': {
-            if (left < 4) {
-                return false;
-            }
-            const int64_t number = int32_at(data + at);
-            if (number < 0 || number > (int64_t)size) {
-                return false;
-            }
-            need = 4;
-            if (*field == '4') {
-                count = (size_t)number;
-                break;
-            }
-            // A string ends with its NUL, which its length counts.
-            need += (size_t)number;
-            if (number < 1 || need > left || data[at + need - 1] != '\0') {
-                return false;
-            }
-            break;
-        }
-        case 'D': need = 8 * count; break;
-        case 'B': need = count; break;
-        default: assert(!"a layout has no such field"); return false;
-        }
-        if (need > left) {
-            return false;
-        }
-        at += need;
+        at += bytes;
     }
     return at == size;
 }
