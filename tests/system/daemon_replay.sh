@@ -37,4 +37,11 @@ log again
 "$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
 read_log again
 check "the log of the daemon is accepted as a recording and gives the gravel again" identified "$work/again.txt"
+"$BIN/digreport" --table "$work/table.sqlite" --machine "$machine" --truth .5,.4,2200 --recording "$work/simpleA.csv" \
+    --recording "$work/actual.csv" --html "$work/page.html" --json "$work/page.json" "a replay=$work/csv.lcm" \
+    >"$work/report.txt" 2>"$work/report.err"
+check "digreport finds the dig that identified and the one that was predicted" [ $? = 0 ]
+check "and that the prediction was right" \
+    within "$(sed -nE 's/.*"error":([0-9.e-]+),.*/\1/p' "$work/page.json")" 0 0.1
+check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
 finish
