@@ -40,7 +40,7 @@ messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
-threaded_tests := $(wildcard tests/test_handoff.c tests/test_loop.c tests/test_rig_serve_modbus.c)
+threaded_tests := $(shell grep -l pthread tests/test_*.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) $(tool_parts) \
              $(wildcard firmware_host/digsightd.c tools/rig/digrig.c)
@@ -51,7 +51,9 @@ libs      := $(BUILD)/libdig_rig.a $(foreach m,$(modules),$(BUILD)/libdig_$(m).a
 bins      := $(patsubst tools/%.c,$(BUILD)/bin/%,$(tool_src)) \
              $(if $(wildcard tools/rig/digrig.c),$(BUILD)/bin/digrig) \
              $(if $(wildcard firmware_host/digsightd.c),$(BUILD)/bin/digsightd)
-test_bins := $(patsubst tests/%.c,$(BUILD)/tests/%,$(test_src))
+# What is built and run; a target may ask for fewer.
+tested    := $(test_src)
+test_bins  = $(patsubst tests/%.c,$(BUILD)/tests/%,$(tested))
 msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
@@ -148,7 +150,7 @@ check-asan: ## The unit tests under AddressSanitizer and UBSan
 	    CFLAGS="$(ASAN_FLAGS)"
 
 check-tsan: ## The threaded units under ThreadSanitizer
-	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/tsan test_src="$(threaded_tests)" \
+	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/tsan tested="$(threaded_tests)" \
 	    CFLAGS="-O1 -g -fsanitize=thread"
 
 check-valgrind: $(test_bins) ## The unit tests under memcheck
