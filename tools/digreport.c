@@ -331,6 +331,8 @@ static enum dig_status fill_run(const struct options *const       options,
     run->distance    = said.distance;
     fill_dig(&run->simple, set, &simple);
     fill_dig(&run->real, set, &real);
+    (void)snprintf(run->dig, sizeof run->dig, "%s identified the gravel, then %s was predicted",
+                   run->simple.trajectory, run->real.trajectory);
 
     struct dig_curve curve;
     if (dig_match_interpolate(set, &said.gravel, (size_t)simple.trajectory, &curve) != DIG_OK) {
