@@ -20,7 +20,8 @@ $(jar_file): $(wildcard messages/*.lcm)
 	    $$(find $(BUILD)/java/src -name '*.java' 2>/dev/null)
 	$(Q)$(JAR) cf $@ -C $(BUILD)/java/classes .
 
-spy: $(jar_file) ## Watch the daemon's channels live with lcm-spy (LCM_URL=… for another network)
-	$(Q)scripts/setup.sh spy
+spy: ## Watch the daemon's channels live with lcm-spy (LCM_URL=… for another network)
+	$(Q)scripts/setup.sh build spy
+	$(Q)$(MAKE) --no-print-directory $(jar_file)
 	$(Q)$(JAVA) -Djava.net.preferIPv4Stack=true -ea -cp '$(LCM_JAR):$(CHART_JAR):$(jar_file)' lcm.spy.Spy \
 	    --lcm-url='$(LCM_URL)'
