@@ -19,7 +19,9 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
     enum dig_status  status =
         dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match);
     if (status != DIG_OK) {
-        note(fit, dig, "no match", status);
+        note(fit, dig,
+             status == DIG_ENOMATCH ? "no match, the table holds no curve of this dig" : "no match",
+             status);
         return;
     }
     status = dig_fit_refine(fit->set, dig, fit->config->match_evaluations, &match);

@@ -156,6 +156,10 @@ static enum dig_status identify(const struct options *const       options,
         return status;
     }
     status = dig_match_nearest(set, &observation, OUTSIDE_FLOORS, &match);
+    if (status == DIG_ENOMATCH) {
+        return dig_error_set(error, status, "%s: holds no curve along %s, expected one or more",
+                             options->table, set->trajectory[observation.trajectory].name);
+    }
     if (status == DIG_OK) {
         status = dig_fit_refine(set, &observation, EVALUATIONS, &match);
     }
