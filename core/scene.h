@@ -9,7 +9,15 @@
 #include "core/error.h"
 #include "core/status.h"
 
-#define DIG_PROFILE_MAX 16
+#include <stdbool.h>
+
+#define DIG_PROFILE_MAX   16
+#define DIG_SIZES_MAX     8 // classes of grain size
+#define DIG_MATERIALS_MAX 4 // materials of grains beside the table's gravel
+#define DIG_LAYERS_MAX    4
+#define DIG_SURFACE_MAX   16 // points of the ground's profile
+#define DIG_CLUMP_MAX     8  // spheres of a clump
+#define DIG_OBSTACLES_MAX 8
 
 /// The bucket: plates of zero thickness over the width along the profile's polyline, two side
 /// plates that close the profile's polygon at +-width/2, mouth open between last and first point.
@@ -34,6 +42,10 @@ struct dig_packing {
     double relax_s;        // after levelling
 };
 
+/// The contact laws to choose from; the first of each is the default.
+enum dig_normal_law { DIG_NORMAL_HOOKE, DIG_NORMAL_HERTZ };
+enum dig_rolling_law { DIG_ROLLING_EPSD2, DIG_ROLLING_CDT, DIG_ROLLING_NONE };
+
 struct dig_material {
     double diameter_m;
     double young_Pa;
@@ -42,12 +54,87 @@ struct dig_material {
     double characteristic_velocity_mps;
 };
 
+/// Which laws hold in the scene.
+struct dig_laws {
+    enum dig_normal_law  normal;
+    enum dig_rolling_law rolling;
+    double               cohesion_Jpm3; // SJKR between grains; 0: none
+    double               adhesion_Jpm3; // SJKR between grains and bucket; 0: none
+};
+
+/// A class of grain size. A log-normal distribution is read into classes of equal mass.
+struct dig_size {
+    double diameter_m;
+    double mass_fraction;
+};
+
+/// A material of grains with values of its own, where the table's gravel has the grid's.
+struct dig_other_material {
+    char   name[DIG_NAME_SIZE];
+    double friction, rolling, density_kgpm3, restitution;
+};
+
+/// Contact constants of two materials, where they are not the smaller friction and rolling friction
+/// and the geometric mean of restitution of both. Material 0 is the gravel, 1 … the others,
+/// DIG_MATERIALS_MAX + 1 the bucket, DIG_MATERIALS_MAX + 2 the walls.
+struct dig_material_pair {
+    size_t a, b;
+    double friction, rolling, restitution;
+};
+
+/// Grains whose centre lies between these heights (when the bed is poured) are of the material.
+struct dig_layer {
+    size_t material; // as above
+    double from_m, to_m;
+};
+
+/// One grain made of several overlapping spheres: centres and radii in diameters of the sphere of
+/// equal volume. No spheres: grains are spheres.
+struct dig_clump {
+    size_t spheres;
+    double x[DIG_CLUMP_MAX], y[DIG_CLUMP_MAX], z[DIG_CLUMP_MAX], radius[DIG_CLUMP_MAX];
+};
+
+enum dig_obstacle_shape { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
+
+/// A rock in the bed: fixed, or moved by the grains, the bucket and the walls.
+struct dig_obstacle {
+    enum dig_obstacle_shape shape;
+    double                  centre_m[3];
+    double                  size_m[3]; // sphere: diameter in size_m[0]; box: edges
+    bool                    movable;
+    double                  density_kgpm3;
+};
+
+/// What makes a scene more than one kind of equal spheres in a flat bed. All zero: plain.
+struct dig_bed_plan {
+    size_t                    sizes;
+    struct dig_size           size[DIG_SIZES_MAX]; // 0: all material.diameter_m
+    size_t                    materials;
+    struct dig_other_material material[DIG_MATERIALS_MAX];
+    size_t                    pairs;
+    struct dig_material_pair  pair[DIG_MATERIALS_MAX * DIG_MATERIALS_MAX];
+    size_t                    layers;
+    struct dig_layer          layer[DIG_LAYERS_MAX]; // none: all gravel
+    size_t                    surface;               // the ground's profile, 0: flat at box.z_max_m
+    double                    surface_x_m[DIG_SURFACE_MAX], surface_z_m[DIG_SURFACE_MAX];
+    struct dig_clump          clump;
+    size_t                    obstacles;
+    struct dig_obstacle       obstacle[DIG_OBSTACLES_MAX];
+    bool                      periodic_y; // no walls in y
+    double                    preload_Pa; // a plate that compacts the bed before levelling; 0: none
+    size_t                    earlier_digs; // made in the same bed before the one that counts
+    char                      earlier[DIG_NAME_SIZE]; // their trajectory; "": the same
+};
+
 struct dig_scene {
     char                  name[DIG_NAME_SIZE];
     struct dig_bucket     bucket;
     struct dig_box        box;
     struct dig_packing    packing;
     struct dig_material   material;
+    struct dig_laws       laws;
+    struct dig_bed_plan   bed;
     double                gravity_mps2;
     double                time_step_s; // 0: derived from the contact and Rayleigh times
     double                output_s;    // width of the averaging window of a curve, 0.005
