@@ -20,32 +20,68 @@ static void *allocate(const size_t n, const size_t size)
     return p;
 }
 
-// Radii from one file or one pouring: equal ones are equal to the bit, or nearly.
-static size_t find_kind(struct dig_grains *const grains, const double radius_m,
-                        const double density_kgpm3)
+// Radii from one file or one pouring: equal ones are equal to the bit, or nearly. DIG_KINDS_MAX
+// when there is no room for another.
+static size_t find_kind(const double radius_m, const double density_kgpm3, size_t *const kinds,
+                        struct dig_kind kind[DIG_KINDS_MAX])
 {
-    for (size_t k = 0; k < grains->kinds; k++) {
-        if (fabs(grains->kind[k].radius_m - radius_m) <= 1e-9 * radius_m) {
+    for (size_t k = 0; k < *kinds; k++) {
+        if (fabs(kind[k].radius_m - radius_m) <= 1e-9 * radius_m) {
             return k;
         }
     }
-    const double mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
-    if (grains->kinds < DIG_KINDS_MAX) {
-        grains->kind[grains->kinds] = (struct dig_kind){
-            .radius_m     = radius_m,
-            .mass_kg      = mass_kg,
-            .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
-        };
+    if (*kinds == DIG_KINDS_MAX) {
+        return DIG_KINDS_MAX;
     }
-    return grains->kinds++;
+    const double mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
+    kind[*kinds]         = (struct dig_kind){
+                .radius_m     = radius_m,
+                .mass_kg      = mass_kg,
+                .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
+    };
+    return (*kinds)++;
 }
 
 enum dig_status dig_grains_create(const size_t n, const double x_m[], const double y_m[],
                                   const double z_m[], const double radius_m[],
                                   const double density_kgpm3, struct dig_grains *const grains)
 {
+    uint8_t *const of = malloc(n + 1);
+    if (of == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status = DIG_OK;
+    size_t          kinds  = 0;
+    struct dig_kind kind[DIG_KINDS_MAX];
+    for (size_t i = 0; i < n && status == DIG_OK; i++) {
+        if (!(radius_m[i] > 0.0) || !isfinite(radius_m[i])) {
+            status = DIG_EINVAL;
+            continue;
+        }
+        const size_t k = find_kind(radius_m[i], density_kgpm3, &kinds, kind);
+        of[i]          = (uint8_t)k;
+        status         = k < DIG_KINDS_MAX ? DIG_OK : DIG_EINVAL;
+    }
+    if (status == DIG_OK) {
+        status = dig_grains_place(kinds, kind, n, x_m, y_m, z_m, of, grains);
+    }
+    free(of);
+    return status;
+}
+
+static bool is_kind(const struct dig_kind *const kind)
+{
+    return kind->radius_m > 0.0 && kind->mass_kg > 0.0 && kind->inertia_kgm2 > 0.0 &&
+           isfinite(kind->radius_m + kind->mass_kg + kind->inertia_kgm2);
+}
+
+enum dig_status dig_grains_place(const size_t kinds, const struct dig_kind kind[], const size_t n,
+                                 const double x_m[], const double y_m[], const double z_m[],
+                                 const uint8_t of[], struct dig_grains *const grains)
+{
     struct dig_grains made = {
         .n      = n,
+        .kinds  = kinds,
         .motion = allocate(n, sizeof *made.motion),
         .load   = allocate(n, sizeof *made.load),
         .of     = allocate(n, sizeof *made.of),
@@ -56,16 +92,21 @@ enum dig_status dig_grains_create(const size_t n, const double x_m[], const doub
         goto error;
     }
     status = DIG_EINVAL;
-    for (size_t i = 0; i < n; i++) {
-        if (!(radius_m[i] > 0.0) || !isfinite(x_m[i] + y_m[i] + z_m[i] + radius_m[i])) {
+    if (kinds > DIG_KINDS_MAX) {
+        goto error;
+    }
+    for (size_t k = 0; k < kinds; k++) {
+        if (!is_kind(&kind[k])) {
             goto error;
         }
-        const size_t kind = find_kind(&made, radius_m[i], density_kgpm3);
-        if (kind >= DIG_KINDS_MAX) {
+        made.kind[k] = kind[k];
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (of[i] >= kinds || !isfinite(x_m[i] + y_m[i] + z_m[i])) {
             goto error;
         }
         made.motion[i] = (struct dig_motion){ .x_m = { x_m[i], y_m[i], z_m[i] } };
-        made.of[i]     = (uint8_t)kind;
+        made.of[i]     = of[i];
         made.name[i]   = (uint32_t)i;
     }
     *grains = made;
@@ -85,6 +126,9 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
             grains->load[kept]   = grains->load[i];
             grains->of[kept]     = grains->of[i];
             grains->name[kept]   = grains->name[i];
+            if (grains->clump != NULL) {
+                grains->clump[kept] = grains->clump[i];
+            }
             kept++;
         }
     }
@@ -93,27 +137,34 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
 
 enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
 {
-    const size_t             n      = grains->n;
-    struct dig_motion *const motion = allocate(n, sizeof *motion);
-    uint8_t *const           of     = allocate(n, sizeof *of);
-    uint32_t *const          name   = allocate(n, sizeof *name);
-    if (motion == NULL || of == NULL || name == NULL) {
-        free(motion);
-        free(of);
-        free(name);
+    const size_t      n    = grains->n;
+    struct dig_grains made = {
+        .motion = allocate(n, sizeof *made.motion),
+        .of     = allocate(n, sizeof *made.of),
+        .name   = allocate(n, sizeof *made.name),
+        .clump  = grains->clump == NULL ? NULL : allocate(n, sizeof *made.clump),
+    };
+    if (made.motion == NULL || made.of == NULL || made.name == NULL ||
+        (made.clump == NULL && grains->clump != NULL)) {
+        dig_grains_finish(&made);
         return DIG_ENOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        motion[k] = grains->motion[order[k]];
-        of[k]     = grains->of[order[k]];
-        name[k]   = grains->name[order[k]];
+        made.motion[k] = grains->motion[order[k]];
+        made.of[k]     = grains->of[order[k]];
+        made.name[k]   = grains->name[order[k]];
+        if (made.clump != NULL) {
+            made.clump[k] = grains->clump[order[k]];
+        }
     }
     free(grains->motion);
     free(grains->of);
     free(grains->name);
-    grains->motion = motion;
-    grains->of     = of;
-    grains->name   = name;
+    free(grains->clump);
+    grains->motion = made.motion;
+    grains->of     = made.of;
+    grains->name   = made.name;
+    grains->clump  = made.clump;
     return DIG_OK;
 }
 
@@ -126,6 +177,7 @@ void dig_grains_finish(struct dig_grains *const grains)
     free(grains->load);
     free(grains->of);
     free(grains->name);
+    free(grains->clump);
     *grains = (struct dig_grains){ 0 };
 }
 

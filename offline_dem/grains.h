@@ -7,10 +7,11 @@
 
 #include "core/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define DIG_KINDS_MAX 8 // different radii in one bed
+#define DIG_KINDS_MAX 16 // different radii, densities and materials in one bed
 
 /// One grain's motion. Rows of four, the fourth unused: one load fetches a vector.
 struct dig_motion {
@@ -25,8 +26,11 @@ struct dig_load {
     double t_Nm[4];
 };
 
+/// What grains have in common. A driven grain is part of a body: loads and gravity do not change
+/// its velocity, which the body sets.
 struct dig_kind {
     double radius_m, mass_kg, inertia_kgm2;
+    bool   driven;
 };
 
 struct dig_grains {
@@ -37,6 +41,7 @@ struct dig_grains {
     struct dig_load   *load;   // [n]
     uint8_t           *of;     // [n] kind of each grain
     uint32_t          *name;   // [n]
+    uint32_t          *clump;  // [n] body each grain is part of, from 1; 0: none. NULL: no bodies
 };
 
 /// n grains at rest at (x, y, z) with these radii and this density. DIG_EINVAL for more than
@@ -44,6 +49,13 @@ struct dig_grains {
 DIG_MUST_CHECK enum dig_status dig_grains_create(size_t n, const double x_m[], const double y_m[],
                                                  const double z_m[], const double radius_m[],
                                                  double density_kgpm3, struct dig_grains *grains);
+
+/// The same with the kinds given: grain i is of kind[of[i]]. DIG_EINVAL for a kind that is not
+/// there, a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_grains_place(size_t kinds, const struct dig_kind kind[],
+                                                size_t n, const double x_m[], const double y_m[],
+                                                const double z_m[], const uint8_t of[],
+                                                struct dig_grains *grains);
 
 /// Takes out every grain for which drop is not 0; the others keep their order.
 void dig_grains_drop(struct dig_grains *grains, const unsigned char drop[]);

@@ -1,5 +1,7 @@
 #include "offline_dem/kernel.h"
 
+#include "offline_dem/law_general.h"
+
 #include <stdint.h>
 #include <string.h>
 
@@ -51,8 +53,10 @@ BODY size_t pad(const size_t count, struct dig_block *const block)
     return padded;
 }
 
-BODY void block_body(const struct dig_law law, const double dt_s, const size_t count,
-                     double *const memories[DIG_MEMORIES], struct dig_block *const block)
+// `general` is a constant where this is inlined: the plain law pays nothing for the others.
+BODY void block_body(const bool general, const struct dig_law law, const double dt_s,
+                     const size_t count, double *const memories[DIG_MEMORIES],
+                     struct dig_block *const block)
 {
     const size_t padded                   = pad(count, block);
     double *restrict sx                   = memories[0];
@@ -71,7 +75,8 @@ BODY void block_body(const struct dig_law law, const double dt_s, const size_t c
             in[6][c], in[7][c], in[8][c], in[9][c], in[10][c], in[11][c],
         };
         struct dig_memory     memory = { sx[c], sy[c], sz[c], mx[c], my[c], mz[c] };
-        const struct dig_push push   = dig_law_step(law, dt_s, touch, &memory);
+        const struct dig_push push   = general ? dig_law_general(law, dt_s, touch, &memory)
+                                               : dig_law_step(law, dt_s, touch, &memory);
         sx[c]                        = memory.sx_m;
         sy[c]                        = memory.sy_m;
         sz[c]                        = memory.sz_m;
@@ -192,8 +197,8 @@ BODY void scatter(const struct dig_contacts *const list, const struct dig_block 
     }
 }
 
-BODY void pairs_body(const struct dig_law law, const double dt_s, struct dig_contacts *const list,
-                     struct dig_grains *const grains)
+BODY void pairs_body(const bool general, const struct dig_law law, const double dt_s,
+                     struct dig_contacts *const list, struct dig_grains *const grains)
 {
     struct dig_block block;
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
@@ -204,21 +209,29 @@ BODY void pairs_body(const struct dig_law law, const double dt_s, struct dig_con
         for (int m = 0; m < DIG_MEMORIES; m++) {
             memories[m] = list->memory[m] + first;
         }
-        block_body(law, dt_s, count, memories, &block);
+        block_body(general, law, dt_s, count, memories, &block);
         scatter(list, &block, first, count, grains->load);
     }
 }
 
+// How a kind's velocities answer: gravity, and what a load is multiplied with. Zeros where a body
+// drives the grains.
+struct answer {
+    four   g_mps2;
+    double per_kg, per_kgm2;
+};
+
 // One grain over one step; returns its displacement since the lists were made, and in the fourth
 // lane its margin with the sign turned.
-BODY four advance_one(const four *const g, const double kick_s, const double dt_s,
-                      const double per_kg, const double per_kgm2, const double at_m[4],
-                      struct dig_motion *const motion, struct dig_load *const load)
+BODY four advance_one(const struct answer *const answer, const double kick_s, const double dt_s,
+                      const double at_m[4], struct dig_motion *const motion,
+                      struct dig_load *const load)
 {
     const four zero = { 0.0, 0.0, 0.0, 0.0 };
-    const four v    = load_four(motion->v_mps) + kick_s * (load_four(load->f_N) * per_kg + *g);
-    const four w    = load_four(motion->w_radps) + kick_s * (load_four(load->t_Nm) * per_kgm2);
-    const four x    = load_four(motion->x_m) + dt_s * v;
+    const four v    = load_four(motion->v_mps) +
+                   kick_s * (load_four(load->f_N) * answer->per_kg + answer->g_mps2);
+    const four w = load_four(motion->w_radps) + kick_s * (load_four(load->t_Nm) * answer->per_kgm2);
+    const four x = load_four(motion->x_m) + dt_s * v;
     store_four(motion->v_mps, &v);
     store_four(motion->w_radps, &w);
     store_four(motion->x_m, &x);
@@ -230,20 +243,20 @@ BODY four advance_one(const four *const g, const double kick_s, const double dt_
 BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
                        const double (*const at_m)[4], struct dig_grains *const grains)
 {
-    const four g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
-    double     per_kg[DIG_KINDS_MAX];
-    double     per_kgm2[DIG_KINDS_MAX];
+    const four    g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
+    struct answer answer[DIG_KINDS_MAX];
     for (size_t k = 0; k < grains->kinds; k++) {
-        per_kg[k]   = 1.0 / grains->kind[k].mass_kg;
-        per_kgm2[k] = 1.0 / grains->kind[k].inertia_kgm2;
+        const struct dig_kind kind = grains->kind[k];
+        answer[k].g_mps2           = (kind.driven ? 0.0 : 1.0) * g;
+        answer[k].per_kg           = kind.driven ? 0.0 : 1.0 / kind.mass_kg;
+        answer[k].per_kgm2         = kind.driven ? 0.0 : 1.0 / kind.inertia_kgm2;
     }
     four_index left = { 0, 0, 0, 0 };
     for (size_t i = 0; i < grains->n; i += 4) {
         four d[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
         for (size_t l = 0; l < 4 && i + l < grains->n; l++) {
-            const size_t k = grains->of[i + l];
-            d[l]           = advance_one(&g, kick_s, dt_s, per_kg[k], per_kgm2[k], at_m[i + l],
-                                         &grains->motion[i + l], &grains->load[i + l]);
+            d[l] = advance_one(&answer[grains->of[i + l]], kick_s, dt_s, at_m[i + l],
+                               &grains->motion[i + l], &grains->load[i + l]);
         }
         four c[4];
         transpose(d, c);
@@ -259,13 +272,21 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
                                          const size_t count, double *const memories[DIG_MEMORIES], \
                                          struct dig_block *const block)                            \
     {                                                                                              \
-        block_body(*law, dt_s, count, memories, block);                                            \
+        if (law->general) {                                                                        \
+            block_body(true, *law, dt_s, count, memories, block);                                  \
+        } else {                                                                                   \
+            block_body(false, *law, dt_s, count, memories, block);                                 \
+        }                                                                                          \
     }                                                                                              \
     attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
                                          struct dig_contacts *const list,                          \
                                          struct dig_grains *const   grains)                        \
     {                                                                                              \
-        pairs_body(*law, dt_s, list, grains);                                                      \
+        if (law->general) {                                                                        \
+            pairs_body(true, *law, dt_s, list, grains);                                            \
+        } else {                                                                                   \
+            pairs_body(false, *law, dt_s, list, grains);                                           \
+        }                                                                                          \
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
                                            const double dt_s, const double(*const at_m)[4],        \

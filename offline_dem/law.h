@@ -43,6 +43,7 @@ struct dig_law {
     double rolling_Nmprad;  // k_r
     double friction;        // mu
     double rolling_lever_m; // mu_r R*
+    bool   general;         // law_general.h computes it, not dig_law_step()
 };
 
 /// Elastic and frictional constants that do not depend on the grains' sizes.

@@ -1,5 +1,6 @@
 #include "offline_dem/lists.h"
 
+#include "offline_dem/bodies.h"
 #include "offline_dem/pick.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ static double contact_margin(const struct dig_world *const w, const size_t i)
 
 void dig_lists_move(struct dig_world *const w, const uint32_t place[])
 {
-    for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX + DIG_KINDS_MAX; l++) {
+    for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX + (size_t)2 * DIG_KINDS_MAX; l++) {
         const bool                 pairs = l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX;
         struct dig_contacts *const list =
             pairs ? &w->pair[l] : &w->surface[l - (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX];
@@ -112,6 +113,7 @@ static enum dig_status relist(struct dig_world *const w)
         goto done;
     }
     dig_lists_move(w, place);
+    dig_bodies_move(w->bodies, place);
     for (size_t i = 0; i < n; i++) {
         margin[i] = SKIN_RADII * w->grains.kind[w->grains.of[i]].radius_m +
                     SKIN_STEPS * w->dt_s * speed(&w->grains.motion[i]);
@@ -187,6 +189,9 @@ enum dig_status dig_lists_update(struct dig_world *const w)
     if (status == DIG_OK) {
         status = dig_pick_surfaces(w);
     }
+    if (status == DIG_OK && w->bodies != NULL) {
+        status = dig_bodies_pick(w);
+    }
     if (status == DIG_OK) {
         w->stale = false;
         w->contact_rebuilds++;
@@ -199,7 +204,7 @@ void dig_lists_finish(struct dig_world *const w)
     for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX; l++) {
         dig_contacts_finish(&w->pair[l]);
     }
-    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+    for (size_t k = 0; k < (size_t)2 * DIG_KINDS_MAX; k++) {
         dig_contacts_finish(&w->surface[k]);
     }
     dig_neighbours_finish(&w->near_list);

@@ -135,6 +135,7 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
     const double        radius_m = grains->kind[grains->of[i]].radius_m;
     const double        far_m    = radius_m + radius_max_m + 2.0 * margin_m[i];
     const double        own_m    = radius_m + margin_m[i];
+    const uint32_t      clump    = grains->clump == NULL ? 0 : grains->clump[i];
     size_t              count    = *used;
     ptrdiff_t           low[3];
     ptrdiff_t           high[3];
@@ -160,8 +161,9 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
                 const bool mine =
                     margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
                 const bool close   = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;
+                const bool apart   = clump == 0 || clump != grains->clump[j];
                 list->other[count] = j;
-                count += (size_t)(mine & close);
+                count += (size_t)(mine & close & apart);
             }
         }
     }

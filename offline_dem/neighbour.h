@@ -27,9 +27,10 @@ struct dig_neighbours {
 DIG_MUST_CHECK enum dig_status dig_neighbours_order(const struct dig_grains *grains, double cell_m,
                                                     uint32_t order[]);
 
-/// Lists every pair once, under the grain with the larger margin (on a tie the lower index).
-/// margin_m[i] > 0 for every grain. *list is zeroed or was filled by this function; its memory is
-/// used again. DIG_ENOMEM leaves an empty list. O(n) for beds of like grains.
+/// Lists every pair once, but not those of one clump, under the grain with the larger margin (on a
+/// tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this
+/// function; its memory is used again. DIG_ENOMEM leaves an empty list. O(n) for beds of like
+/// grains.
 DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *grains,
                                                     const double             margin_m[],
                                                     struct dig_neighbours   *list);

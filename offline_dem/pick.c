@@ -86,7 +86,7 @@ static enum dig_status add_surface(const struct dig_world *const w, const uint32
                                    const size_t surface, const uint32_t known[],
                                    struct dig_contacts fresh[])
 {
-    const size_t kind = w->grains.of[i];
+    const size_t kind = w->grains.of[i] + (surface < w->walls ? 0U : (size_t)DIG_KINDS_MAX);
     return dig_contacts_add(&fresh[kind], i, (uint32_t)surface, (uint32_t)surface,
                             known[surface] == DIG_NO_SLOT ? NULL : &w->surface[kind],
                             known[surface]);
@@ -143,7 +143,7 @@ enum dig_status dig_pick_surfaces(struct dig_world *const w)
         return DIG_ENOMEM;
     }
     memset(was, 0xff, g->n * surfaces * sizeof *was);
-    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+    for (size_t k = 0; k < (size_t)2 * DIG_KINDS_MAX; k++) {
         for (size_t c = 0; c < w->surface[k].n; c++) {
             // Plates are beyond the end when the tool has been taken away.
             if (w->surface[k].j[c] < surfaces) {
@@ -151,8 +151,8 @@ enum dig_status dig_pick_surfaces(struct dig_world *const w)
             }
         }
     }
-    struct dig_contacts fresh[DIG_KINDS_MAX] = { 0 };
-    enum dig_status     status               = DIG_OK;
+    struct dig_contacts fresh[2 * DIG_KINDS_MAX] = { 0 };
+    enum dig_status     status                   = DIG_OK;
     for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
         const double          reach_m = g->kind[g->of[i]].radius_m + w->at_m[i][3];
         const uint32_t *const known   = was + i * surfaces;
@@ -162,6 +162,6 @@ enum dig_status dig_pick_surfaces(struct dig_world *const w)
         }
     }
     free(was);
-    adopt(status, DIG_KINDS_MAX, w->surface, fresh);
+    adopt(status, (size_t)2 * DIG_KINDS_MAX, w->surface, fresh);
     return status;
 }

@@ -76,11 +76,12 @@ struct dig_world dig_setup_world(const struct dig_scene *const     scene,
     struct dig_world world = {
         .dt_s         = dig_time_step_s(scene, gravel->value[DIG_AXIS_DENSITY_kgpm3]),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
-        .material     = law_material(scene, gravel),
         .isa          = dig_kernel_best(),
     };
     world.walls = dig_ode_scene_walls(ode, world.wall);
     dig_world_init(&world, grains);
+    const struct dig_law_material material = law_material(scene, gravel);
+    dig_world_set_material(&world, &material);
     return world;
 }
 

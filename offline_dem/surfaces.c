@@ -198,11 +198,12 @@ void dig_surfaces_step(struct dig_world *const w)
 {
     w->on_tool  = (struct dig_wrench){ 0 };
     w->on_walls = (struct dig_wrench){ 0 };
-    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
-        struct dig_contacts *const list     = &w->surface[kind];
-        const struct dig_kind      k        = w->grains.kind[kind];
-        const double               radius_m = k.radius_m;
-        const struct dig_law       law      = dig_law_wall(&w->material, radius_m, k.mass_kg);
+    for (size_t l = 0; l < (size_t)2 * DIG_KINDS_MAX; l++) {
+        struct dig_contacts *const  list     = &w->surface[l];
+        const size_t                kind     = l % DIG_KINDS_MAX;
+        const double                radius_m = w->grains.kind[kind].radius_m;
+        const struct dig_law *const law =
+            l < DIG_KINDS_MAX ? &w->wall_law[kind] : &w->tool_law[kind];
         for (size_t first = 0; first < list->n;) {
             const size_t     count = block_length(list, first);
             struct dig_block block;
@@ -220,7 +221,7 @@ void dig_surfaces_step(struct dig_world *const w)
             for (int m = 0; m < DIG_MEMORIES; m++) {
                 memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
             }
-            dig_kernel_block(w->isa, &law, w->dt_s, count, memory, &block);
+            dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
             for (int m = 0; m < DIG_MEMORIES; m++) {
                 memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
             }

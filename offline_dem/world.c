@@ -1,5 +1,6 @@
 #include "offline_dem/world.h"
 
+#include "offline_dem/bodies.h"
 #include "offline_dem/lists.h"
 #include "offline_dem/surfaces.h"
 
@@ -12,6 +13,22 @@ void dig_world_init(struct dig_world *const world, struct dig_grains *const grai
     world->grains = *grains;
     world->stale  = true;
     *grains       = (struct dig_grains){ 0 };
+}
+
+void dig_world_set_material(struct dig_world *const              world,
+                            const struct dig_law_material *const material)
+{
+    const struct dig_grains *const g = &world->grains;
+    for (size_t a = 0; a < g->kinds; a++) {
+        const struct dig_kind ka = g->kind[a];
+        for (size_t b = a; b < g->kinds; b++) {
+            const struct dig_kind kb = g->kind[b];
+            world->pair_law[a * DIG_KINDS_MAX + b] =
+                dig_law_pair(material, ka.radius_m, kb.radius_m, ka.mass_kg, kb.mass_kg);
+        }
+        world->wall_law[a] = dig_law_wall(material, ka.radius_m, ka.mass_kg);
+        world->tool_law[a] = world->wall_law[a];
+    }
 }
 
 void dig_world_touched(struct dig_world *const world)
@@ -30,6 +47,7 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
         place[i] = drop[i] ? UINT32_MAX : kept++;
     }
     dig_lists_move(w, place);
+    dig_bodies_move(w->bodies, place);
     free(place);
     dig_grains_drop(&w->grains, drop);
     // The neighbour list still counts the grains there were: it is remade before it is used.
@@ -73,16 +91,19 @@ enum dig_status dig_world_step(struct dig_world *const w)
     }
     for (size_t a = 0; a < w->grains.kinds; a++) {
         for (size_t b = a; b < w->grains.kinds; b++) {
-            const struct dig_kind ka = w->grains.kind[a];
-            const struct dig_kind kb = w->grains.kind[b];
-            const struct dig_law  law =
-                dig_law_pair(&w->material, ka.radius_m, kb.radius_m, ka.mass_kg, kb.mass_kg);
-            dig_kernel_pairs(w->isa, &law, w->dt_s, &w->pair[a * DIG_KINDS_MAX + b], &w->grains);
+            const size_t l = a * DIG_KINDS_MAX + b;
+            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, &w->pair[l], &w->grains);
         }
     }
     dig_surfaces_step(w);
-    w->stale   = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
-                                    w->dt_s, (const double(*)[4])w->at_m, &w->grains);
+    if (w->bodies != NULL) {
+        dig_bodies_push(w);
+    }
+    w->stale = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
+                                  w->dt_s, (const double(*)[4])w->at_m, &w->grains);
+    if (w->bodies != NULL) {
+        dig_bodies_advance(w);
+    }
     w->started = true;
     w->steps++;
     return DIG_OK;

@@ -16,6 +16,8 @@
 
 #include <stdbool.h>
 
+struct dig_bodies;
+
 /// Force and moment of the grains on the tool, summed over steps.
 struct dig_wrench {
     double f_N[3];
@@ -24,15 +26,22 @@ struct dig_wrench {
 
 struct dig_world {
     // Fixed at start.
-    double                  dt_s;
-    double                  gravity_mps2[3];
-    struct dig_law_material material;
-    size_t                  walls;
-    struct dig_wall         wall[DIG_WALLS_MAX];
-    enum dig_isa            isa;
+    double dt_s;
+    double gravity_mps2[3];
+    // Laws of every kind pair [kind_i * DIG_KINDS_MAX + kind_j], kind_i <= kind_j, and of every
+    // kind with the walls and with the tool.
+    struct dig_law  pair_law[DIG_KINDS_MAX * DIG_KINDS_MAX];
+    struct dig_law  wall_law[DIG_KINDS_MAX];
+    struct dig_law  tool_law[DIG_KINDS_MAX];
+    size_t          walls;
+    struct dig_wall wall[DIG_WALLS_MAX];
+    enum dig_isa    isa;
 
     // May be placed between steps; NULL: no tool.
     struct dig_tool *tool;
+
+    // Clumps and obstacles, owned by the caller; NULL: none.
+    struct dig_bodies *bodies;
 
     // State.
     struct dig_grains grains;
@@ -44,8 +53,9 @@ struct dig_world {
     // Lists and their validity.
     struct dig_neighbours near_list;
     struct dig_contacts   pair[DIG_KINDS_MAX * DIG_KINDS_MAX]; // kind_i * KINDS_MAX + kind_j
-    struct dig_contacts   surface[DIG_KINDS_MAX];              // j: wall, or walls + plate
-    double (*at_m)[4];                                         // [n] where the lists were made
+    struct dig_contacts   surface[2 * DIG_KINDS_MAX]; // kind with wall j; KINDS_MAX + kind with
+                                                      // plate j - walls
+    double (*at_m)[4];                                // [n] where the lists were made
     size_t          at_room;
     struct dig_pose tool_at;
     double          tool_margin_m;
@@ -53,8 +63,13 @@ struct dig_world {
     size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
 };
 
-/// Takes over *grains. The caller fills the fixed fields of a zeroed *world first.
+/// Takes over *grains. The caller fills the fixed fields of a zeroed *world, the
+/// laws before the first step.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);
+
+/// Gives every pair of kinds, and every kind with walls and tool, the laws of one material. After
+/// dig_world_init(); a caller with several materials overwrites what differs.
+void dig_world_set_material(struct dig_world *world, const struct dig_law_material *material);
 
 /// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
 /// remade before the next step. Contacts stay with their grains.

@@ -47,8 +47,9 @@ static inline struct dig_world dem_world(const size_t n, const double (*const x_
     assert_int_equal(
         dig_grains_create(n, work, work + n, work + 2 * n, work + 3 * n, DENSITY, &grains), DIG_OK);
     free(work);
-    struct dig_world world = { .dt_s = STEP_s, .material = material, .isa = dig_kernel_best() };
+    struct dig_world world = { .dt_s = STEP_s, .isa = dig_kernel_best() };
     dig_world_init(&world, &grains);
+    dig_world_set_material(&world, &material);
     return world;
 }
 

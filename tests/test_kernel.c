@@ -22,8 +22,9 @@ static struct dig_world make_cloud(const uint64_t seed, const double restitution
                       dig_random_between(&random, -0.05, 0.05) * GRAIN_m;
         }
     }
-    struct dig_world world     = dem_world(GRAINS, (const double(*)[3])x, dem_material(0.5, 0.3));
-    world.material.restitution = restitution;
+    struct dig_law_material material = dem_material(0.5, 0.3);
+    material.restitution             = restitution;
+    struct dig_world world           = dem_world(GRAINS, (const double(*)[3])x, material);
     for (size_t i = 0; i < GRAINS; i++) {
         struct dig_motion *const m = &world.grains.motion[i];
         for (size_t k = 0; k < 3; k++) {
@@ -121,8 +122,10 @@ static void grains_of_two_sizes_keep_momentum_too(void **state)
     }
     struct dig_grains grains;
     assert_int_equal(dig_grains_create(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
-    struct dig_world world = { .dt_s = STEP_s, .material = dem_material(0.5, 0.3) };
+    const struct dig_law_material material = dem_material(0.5, 0.3);
+    struct dig_world              world    = { .dt_s = STEP_s };
     dig_world_init(&world, &grains);
+    dig_world_set_material(&world, &material);
     assert_int_equal(world.grains.kinds, 2);
     for (size_t i = 0; i < 64; i++) {
         for (size_t k = 0; k < 3; k++) {
@@ -168,11 +171,12 @@ static void collisions_take_energy_away(void **state)
 static void without_damping_and_friction_energy_comes_back(void **state)
 {
     (void)state;
-    struct dig_world world  = make_cloud(4, 0.999999);
-    world.material.friction = 0.0;
-    world.material.rolling  = 0.0;
-    world.dt_s              = STEP_s / 4.0;
-    const double first_J    = dig_grains_kinetic_J(&world.grains);
+    struct dig_law_material smooth = dem_material(0.0, 0.0);
+    smooth.restitution             = 0.999999;
+    struct dig_world world         = make_cloud(4, 0.5);
+    dig_world_set_material(&world, &smooth);
+    world.dt_s           = STEP_s / 4.0;
+    const double first_J = dig_grains_kinetic_J(&world.grains);
     dem_run(&world, 16000);
     assert_int_equal(touching(&world), 0);
     assert_close(dig_grains_kinetic_J(&world.grains) / first_J, 1.0, 2e-3);

@@ -11,12 +11,22 @@
 #define FINE_s   2e-6
 #define HEIGHT_m (GRAIN_m - 1e-7)
 
+// The reference's gravel, stiff, with this restitution.
+static void set_stiff(struct dig_world *const world, const double friction, const double rolling,
+                      const double restitution)
+{
+    struct dig_law_material material = dem_material(friction, rolling);
+    material.young_Pa                = STIFF_Pa;
+    material.restitution             = restitution;
+    dig_world_set_material(world, &material);
+}
+
 static struct dig_world on_floor(const double friction, const double rolling, const double slope)
 {
     const double     x[1][3] = { { 0.0, 0.0, HEIGHT_m } };
     struct dig_world world   = dem_world(1, x, dem_material(friction, rolling));
-    world.material.young_Pa  = STIFF_Pa;
-    world.dt_s               = FINE_s;
+    set_stiff(&world, friction, rolling, 0.2);
+    world.dt_s = FINE_s;
     // A slope is a floor that stays level under a gravity that leans.
     world.gravity_mps2[0] = GRAVITY * sin(slope);
     world.gravity_mps2[2] = -GRAVITY * cos(slope);
@@ -34,9 +44,11 @@ static void two_grains_part_with_the_restitution_they_were_given(void **state)
     (void)state;
     const double restitution[] = { 0.2, 0.5, 0.9 };
     for (size_t k = 0; k < 3; k++) {
-        const double     x[2][3]        = { { 0.0, 0.0, 0.0 }, { 2.001 * GRAIN_m, 0.0, 0.0 } };
-        struct dig_world world          = dem_world(2, x, dem_material(0.5, 0.5));
-        world.material.restitution      = restitution[k];
+        const double            x[2][3]  = { { 0.0, 0.0, 0.0 }, { 2.001 * GRAIN_m, 0.0, 0.0 } };
+        struct dig_world        world    = dem_world(2, x, dem_material(0.5, 0.5));
+        struct dig_law_material material = dem_material(0.5, 0.5);
+        material.restitution             = restitution[k];
+        dig_world_set_material(&world, &material);
         world.dt_s                      = FINE_s;
         world.grains.motion[0].v_mps[0] = 0.7;
         world.grains.motion[1].v_mps[0] = -0.5;
@@ -52,9 +64,9 @@ static void two_grains_part_with_the_restitution_they_were_given(void **state)
 static void a_grain_leaves_a_wall_with_its_restitution(void **state)
 {
     (void)state;
-    struct dig_world world          = on_floor(0.5, 0.5, 0.0);
-    world.gravity_mps2[2]           = 0.0;
-    world.material.restitution      = 0.6;
+    struct dig_world world = on_floor(0.5, 0.5, 0.0);
+    world.gravity_mps2[2]  = 0.0;
+    set_stiff(&world, 0.5, 0.5, 0.6);
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[2] = -0.5;
     run_for(&world, 5e-3);
@@ -67,10 +79,10 @@ static void a_grain_leaves_a_wall_with_its_restitution(void **state)
 static void a_grazing_impact_slides(void **state)
 {
     (void)state;
-    const double     mu             = 0.1;
-    struct dig_world world          = on_floor(mu, 0.0, 0.0);
-    world.gravity_mps2[2]           = 0.0;
-    world.material.restitution      = 0.95;
+    const double     mu    = 0.1;
+    struct dig_world world = on_floor(mu, 0.0, 0.0);
+    world.gravity_mps2[2]  = 0.0;
+    set_stiff(&world, mu, 0.0, 0.95);
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[0] = 2.0;
     world.grains.motion[0].v_mps[2] = -0.5;
@@ -87,9 +99,9 @@ static void a_grazing_impact_slides(void **state)
 static void a_steep_impact_sticks_within_coulomb(void **state)
 {
     (void)state;
-    struct dig_world world          = on_floor(0.9, 0.0, 0.0);
-    world.gravity_mps2[2]           = 0.0;
-    world.material.restitution      = 0.5;
+    struct dig_world world = on_floor(0.9, 0.0, 0.0);
+    world.gravity_mps2[2]  = 0.0;
+    set_stiff(&world, 0.9, 0.0, 0.5);
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[0] = 0.05;
     world.grains.motion[0].v_mps[2] = -1.0;
