@@ -1,0 +1,104 @@
+// What a campaign's digs show that the table does not hold: the result of a trace, and the call
+// that makes it. Order and reasons: docs/numerics/closed_loop.md.
+
+#ifndef DIG_CLOSED_LOOP_TRACE_H
+#define DIG_CLOSED_LOOP_TRACE_H
+
+#include "closed_loop/measured.h"
+#include "core/curve.h"
+#include "core/effect.h"
+#include "core/effect_set.h"
+#include "core/error.h"
+#include "core/model.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define DIG_TRACE_CANDIDATES_MAX 64
+#define DIG_TRACE_SETS_MAX       4
+#define DIG_TRACE_PHASES         3
+
+/// Where a residual shows: free air before, in the soil, lifted out.
+enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
+
+/// One effect, or the absence of any, as it competed: refitted jointly with the gravel.
+struct dig_candidate {
+    enum dig_effect_id effect;
+    double             log_evidence; // - BIC / 2 less that of no effect
+    double             p_fit;        // chance of a residual this large if this were the whole truth
+    double             inclusion;    // share of bootstrap samples of digs in which it was chosen
+    double             error;        // of the fit digs with it, CONTRACT's metric
+    size_t             parameters;
+    struct dig_model_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
+    enum dig_part              seen_in;
+    struct dig_gravel          gravel; // refitted with it
+};
+
+/// Effects that these digs cannot tell apart.
+struct dig_candidate_set {
+    size_t             effects;
+    enum dig_effect_id effect[DIG_EFFECTS];
+};
+
+/// Error with its 90 % bootstrap interval over recordings.
+struct dig_error_range {
+    double value, low, high;
+};
+
+/// Curves of one dig for the report.
+struct dig_trace_curves {
+    double before[DIG_CHANNELS][DIG_CURVE_POINTS], before_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double after[DIG_CHANNELS][DIG_CURVE_POINTS], after_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+};
+
+struct dig_trace {
+    bool   significant;
+    double p_complete;                 // chance of residuals this large if nothing were missing
+    double false_alarm;                // level it was decided at
+    double noise_floor;                // 1 sigma of error_after if the model were complete
+    double residual[DIG_TRACE_PHASES]; // rms over the rms expected, by enum dig_part; NaN: no data
+
+    size_t                     effects; // of the verdict; 0: none
+    struct dig_model_effect    effect[DIG_MODEL_EFFECTS_MAX];
+    enum dig_part              seen_in[DIG_MODEL_EFFECTS_MAX];
+    struct dig_model_unlisted *unlisted; // when one of the effects is; malloc'ed
+
+    size_t                   candidates;
+    struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // best first
+    size_t                   sets;
+    struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // indistinguishable
+
+    struct dig_gravel gravel_before, gravel, low, high; // refitted without and with the effects
+    struct dig_error_range before, after;               // on the holdout digs
+    size_t                 holdouts;
+
+    size_t                   digs;
+    struct dig_trace_curves *curves;      // [digs], in the campaign's order; malloc'ed
+    char                     advice[512]; // which dig or table would tell more, for people
+};
+
+void dig_trace_finish(struct dig_trace *trace);
+
+struct dig_machine_side; // closed_loop/machine_side.h
+
+struct dig_trace_settings {
+    double   false_alarm; // 0.01
+    uint64_t seed;        // of the bootstrap: the same campaign gives the same answer
+    size_t   bootstraps;  // 200
+};
+
+struct dig_trace_settings dig_trace_settings_default(void);
+
+/// Traces. effects may be NULL: only effects with a reduced form compete then. machine may be NULL:
+/// the digs were measured by a force sensor. measured[].machine is filled when an effect of the
+/// machine was found. Seconds of one core. DIG_EINVAL: fewer than two fit or identify digs, a
+/// trajectory that the set lacks; *error says so. DIG_ENOMEM. Writes *trace on success only.
+DIG_MUST_CHECK enum dig_status dig_trace_run(const struct dig_curve_set      *set,
+                                             const struct dig_effect_set     *effects,
+                                             const struct dig_trace_settings *settings,
+                                             struct dig_machine_side *machine, size_t digs,
+                                             struct dig_measured measured[],
+                                             struct dig_trace *trace, struct dig_error *error);
+
+#endif // DIG_CLOSED_LOOP_TRACE_H
