@@ -1,5 +1,6 @@
 // The contact law between two grains, or a grain and a wall or plate: Hooke springs with a
-// characteristic velocity, tangential history capped by Coulomb, EPSD2 rolling friction.
+// characteristic velocity, tangential history capped by Coulomb, EPSD2 rolling friction. This is
+// the plain law; the others, and what they do to these constants, stand in law_general.h.
 //
 //            i o                n: unit vector from j to i
 //               \  n            delta = reach - |d|: overlap, d = x_i - x_j (or the closest point)
@@ -22,6 +23,7 @@
 #ifndef DIG_OFFLINE_DEM_LAW_H
 #define DIG_OFFLINE_DEM_LAW_H
 
+#include "core/scene.h"
 #include "core/units.h"
 
 #include <math.h>
@@ -44,12 +46,26 @@ struct dig_law {
     double friction;        // mu
     double rolling_lever_m; // mu_r R*
     bool   general;         // law_general.h computes it, not dig_law_step()
+
+    // Read by law_general.h only. With Hertz's law the three springs above and below are those at
+    // an overlap of 1 m and grow with its root, the two dampings with its fourth root.
+    bool   hertz;
+    double tangential_Npm;          // k_t
+    double tangential_damping_Nspm; // gamma_t
+    bool   epsd2, cdt;              // neither: no rolling friction
+    double cohesion_Jpm3;           // pull per contact area
 };
 
-/// Elastic and frictional constants that do not depend on the grains' sizes.
+/// What makes a contact, but for the grains' sizes: constants of the two materials that meet and
+/// the laws that hold between them. Zero laws: Hooke, EPSD2, no cohesion.
 struct dig_law_material {
-    double young_Pa, poisson, restitution, characteristic_velocity_mps;
+    double young_Pa, poisson; // of both bodies
+    double restitution, characteristic_velocity_mps;
     double friction, rolling;
+
+    enum dig_normal_law  normal_law;
+    enum dig_rolling_law rolling_law;
+    double               cohesion_Jpm3;
 };
 
 /// The relative state of two touching bodies: d = x_i - x_j, velocities of the centres (for a wall
@@ -68,6 +84,28 @@ struct dig_push {
     double jx_Nm, jy_Nm, jz_Nm;
 };
 
+/// Hertz and Mindlin: Y* and G* of like bodies, damped to the same restitution at any speed
+/// (law_general.h).
+static inline void dig_law_make_hertz(const struct dig_law_material *const material,
+                                      const double radius_m, const double mass_kg,
+                                      struct dig_law *const law)
+{
+    const double nu       = material->poisson;
+    const double young_Pa = material->young_Pa / (2.0 * (1.0 - nu * nu));
+    const double shear_Pa = material->young_Pa / (4.0 * (2.0 - nu) * (1.0 + nu));
+    const double log_e    = log(material->restitution);
+    const double share    = -log_e / sqrt(log_e * log_e + DIG_PI * DIG_PI);
+    const double damping  = 2.0 * sqrt(5.0 / 6.0) * share;
+    const double root_m   = sqrt(radius_m);
+
+    law->hertz                   = true;
+    law->normal_Npm              = 4.0 / 3.0 * young_Pa * root_m;
+    law->damping_Nspm            = damping * sqrt(2.0 * young_Pa * root_m * mass_kg);
+    law->tangential_Npm          = 8.0 * shear_Pa * root_m;
+    law->tangential_damping_Nspm = damping * sqrt(law->tangential_Npm * mass_kg);
+    law->rolling_Nmprad          = law->tangential_Npm * radius_m * radius_m;
+}
+
 /// Constants for an effective radius and mass; reach and levers are left to the caller.
 static inline struct dig_law dig_law_make(const struct dig_law_material *const material,
                                           const double radius_m, const double mass_kg)
@@ -79,13 +117,24 @@ static inline struct dig_law dig_law_make(const struct dig_law_material *const m
     const double normal_Npm = hertz * pow(mass_kg * velocity * velocity / hertz, 0.2);
     const double log_e      = log(material->restitution);
     const double ratio      = DIG_PI / log_e;
-    return (struct dig_law){
+
+    struct dig_law law = {
         .normal_Npm      = normal_Npm,
         .damping_Nspm    = sqrt(4.0 * mass_kg * normal_Npm / (1.0 + ratio * ratio)),
         .rolling_Nmprad  = normal_Npm * radius_m * radius_m,
         .friction        = material->friction,
         .rolling_lever_m = material->rolling * radius_m,
+        .epsd2           = material->rolling_law == DIG_ROLLING_EPSD2,
+        .cdt             = material->rolling_law == DIG_ROLLING_CDT,
+        .cohesion_Jpm3   = material->cohesion_Jpm3,
     };
+    law.tangential_Npm          = law.normal_Npm;
+    law.tangential_damping_Nspm = law.damping_Nspm;
+    if (material->normal_law == DIG_NORMAL_HERTZ) {
+        dig_law_make_hertz(material, radius_m, mass_kg, &law);
+    }
+    law.general = law.hertz || !law.epsd2 || law.cohesion_Jpm3 > 0.0;
+    return law;
 }
 
 /// Two grains: R* = ri rj / (ri + rj), m* likewise.
