@@ -27,7 +27,8 @@ struct dig_plot {
     const char            *title;
     const char            *x_label;
     const char            *y_label;
-    size_t                 series; // drawn in this order, later ones on top
+    unsigned               width, height; // 0: 900 by 420; the text is 14 high whatever the size
+    size_t                 series;        // drawn in this order, later ones on top
     struct dig_plot_series s[DIG_PLOT_SERIES_MAX];
 };
 

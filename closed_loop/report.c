@@ -1,12 +1,10 @@
 #include "closed_loop/report.h"
 
+#include "closed_loop/html.h"
 #include "closed_loop/plot.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char *const axis_title[DIG_AXES] = {
     [DIG_AXIS_FRICTION]      = "friction",
@@ -87,18 +85,6 @@ void dig_report_json(const struct dig_report *const report, FILE *const to)
     (void)fprintf(to, "]}\n");
 }
 
-static void put_text(FILE *const to, const char *const text)
-{
-    for (const char *c = text; *c != '\0'; c++) {
-        switch (*c) {
-        case '<': (void)fputs("&lt;", to); break;
-        case '>': (void)fputs("&gt;", to); break;
-        case '&': (void)fputs("&amp;", to); break;
-        default: (void)fputc(*c, to); break;
-        }
-    }
-}
-
 static void put_table(FILE *const to, const struct dig_report_run *const run)
 {
     (void)fputs("<table><tr><th></th><th>true</th><th>identified</th><th>90 % interval</th>"
@@ -156,35 +142,25 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
     return status;
 }
 
-static const char style[] =
-    "<style>body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:960px;margin:0 auto;"
-    "padding:1em}h1{font-size:1.5em}h2{font-size:1.2em;margin-top:2em;border-top:1px solid #ddd;"
-    "padding-top:1em}table{border-collapse:collapse;display:block;overflow-x:auto}"
-    "td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #eee;font-weight:normal}"
-    "th:first-child{text-align:left}tr:first-child th{color:#666}figure{margin:1em 0}"
-    "svg{width:100%;height:auto;max-width:900px}.result{background:#f4f7fb;padding:.6em 1em}"
-    "footer{color:#666;font-size:.9em;margin-top:2em}</style>\n";
+struct page {
+    const struct dig_report *report;
+};
 
-static enum dig_status put_page(FILE *const to, const struct dig_report *const report,
-                                struct dig_error *const error)
+static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
 {
-    (void)fputs("<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
-                "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
-                to);
-    put_text(to, report->title);
-    (void)fprintf(to, "</title>\n%s</head><body>\n<h1>", style);
-    put_text(to, report->title);
-    (void)fputs("</h1>\n<p>Table: ", to);
-    put_text(to, report->table);
+    const struct dig_report *const report = ((const struct page *)context)->report;
+    dig_html_begin(to, report->title);
+    (void)fputs("<p>Table: ", to);
+    dig_html_text(to, report->table);
     (void)fprintf(to,
                   ". The machine is %.3g times the rig; everything below is at rig scale.</p>\n",
                   report->lambda);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
         (void)fputs("<h2>", to);
-        put_text(to, run->name);
+        dig_html_text(to, run->name);
         (void)fputs("</h2>\n<p>", to);
-        put_text(to, run->dig);
+        dig_html_text(to, run->dig);
         (void)fputs("</p>\n", to);
         put_table(to, run);
         enum dig_status status =
@@ -201,8 +177,9 @@ static enum dig_status put_page(FILE *const to, const struct dig_report *const r
     (void)fputs(
         "<footer>Error: relative Euclidean norm of the moment over rig time from contact to "
         "exit, moving average ±0.16 s. Predictions are advice, not a safety "
-        "function.</footer>\n</body></html>\n",
+        "function.</footer>\n",
         to);
+    dig_html_end(to);
     return DIG_OK;
 }
 
@@ -210,31 +187,6 @@ enum dig_status dig_report_html(const struct dig_report *const report, const cha
                                 struct dig_error *const error)
 {
     assert(report != NULL && path != NULL);
-    const size_t size = strlen(path) + sizeof ".part";
-    char *const  part = malloc(size);
-    if (part == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
-    }
-    (void)snprintf(part, size, "%s.part", path);
-
-    enum dig_status status = DIG_EIO;
-    FILE *const     to     = fopen(part, "w");
-    if (to == NULL) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-        goto done;
-    }
-    status             = put_page(to, report, error);
-    const bool written = ferror(to) == 0;
-    if ((fclose(to) != 0 || !written) && status == DIG_OK) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-    }
-    if (status == DIG_OK && rename(part, path) != 0) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
-    }
-    if (status != DIG_OK) {
-        (void)remove(part);
-    }
-done:
-    free(part);
-    return status;
+    struct page page = { report };
+    return dig_html_save(path, put_page, &page, error);
 }

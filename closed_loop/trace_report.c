@@ -1,0 +1,264 @@
+#include "closed_loop/trace_report.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+const char *dig_part_name(const enum dig_part part)
+{
+    static const char *const name[DIG_TRACE_PHASES] = { "air", "soil", "lifted" };
+    assert((size_t)part < DIG_TRACE_PHASES);
+    return name[part];
+}
+
+// JSON knows no NaN: what is not known is null.
+static void put_number(FILE *const to, const double value)
+{
+    if (isfinite(value)) {
+        (void)fprintf(to, "%.6g", value);
+    } else {
+        (void)fputs("null", to);
+    }
+}
+
+static void put_member(FILE *const to, const char *const before, const char *const name,
+                       const double value)
+{
+    (void)fprintf(to, "%s\"%s\": ", before, name);
+    put_number(to, value);
+}
+
+static void put_string(FILE *const to, const char *const text)
+{
+    (void)fputc('"', to);
+    for (const char *c = text; *c != '\0'; c++) {
+        if (*c == '"' || *c == '\\') {
+            (void)fprintf(to, "\\%c", *c);
+        } else if ((unsigned char)*c < 0x20U) {
+            (void)fprintf(to, "\\u%04x", (unsigned)*c);
+        } else {
+            (void)fputc(*c, to);
+        }
+    }
+    (void)fputc('"', to);
+}
+
+static void put_parameters(FILE *const to, const size_t n,
+                           const struct dig_model_parameter parameter[])
+{
+    (void)fputs("\"parameters\": {", to);
+    for (size_t p = 0; p < n; p++) {
+        (void)fputs(p == 0 ? "" : ", ", to);
+        put_string(to, parameter[p].name);
+        put_member(to, ": {", "value", parameter[p].value);
+        put_member(to, ", ", "low", parameter[p].low);
+        put_member(to, ", ", "high", parameter[p].high);
+        (void)fputs("}", to);
+    }
+    (void)fputs("}", to);
+}
+
+static void put_verdict(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs("\"verdict\": [", to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+    }
+    (void)fputs(trace->effects == 0 ? "\"none\"],\n" : "],\n", to);
+}
+
+static void put_sets(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"indistinguishable\": [", to);
+    for (size_t s = 0; s < trace->sets; s++) {
+        (void)fputs(s == 0 ? "[" : ", [", to);
+        for (size_t e = 0; e < trace->set[s].effects; e++) {
+            (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ",
+                          dig_effect_name(trace->set[s].effect[e]));
+        }
+        (void)fputs("]", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+static void put_effects(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"effects\": [", to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        const struct dig_model_effect *const effect = &trace->effect[e];
+        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", e == 0 ? "" : ",",
+                      dig_effect_name(effect->effect));
+        put_member(to, ", ", "probability", effect->probability);
+        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(trace->seen_in[e]));
+        if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
+            (void)fputs("\"depends_on\": ", to);
+            put_string(to, trace->unlisted->depends_on);
+            (void)fputs(", ", to);
+        }
+        put_parameters(to, effect->parameters, effect->parameter);
+        (void)fputs("}", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+static void put_material(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"material\": {", to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "%s\"%s\": ", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a));
+        put_member(to, "{", "value", trace->gravel.value[a]);
+        put_member(to, ", ", "low", trace->low.value[a]);
+        put_member(to, ", ", "high", trace->high.value[a]);
+        (void)fputs("}", to);
+    }
+    (void)fputs("},\n \"material_before\": {", to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        put_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                   trace->gravel_before.value[a]);
+    }
+    (void)fputs("},\n", to);
+}
+
+static void put_error(FILE *const to, const char *const name,
+                      const struct dig_error_range *const range)
+{
+    (void)fprintf(to, " \"%s\": ", name);
+    put_member(to, "{", "holdout", range->value);
+    put_member(to, ", ", "low", range->low);
+    put_member(to, ", ", "high", range->high);
+    (void)fputs("},\n", to);
+}
+
+static void put_candidates(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"candidates\": [", to);
+    for (size_t i = 0; i < trace->candidates; i++) {
+        const struct dig_candidate *const c = &trace->candidate[i];
+        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", i == 0 ? "" : ",", dig_effect_name(c->effect));
+        put_member(to, ", ", "log_evidence", c->log_evidence);
+        put_member(to, ", ", "p_fit", c->p_fit);
+        put_member(to, ", ", "inclusion", c->inclusion);
+        put_member(to, ", ", "error", c->error);
+        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(c->seen_in));
+        put_parameters(to, c->parameters, c->parameter);
+        (void)fputs("}", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
+{
+    assert(trace != NULL && to != NULL);
+    (void)fprintf(to, "{\"significant\": %s", trace->significant ? "true" : "false");
+    put_member(to, ", ", "p_complete", trace->p_complete);
+    put_member(to, ", ", "false_alarm", trace->false_alarm);
+    put_member(to, ", ", "noise_floor", trace->noise_floor);
+    (void)fputs(",\n ", to);
+    put_verdict(to, trace);
+    put_sets(to, trace);
+    put_effects(to, trace);
+    put_material(to, trace);
+    put_error(to, "error_before", &trace->before);
+    put_error(to, "error_after", &trace->after);
+    (void)fprintf(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
+                  trace->holdouts);
+    for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+        put_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p), trace->residual[p]);
+    }
+    (void)fputs("},\n", to);
+    put_candidates(to, trace);
+    (void)fputs(" \"advice\": ", to);
+    put_string(to, trace->advice);
+    (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
+                "±0.16 s\"}\n",
+                to);
+}
+
+// Appends, as far as there is room.
+__attribute__((format(printf, 3, 4))) static void add(char *const text, const size_t size,
+                                                      const char *const format, ...)
+{
+    const size_t used = strlen(text);
+    va_list      arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, char text[])
+{
+    assert(trace != NULL && text != NULL && size > 0);
+    text[0] = '\0';
+    if (trace->effects == 0) {
+        add(text, size, "%s",
+            trace->significant ? "Something is missing, but none of the effects known explains it."
+                               : "Nothing is missing: what is left is within the noise.");
+        return;
+    }
+    add(text, size, "Missing: ");
+    for (size_t e = 0; e < trace->effects; e++) {
+        const struct dig_model_effect *const effect = &trace->effect[e];
+        if (e > 0) {
+            add(text, size, "%s", e + 1 == trace->effects ? " and " : ", ");
+        }
+        if (effect->effect == DIG_EFFECT_UNLISTED) {
+            add(text, size, "an effect that has no name here");
+            if (trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
+                add(text, size, ", which depends on %s", trace->unlisted->depends_on);
+            }
+        } else {
+            add(text, size, "%s", dig_effect_name(effect->effect));
+        }
+        add(text, size, " (probability %.2f, seen in %s)", effect->probability,
+            trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
+                                                 : dig_part_name(trace->seen_in[e]));
+    }
+    add(text, size, ".");
+}
+
+static void put_error_line(FILE *const to, const char *const title,
+                           const struct dig_error_range *const range)
+{
+    if (isfinite(range->value)) {
+        (void)fprintf(to, "  error %s %.3f   90 %%: %.3f to %.3f\n", title, range->value,
+                      range->low, range->high);
+    } else {
+        (void)fprintf(to, "  error %s unknown: no holdout dig\n", title);
+    }
+}
+
+void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
+{
+    assert(trace != NULL && to != NULL);
+    char sentence[1024];
+    dig_trace_sentence(trace, sizeof sentence, sentence);
+    (void)fprintf(to, "%s\n", sentence);
+    for (size_t e = 0; e < trace->effects; e++) {
+        for (size_t p = 0; p < trace->effect[e].parameters; p++) {
+            const struct dig_model_parameter *const parameter = &trace->effect[e].parameter[p];
+            (void)fprintf(to, "  %s %s %.4g   90 %%: %.4g to %.4g\n",
+                          dig_effect_name(trace->effect[e].effect), parameter->name,
+                          parameter->value, parameter->low, parameter->high);
+        }
+    }
+    for (size_t s = 0; s < trace->sets; s++) {
+        (void)fputs("  these digs cannot tell apart:", to);
+        for (size_t e = 0; e < trace->set[s].effects; e++) {
+            (void)fprintf(to, "%s %s", e == 0 ? "" : ",", dig_effect_name(trace->set[s].effect[e]));
+        }
+        (void)fputs("\n", to);
+    }
+    (void)fprintf(to, "  gravel: friction %.3g, rolling %.3g, density %.4g kg/m3\n",
+                  trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
+                  trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    put_error_line(to, "before", &trace->before);
+    put_error_line(to, "after ", &trace->after);
+    (void)fprintf(to,
+                  "  noise floor  %.3f   chance of such residuals if nothing were missing "
+                  "%.3g, decided at %.3g\n",
+                  trace->noise_floor, trace->p_complete, trace->false_alarm);
+    if (trace->advice[0] != '\0') {
+        (void)fprintf(to, "  next: %s\n", trace->advice);
+    }
+}
