@@ -1,0 +1,93 @@
+// The effects a model of digging may lack: what each is, which numbers it has, where it can show,
+// and what it does. One file each; this is the list.
+//
+// An effect of the machine writes into a struct dig_correction, one of the soil adds to a curve. A
+// soil effect with templates (template.h) takes them; rate_dependence and wear, and compaction and
+// adhesion where no bed was dug, have a documented reduced form. Parameters stand in the order of
+// the effect's list wherever they are an array; their names carry the unit and are what a model
+// file and a report say.
+
+#ifndef DIG_ESTIMATOR_EFFECTS_EFFECT_H
+#define DIG_ESTIMATOR_EFFECTS_EFFECT_H
+
+#include "core/curve.h"
+#include "core/effect.h"
+#include "core/effect_set.h"
+#include "core/model.h"
+#include "core/status.h"
+#include "estimator/correction.h"
+#include "estimator/effects/template.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct dig_effect_parameter {
+    const char *name;   // with its unit: "coulomb_N"
+    double      absent; // the value at which it does nothing
+    double      low, high;
+    double      scale; // 1 sigma of what is likely before anything is measured
+};
+
+/// Where in a dig an effect can show; a set of these.
+enum dig_effect_part { DIG_IN_AIR = 1, DIG_IN_SOIL = 2, DIG_IN_LIFT = 4 };
+
+/// The dig an effect of the soil is asked about.
+struct dig_effect_dig {
+    size_t   trajectory;
+    unsigned pass;  // how often the place was dug, from 1
+    size_t   order; // how many digs the tooth has done before
+    double   pace;  // duration of the table's trajectory / of this dig, at rig scale
+};
+
+struct dig_effect {
+    enum dig_effect_id          id;
+    const char                 *summary; // one phrase for people
+    unsigned                    parts;
+    size_t                      parameters;
+    struct dig_effect_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
+
+    /// Of the machine: writes the parameters' values into *correction. NULL for the soil's.
+    void (*correct)(const double value[], struct dig_correction *correction);
+
+    /// Of the soil: the reduced form, what is added to the plain curve of this dig. NULL for the
+    /// machine's, and for an effect that only templates can tell.
+    void (*reduce)(const double value[], const struct dig_effect_dig *dig,
+                   const struct dig_curve *plain, double delta[DIG_CHANNELS][DIG_CURVE_POINTS]);
+};
+
+/// The effect of that id; NULL for DIG_EFFECT_UNLISTED.
+const struct dig_effect *dig_effect_of(enum dig_effect_id id);
+
+/// All parameters at their absent value.
+void dig_effect_absent(const struct dig_effect *effect, double value[DIG_MODEL_PARAMETERS_MAX]);
+
+/// The parameters of a model's effect in the list's order, the absent value where the model says
+/// nothing. DIG_EINVAL: a name the effect does not have, or a value out of its bounds.
+DIG_MUST_CHECK enum dig_status dig_effect_values(const struct dig_model_effect *found,
+                                                 double value[DIG_MODEL_PARAMETERS_MAX]);
+
+/// What an effect of the soil adds to the plain curve of one dig at a gravel: from templates where
+/// the set has them along this trajectory, else in its reduced form. effects may be NULL. sigma of
+/// a reduced form is 0. Fails as dig_template_find(); DIG_ENOMATCH as well where there is neither.
+DIG_MUST_CHECK enum dig_status dig_effect_add(const struct dig_effect     *effect,
+                                              const struct dig_curve_set  *plain,
+                                              const struct dig_effect_set *effects,
+                                              const double value[], const struct dig_gravel *gravel,
+                                              const struct dig_effect_dig *dig,
+                                              struct dig_template         *added);
+
+/// The machine's effects of a model as one correction (payload left out: it is of one dig).
+DIG_MUST_CHECK enum dig_status dig_effects_correction(const struct dig_model *model,
+                                                      struct dig_correction  *correction);
+
+/// Writes into out what the plain set would be with the model's soil effects in it: every entry's
+/// curves, for a first pass, an unworn tooth and the table's own pace; sd grows by the templates'.
+/// An unlisted effect's share of the rms is added the same way. out is another set of the same
+/// table; only its curves are written. DIG_ENOMATCH: an effect that neither a template nor a
+/// reduced form tells; then out is unspecified. Some ten milliseconds for a table.
+DIG_MUST_CHECK enum dig_status dig_effects_apply(const struct dig_curve_set  *plain,
+                                                 const struct dig_effect_set *effects,
+                                                 const struct dig_model      *model,
+                                                 struct dig_curve_set        *out);
+
+#endif // DIG_ESTIMATOR_EFFECTS_EFFECT_H

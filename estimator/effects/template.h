@@ -1,0 +1,52 @@
+// What an effect of the soil adds to a curve, read off the beds a DEM dug with the effect in them.
+//
+//   share(b, m) = (curve of the bed with effect at magnitude m - plain curve) / amplitude
+//
+// at the base gravel b, amplitude the rms of the plain curve of that channel and trajectory. At any
+// gravel g the addition is amplitude(g) * share. Between magnitudes a share is piecewise linear
+// through "absent", where it is 0; between base gravels linear in their strength,
+// log(rms My / density), held beyond the weakest and strongest. Cohesion and adhesion act by their
+// ratio to the grains' weight, so their magnitude is scaled by base density / density first.
+
+#ifndef DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
+#define DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
+
+#include "core/curve.h"
+#include "core/effect_set.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+
+/// A magnitude goes on beyond the table's last by this share of its distance from absent; on the
+/// side of absent that the table lacks, as far as half its first.
+#define DIG_TEMPLATE_BEYOND 0.5
+
+/// What is added to the mean curve, the curve's own units, and 1 sigma of it: the templates are
+/// means of few packings, and so are the plain curves they are taken from. Errors of the points of
+/// one channel are correlated as packings are.
+struct dig_template {
+    double delta[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double sigma[DIG_CHANNELS][DIG_CURVE_POINTS];
+};
+
+/// The magnitude at which an effect is absent: 1 for the ratios of polydispersity and grain_shape,
+/// 0 for all others.
+double dig_template_absent(enum dig_effect_id effect);
+
+/// The magnitudes for which there is a template along this trajectory, beyond included; false when
+/// the set has none. set NULL: false. O(entries).
+bool dig_template_range(const struct dig_effect_set *effects, enum dig_effect_id effect,
+                        size_t trajectory, double *low, double *high);
+
+/// The addition at a magnitude and gravel. DIG_ENOMATCH: no template of the effect along this
+/// trajectory, a magnitude beyond its range, or a gravel outside the plain set's grid (or a base
+/// gravel that is). Where the density makes the scaled magnitude leave the range, it is held at its
+/// end. Reads 2 magnitudes of each base gravel: some ten microseconds. The plain set's and the
+/// effects' trajectories must be the same.
+DIG_MUST_CHECK enum dig_status dig_template_find(const struct dig_curve_set  *plain,
+                                                 const struct dig_effect_set *effects,
+                                                 enum dig_effect_id effect, double magnitude,
+                                                 const struct dig_gravel *gravel, size_t trajectory,
+                                                 struct dig_template *found);
+
+#endif // DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
