@@ -1,10 +1,11 @@
 #include "core/scene.h"
 
+#include "core/bed_plan.h"
+#include "core/canonical.h"
+
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 double dig_scene_tooth_m(const struct dig_scene *const scene)
@@ -172,36 +173,20 @@ enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_
     if (status == DIG_OK) {
         status = check_bucket(&scene->bucket, error);
     }
-    return status == DIG_OK ? check_trajectories(scene, error) : status;
+    if (status == DIG_OK) {
+        status = check_trajectories(scene, error);
+    }
+    return status == DIG_OK ? dig_bed_plan_check(scene, error) : status;
 }
 
-struct text {
-    char  *at;
-    size_t size;
-    size_t length;
-};
-
-__attribute__((format(printf, 2, 3))) static void add(struct text *const text,
-                                                      const char *const  format, ...)
+static void add_trajectory(struct dig_canonical *const text, const struct dig_trajectory *const t)
 {
-    char *const  to   = text->length < text->size ? text->at + text->length : NULL;
-    const size_t left = to != NULL ? text->size - text->length : 0;
-    va_list      args;
-    va_start(args, format);
-    const int wrote = vsnprintf(to, left, format, args);
-    va_end(args);
-    assert(wrote >= 0);
-    text->length += (size_t)wrote;
-}
-
-static void add_trajectory(struct text *const text, const struct dig_trajectory *const t)
-{
-    add(text, "trajectory=%s\ntheta0_rad=%.17g\nstart_m=%.17g %.17g\n", t->name, t->theta0_rad,
-        t->start_x_m, t->start_z_m);
+    dig_canonical_add(text, "trajectory=%s\ntheta0_rad=%.17g\nstart_m=%.17g %.17g\n", t->name,
+                      t->theta0_rad, t->start_x_m, t->start_z_m);
     for (size_t i = 0; i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
-        add(text, "phase=%s %.17g %.17g %.17g %.17g\n", p->name, p->duration_s, p->vx_mps,
-            p->vz_mps, p->omega_radps);
+        dig_canonical_add(text, "phase=%s %.17g %.17g %.17g %.17g\n", p->name, p->duration_s,
+                          p->vx_mps, p->vz_mps, p->omega_radps);
     }
 }
 
@@ -209,25 +194,27 @@ static void add_trajectory(struct text *const text, const struct dig_trajectory 
 size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t size, char text[])
 {
     assert(scene != NULL);
-    struct text                      all = { text, size, 0 };
+    struct dig_canonical             all = { text, size, 0 };
     const struct dig_box *const      b   = &scene->box;
     const struct dig_packing *const  p   = &scene->packing;
     const struct dig_material *const m   = &scene->material;
 
-    add(&all, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
+    dig_canonical_add(&all, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
     for (size_t i = 0; i < scene->bucket.points; i++) {
-        add(&all, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i], scene->bucket.z_m[i]);
+        dig_canonical_add(&all, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i],
+                          scene->bucket.z_m[i]);
     }
-    add(&all, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m, b->y_min_m,
-        b->y_max_m, b->z_min_m, b->z_max_m);
-    add(&all, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction, p->fill_factor,
-        p->fall_mps, p->settle_s, p->relax_s);
-    add(&all, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa, m->poisson,
-        m->restitution, m->characteristic_velocity_mps);
-    add(&all, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n", scene->gravity_mps2,
-        scene->time_step_s, scene->output_s);
+    dig_canonical_add(&all, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m,
+                      b->y_min_m, b->y_max_m, b->z_min_m, b->z_max_m);
+    dig_canonical_add(&all, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction,
+                      p->fill_factor, p->fall_mps, p->settle_s, p->relax_s);
+    dig_canonical_add(&all, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa,
+                      m->poisson, m->restitution, m->characteristic_velocity_mps);
+    dig_canonical_add(&all, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n",
+                      scene->gravity_mps2, scene->time_step_s, scene->output_s);
     for (size_t i = 0; i < scene->trajectories; i++) {
         add_trajectory(&all, &scene->trajectory[i]);
     }
+    dig_bed_plan_canonical(scene, &all);
     return all.length;
 }

@@ -14,10 +14,12 @@
 #define DIG_PROFILE_MAX   16
 #define DIG_SIZES_MAX     8 // classes of grain size
 #define DIG_MATERIALS_MAX 4 // materials of grains beside the table's gravel
+#define DIG_PAIRS_MAX     (DIG_MATERIALS_MAX * DIG_MATERIALS_MAX)
 #define DIG_LAYERS_MAX    4
 #define DIG_SURFACE_MAX   16 // points of the ground's profile
 #define DIG_CLUMP_MAX     8  // spheres of a clump
 #define DIG_OBSTACLES_MAX 8
+#define DIG_EARLIER_MAX   20
 
 /// The bucket: plates of zero thickness over the width along the profile's polyline, two side
 /// plates that close the profile's polygon at +-width/2, mouth open between last and first point.
@@ -74,22 +76,26 @@ struct dig_other_material {
     double friction, rolling, density_kgpm3, restitution;
 };
 
+#define DIG_MATERIAL_BUCKET (DIG_MATERIALS_MAX + 1)
+#define DIG_MATERIAL_WALLS  (DIG_MATERIALS_MAX + 2)
+
 /// Contact constants of two materials, where they are not the smaller friction and rolling friction
 /// and the geometric mean of restitution of both. Material 0 is the gravel, 1 … the others,
-/// DIG_MATERIALS_MAX + 1 the bucket, DIG_MATERIALS_MAX + 2 the walls.
+/// DIG_MATERIAL_BUCKET and DIG_MATERIAL_WALLS.
 struct dig_material_pair {
     size_t a, b;
     double friction, rolling, restitution;
 };
 
-/// Grains whose centre lies between these heights (when the bed is poured) are of the material.
+/// Grains whose centre lies between these heights, when the bed has settled and before it is
+/// levelled, are of the material; where layers overlap, of the later one's.
 struct dig_layer {
     size_t material; // as above
     double from_m, to_m;
 };
 
-/// One grain made of several overlapping spheres: centres and radii in diameters of the sphere of
-/// equal volume. No spheres: grains are spheres.
+/// The shape of grains made of several overlapping spheres, in any unit of length: it is scaled to
+/// the volume of the sphere whose diameter the grain is given. No spheres: grains are spheres.
 struct dig_clump {
     size_t spheres;
     double x[DIG_CLUMP_MAX], y[DIG_CLUMP_MAX], z[DIG_CLUMP_MAX], radius[DIG_CLUMP_MAX];
@@ -113,7 +119,7 @@ struct dig_bed_plan {
     size_t                    materials;
     struct dig_other_material material[DIG_MATERIALS_MAX];
     size_t                    pairs;
-    struct dig_material_pair  pair[DIG_MATERIALS_MAX * DIG_MATERIALS_MAX];
+    struct dig_material_pair  pair[DIG_PAIRS_MAX];
     size_t                    layers;
     struct dig_layer          layer[DIG_LAYERS_MAX]; // none: all gravel
     size_t                    surface;               // the ground's profile, 0: flat at box.z_max_m
@@ -125,6 +131,7 @@ struct dig_bed_plan {
     double                    preload_Pa; // a plate that compacts the bed before levelling; 0: none
     size_t                    earlier_digs; // made in the same bed before the one that counts
     char                      earlier[DIG_NAME_SIZE]; // their trajectory; "": the same
+    bool                      earlier_as_dug; // the bed is left so; false: it is levelled again
 };
 
 struct dig_scene {

@@ -2,6 +2,7 @@
 
 #include "core/sha256.h"
 #include "core/units.h"
+#include "files/bed_yaml.h"
 #include "files/yaml.h"
 
 #include <assert.h>
@@ -45,6 +46,8 @@ struct scene_text {
     double                 gravity_mps2, time_step_s, output_s;
     struct trajectory_text trajectories[DIG_TRAJECTORY_MAX];
     uint32_t               trajectories_count;
+    struct laws_text       laws;
+    struct bed_text        bed;
 };
 
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -127,6 +130,8 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_FLOAT("output_s", REQUIRED, struct scene_text, output_s),
     CYAML_FIELD_SEQUENCE("trajectories", REQUIRED, struct scene_text, trajectories, &trajectory, 1,
                          DIG_TRAJECTORY_MAX),
+    CYAML_FIELD_MAPPING("laws", CYAML_FLAG_OPTIONAL, struct scene_text, laws, dig_laws_fields),
+    CYAML_FIELD_MAPPING("bed", CYAML_FLAG_OPTIONAL, struct scene_text, bed, dig_bed_fields),
     SOURCE,
     CYAML_FIELD_END,
 };
@@ -196,11 +201,14 @@ enum dig_status dig_scene_read(const char *const path, struct dig_scene *const s
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_scene loaded = convert(data);
+    const struct scene_text *const text   = data;
+    struct dig_scene               loaded = convert(text);
+    struct dig_error               found  = { "" };
+    status = dig_bed_convert(&text->laws, &text->bed, &loaded, &found);
     dig_yaml_free(&schema, data);
-
-    struct dig_error found = { "" };
-    status                 = dig_scene_check(&loaded, &found);
+    if (status == DIG_OK) {
+        status = dig_scene_check(&loaded, &found);
+    }
     if (status != DIG_OK) {
         return dig_yaml_refuse_checked(path, status, &found, error);
     }
@@ -210,7 +218,7 @@ enum dig_status dig_scene_read(const char *const path, struct dig_scene *const s
 
 void dig_scene_hash(const struct dig_scene *const scene, char hex[const 65])
 {
-    // Eight trajectories of eight phases at full precision stay well below this.
+    // Eight trajectories of eight phases and a bed of everything stay well below this.
     char         text[16384];
     const size_t length = dig_scene_canonical(scene, sizeof text, text);
     assert(length < sizeof text);

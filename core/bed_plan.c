@@ -1,0 +1,283 @@
+#include "core/bed_plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define KEY_SIZE 64
+
+struct range {
+    const char *key;
+    double      value;
+    double      least; // inclusive
+    double      most;  // inclusive
+};
+
+// Smallest positive bound: zero is refused, and no length or density comes near it.
+#define ABOVE_ZERO 1e-12
+
+static enum dig_status check_ranges(const char *const list, const size_t at, const size_t n,
+                                    const struct range range[], struct dig_error *const error)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!(range[i].value >= range[i].least && range[i].value <= range[i].most)) {
+            char key[KEY_SIZE];
+            if (list == NULL) {
+                (void)snprintf(key, sizeof key, "%s", range[i].key);
+            } else {
+                (void)snprintf(key, sizeof key, "%s[%zu].%s", list, at, range[i].key);
+            }
+            return dig_error_set(
+                error, DIG_EINVAL, "%s: %g, expected %s %g and <= %g", key, range[i].value,
+                range[i].least > 0.0 ? "> 0 and >=" : ">=", range[i].least, range[i].most);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_counts(const struct dig_bed_plan *const bed,
+                                    struct dig_error *const          error)
+{
+    const struct {
+        const char *key;
+        size_t      count, most;
+    } list[] = {
+        { "bed.sizes", bed->sizes, DIG_SIZES_MAX },
+        { "bed.materials", bed->materials, DIG_MATERIALS_MAX },
+        { "bed.pairs", bed->pairs, DIG_PAIRS_MAX },
+        { "bed.layers", bed->layers, DIG_LAYERS_MAX },
+        { "bed.surface_m", bed->surface, DIG_SURFACE_MAX },
+        { "bed.clump", bed->clump.spheres, DIG_CLUMP_MAX },
+        { "bed.obstacles", bed->obstacles, DIG_OBSTACLES_MAX },
+        { "bed.earlier_digs", bed->earlier_digs, DIG_EARLIER_MAX },
+    };
+    for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
+        if (list[i].count > list[i].most) {
+            return dig_error_set(error, DIG_EINVAL, "%s: %zu, expected at most %zu", list[i].key,
+                                 list[i].count, list[i].most);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_sizes(const struct dig_scene *const scene,
+                                   struct dig_error *const       error)
+{
+    const struct dig_bed_plan *const bed         = &scene->bed;
+    const struct dig_box *const      box         = &scene->box;
+    const double                     narrowest_m = fmin(box->x_max_m - box->x_min_m,
+                                                        fmin(box->y_max_m - box->y_min_m, box->z_max_m - box->z_min_m));
+    double                           sum         = 0.0;
+    for (size_t i = 0; i < bed->sizes; i++) {
+        const struct range range[] = {
+            { "diameter_m", bed->size[i].diameter_m, ABOVE_ZERO, 0.5 * narrowest_m },
+            { "mass_fraction", bed->size[i].mass_fraction, ABOVE_ZERO, 1.0 },
+        };
+        const enum dig_status status = check_ranges("bed.sizes", i, 2, range, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        sum += bed->size[i].mass_fraction;
+    }
+    if (bed->sizes > 0 && !(fabs(sum - 1.0) <= 1e-6)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bed.sizes: mass fractions add up to %.9g, expected 1", sum);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_materials(const struct dig_bed_plan *const bed,
+                                       struct dig_error *const          error)
+{
+    for (size_t i = 0; i < bed->materials; i++) {
+        const struct dig_other_material *const m       = &bed->material[i];
+        const struct range                     range[] = {
+                                { "friction", m->friction, 0.0, 10.0 },
+                                { "rolling", m->rolling, 0.0, 10.0 },
+                                { "density_kgpm3", m->density_kgpm3, ABOVE_ZERO, 1e5 },
+                                { "restitution", m->restitution, ABOVE_ZERO, 1.0 },
+        };
+        const enum dig_status status = check_ranges("bed.materials", i, 4, range, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        bool known = m->name[0] == '\0';
+        for (size_t k = 0; k <= DIG_MATERIAL_WALLS; k++) {
+            known = known || (k != i + 1 && strcmp(dig_material_name(bed, k), m->name) == 0);
+        }
+        if (known) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.materials[%zu].name: \"%s\", expected a name of its own, not "
+                                 "gravel, bucket or walls",
+                                 i, m->name);
+        }
+    }
+    for (size_t i = 0; i < bed->pairs; i++) {
+        const struct dig_material_pair *const p       = &bed->pair[i];
+        const struct range                    range[] = {
+                               { "friction", p->friction, 0.0, 10.0 },
+                               { "rolling", p->rolling, 0.0, 10.0 },
+                               { "restitution", p->restitution, ABOVE_ZERO, 1.0 },
+        };
+        const enum dig_status status = check_ranges("bed.pairs", i, 3, range, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        if (dig_material_name(bed, p->a)[0] == '\0' || dig_material_name(bed, p->b)[0] == '\0' ||
+            (p->a >= DIG_MATERIAL_BUCKET && p->b >= DIG_MATERIAL_BUCKET)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.pairs[%zu].between: expected two of gravel, the materials, "
+                                 "bucket and walls, one of them a material of grains",
+                                 i);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_layers(const struct dig_bed_plan *const bed,
+                                    struct dig_error *const          error)
+{
+    for (size_t i = 0; i < bed->layers; i++) {
+        const struct dig_layer *const layer = &bed->layer[i];
+        if (layer->material > bed->materials) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.layers[%zu].material: expected gravel or one of "
+                                 "bed.materials",
+                                 i);
+        }
+        if (!(isfinite(layer->from_m) && isfinite(layer->to_m) && layer->to_m > layer->from_m)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.layers[%zu].z_m: [%g, %g], expected two numbers, ascending",
+                                 i, layer->from_m, layer->to_m);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_surface(const struct dig_scene *const scene,
+                                     struct dig_error *const       error)
+{
+    const struct dig_bed_plan *const bed = &scene->bed;
+    if (bed->surface == 1) {
+        return dig_error_set(error, DIG_EINVAL, "bed.surface_m: 1 point, expected none or 2 to %d",
+                             DIG_SURFACE_MAX);
+    }
+    for (size_t i = 0; i < bed->surface; i++) {
+        const double x_m = bed->surface_x_m[i];
+        const double z_m = bed->surface_z_m[i];
+        if (!(isfinite(x_m) && z_m > scene->box.z_min_m &&
+              z_m <= scene->box.z_min_m + 5.0 * (scene->box.z_max_m - scene->box.z_min_m)) ||
+            (i > 0 && !(x_m > bed->surface_x_m[i - 1]))) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.surface_m[%zu]: [%g, %g], expected x ascending and z above "
+                                 "the floor, at most five times the box's height",
+                                 i, x_m, z_m);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_clump(const struct dig_clump *const clump,
+                                   struct dig_error *const       error)
+{
+    if (clump->spheres == 1) {
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "bed.clump: 1 sphere, expected none or 2 to %d (one alone is a sphere)", DIG_CLUMP_MAX);
+    }
+    for (size_t i = 0; i < clump->spheres; i++) {
+        if (!(clump->radius[i] > 0.0 && clump->radius[i] <= 100.0) ||
+            !(fabs(clump->x[i]) + fabs(clump->y[i]) + fabs(clump->z[i]) <= 100.0)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.clump[%zu]: expected a centre within 100 of the origin and a "
+                                 "radius > 0 and <= 100",
+                                 i);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_obstacles(const struct dig_bed_plan *const bed,
+                                       struct dig_error *const          error)
+{
+    for (size_t i = 0; i < bed->obstacles; i++) {
+        const struct dig_obstacle *const o     = &bed->obstacle[i];
+        const bool                       box   = o->shape == DIG_OBSTACLE_BOX;
+        bool                             sound = true;
+        for (size_t k = 0; k < 3; k++) {
+            sound = sound && isfinite(o->centre_m[k]) &&
+                    ((k > 0 && !box) || (o->size_m[k] > 0.0 && o->size_m[k] <= 100.0));
+        }
+        if (!sound) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.obstacles[%zu]: expected a finite centre_m and %s > 0 and "
+                                 "<= 100",
+                                 i, box ? "edges_m" : "diameter_m");
+        }
+        if (o->movable && !(o->density_kgpm3 > 0.0 && o->density_kgpm3 <= 1e5)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.obstacles[%zu].density_kgpm3: %g, expected > 0 and <= 1e5 "
+                                 "for one that is movable",
+                                 i, o->density_kgpm3);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_earlier(const struct dig_scene *const scene,
+                                     struct dig_error *const       error)
+{
+    const char *const earlier = scene->bed.earlier;
+    if (earlier[0] != '\0' && dig_scene_find(scene, earlier) == NULL) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bed.earlier: \"%s\", expected one of the scene's trajectories",
+                             earlier);
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_bed_plan_check(const struct dig_scene *const scene,
+                                   struct dig_error *const       error)
+{
+    const struct range range[] = {
+        { "laws.cohesion_Jpm3", scene->laws.cohesion_Jpm3, 0.0, 1e9 },
+        { "laws.adhesion_Jpm3", scene->laws.adhesion_Jpm3, 0.0, 1e9 },
+        { "bed.preload_Pa", scene->bed.preload_Pa, 0.0, 1e9 },
+    };
+    enum dig_status status = check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
+    if (status == DIG_OK) {
+        status = check_counts(&scene->bed, error);
+    }
+    if (status == DIG_OK) {
+        status = check_sizes(scene, error);
+    }
+    if (status == DIG_OK) {
+        status = check_materials(&scene->bed, error);
+    }
+    if (status == DIG_OK) {
+        status = check_layers(&scene->bed, error);
+    }
+    if (status == DIG_OK) {
+        status = check_surface(scene, error);
+    }
+    if (status == DIG_OK) {
+        status = check_clump(&scene->bed.clump, error);
+    }
+    if (status == DIG_OK) {
+        status = check_obstacles(&scene->bed, error);
+    }
+    return status == DIG_OK ? check_earlier(scene, error) : status;
+}
+
+const char *dig_material_name(const struct dig_bed_plan *const bed, const size_t material)
+{
+    if (material == 0) {
+        return "gravel";
+    }
+    if (material >= DIG_MATERIAL_BUCKET) {
+        return material == DIG_MATERIAL_BUCKET  ? "bucket"
+               : material == DIG_MATERIAL_WALLS ? "walls"
+                                                : "";
+    }
+    return material <= bed->materials ? bed->material[material - 1].name : "";
+}
