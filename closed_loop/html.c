@@ -30,6 +30,7 @@ static const char style[] =
     "gap:.5em}.grid figure{margin:.3em 0;min-width:0}.muted{color:#666;font-size:.9em}"
     ".bar{display:inline-block;height:.7em;background:#1f5fa8;vertical-align:baseline}"
     "code,pre{font-size:.9em;background:#f5f5f5;overflow-wrap:anywhere;white-space:pre-wrap}"
+    "@media(max-width:500px){td,th{padding:.25em .35em;font-size:.9em}}"
     "footer{color:#666;font-size:.9em;margin-top:2em}</style>\n";
 
 void dig_html_begin(FILE *const to, const char *const title)

@@ -60,9 +60,9 @@ static void put_script(FILE *const to, const struct dig_plot *const plot)
                   "set terminal svg size %u,%u dynamic font 'sans-serif,14' background "
                   "'#ffffff'\n",
                   plot->width == 0 ? 900 : plot->width, plot->height == 0 ? 420 : plot->height);
-    (void)fprintf(
-        to, "set key outside bottom center horizontal\nset bmargin 6\nset grid lc rgb '#dddddd'\n"
-            "set border 3 lc rgb '#666666'\nset tics nomirror\nset title ");
+    (void)fprintf(to, "set key outside bottom center horizontal samplen 2\nset bmargin 6\nset grid "
+                      "lc rgb '#dddddd'\n"
+                      "set border 3 lc rgb '#666666'\nset tics nomirror\nset title ");
     put_quoted(to, plot->title);
     (void)fprintf(to, "\nset xlabel ");
     put_quoted(to, plot->x_label);
