@@ -7,8 +7,7 @@
 //                Y* = E / 2 (1 - nu^2), G* = E / 4 (2 - nu)(1 + nu) for like bodies.
 // EPSD2          as in law.h, with k_r = k_t R*^2 of the present overlap.
 // CDT            M = mu_r R* k_n delta w_t / |w|, w = w_i - w_j and w_t its part in the contact
-//                plane: as long as it turns, a constant torque against it. At a wall the lever is
-//                r - delta/2 in place of R*.
+//                plane: as long as it turns, a constant torque against it.
 // SJKR           F_n -= c A, A the area of the circle in which the spheres intersect (a sphere and
 //                a plane: the circle cut out of the plane). Friction and rolling friction are
 //                capped by the F_n without this pull, and so hold a contact that is only glued.
@@ -17,7 +16,7 @@
 // Ishida, Powder Technol. 71 (1992) 239 (damping ~ delta^1/4); Zhou et al., Physica A 269 (1999)
 // 536 and Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269, their model A (CDT); LIGGGHTS'
 // documentation of `model hertz`, `rolling_friction cdt` and `cohesion sjkr`, whose choices of
-// lever, direction and cap these are.
+// direction, area and cap these are.
 
 #ifndef DIG_OFFLINE_DEM_LAW_GENERAL_H
 #define DIG_OFFLINE_DEM_LAW_GENERAL_H
@@ -101,8 +100,7 @@ dig_law_general(const struct dig_law law, const double dt_s, const struct dig_to
     const double on       = ox * nx + oy * ny + oz * nz;
     const double turn     = sqrt(ox * ox + oy * oy + oz * oz + 1e-300);
     const double kr       = law.rolling_Nmprad * grown * dt_s;
-    const double lever_m  = law.lever_j_m > 0.0 ? 1.0 : ci_m / law.lever_i_m;
-    const double constant = law.rolling_lever_m * lever_m * kn_Npm * delta_m / turn;
+    const double constant = law.rolling_lever_m * kn_Npm * delta_m / turn;
     const double gain     = law.epsd2 ? kr : law.cdt ? constant : 0.0;
     const double kept     = law.epsd2 ? 1.0 : 0.0;
     double       rx       = kept * memory->mx_Nm + gain * (ox - on * nx);

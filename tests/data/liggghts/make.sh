@@ -20,6 +20,20 @@ for deck in pair wall slide; do
     { echo $columns; series $deck.dump 1; } > "$here/$deck.csv"
 done
 
+# Laws beside the plain one; at walls without EPSD2 (README.md).
+laws() { # NAME pair|wall LAW
+    liggghts -var law "$3" -in "$here/in.laws_$2" > laws.log
+    { echo $columns; series "laws_$2.dump" 1; } > "$here/$1.csv"
+}
+laws pair_unlike pair "hooke tangential history rolling_friction epsd2"
+laws pair_hertz pair "hertz tangential history rolling_friction epsd2"
+laws pair_cdt pair "hooke tangential history rolling_friction cdt"
+laws pair_sjkr pair "hooke tangential history cohesion sjkr rolling_friction epsd2"
+laws pair_hertz_cdt_sjkr pair "hertz tangential history cohesion sjkr rolling_friction cdt"
+laws wall_hertz wall "hertz tangential history"
+laws wall_cdt wall "hooke tangential history rolling_friction cdt"
+laws wall_sjkr wall "hooke tangential history cohesion sjkr"
+
 # Grains of a CSV (x_m,y_m,z_m) as a data file for read_data.
 data() { # CSV HIGH_X HIGH_Y
     awk -F, -v hx="$2" -v hy="$3" 'NR > 1 { line[n++] = $0 } END {
