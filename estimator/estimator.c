@@ -49,12 +49,12 @@ static double vertex_spacing_m(const struct dig_curve_set *const set)
 // Forgets the dig going on.
 static void forget_dig(struct dig_estimator *const e)
 {
-    e->path          = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
+    dig_window_close(&e->raw->window);
+    e->raw->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
     e->next_follower = 0;
     e->choice        = (struct dig_choice){ .told = -1, .candidate = -1 };
     e->progress      = (double)NAN;
     e->off_path_m    = (double)NAN;
-    dig_window_close(&e->window);
 }
 
 enum dig_status dig_estimator_init(struct dig_estimator *const                estimator,
@@ -78,6 +78,7 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
     estimator->machine  = machine;
     estimator->set      = set;
     estimator->settings = *settings;
+    estimator->raw      = &estimator->own_raw;
     estimator->lambda   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t t = 0; t < set->trajectories; t++) {
         estimator->route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
@@ -102,12 +103,12 @@ static struct dig_path_point rig_point(const struct dig_estimator *const e,
 // Vertices of the samples before contact, then the one in contact.
 static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
 {
-    for (size_t i = 0; i < e->window.count; i++) {
-        (void)dig_path_add(&e->path, &e->window.pose[i], false);
+    for (size_t i = 0; i < e->raw->window.count; i++) {
+        (void)dig_path_add(&e->raw->path, &e->raw->window.sample[i].pose, false);
     }
-    dig_path_touch(&e->path, touched);
+    dig_path_touch(&e->raw->path, touched);
     for (size_t t = 0; t < e->set->trajectories; t++) {
-        e->follower[t] = dig_follower_start(&e->route[t], &e->path, e->settings.path_limit_m);
+        e->follower[t] = dig_follower_start(&e->route[t], &e->raw->path, e->settings.path_limit_m);
     }
 }
 
@@ -119,10 +120,10 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         return;
     }
     const bool in_soil = e->phase.phase == DIG_PHASE_CONTACT || e->phase.phase == DIG_PHASE_DIG;
-    (void)dig_path_add(&e->path, point, in_soil);
+    (void)dig_path_add(&e->raw->path, point, in_soil);
     e->next_follower     = (e->next_follower + 1) % tracks;
     const double limit_m = e->settings.path_limit_m;
-    dig_follower_step(&e->route[e->next_follower], &e->path, limit_m,
+    dig_follower_step(&e->route[e->next_follower], &e->raw->path, limit_m,
                       &e->follower[e->next_follower]);
 
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
@@ -160,28 +161,94 @@ static bool path_is_over(const struct dig_estimator *const e)
 }
 
 // The whole path decides which trajectory it was; an observation is made if it was one.
-static void finish_dig(struct dig_estimator *const e)
+static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
+                               const struct dig_route route[], struct dig_raw *const raw,
+                               struct dig_observation *const observation)
 {
-    e->digs++;
-    const size_t            tracks  = e->set->trajectories;
-    const double            limit_m = e->settings.path_limit_m;
+    const size_t            tracks = set->trajectories;
     struct dig_track        fitted[DIG_TRAJECTORY_MAX];
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
-        fitted[t]   = dig_track_fit(&e->route[t], &e->path, limit_m);
+        fitted[t]   = dig_track_fit(&route[t], &raw->path, limit_m);
         track_of[t] = &fitted[t];
     }
     const int chosen = dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, -1);
+    if (chosen < 0) {
+        return DIG_ENOMATCH;
+    }
+    struct dig_observation out   = { .dig_count = raw->dig_count, .trajectory = chosen };
+    const enum dig_status status = dig_window_observe(&raw->window, &route[chosen], &fitted[chosen],
+                                                      2.0 * limit_m, set->smooth_half_s, &out);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (!(out.last - out.first >= least_progress)) {
+        return DIG_ENOMATCH;
+    }
+    *observation = out;
+    return DIG_OK;
+}
 
-    struct dig_observation observation = { .dig_count = e->digs, .trajectory = chosen };
-    if (chosen >= 0 &&
-        dig_window_observe(&e->window, &e->route[chosen], &fitted[chosen], 2.0 * limit_m,
-                           e->set->smooth_half_s, &observation) == DIG_OK &&
-        observation.last - observation.first >= least_progress) {
-        e->observation     = observation;
-        e->has_observation = true;
+enum dig_status dig_raw_observe(const struct dig_curve_set *const          set,
+                                const struct dig_estimator_settings *const settings,
+                                struct dig_raw *const                      raw,
+                                struct dig_observation *const              observation)
+{
+    assert(set != NULL && settings != NULL && raw != NULL && observation != NULL);
+    struct dig_route route[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < set->trajectories; t++) {
+        route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
+    }
+    return observe(set, settings->path_limit_m, route, raw, observation);
+}
+
+// Hands the dig out raw and goes on in the spare, or observes it here.
+static void finish_dig(struct dig_estimator *const e)
+{
+    e->raw->dig_count = ++e->digs;
+    if (!e->lends) {
+        e->has_observation |=
+            observe(e->set, e->settings.path_limit_m, e->route, e->raw, &e->observation) == DIG_OK;
+    } else if (e->spare != NULL && e->finished == NULL) {
+        e->finished = e->raw;
+        e->raw      = e->spare;
+        e->spare    = NULL;
+    } else {
+        e->lost++;
     }
     forget_dig(e);
+}
+
+size_t dig_raw_size(void)
+{
+    return sizeof(struct dig_raw);
+}
+
+void dig_estimator_lend(struct dig_estimator *const estimator, struct dig_raw *const spare)
+{
+    assert(estimator != NULL && spare != NULL && estimator->spare == NULL);
+    estimator->lends = true;
+    estimator->spare = spare;
+}
+
+bool dig_estimator_wants_raw(const struct dig_estimator *const estimator)
+{
+    assert(estimator != NULL);
+    return estimator->spare == NULL;
+}
+
+struct dig_raw *dig_estimator_take_raw(struct dig_estimator *const estimator)
+{
+    assert(estimator != NULL);
+    struct dig_raw *const finished = estimator->finished;
+    estimator->finished            = NULL;
+    return finished;
+}
+
+uint32_t dig_estimator_lost(const struct dig_estimator *const estimator)
+{
+    assert(estimator != NULL);
+    return estimator->lost;
 }
 
 // Moves phase, window and path on by one valid moment.
@@ -200,11 +267,11 @@ static void follow_dig(struct dig_estimator *const e, const double time_s, const
         .sigma_Nm  = (float)(wrench->sigma_My_Nm / lambda4),
         .slow_Nm   = (float)(wrench->slow_sigma_My_Nm / lambda4),
     };
-    dig_window_add(&e->window, &sample);
+    dig_window_add(&e->raw->window, &sample);
 
     switch (event) {
     case DIG_EVENT_TOUCHED:
-        dig_window_open(&e->window);
+        dig_window_open(&e->raw->window);
         lay_out_path(e, point);
         break;
     case DIG_EVENT_LOST: forget_dig(e); break;
@@ -212,7 +279,7 @@ static void follow_dig(struct dig_estimator *const e, const double time_s, const
     case DIG_EVENT_NONE:
     default: break;
     }
-    if (!e->window.open) {
+    if (!e->raw->window.open) {
         return;
     }
     follow_path(e, point);

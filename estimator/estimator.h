@@ -3,9 +3,12 @@
 //
 //   sample -> wrench -> phase -> (window of the dig) -> match -> prediction
 //
-// dig_estimator_step() is what the real-time tick calls. Matching is asked for by another thread:
-// the tick hands out a finished dig (take_dig), that thread runs dig_match_nearest() and
-// dig_fit_refine() on it, and hands the answer back (give_match).
+// dig_estimator_step() is what the real-time tick calls. All that takes long is asked for by
+// another thread: the tick hands out a finished dig as it was recorded (lend, take_raw); that
+// thread makes an observation of it (dig_raw_observe), matches it (dig_match_nearest,
+// dig_fit_refine), computes what every trajectory will resist with (dig_forecast_make), and hands
+// that back (give_forecast). Who has no second thread lends nothing, and uses take_dig and
+// give_match instead.
 
 #ifndef DIG_ESTIMATOR_ESTIMATOR_H
 #define DIG_ESTIMATOR_ESTIMATOR_H
@@ -87,6 +90,16 @@ struct dig_prediction {
     double peak_Nm, energy_J; // of the whole dig
 };
 
+/// What a match predicts along each trajectory of a table, machine scale for the whole dig's
+/// numbers, rig scale for the curves.
+struct dig_forecast {
+    struct dig_expected {
+        bool             valid;
+        struct dig_curve curve;
+        double           peak_Nm, energy_J;
+    } along[DIG_TRAJECTORY_MAX];
+};
+
 struct dig_estimator_settings {
     // fixed at start
     double tick_s;         // nominal time between samples
@@ -117,16 +130,53 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
 
 /// One tick. DIG_ESTALE: an incomplete sample or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
-/// for the tick in which a dig ends (one to two milliseconds: alignment, resampling).
+/// for the tick in which a dig ends while nothing is lent (one to two milliseconds: alignment,
+/// resampling).
 DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estimator,
                                                   const struct dig_sample *sample,
                                                   struct dig_estimate     *estimate);
 
-/// True once after every finished dig that followed a known trajectory: copies it out.
+/// A finished dig as it was recorded, not yet laid along any trajectory; about 2.5 MB.
+struct dig_raw;
+size_t dig_raw_size(void);
+
+/// From now on a dig that ends is handed out raw, and spare (zeroed, or one taken before) keeps the
+/// samples of the next. A dig that ends while none is lent, or while the one before was not taken,
+/// is lost and counted. Constant time. It must outlive the estimator or be taken back.
+void dig_estimator_lend(struct dig_estimator *estimator, struct dig_raw *spare);
+
+/// True when a dig can be lent.
+bool dig_estimator_wants_raw(const struct dig_estimator *estimator);
+
+/// The finished dig, the caller's until it is lent again; NULL: none. Constant time.
+struct dig_raw *dig_estimator_take_raw(struct dig_estimator *estimator);
+
+/// Digs that were lost since init.
+uint32_t dig_estimator_lost(const struct dig_estimator *estimator);
+
+/// What was dug: fits the path to every trajectory of the set and reads the moment off along the
+/// one it was. DIG_ENOMATCH: it was none of them, or too little of one. Sorts raw's samples; one to
+/// two milliseconds.
+DIG_MUST_CHECK enum dig_status dig_raw_observe(const struct dig_curve_set          *set,
+                                               const struct dig_estimator_settings *settings,
+                                               struct dig_raw                      *raw,
+                                               struct dig_observation              *observation);
+
+/// True once after every finished dig that followed a known trajectory, while nothing is lent:
+/// copies it out.
 bool dig_estimator_take_dig(struct dig_estimator *estimator, struct dig_observation *observation);
 
-/// The gravel that predictions are made for from now on; one that is not valid ends them. Computes
-/// the curves of every trajectory: about a millisecond.
+/// What a match predicts on a machine lambda times the table's size. Nothing is valid of a match
+/// that is not. About a millisecond.
+void dig_forecast_make(const struct dig_curve_set *set, double lambda,
+                       const struct dig_match *match, struct dig_forecast *forecast);
+
+/// What predictions are made from, from now on; NULL ends them. The forecast must stay as it is
+/// until another is given. Constant time.
+void dig_estimator_give_forecast(struct dig_estimator      *estimator,
+                                 const struct dig_forecast *forecast);
+
+/// Makes the forecast of a match in the estimator's own memory and gives it: about a millisecond.
 void dig_estimator_give_match(struct dig_estimator *estimator, const struct dig_match *match);
 
 /// Prediction for the dig going on, from the current progress to its end; valid = false when no

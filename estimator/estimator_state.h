@@ -10,11 +10,11 @@
 #include "estimator/track.h"
 #include "estimator/window.h"
 
-/// What the gravel given last will resist along one trajectory.
-struct dig_outlook {
-    bool             valid;
-    struct dig_curve curve;
-    double           peak_Nm, energy_J; // machine scale
+/// A dig as the tick keeps it. Zeroed: empty.
+struct dig_raw {
+    uint32_t          dig_count;
+    struct dig_path   path;
+    struct dig_window window;
 };
 
 struct dig_estimator {
@@ -31,19 +31,26 @@ struct dig_estimator {
 
     // of the dig going on
     struct dig_phase_state phase;
-    struct dig_path        path;
+    struct dig_raw        *raw; // its samples and path
     struct dig_follower    follower[DIG_TRAJECTORY_MAX];
     size_t                 next_follower; // the one whose turn it is to be refined
     struct dig_choice      choice;        // the trajectory
     double                 progress;
     double                 off_path_m;
-    struct dig_window      window;
 
     // of digs before
-    uint32_t               digs;
-    bool                   has_observation;
-    struct dig_observation observation;
-    struct dig_outlook     outlook[DIG_TRAJECTORY_MAX];
+    uint32_t                   digs;
+    bool                       has_observation;
+    struct dig_observation     observation;
+    bool                       lends;    // digs are handed out raw
+    struct dig_raw            *spare;    // for the next dig; NULL: none
+    struct dig_raw            *finished; // to be taken; NULL: none
+    uint32_t                   lost;
+    const struct dig_forecast *forecast; // NULL: none
+
+    // where raw and forecast point unless others were lent
+    struct dig_raw      own_raw;
+    struct dig_forecast own_forecast;
 };
 
 #endif // DIG_ESTIMATOR_ESTIMATOR_STATE_H

@@ -9,21 +9,36 @@
 #include <math.h>
 #include <stddef.h>
 
+void dig_forecast_make(const struct dig_curve_set *const set, const double lambda,
+                       const struct dig_match *const match, struct dig_forecast *const forecast)
+{
+    assert(set != NULL && match != NULL && forecast != NULL);
+    const double lambda4 = pow(lambda, 4.0);
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        struct dig_expected *const along = &forecast->along[t];
+        along->valid =
+            t < set->trajectories && dig_predict_curve(set, match, t, &along->curve) == DIG_OK;
+        if (along->valid) {
+            along->peak_Nm = lambda4 * dig_predict_peak_Nm(&along->curve);
+            along->energy_J =
+                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &along->curve);
+        }
+    }
+}
+
+void dig_estimator_give_forecast(struct dig_estimator *const      estimator,
+                                 const struct dig_forecast *const forecast)
+{
+    assert(estimator != NULL);
+    estimator->forecast = forecast;
+}
+
 void dig_estimator_give_match(struct dig_estimator *const   estimator,
                               const struct dig_match *const match)
 {
     assert(estimator != NULL && match != NULL);
-    const struct dig_curve_set *const set     = estimator->set;
-    const double                      lambda4 = pow(estimator->lambda, 4.0);
-    for (size_t t = 0; t < set->trajectories; t++) {
-        struct dig_outlook *const outlook = &estimator->outlook[t];
-        outlook->valid = dig_predict_curve(set, match, t, &outlook->curve) == DIG_OK;
-        if (outlook->valid) {
-            outlook->peak_Nm = lambda4 * dig_predict_peak_Nm(&outlook->curve);
-            outlook->energy_J =
-                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &outlook->curve);
-        }
-    }
+    dig_forecast_make(estimator->set, estimator->lambda, match, &estimator->own_forecast);
+    estimator->forecast = &estimator->own_forecast;
 }
 
 // The prediction for one trajectory from `progress` to its end; valid = false without a match.
@@ -32,15 +47,15 @@ static struct dig_prediction predict_from(const struct dig_estimator *const esti
 {
     struct dig_prediction p = { .valid = false, .trajectory = trajectory };
     if (trajectory >= 0 && (size_t)trajectory < estimator->set->trajectories &&
-        estimator->outlook[trajectory].valid) {
-        const struct dig_outlook *const outlook = &estimator->outlook[trajectory];
-        p.valid                                 = true;
-        p.progress_now                          = progress;
-        p.from_progress                         = progress;
-        p.to_progress                           = 1.0;
-        p.peak_Nm                               = outlook->peak_Nm;
-        p.energy_J                              = outlook->energy_J;
-        dig_predict_points(&outlook->curve, estimator->lambda, &p);
+        estimator->forecast != NULL && estimator->forecast->along[trajectory].valid) {
+        const struct dig_expected *const along = &estimator->forecast->along[trajectory];
+        p.valid                                = true;
+        p.progress_now                         = progress;
+        p.from_progress                        = progress;
+        p.to_progress                          = 1.0;
+        p.peak_Nm                              = along->peak_Nm;
+        p.energy_J                             = along->energy_J;
+        dig_predict_points(&along->curve, estimator->lambda, &p);
     }
     return p;
 }

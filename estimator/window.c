@@ -9,28 +9,22 @@
 // Steps forward smaller than this are noise of the angles.
 #define STANDING 0.004
 
-static void put(struct dig_window *const window, const size_t i,
-                const struct dig_window_sample *const sample)
+// Where the next sample goes once the window is full. Doubling number g drops, of what is there,
+// the slots whose bit g - 1 is set; within each residue of the lower bits slots ascend in time, and
+// so do the residues. Slots are filled in that order, each dropped one giving way when its turn
+// comes.
+static size_t next_slot(struct dig_window *const window)
 {
-    window->time_s[i]    = sample->time_s;
-    window->moment_Nm[i] = sample->moment_Nm;
-    window->pose[i]      = sample->pose;
-    window->sigma_Nm[i]  = sample->sigma_Nm;
-    window->slow_Nm[i]   = sample->slow_Nm;
-}
-
-static void halve(struct dig_window *const window)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < window->count; i += 2, kept++) {
-        window->time_s[kept]    = window->time_s[i];
-        window->moment_Nm[kept] = window->moment_Nm[i];
-        window->pose[kept]      = window->pose[i];
-        window->sigma_Nm[kept]  = window->sigma_Nm[i];
-        window->slow_Nm[kept]   = window->slow_Nm[i];
+    const size_t half = DIG_WINDOW_MAX / 2;
+    if (window->stride == 1 || window->replaced == half) {
+        window->stride *= 2;
+        window->replaced = 0;
     }
-    window->count = kept;
-    window->stride *= 2;
+    const size_t bit     = window->stride / 2;
+    const size_t in_each = half / bit;
+    const size_t slot = window->replaced / in_each + bit + 2 * bit * (window->replaced % in_each);
+    window->replaced++;
+    return slot;
 }
 
 void dig_window_add(struct dig_window *const window, const struct dig_window_sample *const sample)
@@ -44,11 +38,10 @@ void dig_window_add(struct dig_window *const window, const struct dig_window_sam
     if (++window->skipped < window->stride) {
         return;
     }
-    window->skipped = 0;
-    if (window->count == DIG_WINDOW_MAX) {
-        halve(window);
-    }
-    put(window, window->count++, sample);
+    window->skipped   = 0;
+    const size_t slot = window->count < DIG_WINDOW_MAX ? window->count++ : next_slot(window);
+
+    window->sample[slot] = *sample;
 }
 
 void dig_window_open(struct dig_window *const window)
@@ -56,13 +49,14 @@ void dig_window_open(struct dig_window *const window)
     assert(window != NULL && !window->open);
     const size_t have = window->before < DIG_WINDOW_BEFORE ? window->before : DIG_WINDOW_BEFORE;
     for (size_t i = 0; i < have; i++) {
-        put(window, i, &window->ring[(window->before - have + i) % DIG_WINDOW_BEFORE]);
+        window->sample[i] = window->ring[(window->before - have + i) % DIG_WINDOW_BEFORE];
     }
-    window->open    = true;
-    window->count   = have;
-    window->stride  = 1;
-    window->skipped = 0;
-    window->before  = 0;
+    window->open     = true;
+    window->count    = have;
+    window->stride   = 1;
+    window->skipped  = 0;
+    window->replaced = 0;
+    window->before   = 0;
 }
 
 void dig_window_close(struct dig_window *const window)
@@ -71,6 +65,35 @@ void dig_window_close(struct dig_window *const window)
     window->open   = false;
     window->count  = 0;
     window->before = 0;
+}
+
+// Shell's sort with Ciura's gaps: in place, and qsort() allocates.
+static void sort_by_time(const size_t count, struct dig_window_sample sample[])
+{
+    static const size_t gaps[] = { 8929, 3937, 1750, 701, 301, 132, 57, 23, 10, 4, 1 };
+    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
+        const size_t gap = gaps[g];
+        for (size_t i = gap; i < count; i++) {
+            const struct dig_window_sample moved = sample[i];
+            size_t                         to    = i;
+            for (; to >= gap && sample[to - gap].time_s > moved.time_s; to -= gap) {
+                sample[to] = sample[to - gap];
+            }
+            sample[to] = moved;
+        }
+    }
+}
+
+// In the order of time, and what is smoothed as arrays of its own.
+static void settle(struct dig_window *const window)
+{
+    if (window->stride > 1) {
+        sort_by_time(window->count, window->sample);
+    }
+    for (size_t i = 0; i < window->count; i++) {
+        window->time_s[i]    = window->sample[i].time_s;
+        window->moment_Nm[i] = window->sample[i].moment_Nm;
+    }
 }
 
 // A range of samples.
@@ -87,8 +110,9 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     double       last     = 0.0;
     double       furthest = 0.0;
     for (size_t i = 0; i < window->count && furthest < 1.0; i++) {
-        const struct dig_place place = dig_route_place(
-            route, track->dx_m, track->dz_m, &window->pose[i], last - LOOK, fmin(last + LOOK, 1.0));
+        const struct dig_place place =
+            dig_route_place(route, track->dx_m, track->dz_m, &window->sample[i].pose, last - LOOK,
+                            fmin(last + LOOK, 1.0));
         if (place.distance_m <= limit_m) {
             last     = place.progress;
             furthest = fmax(furthest, place.progress);
@@ -124,6 +148,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
 {
     assert(window != NULL && route != NULL && track != NULL && observation != NULL);
 
+    settle(window);
     const struct range range = follow(window, route, track, limit_m);
     if (range.end < range.first + 3) {
         return DIG_ENOMATCH;
@@ -148,8 +173,8 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
         }
         const double span = window->progress[i + 1] - window->progress[i];
         const double f = span > 0.0 ? fmin(fmax((at - window->progress[i]) / span, 0.0), 1.0) : 0.0;
-        const double slow = (double)window->slow_Nm[i];
-        const double fast = fmax(pow((double)window->sigma_Nm[i], 2.0) - slow * slow, 0.0);
+        const double slow = (double)window->sample[i].slow_Nm;
+        const double fast = fmax(pow((double)window->sample[i].sigma_Nm, 2.0) - slow * slow, 0.0);
 
         moment_Nm[k] = window->smooth_Nm[i] + f * (window->smooth_Nm[i + 1] - window->smooth_Nm[i]);
         sigma_Nm[k]  = sqrt(slow * slow + fast / samples_within(window, range, i, half_s));

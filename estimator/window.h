@@ -1,7 +1,9 @@
 // The samples of one dig, kept in a fixed place, and the observation made of them in its end.
 //
 // In the air the window only remembers the last DIG_WINDOW_BEFORE samples, as contact is noticed
-// late; opened, it keeps everything, and when it is full every other sample.
+// late; opened, it keeps everything. A full window goes on at half the rate, and every sample that
+// comes then takes the place of one of every second that is there: no tick moves more than one. So
+// samples of a long dig do not lie in the order of time until dig_window_observe() sorts them.
 
 #ifndef DIG_ESTIMATOR_WINDOW_H
 #define DIG_ESTIMATOR_WINDOW_H
@@ -28,19 +30,20 @@ struct dig_window {
     struct dig_window_sample ring[DIG_WINDOW_BEFORE];
     size_t                   count;
     size_t                   stride, skipped; // every stride-th sample is kept
-    double                   time_s[DIG_WINDOW_MAX];
-    double                   moment_Nm[DIG_WINDOW_MAX];
-    double                   progress[DIG_WINDOW_MAX]; // filled by dig_window_observe()
-    double                   smooth_Nm[DIG_WINDOW_MAX];
-    struct dig_path_point    pose[DIG_WINDOW_MAX];
-    float                    sigma_Nm[DIG_WINDOW_MAX];
-    float                    slow_Nm[DIG_WINDOW_MAX];
+    size_t                   replaced;        // samples replaced since the stride doubled last
+    struct dig_window_sample sample[DIG_WINDOW_MAX];
+    // filled by dig_window_observe()
+    double time_s[DIG_WINDOW_MAX];
+    double moment_Nm[DIG_WINDOW_MAX];
+    double progress[DIG_WINDOW_MAX];
+    double smooth_Nm[DIG_WINDOW_MAX];
 };
 
-/// Remembers or keeps a sample. Constant time but for the halving of a full window.
+/// Remembers or keeps a sample. Constant time.
 void dig_window_add(struct dig_window *window, const struct dig_window_sample *sample);
 
-/// Opens the window with the samples remembered; closes it and forgets all.
+/// Opens the window with the samples remembered (they are copied: some microseconds); closes it and
+/// forgets all.
 void dig_window_open(struct dig_window *window);
 void dig_window_close(struct dig_window *window);
 

@@ -72,6 +72,8 @@ struct bench {
     struct dig_machine     machine;
     struct dig_curve_set  *set;
     struct dig_estimator  *estimator;
+    struct dig_raw        *spare; // NULL: digs are observed in the tick
+    bool                   keeps; // does not give a finished dig back
     double                 time_s;
     size_t                 observations, steps_with_allocation;
     struct dig_observation observation;
@@ -107,7 +109,27 @@ static void bench_destroy(struct bench *const b)
 {
     made_table_destroy(b->set);
     free(b->estimator);
+    free(b->spare);
     free(b);
+}
+
+// The dig that ended in this tick: observed in the tick, or handed out raw and observed beside it.
+static bool take(struct bench *const b)
+{
+    if (b->spare == NULL) {
+        return dig_estimator_take_dig(b->estimator, &b->observation);
+    }
+    struct dig_raw *const raw = dig_estimator_take_raw(b->estimator);
+    if (raw == NULL) {
+        return false;
+    }
+    assert_false(dig_estimator_take_dig(b->estimator, &b->observation));
+    const struct dig_estimator_settings settings = dig_estimator_settings_default();
+    const bool any = dig_raw_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
+    if (!b->keeps) {
+        dig_estimator_lend(b->estimator, raw);
+    }
+    return any;
 }
 
 // The bucket at a rig pose, shifted up out of the ground, with the soil's moment; one tick.
@@ -136,7 +158,7 @@ static void tick(struct bench *const b, const struct dig_pose pose, const double
 
     const size_t          before = allocations;
     const enum dig_status status = dig_estimator_step(b->estimator, &sample, &b->estimate);
-    const bool            taken  = dig_estimator_take_dig(b->estimator, &b->observation);
+    const bool            taken  = take(b);
     assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
     b->steps_with_allocation += allocations != before ? 1 : 0;
     b->observations += taken ? 1 : 0;
@@ -424,10 +446,43 @@ static void a_dig_longer_than_the_window_is_still_observed(void **state)
 {
     (void)state;
     struct bench *const b = bench_create(false);
-    dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 12, .until = 1, .seed = 5 });
+    dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 24, .until = 1, .seed = 5 });
     assert_int_equal(b->observations, 1);
-    assert_true(observation_error(b, 12.0, 1.0) < 0.01);
+    assert_true(observation_error(b, 24.0, 1.0) < 0.01);
     bench_destroy(b);
+}
+
+// Handed out raw and observed beside the tick, every dig is what it was within.
+static void a_dig_handed_out_raw_is_observed_the_same(void **state)
+{
+    (void)state;
+    const struct drive drives[] = {
+        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
+        { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .sensors = true, .seed = 3 },
+        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .sensors = true, .seed = 4 },
+    };
+    struct bench *const inside = bench_create(true), *const beside = bench_create(true);
+    beside->spare = calloc(1, dig_raw_size());
+    assert_non_null(beside->spare);
+    dig_estimator_lend(beside->estimator, beside->spare);
+    for (size_t i = 0; i < sizeof drives / sizeof drives[0]; i++) {
+        dig(inside, drives[i]);
+        dig(beside, drives[i]);
+        assert_int_equal(beside->observations, i + 1);
+        assert_memory_equal(&inside->observation, &beside->observation, sizeof inside->observation);
+    }
+    assert_int_equal(dig_estimator_lost(beside->estimator), 0);
+    assert_int_equal(beside->steps_with_allocation, 0);
+
+    // The one who took the last dig keeps it: the next goes into no memory, and is counted.
+    beside->keeps = true;
+    dig(beside, drives[0]);
+    dig(beside, drives[0]);
+    assert_int_equal(beside->observations, 4);
+    assert_int_equal(dig_estimator_lost(beside->estimator), 1);
+    bench_destroy(inside);
+    // The last raw dig taken is one of the estimator's own or the spare: both are freed.
+    bench_destroy(beside);
 }
 
 static void bad_samples_are_refused_and_change_nothing(void **state)
@@ -563,6 +618,7 @@ int main(void)
         cmocka_unit_test(a_load_carried_away_is_no_second_dig),
         cmocka_unit_test(a_scrape_is_counted_but_not_matched),
         cmocka_unit_test(no_tick_allocates),
+        cmocka_unit_test(a_dig_handed_out_raw_is_observed_the_same),
         cmocka_unit_test(a_dig_longer_than_the_window_is_still_observed),
         cmocka_unit_test(bad_samples_are_refused_and_change_nothing),
         cmocka_unit_test(whatever_comes_in_only_numbers_go_out),
