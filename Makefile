@@ -110,6 +110,13 @@ foreign = $(foreach d,$(call pkg_cflags,$(1)),$(patsubst -I%,-isystem %,$(d)))
 $(BUILD)/offline_dem/%.o:   CPPFLAGS += $(call foreign,ode)
 # The grain kernel is picked at run time for the processor it finds; this is what its loops need.
 $(BUILD)/offline_dem/%.o:   CPPFLAGS += -fopenmp-simd -fno-math-errno -fno-trapping-math
+# What the numbers of a dig depend on, told apart in every run of a table.
+numerics_src := $(filter-out $(addprefix offline_dem/,sweep.c sweep.h worker.c worker.h vtk.c vtk.h engine_ode.c \
+                engine_ode.h),$(wildcard offline_dem/*.[ch])) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
+numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLAGS)'; $(CC) -dumpfullversion -dumpmachine; } \
+                | sha256sum | cut -c1-12)
+$(BUILD)/offline_dem/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'
+$(BUILD)/offline_dem/sweep.o: $(numerics_src)
 $(BUILD)/tables/%.o:        CPPFLAGS += $(call foreign,sqlite3)
 $(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm libcyaml)
 $(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus libcyaml)
@@ -196,7 +203,7 @@ uninstall: ## Remove what install put there
 	$(Q)rm -f $(patsubst $(BUILD)/bin/%,'$(DESTDIR)$(PREFIX)/bin/%',$(bins))
 	$(Q)rm -rf '$(DESTDIR)$(PREFIX)/share/digsight'
 
-lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -fopenmp-simd \
+lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -DDIG_NUMERICS='"lint"' -fopenmp-simd \
              $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml)
 
 clean: ## Remove the build folder

@@ -20,7 +20,16 @@
 #define DIG_TRAJECTORY_MAX 8    // trajectories in one table
 #define DIG_SMOOTH_HALF_s  0.16 // half width of the paper's moving average, in rig time
 
-enum dig_channel { DIG_CHANNEL_MY_Nm, DIG_CHANNEL_FX_N, DIG_CHANNEL_FZ_N, DIG_CHANNELS };
+/// What the soil does to the bucket, and the mass of the grains in it. The carried mass is known to
+/// a DEM alone: NaN throughout where it is not.
+enum dig_channel {
+    DIG_CHANNEL_MY_Nm,
+    DIG_CHANNEL_FX_N,
+    DIG_CHANNEL_FZ_N,
+    DIG_FORCE_CHANNELS,
+    DIG_CHANNEL_CARRIED_kg = DIG_FORCE_CHANNELS,
+    DIG_CHANNELS
+};
 
 /// The axes of a table, in this order wherever gravel is an array.
 enum dig_axis { DIG_AXIS_FRICTION, DIG_AXIS_ROLLING, DIG_AXIS_DENSITY_kgpm3, DIG_AXES };

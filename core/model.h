@@ -28,7 +28,7 @@ struct dig_model_effect {
 /// as a factor of the rms of the table's own curve of that channel and trajectory.
 struct dig_model_unlisted {
     char  depends_on[128]; // what it was found to depend on, for people
-    float share[DIG_TRAJECTORY_MAX][DIG_CHANNELS][DIG_CURVE_POINTS];
+    float share[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
 struct dig_model {

@@ -28,8 +28,8 @@ double dig_predict_energy_J(const struct dig_trajectory *const trajectory, const
         const double          time_s   = dig_trajectory_time_s(trajectory, tooth_m, progress);
         const struct dig_pose pose     = dig_trajectory_pose(trajectory, time_s);
 
-        double mean[DIG_CHANNELS];
-        for (int c = 0; c < DIG_CHANNELS; c++) {
+        double mean[DIG_FORCE_CHANNELS];
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             mean[c] = 0.5 * ((double)curve->mean[c][k - 1] + (double)curve->mean[c][k]);
         }
         energy_J += mean[DIG_CHANNEL_MY_Nm] * (pose.theta_rad - before.theta_rad) -

@@ -3,6 +3,7 @@
 #include "files/yaml.h"
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,14 +14,29 @@ struct name_text {
     char text[DIG_NAME_SIZE];
 };
 
+struct point_text {
+    double   friction, rolling, density_kgpm3;
+    uint32_t packings;
+};
+
+struct effect_text {
+    char     name[DIG_NAME_SIZE];
+    double   magnitudes[DIG_MAGNITUDES_MAX];
+    uint32_t magnitudes_count;
+};
+
 struct grid_text {
-    double           friction[DIG_AXIS_VALUES_MAX];
-    double           rolling[DIG_AXIS_VALUES_MAX];
-    double           density_kgpm3[DIG_AXIS_VALUES_MAX];
-    uint32_t         friction_count, rolling_count, density_kgpm3_count;
-    uint32_t         packings;
-    struct name_text trajectories[DIG_TRAJECTORY_MAX];
-    uint32_t         trajectories_count;
+    double             friction[DIG_AXIS_VALUES_MAX];
+    double             rolling[DIG_AXIS_VALUES_MAX];
+    double             density_kgpm3[DIG_AXIS_VALUES_MAX];
+    uint32_t           friction_count, rolling_count, density_kgpm3_count;
+    uint32_t           packings;
+    struct point_text  points[DIG_GRID_POINTS_MAX];
+    uint32_t           points_count;
+    struct effect_text effects[DIG_GRID_EFFECTS_MAX];
+    uint32_t           effects_count;
+    struct name_text   trajectories[DIG_TRAJECTORY_MAX];
+    uint32_t           trajectories_count;
 };
 
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -30,14 +46,39 @@ static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double)
 static const cyaml_schema_value_t name   = { CYAML_VALUE_STRING(REQUIRED, struct name_text, 1,
                                                                 DIG_NAME_SIZE - 1) };
 
+static const cyaml_schema_field_t point_fields[] = {
+    CYAML_FIELD_FLOAT("friction", REQUIRED, struct point_text, friction),
+    CYAML_FIELD_FLOAT("rolling", REQUIRED, struct point_text, rolling),
+    CYAML_FIELD_FLOAT("density_kgpm3", REQUIRED, struct point_text, density_kgpm3),
+    CYAML_FIELD_UINT("packings", REQUIRED, struct point_text, packings),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t point = { CYAML_VALUE_MAPPING(REQUIRED, struct point_text,
+                                                                point_fields) };
+
+static const cyaml_schema_field_t effect_fields[] = {
+    CYAML_FIELD_STRING("name", REQUIRED, struct effect_text, name, 1),
+    CYAML_FIELD_SEQUENCE("magnitudes", REQUIRED, struct effect_text, magnitudes, &number, 1,
+                         DIG_MAGNITUDES_MAX),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t effect = { CYAML_VALUE_MAPPING(REQUIRED, struct effect_text,
+                                                                 effect_fields) };
+
 static const cyaml_schema_field_t fields[] = {
-    CYAML_FIELD_SEQUENCE("friction", REQUIRED, struct grid_text, friction, &number, 1,
+    CYAML_FIELD_SEQUENCE("friction", OPTIONAL, struct grid_text, friction, &number, 1,
                          DIG_AXIS_VALUES_MAX),
-    CYAML_FIELD_SEQUENCE("rolling", REQUIRED, struct grid_text, rolling, &number, 1,
+    CYAML_FIELD_SEQUENCE("rolling", OPTIONAL, struct grid_text, rolling, &number, 1,
                          DIG_AXIS_VALUES_MAX),
-    CYAML_FIELD_SEQUENCE("density_kgpm3", REQUIRED, struct grid_text, density_kgpm3, &number, 1,
+    CYAML_FIELD_SEQUENCE("density_kgpm3", OPTIONAL, struct grid_text, density_kgpm3, &number, 1,
                          DIG_AXIS_VALUES_MAX),
-    CYAML_FIELD_UINT("packings", REQUIRED, struct grid_text, packings),
+    CYAML_FIELD_UINT("packings", OPTIONAL, struct grid_text, packings),
+    CYAML_FIELD_SEQUENCE("points", OPTIONAL, struct grid_text, points, &point, 0,
+                         DIG_GRID_POINTS_MAX),
+    CYAML_FIELD_SEQUENCE("effects", OPTIONAL, struct grid_text, effects, &effect, 0,
+                         DIG_GRID_EFFECTS_MAX),
     CYAML_FIELD_SEQUENCE("trajectories", OPTIONAL, struct grid_text, trajectories, &name, 0,
                          DIG_TRAJECTORY_MAX),
     CYAML_FIELD_IGNORE("source", OPTIONAL),
@@ -75,19 +116,92 @@ static enum dig_status check_axis(const char *const path, const enum dig_axis ax
     return DIG_OK;
 }
 
-static enum dig_status check(const char *const path, const struct dig_grid *const grid,
-                             struct dig_error *const error)
+// Axes may be left out together where points stand in their place.
+static enum dig_status check_present(const char *const path, const struct dig_grid *const grid,
+                                     struct dig_error *const error)
 {
+    size_t axes = 0;
     for (int a = 0; a < DIG_AXES; a++) {
-        const enum dig_status status = check_axis(path, (enum dig_axis)a, grid, error);
-        if (status != DIG_OK) {
-            return status;
+        axes += grid->count[a] > 0 ? 1 : 0;
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (grid->count[a] == 0 && (axes > 0 || grid->points == 0)) {
+            return dig_yaml_refuse(path, dig_axis_name((enum dig_axis)a), error,
+                                   "missing, expected a list");
         }
     }
-    if (grid->packings < 1 || grid->packings > PACKINGS_MAX) {
-        return dig_yaml_refuse(path, "packings", error, "%zu, expected 1 to %d", grid->packings,
-                               PACKINGS_MAX);
+    if (axes > 0 && grid->packings == 0) {
+        return dig_yaml_refuse(path, "packings", error, "%s, expected %s",
+                               dig_yaml_line(path, "packings") > 0 ? "0" : "missing",
+                               dig_yaml_line(path, "packings") > 0 ? "1 to 1000"
+                                                                   : "a whole number");
     }
+    return DIG_OK;
+}
+
+static enum dig_status check_packings(const char *const path, const char *const key,
+                                      const size_t packings, struct dig_error *const error)
+{
+    return packings >= 1 && packings <= PACKINGS_MAX
+               ? DIG_OK
+               : dig_yaml_refuse(path, key, error, "%zu, expected 1 to %d", packings, PACKINGS_MAX);
+}
+
+static bool same_gravel(const struct dig_gravel *const a, const struct dig_gravel *const b)
+{
+    return !memcmp(a->value, b->value, sizeof a->value);
+}
+
+static enum dig_status check_point(const char *const path, const struct dig_grid *const grid,
+                                   const size_t i, struct dig_error *const error)
+{
+    char key[64];
+    for (int a = 0; a < DIG_AXES; a++) {
+        const double value = grid->point[i].gravel.value[a];
+        (void)snprintf(key, sizeof key, "points[%zu].%s", i, dig_axis_name((enum dig_axis)a));
+        if (!(value >= domain[a].least && value <= domain[a].most)) {
+            return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", value,
+                                   domain[a].least, domain[a].most);
+        }
+    }
+    for (size_t k = 0; k < i; k++) {
+        if (same_gravel(&grid->point[i].gravel, &grid->point[k].gravel)) {
+            (void)snprintf(key, sizeof key, "points[%zu]", i);
+            return dig_yaml_refuse(path, key, error, "the gravel of points[%zu], expected another",
+                                   k);
+        }
+    }
+    (void)snprintf(key, sizeof key, "points[%zu].packings", i);
+    return check_packings(path, key, grid->point[i].packings, error);
+}
+
+static enum dig_status check_effect(const char *const path, const struct dig_grid *const grid,
+                                    const size_t i, struct dig_error *const error)
+{
+    char                                key[64];
+    const struct dig_grid_effect *const e = &grid->effect[i];
+    for (size_t k = 0; k < i; k++) {
+        if (grid->effect[k].effect == e->effect) {
+            (void)snprintf(key, sizeof key, "effects[%zu].name", i);
+            return dig_yaml_refuse(path, key, error, "\"%s\" again, expected a new effect",
+                                   dig_effect_name(e->effect));
+        }
+    }
+    for (size_t m = 0; m < e->magnitudes; m++) {
+        for (size_t k = 0; k < m; k++) {
+            if (!(e->magnitude[k] < e->magnitude[m]) && !(e->magnitude[k] > e->magnitude[m])) {
+                (void)snprintf(key, sizeof key, "effects[%zu].magnitudes[%zu]", i, m);
+                return dig_yaml_refuse(path, key, error, "%g again, expected another",
+                                       e->magnitude[m]);
+            }
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_trajectories(const char *const path, const struct dig_grid *const grid,
+                                          struct dig_error *const error)
+{
     for (size_t i = 0; i < grid->trajectories; i++) {
         for (size_t j = 0; j < i; j++) {
             if (strcmp(grid->trajectory[i], grid->trajectory[j]) == 0) {
@@ -101,20 +215,66 @@ static enum dig_status check(const char *const path, const struct dig_grid *cons
     return DIG_OK;
 }
 
-static struct dig_grid convert(const struct grid_text *const text)
+static enum dig_status check(const char *const path, const struct dig_grid *const grid,
+                             struct dig_error *const error)
 {
-    struct dig_grid grid = {
+    enum dig_status status = check_present(path, grid, error);
+    for (int a = 0; status == DIG_OK && a < DIG_AXES; a++) {
+        status = check_axis(path, (enum dig_axis)a, grid, error);
+    }
+    if (status == DIG_OK && grid->count[0] > 0) {
+        status = check_packings(path, "packings", grid->packings, error);
+    }
+    for (size_t i = 0; status == DIG_OK && i < grid->points; i++) {
+        status = check_point(path, grid, i, error);
+    }
+    for (size_t i = 0; status == DIG_OK && i < grid->effects; i++) {
+        status = check_effect(path, grid, i, error);
+    }
+    return status == DIG_OK ? check_trajectories(path, grid, error) : status;
+}
+
+static enum dig_status convert_effects(const char *const path, const struct grid_text *const text,
+                                       struct dig_grid *const grid, struct dig_error *const error)
+{
+    for (size_t i = 0; i < text->effects_count; i++) {
+        const struct effect_text *const from  = &text->effects[i];
+        const int                       found = dig_effect_find(from->name);
+        if (found < 0 || found == DIG_EFFECT_UNLISTED ||
+            dig_effect_is_of_machine((enum dig_effect_id)found)) {
+            char key[64];
+            (void)snprintf(key, sizeof key, "effects[%zu].name", i);
+            return dig_yaml_refuse(path, key, error, "\"%s\", expected an effect of the soil",
+                                   from->name);
+        }
+        struct dig_grid_effect *const to = &grid->effect[i];
+        to->effect                       = (enum dig_effect_id)found;
+        to->magnitudes                   = from->magnitudes_count;
+        memcpy(to->magnitude, from->magnitudes, sizeof to->magnitude);
+    }
+    grid->effects = text->effects_count;
+    return DIG_OK;
+}
+
+static void convert(const struct grid_text *const text, struct dig_grid *const grid)
+{
+    *grid = (struct dig_grid){
         .count        = { text->friction_count, text->rolling_count, text->density_kgpm3_count },
         .packings     = text->packings,
+        .points       = text->points_count,
         .trajectories = text->trajectories_count,
     };
-    memcpy(grid.value[DIG_AXIS_FRICTION], text->friction, sizeof text->friction);
-    memcpy(grid.value[DIG_AXIS_ROLLING], text->rolling, sizeof text->rolling);
-    memcpy(grid.value[DIG_AXIS_DENSITY_kgpm3], text->density_kgpm3, sizeof text->density_kgpm3);
-    for (size_t i = 0; i < grid.trajectories; i++) {
-        memcpy(grid.trajectory[i], text->trajectories[i].text, DIG_NAME_SIZE);
+    memcpy(grid->value[DIG_AXIS_FRICTION], text->friction, sizeof text->friction);
+    memcpy(grid->value[DIG_AXIS_ROLLING], text->rolling, sizeof text->rolling);
+    memcpy(grid->value[DIG_AXIS_DENSITY_kgpm3], text->density_kgpm3, sizeof text->density_kgpm3);
+    for (size_t i = 0; i < grid->points; i++) {
+        const struct point_text *const p = &text->points[i];
+        grid->point[i] = (struct dig_grid_point){ { { p->friction, p->rolling, p->density_kgpm3 } },
+                                                  p->packings };
     }
-    return grid;
+    for (size_t i = 0; i < grid->trajectories; i++) {
+        memcpy(grid->trajectory[i], text->trajectories[i].text, DIG_NAME_SIZE);
+    }
 }
 
 enum dig_status dig_grid_read(const char *const path, struct dig_grid *const grid,
@@ -127,9 +287,13 @@ enum dig_status dig_grid_read(const char *const path, struct dig_grid *const gri
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_grid loaded = convert(data);
+    struct dig_grid loaded;
+    convert(data, &loaded);
+    status = convert_effects(path, data, &loaded, error);
     dig_yaml_free(&schema, data);
-    status = check(path, &loaded, error);
+    if (status == DIG_OK) {
+        status = check(path, &loaded, error);
+    }
     if (status == DIG_OK) {
         *grid = loaded;
     }

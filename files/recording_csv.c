@@ -14,9 +14,17 @@
 #define TIME_MAX_s 1e6  // of a recording; nanoseconds in 64 bits would hold far more
 
 static const struct dig_csv_column force_column[] = {
-    { .name = "t_s" },   { .name = "pin_x_m" }, { .name = "pin_z_m" }, { .name = "theta_deg" },
-    { .name = "Fx_N" },  { .name = "Fy_N" },    { .name = "Fz_N" },    { .name = "Mx_Nm" },
-    { .name = "My_Nm" }, { .name = "Mz_Nm" },
+    { .name = "t_s" },
+    { .name = "pin_x_m" },
+    { .name = "pin_z_m" },
+    { .name = "theta_deg" },
+    { .name = "Fx_N" },
+    { .name = "Fy_N" },
+    { .name = "Fz_N" },
+    { .name = "Mx_Nm" },
+    { .name = "My_Nm" },
+    { .name = "Mz_Nm" },
+    { .name = "carried_kg", .optional = true },
 };
 #define FORCE_COLUMNS (sizeof force_column / sizeof force_column[0])
 
@@ -86,16 +94,17 @@ static enum dig_status check_rate(const struct dig_csv *const csv, const bool ea
 static struct dig_force_row force_row(const double v[const FORCE_COLUMNS])
 {
     return (struct dig_force_row){
-        .t_s       = v[0],
-        .pin_x_m   = v[1],
-        .pin_z_m   = v[2],
-        .theta_deg = v[3],
-        .Fx_N      = v[4],
-        .Fy_N      = v[5],
-        .Fz_N      = v[6],
-        .Mx_Nm     = v[7],
-        .My_Nm     = v[8],
-        .Mz_Nm     = v[9],
+        .t_s        = v[0],
+        .pin_x_m    = v[1],
+        .pin_z_m    = v[2],
+        .theta_deg  = v[3],
+        .Fx_N       = v[4],
+        .Fy_N       = v[5],
+        .Fz_N       = v[6],
+        .Mx_Nm      = v[7],
+        .My_Nm      = v[8],
+        .Mz_Nm      = v[9],
+        .carried_kg = v[10],
     };
 }
 
@@ -199,6 +208,15 @@ static void put_header(FILE *const file, const size_t columns, const struct dig_
     (void)fputc('\n', file);
 }
 
+static bool has_carried(const struct dig_recording *const recording)
+{
+    size_t known = 0;
+    while (known < recording->rows && isfinite(recording->row[known].carried_kg)) {
+        known++;
+    }
+    return known == recording->rows;
+}
+
 enum dig_status dig_recording_write(const char *const                 path,
                                     const struct dig_recording *const recording,
                                     struct dig_error *const           error)
@@ -210,13 +228,18 @@ enum dig_status dig_recording_write(const char *const                 path,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_c_locale locale = dig_c_locale_enter();
-    put_header(out.file, FORCE_COLUMNS, force_column);
+    struct dig_c_locale locale  = dig_c_locale_enter();
+    const bool          carried = has_carried(recording);
+    put_header(out.file, carried ? FORCE_COLUMNS : FORCE_COLUMNS - 1, force_column);
     for (size_t i = 0; i < recording->rows; i++) {
         const struct dig_force_row *const r = &recording->row[i];
-        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", r->t_s,
+        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", r->t_s,
                       r->pin_x_m, r->pin_z_m, r->theta_deg, r->Fx_N, r->Fy_N, r->Fz_N, r->Mx_Nm,
                       r->My_Nm, r->Mz_Nm);
+        if (carried) {
+            (void)fprintf(out.file, ",%.9g", r->carried_kg);
+        }
+        (void)fputc('\n', out.file);
     }
     dig_c_locale_leave(&locale);
     return dig_out_commit(&out, error);

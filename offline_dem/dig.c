@@ -34,6 +34,19 @@ static void place_tool(struct drive *const d, const double time_s)
     dig_ode_scene_read(d->ode, &d->tool);
 }
 
+// Mass of the grains in the bucket.
+static double carried_kg(const struct drive *const d)
+{
+    const struct dig_grains *const grains = &d->world.grains;
+    double                         sum_kg = 0.0;
+    for (size_t i = 0; i < grains->n; i++) {
+        if (dig_tool_holds(&d->tool, grains->motion[i].x_m)) {
+            sum_kg += grains->kind[grains->of[i]].mass_kg;
+        }
+    }
+    return sum_kg;
+}
+
 // Means over the steps first + 1 … first + window.
 static enum dig_status record_window(struct drive *const d, const size_t first, const size_t window,
                                      struct dig_force_row *const row)
@@ -55,16 +68,17 @@ static enum dig_status record_window(struct drive *const d, const size_t first, 
     const double          t_s   = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
     const struct dig_pose pose  = dig_trajectory_pose(d->trajectory, t_s);
     *row                        = (struct dig_force_row){
-                               .t_s       = t_s,
-                               .pin_x_m   = pose.x_m,
-                               .pin_z_m   = pose.z_m,
-                               .theta_deg = pose.theta_rad / DIG_RAD_PER_DEG,
-                               .Fx_N      = share * sum[0],
-                               .Fy_N      = share * sum[1],
-                               .Fz_N      = share * sum[2],
-                               .Mx_Nm     = share * sum[3],
-                               .My_Nm     = share * sum[4],
-                               .Mz_Nm     = share * sum[5],
+                               .t_s        = t_s,
+                               .pin_x_m    = pose.x_m,
+                               .pin_z_m    = pose.z_m,
+                               .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
+                               .Fx_N       = share * sum[0],
+                               .Fy_N       = share * sum[1],
+                               .Fz_N       = share * sum[2],
+                               .Mx_Nm      = share * sum[3],
+                               .My_Nm      = share * sum[4],
+                               .Mz_Nm      = share * sum[5],
+                               .carried_kg = carried_kg(d),
     };
     return DIG_OK;
 }

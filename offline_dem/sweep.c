@@ -1,5 +1,6 @@
 #include "offline_dem/sweep.h"
 
+#include "offline_dem/variant.h"
 #include "offline_dem/worker.h"
 
 #include <assert.h>
@@ -18,10 +19,11 @@ struct dig_engine dig_engine_kernel(void)
 {
     return (struct dig_engine){
         .name       = "kernel",
-        .version    = DIG_VERSION,
+        .version    = DIG_VERSION "+" DIG_NUMERICS,
         .pour       = dig_bed_pour,
         .dig        = dig_dig_run,
         .bed_finish = dig_bed_finish,
+        .vary       = dig_variant_make,
     };
 }
 
@@ -48,9 +50,14 @@ static void note_failure(struct sweep *const s, const struct dig_job *const job,
 {
     s->state->failed += digs;
     if (s->status == DIG_OK) {
-        s->status = dig_error_set(
-            s->error, DIG_EIO, "friction %g, rolling %g, %g kg/m3, packing %zu: %.400s",
-            job->gravel.value[0], job->gravel.value[1], job->gravel.value[2], job->packing, why);
+        char effect[64] = "";
+        if (job->effect[0] != '\0') {
+            (void)snprintf(effect, sizeof effect, ", %s %g", job->effect, job->magnitude);
+        }
+        s->status = dig_error_set(s->error, DIG_EIO,
+                                  "friction %g, rolling %g, %g kg/m3%s, packing %zu: %.400s",
+                                  job->gravel.value[0], job->gravel.value[1], job->gravel.value[2],
+                                  effect, job->packing, why);
     }
 }
 
@@ -102,12 +109,14 @@ static enum dig_status store_curve(struct sweep *const s, struct dig_worker *con
 {
     struct dig_run_origin origin = {
         .gravel     = w->job.gravel,
+        .magnitude  = w->job.magnitude,
         .packing    = w->job.packing,
         .trajectory = m->trajectory,
         .seed       = w->job.seed,
         .grains     = m->grains,
         .wall_s     = m->wall_s,
     };
+    memcpy(origin.effect, w->job.effect, sizeof origin.effect);
     (void)snprintf(origin.engine, sizeof origin.engine, "%s", s->engine->name);
     (void)snprintf(origin.version, sizeof origin.version, "%s", s->engine->version);
     const time_t now = time(NULL);

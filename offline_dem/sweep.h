@@ -11,6 +11,7 @@
 #ifndef DIG_OFFLINE_DEM_SWEEP_H
 #define DIG_OFFLINE_DEM_SWEEP_H
 
+#include "core/effect.h"
 #include "core/error.h"
 #include "offline_dem/dig.h"
 #include "tables/queue.h"
@@ -18,7 +19,9 @@
 
 #include <signal.h>
 
-/// The engine that computes, as functions: tests put in one that takes no time.
+/// The engine that computes, as functions: tests put in one that takes no time. version tells two
+/// builds apart that may compute differently. vary puts an effect into a scene (see
+/// offline_dem/variant.h); NULL: the engine knows no effects.
 struct dig_engine {
     const char *name;
     const char *version;
@@ -30,9 +33,13 @@ struct dig_engine {
                            const char *vtk_dir, const struct dig_progress *progress,
                            struct dig_recording *recording, struct dig_error *error);
     void (*bed_finish)(struct dig_bed *bed);
+    enum dig_status (*vary)(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                            enum dig_effect_id effect, double magnitude, struct dig_scene *varied,
+                            struct dig_error *error);
 };
 
-/// The grain kernel: offline_dem/dig.h.
+/// The grain kernel: offline_dem/dig.h. Its version is the release and, behind a plus, a hash of
+/// the sources and the compiler settings its numbers depend on.
 struct dig_engine dig_engine_kernel(void);
 
 /// How far a sweep is. Fractions of digs under way are counted in digs_under_way.

@@ -110,6 +110,14 @@ void dig_tool_closest(const struct dig_tool *const tool, const size_t plate, con
     }
 }
 
+bool dig_tool_holds(const struct dig_tool *const tool, const double world_m[const 3])
+{
+    double body_m[3];
+    dig_tool_to_body(tool, world_m, body_m);
+    return fabs(body_m[1]) <= 0.5 * tool->bucket.width_m &&
+           is_inside(&tool->bucket, body_m[0], body_m[2]);
+}
+
 double dig_tool_travel_m(const struct dig_tool *const tool, const struct dig_pose from,
                          const struct dig_pose to)
 {

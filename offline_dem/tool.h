@@ -41,6 +41,9 @@ void dig_tool_turn(const struct dig_tool *tool, const double body[3], double wor
 void dig_tool_closest(const struct dig_tool *tool, size_t plate, const double body_m[3],
                       double closest_m[3]);
 
+/// True when a point of the world lies inside the profile's closed polygon and the width: carried.
+bool dig_tool_holds(const struct dig_tool *tool, const double world_m[3]);
+
 /// Farthest any point of the tool is in `to` from where it was in `from`: an upper bound.
 double dig_tool_travel_m(const struct dig_tool *tool, struct dig_pose from, struct dig_pose to);
 

@@ -127,16 +127,41 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
     return true;
 }
 
+// The scene the job's bed is poured in: the plain one, or *varied, with the job's effect in it.
+static enum dig_status vary(struct child *const child, struct dig_scene *const varied,
+                            struct dig_error *const error)
+{
+    const struct dig_job *const job    = child->job;
+    const int                   effect = dig_effect_find(job->effect);
+    if (job->effect[0] == '\0') {
+        return DIG_OK;
+    }
+    if (effect < 0 || child->engine->vary == NULL) {
+        return dig_error_set(error, DIG_EINVAL, "effect \"%s\": the engine %s knows no such",
+                             job->effect, child->engine->name);
+    }
+    const enum dig_status status = child->engine->vary(
+        child->scene, &job->gravel, (enum dig_effect_id)effect, job->magnitude, varied, error);
+    if (status == DIG_OK) {
+        child->scene = varied;
+    }
+    return status;
+}
+
 static void work(struct child *const child)
 {
     const struct dig_progress progress = { tell, child };
     const double              from_s   = dig_sweep_now_s();
-    struct dig_bed            bed      = { 0 };
-    struct dig_error          error    = { "" };
-    child->total_s                     = job_s(child->scene, child->job);
-    child->share_s                     = pouring_s(child->scene);
-    const enum dig_status status       = child->engine->pour(child->scene, &child->job->gravel,
-                                                             child->job->seed, &progress, &bed, &error);
+    struct dig_scene          varied;
+    struct dig_bed            bed    = { 0 };
+    struct dig_error          error  = { "" };
+    enum dig_status           status = vary(child, &varied, &error);
+    child->total_s                   = job_s(child->scene, child->job);
+    child->share_s                   = pouring_s(child->scene);
+    if (status == DIG_OK) {
+        status = child->engine->pour(child->scene, &child->job->gravel, child->job->seed, &progress,
+                                     &bed, &error);
+    }
     if (status != DIG_OK) {
         send_failure(child, status, &error);
         return;

@@ -1,5 +1,6 @@
 // Whether the derived rows of a table still are what its runs say.
 
+#include "tables/grounds.h"
 #include "tables/load.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
@@ -11,13 +12,16 @@
 // Of the curve's largest value: another compiler may round the last bits otherwise.
 #define AGREE_RELATIVE 1e-5
 
-// a and b hold DIG_CHANNELS curves each.
+// a and b hold DIG_CHANNELS curves each. What is not known must be so in both.
 static bool agree(const float a[], const float b[])
 {
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
         double most = 0.0;
         double off  = 0.0;
         for (size_t i = c * DIG_CURVE_POINTS; i < (c + 1) * DIG_CURVE_POINTS; i++) {
+            if (isnan(a[i]) != isnan(b[i])) {
+                return false;
+            }
             most = fmax(most, fabs((double)b[i]));
             off  = fmax(off, fabs((double)a[i] - (double)b[i]));
         }
@@ -34,61 +38,120 @@ struct scratch {
     struct dig_curve    curve;
 };
 
-static enum dig_status check_entry(struct dig_store *const           store,
-                                   const struct dig_curve_set *const set, const size_t entry,
+static enum dig_status check_entry(struct dig_store *const         store,
+                                   const struct dig_grounds *const all, const size_t ground,
                                    const size_t trajectory, struct scratch *const scratch,
                                    struct dig_error *const error)
 {
-    const size_t                   at     = entry * set->trajectories + trajectory;
-    const struct dig_gravel *const gravel = &set->gravel[entry];
-    sqlite3_int64                  id     = 0;
-    enum dig_status                status = dig_gravel_find(store, gravel, &id, error);
-    if (status == DIG_OK) {
-        status = dig_entry_derive(store, id, trajectory, &scratch->ensemble, error);
-    }
+    const size_t                   at = ground * all->trajectories + trajectory;
+    const struct dig_ground *const g  = &all->ground[ground];
+    const enum dig_status          status =
+        dig_entry_derive(store, g->id, trajectory, &scratch->ensemble, error);
     if (status != DIG_OK) {
         return status;
     }
     const size_t runs = scratch->ensemble.packings;
     dig_ensemble_curve(&scratch->ensemble, &scratch->curve);
-    const struct dig_curve *const stored = &set->curve[at];
+    const struct dig_curve *const stored = &all->curve[at];
     const struct dig_curve *const actual = &scratch->curve;
-    const bool                    same   = (size_t)set->packings[at] == runs &&
+    const bool                    same   = (size_t)all->packings[at] == runs &&
                       (runs == 0 || agree(&stored->mean[0][0], &actual->mean[0][0])) &&
                       (runs < 2 || agree(&stored->sd[0][0], &actual->sd[0][0]));
     if (!same) {
         return dig_error_set(error, DIG_EINVAL,
-                             "%s: entry: friction %g, rolling %g, %g kg/m3 on %s: of %d packings, "
-                             "differs from its %zu runs, expected their mean and spread",
-                             store->path, gravel->value[0], gravel->value[1], gravel->value[2],
-                             set->trajectory[trajectory].name, set->packings[at], runs);
+                             "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s: of %d "
+                             "packings, differs from its %zu runs, expected their mean and spread",
+                             store->path, g->gravel.value[0], g->gravel.value[1],
+                             g->gravel.value[2], g->effect[0] != '\0' ? " with " : "", g->effect,
+                             store->head.trajectory[trajectory].name, all->packings[at], runs);
     }
     return DIG_OK;
 }
 
-static struct dig_store_report count(const struct dig_curve_set *const set)
+// The number of packings that most entries of the kind have; of two as frequent, the larger.
+static int usual_packings(const struct dig_grounds *const all, const bool varied)
 {
-    struct dig_store_report report                   = { .points = set->entries };
-    int                     most                     = 0;
-    size_t                  cells                    = 1;
-    bool                    used[DIG_TRAJECTORY_MAX] = { false };
+    int    usual = 0;
+    size_t best  = 0;
+    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+        size_t    times = 0;
+        const int n     = all->packings[i];
+        for (size_t k = 0; k < all->grounds * all->trajectories; k++) {
+            const bool kind = all->ground[k / all->trajectories].effect[0] != '\0';
+            times += kind == varied && all->packings[k] == n ? 1 : 0;
+        }
+        if (n > 0 && (times > best || (times == best && n > usual))) {
+            usual = n;
+            best  = times;
+        }
+    }
+    return usual;
+}
+
+static void count_entries(const struct dig_grounds *const all,
+                          struct dig_store_report *const  report)
+{
+    bool      used[2][DIG_TRAJECTORY_MAX] = { { false } };
+    const int usual[2] = { usual_packings(all, false), usual_packings(all, true) };
+    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+        const bool varied = all->ground[i / all->trajectories].effect[0] != '\0';
+        report->entries += all->packings[i] > 0 ? 1 : 0;
+        report->runs += (size_t)all->packings[i];
+        used[varied][i % all->trajectories] |= all->packings[i] > 0;
+    }
+    // A trajectory no ground was dug with is not missing: the grid did not ask for it.
+    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+        const bool varied = all->ground[i / all->trajectories].effect[0] != '\0';
+        report->incomplete +=
+            used[varied][i % all->trajectories] && all->packings[i] < usual[varied] ? 1 : 0;
+    }
+    for (size_t g = 0; g < all->grounds; g++) {
+        report->effects += all->ground[g].effect[0] != '\0' ? 1 : 0;
+    }
+    report->points = all->grounds - report->effects;
+}
+
+static size_t count_holes(const struct dig_curve_set *const set)
+{
+    size_t cells = 1;
+    size_t holes = 0;
     for (int a = 0; a < DIG_AXES; a++) {
         cells *= set->axis_count[a];
     }
-    for (size_t i = 0; i < set->entries * set->trajectories; i++) {
-        report.entries += set->packings[i] > 0;
-        report.runs += (size_t)set->packings[i];
-        most = set->packings[i] > most ? set->packings[i] : most;
-        used[i % set->trajectories] |= set->packings[i] > 0;
+    for (size_t i = 0; set->entries > 0 && i < cells; i++) {
+        holes += set->cell[i] < 0 ? 1 : 0;
     }
-    // A trajectory no gravel was dug with is not missing: the grid did not ask for it.
-    for (size_t i = 0; i < set->entries * set->trajectories; i++) {
-        report.incomplete += used[i % set->trajectories] && set->packings[i] < most;
+    return holes;
+}
+
+static enum dig_status check_all(struct dig_store *const        store,
+                                 struct dig_store_report *const report,
+                                 struct dig_error *const        error)
+{
+    struct dig_grounds    all = { .grounds = 0 };
+    struct dig_curve_set *set = NULL;
+    enum dig_status       status =
+        dig_grounds_load(store->db, store->path, &store->head, DIG_GROUNDS_ALL, &all, error);
+    if (status == DIG_OK) {
+        status = dig_sql_load(store->db, store->path, &store->head, &set, error);
     }
-    for (size_t i = 0; i < cells; i++) {
-        report.holes += set->cell[i] < 0;
+    struct scratch *const scratch = calloc(1, sizeof *scratch);
+    if (status == DIG_OK && scratch == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     }
-    return report;
+    for (size_t i = 0; status == DIG_OK && i < all.grounds * all.trajectories; i++) {
+        status =
+            check_entry(store, &all, i / all.trajectories, i % all.trajectories, scratch, error);
+    }
+    if (status == DIG_OK && set != NULL) {
+        struct dig_store_report made = { .holes = count_holes(set) };
+        count_entries(&all, &made);
+        *report = made;
+    }
+    free(scratch);
+    dig_curve_set_destroy(set);
+    dig_grounds_finish(&all);
+    return status;
 }
 
 enum dig_status dig_store_check(struct dig_store *const        store,
@@ -99,26 +162,9 @@ enum dig_status dig_store_check(struct dig_store *const        store,
 
     // One transaction: a writer may be adding runs.
     enum dig_status status = dig_sql_run(store->db, store->path, "BEGIN", error);
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        status = check_all(store, report, error);
+        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
     }
-    struct dig_curve_set *set     = NULL;
-    struct scratch *const scratch = calloc(1, sizeof *scratch);
-    if (scratch == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
-    } else {
-        status = dig_sql_load(store->db, store->path, &store->head, &set, error);
-    }
-    for (size_t e = 0; status == DIG_OK && set != NULL && e < set->entries; e++) {
-        for (size_t t = 0; status == DIG_OK && t < set->trajectories; t++) {
-            status = check_entry(store, set, e, t, scratch, error);
-        }
-    }
-    free(scratch);
-    (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-    if (status == DIG_OK && set != NULL) {
-        *report = count(set);
-    }
-    dig_curve_set_destroy(set);
     return status;
 }

@@ -90,15 +90,26 @@ void dig_floats_pack(const size_t n, const float value[], uint8_t bytes[])
     }
 }
 
-bool dig_floats_unpack(const size_t n, const uint8_t bytes[], float value[])
+void dig_floats_unpack(const size_t n, const uint8_t bytes[], float value[])
 {
-    bool finite = true;
     for (size_t i = 0; i < n; i++) {
         const uint8_t *const b = bytes + 4 * i;
         const uint32_t       bits =
             (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
         memcpy(&value[i], &bits, sizeof bits);
-        finite = finite && isfinite(value[i]);
     }
-    return finite;
+}
+
+bool dig_channels_sound(const size_t n, const float value[])
+{
+    size_t finite  = 0;
+    size_t unknown = 0;
+    for (size_t i = 0; i < DIG_FORCE_CHANNELS * n; i++) {
+        finite += isfinite(value[i]) ? 1 : 0;
+    }
+    for (size_t i = DIG_FORCE_CHANNELS * n; i < DIG_CHANNELS * n; i++) {
+        finite += isfinite(value[i]) ? 1 : 0;
+        unknown += isnan(value[i]) ? 1 : 0;
+    }
+    return finite == DIG_CHANNELS * n || (finite == DIG_FORCE_CHANNELS * n && unknown == n);
 }

@@ -33,8 +33,12 @@ void dig_ensemble_add(struct dig_ensemble *ensemble,
 /// sd is NaN when there is one packing only.
 void dig_ensemble_curve(const struct dig_ensemble *ensemble, struct dig_curve *curve);
 
-/// float32, little endian, whatever the machine. The second is false when a number is not finite.
+/// float32, little endian, whatever the machine.
 void dig_floats_pack(size_t n, const float value[], uint8_t bytes[]);
-bool dig_floats_unpack(size_t n, const uint8_t bytes[], float value[]);
+void dig_floats_unpack(size_t n, const uint8_t bytes[], float value[]);
+
+/// True when DIG_CHANNELS arrays of n numbers can be a run or a curve: all finite, or the carried
+/// mass NaN throughout.
+bool dig_channels_sound(size_t n, const float value[]);
 
 #endif // DIG_TABLES_DERIVE_H

@@ -5,9 +5,10 @@
 #include <string.h>
 
 static const char *const channel_name[DIG_CHANNELS] = {
-    [DIG_CHANNEL_MY_Nm] = "My_Nm",
-    [DIG_CHANNEL_FX_N]  = "Fx_N",
-    [DIG_CHANNEL_FZ_N]  = "Fz_N",
+    [DIG_CHANNEL_MY_Nm]      = "My_Nm",
+    [DIG_CHANNEL_FX_N]       = "Fx_N",
+    [DIG_CHANNEL_FZ_N]       = "Fz_N",
+    [DIG_CHANNEL_CARRIED_kg] = "carried_kg",
 };
 
 static double progress_of(const size_t k)
@@ -27,18 +28,29 @@ static void put_gravel(const struct dig_gravel *const gravel, FILE *const file)
                   gravel->value[DIG_AXIS_ROLLING], gravel->value[DIG_AXIS_DENSITY_kgpm3]);
 }
 
+// A field behind others; empty when the number is not known.
+static void put_number(const double value, FILE *const file)
+{
+    if (isnan(value)) {
+        (void)fputc(',', file);
+    } else {
+        (void)fprintf(file, ",%.9g", value);
+    }
+}
+
 static void put_point(const struct dig_curve_set *const set, const size_t at,
                       const size_t trajectory, const size_t k, FILE *const file)
 {
     (void)fprintf(file, "%.9g,%.9g", progress_of(k), time_of(set, trajectory, k));
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        (void)fprintf(file, ",%.9g,%.9g", (double)set->curve[at].mean[c][k],
-                      (double)set->curve[at].sd[c][k]);
+        put_number((double)set->curve[at].mean[c][k], file);
+        put_number((double)set->curve[at].sd[c][k], file);
     }
     (void)fputc('\n', file);
 }
 
-#define POINT_COLUMNS "progress,t_s,My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N\n"
+#define POINT_COLUMNS                                                                              \
+    "progress,t_s,My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N,carried_kg,carried_sd_kg\n"
 
 void dig_export_curves(const struct dig_curve_set *const set, FILE *const file)
 {
@@ -72,9 +84,9 @@ static enum dig_status put_run(void *const context, const struct dig_run *const 
                       o->packing, (unsigned long long)o->seed, o->engine, o->version, o->grains,
                       run->first_s + (double)i * run->step_s);
         for (size_t c = 0; c < DIG_CHANNELS; c++) {
-            (void)fprintf(x->file, ",%.9g", (double)run->value[c * run->windows + i]);
+            put_number((double)run->value[c * run->windows + i], x->file);
         }
-        (void)fputc('\n', x->file);
+        (void)fprintf(x->file, ",%s,%.9g\n", o->effect, o->magnitude);
     }
     return DIG_OK;
 }
@@ -86,7 +98,7 @@ enum dig_status dig_export_runs(struct dig_store *const store, FILE *const file,
     struct export_context        context = { dig_store_trajectories(store, &count), file };
     const struct dig_run_visitor visitor = { put_run, &context };
     (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packing,seed,engine,version,"
-                        "grains,t_s,My_Nm,Fx_N,Fz_N\n");
+                        "grains,t_s,My_Nm,Fx_N,Fz_N,carried_kg,effect,magnitude\n");
     return dig_store_walk(store, &visitor, error);
 }
 
@@ -184,7 +196,12 @@ static void put_json_array(const char *const name, const float value[const DIG_C
 {
     (void)fprintf(file, ",\n \"%s\": [", name);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", (double)value[k]);
+        (void)fputs(k == 0 ? "" : ", ", file);
+        if (isnan(value[k])) {
+            (void)fputs("null", file);
+        } else {
+            (void)fprintf(file, "%.9g", (double)value[k]);
+        }
     }
     (void)fputc(']', file);
 }
@@ -208,8 +225,9 @@ void dig_export_curve_json(const struct dig_curve_set *const set, const size_t e
         (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", time_of(set, trajectory, k));
     }
     (void)fputc(']', file);
-    static const char *const mean_name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N" };
-    static const char *const sd_name[DIG_CHANNELS]   = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N" };
+    static const char *const mean_name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N", "carried_kg" };
+    static const char *const sd_name[DIG_CHANNELS]   = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N",
+                                                         "carried_sd_kg" };
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
         put_json_array(mean_name[c], set->curve[at].mean[c], file);
         put_json_array(sd_name[c], set->curve[at].sd[c], file);

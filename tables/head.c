@@ -43,7 +43,7 @@ static enum dig_status check_identity(sqlite3 *const db, const char *const path,
     if (version != DIG_TABLE_VERSION) {
         return dig_error_set(error, DIG_ESCHEMA,
                              "%s: user_version: table format %d, expected %d as this program knows "
-                             "it",
+                             "it (the digtable generate command that made the table makes it anew)",
                              path, version, DIG_TABLE_VERSION);
     }
     return DIG_OK;

@@ -4,13 +4,21 @@
 #define DIG_TABLES_LOAD_H
 
 #include "core/curve.h"
+#include "core/effect_set.h"
 #include "core/error.h"
 
-/// Opens path read-only, checks version and integrity, and builds the curve set. The curves are
-/// smoothed with +-0.16 s of rig time, mapped to path progress, averaged over packings. Allocates;
-/// free with dig_curve_set_destroy(). DIG_ESCHEMA: a version this build does not know, both named.
+/// Opens path read-only, checks version and integrity, and builds the curve set of what was dug
+/// without an effect. The curves are smoothed with +-0.16 s of rig time, mapped to path progress,
+/// averaged over packings. Allocates; free with dig_curve_set_destroy(). DIG_ESCHEMA: a version
+/// this build does not know, both named. DIG_EINVAL: nothing was dug without an effect.
 DIG_MUST_CHECK enum dig_status dig_table_load(const char *path, struct dig_curve_set **set,
                                               struct dig_error *error);
+
+/// All a table holds: the curves without an effect and those with one, either of which may have no
+/// entries. effects may be NULL; free it with dig_effect_set_destroy() (tables/load_effects.h).
+DIG_MUST_CHECK enum dig_status dig_table_list(const char *path, struct dig_curve_set **plain,
+                                              struct dig_effect_set **effects,
+                                              struct dig_error       *error);
 
 /// NULL is allowed.
 void dig_curve_set_destroy(struct dig_curve_set *set);

@@ -1,5 +1,6 @@
 // A run in, with the entry it changes: the half of the store that writes rows.
 
+#include "core/effect.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
 
@@ -17,6 +18,21 @@ static enum dig_status prepare(const struct dig_store *const store, const char *
 {
     return sqlite3_prepare_v2(store->db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
                                                                         : refuse(store, error);
+}
+
+static enum dig_status check_origin(const struct dig_run_origin *const o,
+                                    struct dig_error *const            error)
+{
+    const bool plain = o->effect[0] == '\0';
+    if (!plain && dig_effect_find(o->effect) < 0) {
+        return dig_error_set(error, DIG_EINVAL, "run: effect \"%s\", expected one with a name",
+                             o->effect);
+    }
+    if (!isfinite(o->magnitude) || (plain && fabs(o->magnitude) > 0.0)) {
+        return dig_error_set(error, DIG_EINVAL, "run: magnitude %g of effect \"%s\", expected %s",
+                             o->magnitude, o->effect, plain ? "0" : "a finite one");
+    }
+    return DIG_OK;
 }
 
 static enum dig_status check_recording(const struct dig_recording *const r, const double step_s,
@@ -38,16 +54,28 @@ static enum dig_status check_recording(const struct dig_recording *const r, cons
     return DIG_OK;
 }
 
+static bool knows_carried(const struct dig_recording *const r)
+{
+    size_t known = 0;
+    while (known < r->rows && isfinite(r->row[known].carried_kg)) {
+        known++;
+    }
+    return known == r->rows;
+}
+
 // The samples as they are stored, little endian, malloc'ed; NULL without memory.
 static uint8_t *pack_recording(const struct dig_recording *const r)
 {
-    float *const   value  = malloc(DIG_CHANNELS * r->rows * sizeof *value);
-    uint8_t *const packed = malloc(DIG_CHANNELS * r->rows * 4);
+    float *const   value   = malloc(DIG_CHANNELS * r->rows * sizeof *value);
+    uint8_t *const packed  = malloc(DIG_CHANNELS * r->rows * 4);
+    const bool     carried = knows_carried(r);
     if (value != NULL && packed != NULL) {
         for (size_t i = 0; i < r->rows; i++) {
             value[DIG_CHANNEL_MY_Nm * r->rows + i] = (float)r->row[i].My_Nm;
             value[DIG_CHANNEL_FX_N * r->rows + i]  = (float)r->row[i].Fx_N;
             value[DIG_CHANNEL_FZ_N * r->rows + i]  = (float)r->row[i].Fz_N;
+            value[DIG_CHANNEL_CARRIED_kg * r->rows + i] =
+                carried ? (float)r->row[i].carried_kg : (float)NAN;
         }
         dig_floats_pack(DIG_CHANNELS * r->rows, value, packed);
         free(value);
@@ -58,27 +86,26 @@ static uint8_t *pack_recording(const struct dig_recording *const r)
     return NULL;
 }
 
-// Makes the gravel's row where there is none yet, and finds its key.
-static enum dig_status make_gravel(struct dig_store *const        store,
-                                   const struct dig_gravel *const gravel, sqlite3_int64 *const id,
-                                   struct dig_error *const error)
+// Makes the ground's row where there is none yet, and finds its key.
+static enum dig_status make_ground(struct dig_store *const            store,
+                                   const struct dig_run_origin *const origin,
+                                   sqlite3_int64 *const id, struct dig_error *const error)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = prepare(store,
-                                     "INSERT INTO gravel (friction, rolling, density_kgpm3) "
-                                     "VALUES (?1, ?2, ?3) ON CONFLICT DO NOTHING",
-                                     &s, error);
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        prepare(store,
+                "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude) "
+                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO NOTHING",
+                &s, error);
     if (status == DIG_OK) {
-        for (int a = 0; a < DIG_AXES; a++) {
-            (void)sqlite3_bind_double(s, a + 1, gravel->value[a]);
-        }
+        dig_ground_bind(s, origin);
         status = sqlite3_step(s) == SQLITE_DONE ? DIG_OK : refuse(store, error);
     }
     (void)sqlite3_finalize(s);
-    return status == DIG_OK ? dig_gravel_find(store, gravel, id, error) : status;
+    return status == DIG_OK ? dig_ground_find(store, origin, id, error) : status;
 }
 
-static enum dig_status insert_run(struct dig_store *const store, const sqlite3_int64 gravel,
+static enum dig_status insert_run(struct dig_store *const store, const sqlite3_int64 ground,
                                   const struct dig_run_origin *const origin, const size_t windows,
                                   const double first_s, const double step_s,
                                   const uint8_t *const bytes, struct dig_error *const error)
@@ -86,14 +113,14 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "INSERT INTO run (gravel, trajectory, packing, seed, engine, version, grains, "
+                "INSERT INTO run (ground, trajectory, packing, seed, engine, version, grains, "
                 "windows, first_s, step_s, curve, made_utc, wall_s) "
                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                 &s, error);
     if (status != DIG_OK) {
         return status;
     }
-    (void)sqlite3_bind_int64(s, 1, gravel);
+    (void)sqlite3_bind_int64(s, 1, ground);
     (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)origin->trajectory);
     (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)origin->packing);
     (void)sqlite3_bind_int64(s, 4, (sqlite3_int64)origin->seed);
@@ -110,10 +137,11 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     if (step == SQLITE_CONSTRAINT &&
         sqlite3_extended_errcode(store->db) == SQLITE_CONSTRAINT_UNIQUE) {
         status = dig_error_set(error, DIG_EINVAL,
-                               "%s: run: packing %zu of friction %g, rolling %g, %g kg/m3 on %s is "
-                               "there already, expected a new one",
+                               "%s: run: packing %zu of friction %g, rolling %g, %g kg/m3%s%s on "
+                               "%s is there already, expected a new one",
                                store->path, origin->packing, origin->gravel.value[0],
                                origin->gravel.value[1], origin->gravel.value[2],
+                               origin->effect[0] != '\0' ? " with " : "", origin->effect,
                                store->head.trajectory[origin->trajectory].name);
     } else if (step != SQLITE_DONE) {
         status = refuse(store, error);
@@ -122,7 +150,7 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     return status;
 }
 
-static enum dig_status write_entry(struct dig_store *const store, const sqlite3_int64 gravel,
+static enum dig_status write_entry(struct dig_store *const store, const sqlite3_int64 ground,
                                    const size_t trajectory, const struct dig_ensemble *const e,
                                    struct dig_error *const error)
 {
@@ -137,14 +165,14 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "INSERT INTO entry (gravel, trajectory, packings, mean, spread) "
-                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (gravel, trajectory) DO UPDATE "
+                "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
+                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
                 "SET packings = ?3, mean = ?4, spread = ?5",
                 &s, error);
     if (status != DIG_OK) {
         return status;
     }
-    (void)sqlite3_bind_int64(s, 1, gravel);
+    (void)sqlite3_bind_int64(s, 1, ground);
     (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);
     (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)e->packings);
     (void)sqlite3_bind_blob(s, 4, mean, sizeof mean, SQLITE_STATIC);
@@ -156,25 +184,36 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     return status;
 }
 
+enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground,
+                                  const size_t trajectory, struct dig_error *const error)
+{
+    struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
+    if (ensemble == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    }
+    enum dig_status status = dig_entry_derive(store, ground, trajectory, ensemble, error);
+    if (status == DIG_OK) {
+        status = write_entry(store, ground, trajectory, ensemble, error);
+    }
+    free(ensemble);
+    return status;
+}
+
 // All of it or, when it returns anything but DIG_OK, nothing: the caller rolls back.
 static enum dig_status put_in_transaction(struct dig_store *const            store,
                                           const struct dig_run_origin *const origin,
                                           const struct dig_recording *const  recording,
                                           const double step_s, const uint8_t *const bytes,
-                                          struct dig_ensemble *const ensemble,
-                                          struct dig_error *const    error)
+                                          struct dig_error *const error)
 {
-    sqlite3_int64   gravel = 0;
-    enum dig_status status = make_gravel(store, &origin->gravel, &gravel, error);
+    sqlite3_int64   ground = 0;
+    enum dig_status status = make_ground(store, origin, &ground, error);
     if (status == DIG_OK) {
-        status = insert_run(store, gravel, origin, recording->rows, recording->row[0].t_s, step_s,
+        status = insert_run(store, ground, origin, recording->rows, recording->row[0].t_s, step_s,
                             bytes, error);
     }
     if (status == DIG_OK) {
-        status = dig_entry_derive(store, gravel, origin->trajectory, ensemble, error);
-    }
-    if (status == DIG_OK) {
-        status = write_entry(store, gravel, origin->trajectory, ensemble, error);
+        status = dig_entry_refresh(store, ground, origin->trajectory, error);
     }
     return status == DIG_OK ? dig_sql_run(store->db, store->path, "COMMIT", error) : status;
 }
@@ -194,24 +233,24 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     }
     const double step_s =
         (recording->row[rows - 1].t_s - recording->row[0].t_s) / (double)(rows - 1);
-    enum dig_status status = check_recording(recording, step_s, error);
+    enum dig_status status = check_origin(origin, error);
+    if (status == DIG_OK) {
+        status = check_recording(recording, step_s, error);
+    }
     if (status != DIG_OK) {
         return status;
     }
-    uint8_t *const             bytes    = pack_recording(recording);
-    struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
-    if (bytes == NULL || ensemble == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
-    } else {
-        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
-        if (status == DIG_OK) {
-            status = put_in_transaction(store, origin, recording, step_s, bytes, ensemble, error);
-            if (status != DIG_OK) {
-                (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-            }
+    uint8_t *const bytes = pack_recording(recording);
+    if (bytes == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
+    }
+    status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+    if (status == DIG_OK) {
+        status = put_in_transaction(store, origin, recording, step_s, bytes, error);
+        if (status != DIG_OK) {
+            (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
         }
     }
-    free(ensemble);
     free(bytes);
     return status;
 }

@@ -30,25 +30,21 @@ uint64_t dig_bed_seed(const struct dig_gravel *const gravel, const size_t packin
     return seed >> 1;
 }
 
-static struct dig_gravel gravel_at(const struct dig_plan *const plan, size_t point)
-{
-    struct dig_gravel gravel;
-    for (int a = DIG_AXES - 1; a >= 0; a--) {
-        gravel.value[a] = plan->value[a][point % plan->count[a]];
-        point /= plan->count[a];
-    }
-    return gravel;
-}
-
 // Fills what the bed still lacks into job->trajectory.
 static enum dig_status find_missing(struct dig_store *const      store,
                                     const struct dig_plan *const plan, struct dig_job *const job,
                                     struct dig_error *const error)
 {
+    struct dig_run_origin key = {
+        .gravel    = job->gravel,
+        .magnitude = job->magnitude,
+        .packing   = job->packing,
+    };
+    memcpy(key.effect, job->effect, sizeof key.effect);
     for (size_t t = 0; t < plan->trajectories; t++) {
-        bool                  there = false;
-        const enum dig_status status =
-            dig_store_has(store, &job->gravel, job->packing, plan->trajectory[t], &there, error);
+        bool there                   = false;
+        key.trajectory               = plan->trajectory[t];
+        const enum dig_status status = dig_store_has(store, &key, &there, error);
         if (status != DIG_OK) {
             return status;
         }
@@ -59,40 +55,77 @@ static enum dig_status find_missing(struct dig_store *const      store,
     return DIG_OK;
 }
 
+static struct dig_job job_of(const struct dig_plan_point *const point, const size_t packing)
+{
+    struct dig_job job = {
+        .gravel    = point->gravel,
+        .magnitude = point->magnitude,
+        .packing   = packing,
+        .seed      = dig_bed_seed(&point->gravel, packing),
+    };
+    memcpy(job.effect, point->effect, sizeof job.effect);
+    return job;
+}
+
+static size_t beds_of(const struct dig_plan *const plan, size_t *const most)
+{
+    size_t beds = 0;
+    *most       = 0;
+    for (size_t i = 0; i < plan->points; i++) {
+        beds += plan->point[i].packings;
+        *most = plan->point[i].packings > *most ? plan->point[i].packings : *most;
+    }
+    return beds;
+}
+
+// Packings outermost, so that every point has one bed before any has a second.
+static enum dig_status fill(struct dig_store *const store, const struct dig_plan *const plan,
+                            const size_t most, struct dig_queue *const queue,
+                            struct dig_error *const error)
+{
+    const size_t shards = plan->shards > 0 ? plan->shards : 1;
+    size_t       bed    = 0;
+    for (size_t packing = 0; packing < most; packing++) {
+        for (size_t i = 0; i < plan->points; i++) {
+            if (packing >= plan->point[i].packings || bed++ % shards != plan->shard) {
+                continue;
+            }
+            struct dig_job        job    = job_of(&plan->point[i], packing);
+            const enum dig_status status = find_missing(store, plan, &job, error);
+            if (status != DIG_OK) {
+                return status;
+            }
+            queue->digs_total += plan->trajectories;
+            queue->digs_done += plan->trajectories - job.digs;
+            if (job.digs > 0) {
+                queue->job[queue->jobs++] = job;
+            }
+        }
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_queue_make(struct dig_store *const store, const struct dig_plan *const plan,
                                struct dig_queue *const queue, struct dig_error *const error)
 {
     assert(store != NULL && plan != NULL && queue != NULL);
     assert(plan->trajectories >= 1 && plan->trajectories <= DIG_TRAJECTORY_MAX);
+    assert(plan->shards == 0 || plan->shard < plan->shards);
 
-    size_t points = 1;
-    for (int a = 0; a < DIG_AXES; a++) {
-        assert(plan->count[a] > 0);
-        points *= plan->count[a];
+    size_t       most = 0;
+    const size_t beds = beds_of(plan, &most);
+    if (beds > JOBS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "grid: %zu beds, expected at most %d", beds,
+                             JOBS_MAX);
     }
-    if (points * plan->packings > JOBS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "grid: %zu beds, expected at most %d",
-                             points * plan->packings, JOBS_MAX);
-    }
-    struct dig_queue made = { .digs_total = points * plan->packings * plan->trajectories };
-    made.job              = malloc(points * plan->packings * sizeof *made.job);
+    struct dig_queue made = { .job = malloc((beds + 1) * sizeof *made.job) };
     if (made.job == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "grid: no memory for %zu beds",
-                             points * plan->packings);
+        return dig_error_set(error, DIG_ENOMEM, "grid: no memory for %zu beds", beds);
     }
-    made.digs_done = made.digs_total;
-    for (size_t i = 0; i < points * plan->packings; i++) {
-        struct dig_job job = { .gravel = gravel_at(plan, i % points), .packing = i / points };
-        job.seed           = dig_bed_seed(&job.gravel, job.packing);
-        const enum dig_status status = find_missing(store, plan, &job, error);
-        if (status != DIG_OK) {
-            free(made.job);
-            return status;
-        }
-        if (job.digs > 0) {
-            made.job[made.jobs++] = job;
-            made.digs_done -= job.digs;
-        }
+    const enum dig_status status = fill(store, plan, most, &made, error);
+    if (status != DIG_OK) {
+        free(made.job);
+        return status;
     }
     *queue = made;
     return DIG_OK;

@@ -14,19 +14,30 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Every combination of the axes' values, each in `packings` beds, each bed dug by these
-/// trajectories (indices in the scene).
+/// What is dug in: a gravel, perhaps with an effect, in `packings` beds.
+struct dig_plan_point {
+    struct dig_gravel gravel;
+    char              effect[DIG_NAME_SIZE]; // "": none
+    double            magnitude;             // 0 without an effect
+    size_t            packings;
+};
+
+/// Points, all different, each bed of which is dug by these trajectories (indices in the scene).
+/// The beds of the plan, packings outermost, are dealt out in turn to `shards` slices (0: one), of
+/// which this is the one numbered `shard`, from 0.
 struct dig_plan {
-    size_t        count[DIG_AXES];
-    const double *value[DIG_AXES];
-    size_t        packings;
-    size_t        trajectories;
-    size_t        trajectory[DIG_TRAJECTORY_MAX];
+    size_t                       points;
+    const struct dig_plan_point *point; // [points]
+    size_t                       trajectories;
+    size_t                       trajectory[DIG_TRAJECTORY_MAX];
+    size_t                       shard, shards;
 };
 
 /// One bed and the digs it still lacks.
 struct dig_job {
     struct dig_gravel gravel;
+    char              effect[DIG_NAME_SIZE];
+    double            magnitude;
     size_t            packing;
     uint64_t          seed;
     size_t            digs;
@@ -42,7 +53,8 @@ struct dig_queue {
 
 /// The seed of a gravel's k-th bed: the first 63 bits of the SHA-256 of
 /// "bed friction=%.17g rolling=%.17g density_kgpm3=%.17g packing=%zu", so that the same gravel and
-/// packing has the same bed in every table of the scene.
+/// packing has the same bed in every table of the scene, and a bed with an effect is poured from
+/// the same seed as the plain one.
 uint64_t dig_bed_seed(const struct dig_gravel *gravel, size_t packing);
 
 /// Free with dig_queue_finish(). Writes on success only.

@@ -20,19 +20,26 @@ static enum dig_status prepare(const struct dig_store *const store, const char *
                                                                         : refuse(store, error);
 }
 
-enum dig_status dig_gravel_find(const struct dig_store *const  store,
-                                const struct dig_gravel *const gravel, sqlite3_int64 *const id,
+void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const origin)
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)sqlite3_bind_double(s, a + 1, origin->gravel.value[a]);
+    }
+    (void)sqlite3_bind_text(s, DIG_AXES + 1, origin->effect, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_double(s, DIG_AXES + 2, origin->magnitude);
+}
+
+#define SAME_GROUND                                                                                \
+    "friction = ?1 AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5"
+
+enum dig_status dig_ground_find(const struct dig_store *const      store,
+                                const struct dig_run_origin *const origin, sqlite3_int64 *const id,
                                 struct dig_error *const error)
 {
     sqlite3_stmt   *s      = NULL;
-    enum dig_status status = prepare(store,
-                                     "SELECT id FROM gravel WHERE friction = ?1 AND rolling = ?2 "
-                                     "AND density_kgpm3 = ?3",
-                                     &s, error);
+    enum dig_status status = prepare(store, "SELECT id FROM ground WHERE " SAME_GROUND, &s, error);
     if (status == DIG_OK) {
-        for (int a = 0; a < DIG_AXES; a++) {
-            (void)sqlite3_bind_double(s, a + 1, gravel->value[a]);
-        }
+        dig_ground_bind(s, origin);
         status = sqlite3_step(s) == SQLITE_ROW ? DIG_OK : refuse(store, error);
     }
     if (status == DIG_OK) {
@@ -42,25 +49,23 @@ enum dig_status dig_gravel_find(const struct dig_store *const  store,
     return status;
 }
 
-enum dig_status dig_store_has(struct dig_store *const store, const struct dig_gravel *const gravel,
-                              const size_t packing, const size_t trajectory, bool *const there,
+enum dig_status dig_store_has(struct dig_store *const            store,
+                              const struct dig_run_origin *const origin, bool *const there,
                               struct dig_error *const error)
 {
-    assert(store != NULL && gravel != NULL && there != NULL);
+    assert(store != NULL && origin != NULL && there != NULL);
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "SELECT 1 FROM run JOIN gravel g ON g.id = run.gravel WHERE friction = ?1 AND "
-                "rolling = ?2 AND density_kgpm3 = ?3 AND packing = ?4 AND trajectory = ?5",
+                "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE " SAME_GROUND
+                " AND packing = ?6 AND trajectory = ?7",
                 &s, error);
     if (status != DIG_OK) {
         return status;
     }
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)sqlite3_bind_double(s, a + 1, gravel->value[a]);
-    }
-    (void)sqlite3_bind_int64(s, 4, (sqlite3_int64)packing);
-    (void)sqlite3_bind_int64(s, 5, (sqlite3_int64)trajectory);
+    dig_ground_bind(s, origin);
+    (void)sqlite3_bind_int64(s, 6, (sqlite3_int64)origin->packing);
+    (void)sqlite3_bind_int64(s, 7, (sqlite3_int64)origin->trajectory);
     const int step = sqlite3_step(s);
     if (step == SQLITE_ROW || step == SQLITE_DONE) {
         *there = step == SQLITE_ROW;
@@ -72,16 +77,16 @@ enum dig_status dig_store_has(struct dig_store *const store, const struct dig_gr
 }
 
 // Copies a text column, cut to fit: provenance is for people.
-static void column_text(sqlite3_stmt *const s, const int column,
-                        char text[const DIG_STORE_TEXT_SIZE])
+static void column_text(sqlite3_stmt *const s, const int column, const size_t size,
+                        char text[const])
 {
     const char *const found = (const char *)sqlite3_column_text(s, column);
-    (void)snprintf(text, DIG_STORE_TEXT_SIZE, "%s", found != NULL ? found : "");
+    (void)snprintf(text, size, "%s", found != NULL ? found : "");
 }
 
 #define RUN_COLUMNS                                                                                \
     "friction, rolling, density_kgpm3, packing, trajectory, seed, engine, version, grains, "       \
-    "wall_s, made_utc, windows, first_s, step_s, curve"
+    "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude"
 
 // The row a statement over RUN_COLUMNS stands on; *value is malloc'ed and is run->value.
 static enum dig_status read_run(const struct dig_store *const store, sqlite3_stmt *const s,
@@ -98,11 +103,13 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
     o->packing                     = (size_t)packing;
     o->trajectory                  = (size_t)trajectory;
     o->seed                        = (uint64_t)sqlite3_column_int64(s, 5);
-    column_text(s, 6, o->engine);
-    column_text(s, 7, o->version);
+    column_text(s, 6, sizeof o->engine, o->engine);
+    column_text(s, 7, sizeof o->version, o->version);
     o->grains = (size_t)sqlite3_column_int64(s, 8);
     o->wall_s = sqlite3_column_double(s, 9);
-    column_text(s, 10, o->made_utc);
+    column_text(s, 10, sizeof o->made_utc, o->made_utc);
+    column_text(s, 15, sizeof o->effect, o->effect);
+    o->magnitude = sqlite3_column_double(s, 16);
     run->first_s = sqlite3_column_double(s, 12);
     run->step_s  = sqlite3_column_double(s, 13);
 
@@ -120,7 +127,8 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
     if (into == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     }
-    if (!dig_floats_unpack(run->windows * DIG_CHANNELS, bytes, into)) {
+    dig_floats_unpack(run->windows * DIG_CHANNELS, bytes, into);
+    if (!dig_channels_sound(run->windows, into)) {
         free(into);
         return dig_error_set(error, DIG_EINVAL,
                              "%s: run.curve: a number that is not finite, expected finite ones",
@@ -161,8 +169,8 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "SELECT " RUN_COLUMNS " FROM run JOIN gravel g ON g.id = run.gravel ORDER BY "
-                "friction, rolling, density_kgpm3, trajectory, packing",
+                "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground ORDER BY "
+                "friction, rolling, density_kgpm3, effect, magnitude, trajectory, packing",
                 &s, error);
     if (status == DIG_OK) {
         status = walk(store, s, visitor, error);
@@ -192,18 +200,18 @@ static enum dig_status derive_one(void *const context, const struct dig_run *con
     return DIG_OK;
 }
 
-enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_int64 gravel,
+enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_int64 ground,
                                  const size_t trajectory, struct dig_ensemble *const ensemble,
                                  struct dig_error *const error)
 {
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "SELECT " RUN_COLUMNS " FROM run JOIN gravel g ON g.id = run.gravel WHERE gravel = "
+                "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground WHERE ground = "
                 "?1 AND trajectory = ?2 ORDER BY packing",
                 &s, error);
     if (status == DIG_OK) {
-        (void)sqlite3_bind_int64(s, 1, gravel);
+        (void)sqlite3_bind_int64(s, 1, ground);
         (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);
         struct deriving              deriving = { store, ensemble };
         const struct dig_run_visitor visitor  = { derive_one, &deriving };

@@ -11,7 +11,7 @@
 #include <sqlite3.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
-#define DIG_TABLE_VERSION        1          // PRAGMA user_version
+#define DIG_TABLE_VERSION        2          // PRAGMA user_version
 #define DIG_CANONICAL_SIZE       16384      // eight trajectories of eight phases stay well below
 
 /// What a table says of itself, read once at opening.

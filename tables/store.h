@@ -19,12 +19,14 @@ struct dig_store;
 
 #define DIG_STORE_TEXT_SIZE 40
 
-/// Where a run came from.
+/// Where a run came from. Gravel, effect, magnitude, packing and trajectory are its key.
 struct dig_run_origin {
     struct dig_gravel gravel;
-    size_t            packing;    // 0 … ; which of the gravel's beds
-    size_t            trajectory; // index in the scene
-    uint64_t          seed;       // below 2^63
+    char              effect[DIG_NAME_SIZE]; // put into the scene at this magnitude; "": none
+    double            magnitude;             // 0 without an effect
+    size_t            packing;               // 0 … ; which of the gravel's beds
+    size_t            trajectory;            // index in the scene
+    uint64_t          seed;                  // below 2^63
     char              engine[DIG_STORE_TEXT_SIZE];
     char              version[DIG_STORE_TEXT_SIZE];
     size_t            grains;
@@ -32,7 +34,8 @@ struct dig_run_origin {
     char              made_utc[DIG_STORE_TEXT_SIZE]; // ISO 8601
 };
 
-/// A run as stored: DIG_CHANNELS arrays of `windows` samples, the i-th at first_s + i step_s.
+/// A run as stored: DIG_CHANNELS arrays of `windows` samples, the i-th at first_s + i step_s. The
+/// carried mass is NaN throughout where it is not known, all else is finite.
 struct dig_run {
     struct dig_run_origin origin;
     size_t                windows;
@@ -62,20 +65,20 @@ const struct dig_trajectory *dig_store_trajectories(const struct dig_store *stor
 
 /// Stores one dig and refreshes its entry, both or neither. The recording's samples must be evenly
 /// spaced (within 1 % of the spacing). DIG_EINVAL for a recording that is not finite, not even, or
-/// for a run that is there already.
+/// for a run that is there already; for an effect core/effect.h does not name. A carried mass that
+/// is missing in one row is stored as not known in any.
 DIG_MUST_CHECK enum dig_status dig_store_put(struct dig_store            *store,
                                              const struct dig_run_origin *origin,
                                              const struct dig_recording  *recording,
                                              struct dig_error            *error);
 
-/// Writes true to *there when the run of this gravel, packing and trajectory is stored.
-DIG_MUST_CHECK enum dig_status dig_store_has(struct dig_store        *store,
-                                             const struct dig_gravel *gravel, size_t packing,
-                                             size_t trajectory, bool *there,
+/// Writes true to *there when the run with the key of *origin is stored.
+DIG_MUST_CHECK enum dig_status dig_store_has(struct dig_store            *store,
+                                             const struct dig_run_origin *origin, bool *there,
                                              struct dig_error *error);
 
-/// Called for each run, ordered by gravel, trajectory, packing. Anything but DIG_OK ends the walk
-/// and is returned.
+/// Called for each run, ordered by gravel, effect (none first), magnitude, trajectory, packing.
+/// Anything but DIG_OK ends the walk and is returned.
 struct dig_run_visitor {
     enum dig_status (*visit)(void *context, const struct dig_run *run, struct dig_error *error);
     void *context;
@@ -87,11 +90,12 @@ DIG_MUST_CHECK enum dig_status dig_store_walk(struct dig_store             *stor
 
 /// What dig_store_check() counted.
 struct dig_store_report {
-    size_t entries; // gravel x trajectory
+    size_t entries; // (gravel, effect, magnitude) x trajectory
     size_t runs;
-    size_t points;     // gravels
+    size_t points;     // gravels without an effect
+    size_t effects;    // gravels with one
     size_t holes;      // grid points between the axes' values that hold no gravel
-    size_t incomplete; // gravel x trajectory with fewer packings than the best has
+    size_t incomplete; // entries with fewer packings than most others of their kind have
 };
 
 /// Recomputes every entry from its runs and refuses the first that differs (DIG_EINVAL, named).

@@ -3,6 +3,7 @@
 #ifndef DIG_TABLES_STORE_PRIVATE_H
 #define DIG_TABLES_STORE_PRIVATE_H
 
+#include "core/effect_set.h"
 #include "tables/derive.h"
 #include "tables/schema.h"
 #include "tables/store.h"
@@ -23,19 +24,33 @@ DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, sqlite3 **db,
                                                  struct dig_table_head *head,
                                                  struct dig_error      *error);
 
-/// dig_table_load() on an open database, which should be in a transaction.
+/// What was dug without an effect, from an open database, which should be in a transaction; there
+/// may be no entries.
 DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
                                             const struct dig_table_head *head,
                                             struct dig_curve_set **set, struct dig_error *error);
 
-/// The key of a gravel's row; DIG_EIO when there is none.
-DIG_MUST_CHECK enum dig_status dig_gravel_find(const struct dig_store  *store,
-                                               const struct dig_gravel *gravel, sqlite3_int64 *id,
-                                               struct dig_error *error);
+/// What was dug with an effect, likewise.
+DIG_MUST_CHECK enum dig_status dig_sql_load_effects(sqlite3 *db, const char *path,
+                                                    const struct dig_table_head *head,
+                                                    struct dig_effect_set      **set,
+                                                    struct dig_error            *error);
 
-/// The mean and spread of all runs of one gravel and trajectory, added up by packing.
-DIG_MUST_CHECK enum dig_status dig_entry_derive(struct dig_store *store, sqlite3_int64 gravel,
+/// Binds the parameters 1 … 5 of a statement to friction, rolling, density, effect and magnitude.
+void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
+
+/// The key of the ground's row that *origin was dug in; DIG_EIO when there is none.
+DIG_MUST_CHECK enum dig_status dig_ground_find(const struct dig_store      *store,
+                                               const struct dig_run_origin *origin,
+                                               sqlite3_int64 *id, struct dig_error *error);
+
+/// The mean and spread of all runs of one ground and trajectory, added up by packing.
+DIG_MUST_CHECK enum dig_status dig_entry_derive(struct dig_store *store, sqlite3_int64 ground,
                                                 size_t trajectory, struct dig_ensemble *ensemble,
                                                 struct dig_error *error);
+
+/// Derives one entry and writes it in place of what was there.
+DIG_MUST_CHECK enum dig_status dig_entry_refresh(struct dig_store *store, sqlite3_int64 ground,
+                                                 size_t trajectory, struct dig_error *error);
 
 #endif // DIG_TABLES_STORE_PRIVATE_H

@@ -72,7 +72,7 @@ static void fill(struct dig_curve *const curve, const struct dig_gravel *const g
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress         = (double)k / (DIG_CURVE_POINTS - 1);
         const double moment_Nm        = made_moment_Nm(gravel, which, progress, options->family);
-        const double by[DIG_CHANNELS] = { 1.0, -8.0, 5.0 };
+        const double by[DIG_CHANNELS] = { 1.0, -8.0, 5.0, 0.2 };
         for (int c = 0; c < DIG_CHANNELS; c++) {
             curve->mean[c][k] = (float)(by[c] * moment_Nm);
             curve->sd[c][k]   = (float)(options->relative_sd * fabs(by[c] * moment_Nm));

@@ -33,7 +33,8 @@ static inline struct dig_scene fixture_scene(void)
     };
 }
 
-/// A dig of `rows` windows of 5 ms with the moment my + slope t, Fx = 2 My, Fz = -3 My. The array
+/// A dig of `rows` windows of 5 ms with the moment my + slope t, Fx = 2 My, Fz = -3 My, and 5 My of
+/// carried mass. The array
 /// is static: one recording at a time.
 static inline struct dig_recording fixture_ramp(const size_t rows, const double my_Nm,
                                                 const double slope_Nmps)
@@ -43,7 +44,9 @@ static inline struct dig_recording fixture_ramp(const size_t rows, const double 
     for (size_t i = 0; i < rows; i++) {
         const double t_s = 0.0025 + 0.005 * (double)i;
         const double at  = my_Nm + slope_Nmps * t_s;
-        row[i] = (struct dig_force_row){ .t_s = t_s, .Fx_N = 2 * at, .Fz_N = -3 * at, .My_Nm = at };
+        row[i]           = (struct dig_force_row){
+                      .t_s = t_s, .Fx_N = 2 * at, .Fz_N = -3 * at, .My_Nm = at, .carried_kg = 5 * at
+        };
     }
     return (struct dig_recording){ .rows = rows, .row = row };
 }
@@ -79,6 +82,15 @@ static inline struct dig_store *fixture_create(const char *const name)
         fail_msg("%s", error.text);
     }
     return store;
+}
+
+/// fixture_origin() with an effect.
+static inline struct dig_run_origin fixture_varied(struct dig_run_origin origin,
+                                                   const char *const effect, const double magnitude)
+{
+    (void)snprintf(origin.effect, sizeof origin.effect, "%s", effect);
+    origin.magnitude = magnitude;
+    return origin;
 }
 
 static inline void fixture_put(struct dig_store *const store, const double friction,

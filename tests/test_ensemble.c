@@ -33,13 +33,13 @@ static const struct {
     { 0.9, 0.9, "tests/data/reference/mu0.9_mur0.9_rho2500", 4 },
 };
 
-static const char *const channel_name[DIG_CHANNELS] = { "My", "Fx", "Fz" };
+static const char *const channel_name[DIG_FORCE_CHANNELS] = { "My", "Fx", "Fz" };
 
 /// Mean and spread of phase means over packings.
 struct moments {
-    int    n[DIG_PHASES_MAX][DIG_CHANNELS];
-    double sum[DIG_PHASES_MAX][DIG_CHANNELS];
-    double sum2[DIG_PHASES_MAX][DIG_CHANNELS];
+    int    n[DIG_PHASES_MAX][DIG_FORCE_CHANNELS];
+    double sum[DIG_PHASES_MAX][DIG_FORCE_CHANNELS];
+    double sum2[DIG_PHASES_MAX][DIG_FORCE_CHANNELS];
 };
 
 struct ensembles {
@@ -51,19 +51,19 @@ struct ensembles {
 
 static void add_packing(struct moments *const m, const struct dig_trajectory *const t,
                         const size_t windows, const double t_s[],
-                        const double value[][DIG_CHANNELS])
+                        const double value[][DIG_FORCE_CHANNELS])
 {
     int    n[DIG_PHASES_MAX]                 = { 0 };
-    double sum[DIG_PHASES_MAX][DIG_CHANNELS] = { { 0.0 } };
+    double sum[DIG_PHASES_MAX][DIG_FORCE_CHANNELS] = { { 0.0 } };
     for (size_t i = 0; i < windows; i++) {
         const size_t p = dig_trajectory_phase(t, t_s[i]);
         n[p]++;
-        for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             sum[p][c] += value[i][c];
         }
     }
     for (size_t p = 0; p < t->phases; p++) {
-        for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             const double mean = sum[p][c] / n[p];
             m->n[p][c]++;
             m->sum[p][c] += mean;
@@ -87,7 +87,7 @@ static double error_of_mean(const struct moments *const m, const size_t p, const
 
 #define WINDOWS_MAX 4096
 static double at_s[WINDOWS_MAX];
-static double value[WINDOWS_MAX][DIG_CHANNELS];
+static double value[WINDOWS_MAX][DIG_FORCE_CHANNELS];
 
 static int gravel_of(const struct dig_gravel *const g)
 {
@@ -125,11 +125,11 @@ static enum dig_status visit_run(void *const context, const struct dig_run *cons
     assert_true(run->windows <= WINDOWS_MAX);
     for (size_t i = 0; i < run->windows; i++) {
         at_s[i] = run->first_s + (double)i * run->step_s;
-        for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             value[i][c] = (double)run->value[(size_t)c * run->windows + i];
         }
     }
-    add_packing(&all->ours[g][k], t, run->windows, at_s, (const double(*)[DIG_CHANNELS])value);
+    add_packing(&all->ours[g][k], t, run->windows, at_s, (const double(*)[DIG_FORCE_CHANNELS])value);
     return DIG_OK;
 }
 
@@ -174,7 +174,7 @@ static void read_reference(struct ensembles *const all)
                     value[i][DIG_CHANNEL_FZ_N]  = r.row[i].Fz_N;
                 }
                 add_packing(&all->reference[g][k], &all->trajectory[which], r.rows, at_s,
-                            (const double(*)[DIG_CHANNELS])value);
+                            (const double(*)[DIG_FORCE_CHANNELS])value);
                 dig_recording_finish(&r);
             }
         }
@@ -231,7 +231,7 @@ static void phase_means_agree_with_liggghts(void **state)
     for (int g = 0; g < GRAVELS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
             const struct dig_trajectory *const t = find(trajectory_name[k]);
-            for (int c = 0; c < DIG_CHANNELS; c++) {
+            for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 const double scale = largest_phase_mean(g, k, c, t->phases);
                 for (size_t p = 0; p < t->phases; p++) {
                     const double ours    = mean_of(&all.ours[g][k], p, c);

@@ -67,6 +67,7 @@ static void mean_and_spread_are_those_of_the_packings(void **state)
         assert_close((double)c->mean[DIG_CHANNEL_MY_Nm][k], 3.0, 1e-6);
         assert_close((double)c->mean[DIG_CHANNEL_FX_N][k], 6.0, 1e-6);
         assert_close((double)c->mean[DIG_CHANNEL_FZ_N][k], -9.0, 1e-6);
+        assert_close((double)c->mean[DIG_CHANNEL_CARRIED_kg][k], 15.0, 1e-6);
         assert_close((double)c->sd[DIG_CHANNEL_MY_Nm][k], sd, 1e-6);
         assert_close((double)c->sd[DIG_CHANNEL_FZ_N][k], 3.0 * sd, 1e-5);
     }
@@ -184,7 +185,7 @@ static void damage_is_refused_and_named(void **state)
         enum dig_status status;
         const char     *says;
     } bad[] = {
-        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 1" },
+        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 2" },
         { "PRAGMA application_id = 99", DIG_EINVAL, "not a digsight table (application_id 99" },
         { "UPDATE scene SET hash = replace(hash, substr(hash, 1, 1), 'x')", DIG_EINVAL,
           "scene.hash: " },
@@ -198,15 +199,15 @@ static void damage_is_refused_and_named(void **state)
           "trajectory: the rows" },
         { "UPDATE phase SET duration_s = 0", DIG_EINVAL, "phase.duration_s: expected > 0" },
         { "DELETE FROM phase WHERE number = 0", DIG_EINVAL, "trajectory: " },
-        { "UPDATE entry SET mean = x'00'", DIG_EINVAL, "entry.mean, entry.spread: expected 768" },
+        { "UPDATE entry SET mean = x'00'", DIG_EINVAL, "entry.mean, entry.spread: expected 1024" },
         { "UPDATE entry SET mean = CAST(mean || x'00' AS BLOB)", DIG_EINVAL, "entry.mean" },
         { "UPDATE entry SET spread = CAST(substr(spread, 1, 400) || x'0000c07f' || "
           "substr(spread, 405) AS BLOB)",
           DIG_EINVAL, "finite" },
         { "UPDATE entry SET trajectory = 1; UPDATE entry SET trajectory = 9", DIG_EINVAL,
           "refers to nothing" },
-        { "UPDATE gravel SET rolling = -0.5", DIG_EINVAL, "gravel.rolling: -0.5, expected >= 0" },
-        { "DELETE FROM entry; DELETE FROM run; DELETE FROM gravel", DIG_EINVAL, "gravel: no rows" },
+        { "UPDATE ground SET rolling = -0.5", DIG_EINVAL, "ground.rolling: -0.5, expected >= 0" },
+        { "DELETE FROM entry; DELETE FROM run; DELETE FROM ground", DIG_EINVAL, "ground: no rows" },
         { "DROP TABLE entry", DIG_EIO, "no such table: entry" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -250,8 +251,8 @@ static void a_transaction_cut_short_is_rolled_back(void **state)
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open(scratch_path("cut.sqlite"), &db), SQLITE_OK);
     assert_int_equal(sqlite3_exec(db,
-                                  "PRAGMA cache_size = 1; BEGIN; UPDATE gravel SET friction = 0.7; "
-                                  "UPDATE entry SET mean = zeroblob(3072); "
+                                  "PRAGMA cache_size = 1; BEGIN; UPDATE ground SET friction = 0.7; "
+                                  "UPDATE entry SET mean = zeroblob(4096); "
                                   "UPDATE run SET curve = zeroblob(200000);",
                                   NULL, NULL, NULL),
                      SQLITE_OK);

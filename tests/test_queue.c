@@ -4,13 +4,18 @@
 
 #include "tests/tables_fixture.h"
 
-static const double frictions[] = { .3, .5 }, rollings[] = { .1, .2, .4 }, densities[] = { 2500 };
+// Two frictions by three rolling frictions.
 static struct dig_plan plan_of(const size_t packings)
 {
+    static struct dig_plan_point point[6];
+    static const double          rolling[] = { .1, .2, .4 };
+    for (size_t i = 0; i < 6; i++) {
+        point[i] = (struct dig_plan_point){ .gravel = { { i < 3 ? .3 : .5, rolling[i % 3], 2500 } },
+                                            .packings = packings };
+    }
     return (struct dig_plan){
-        .count        = { 2, 3, 1 },
-        .value        = { frictions, rollings, densities },
-        .packings     = packings,
+        .points       = 6,
+        .point        = point,
         .trajectories = 2,
         .trajectory   = { 1, 0 },
     };
@@ -84,6 +89,79 @@ static void what_the_table_holds_is_not_dug_again(void **state)
     dig_store_close(store);
 }
 
+// What one point lacks says nothing of another with an effect, and some points have more beds.
+static void points_differ_in_effect_magnitude_and_packings(void **state)
+{
+    (void)state;
+    struct dig_store *const     store    = fixture_create("effects.sqlite");
+    const struct dig_plan_point points[] = {
+        { .gravel = { { .3, .2, 2500 } }, .packings = 1 },
+        { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 10, .packings = 3 },
+        { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 20, .packings = 1 },
+    };
+    const struct dig_plan       plan = { .points = 3, .point = points, .trajectories = 1 };
+    const struct dig_run_origin there =
+        fixture_varied(fixture_origin(.3, .2, 2500, 1, 0), "cohesion", 10);
+    const struct dig_recording recording = fixture_recording(400, 1.0);
+    assert_int_equal(dig_store_put(store, &there, &recording, NULL), DIG_OK);
+    fixture_put(store, .3, .2, 0, 0, 1.0);
+
+    struct dig_queue queue = queue_of(store, &plan);
+    assert_int_equal(queue.digs_total, 5);
+    assert_int_equal(queue.digs_done, 2);
+    assert_int_equal(queue.jobs, 3);
+    assert_string_equal(queue.job[0].effect, "cohesion");
+    assert_close(queue.job[0].magnitude, 10.0, 0.0);
+    assert_int_equal(queue.job[0].packing, 0);
+    assert_close(queue.job[1].magnitude, 20.0, 0.0);
+    assert_int_equal(queue.job[1].packing, 0);
+    assert_close(queue.job[2].magnitude, 10.0, 0.0);
+    assert_int_equal(queue.job[2].packing, 2);
+    assert_true(queue.job[0].seed == dig_bed_seed(&points[0].gravel, 0)); // the plain bed's
+    dig_queue_finish(&queue);
+    dig_store_close(store);
+}
+
+static void the_shards_of_a_plan_are_all_of_it_once(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("shards.sqlite");
+    struct dig_plan         plan  = plan_of(3);
+    struct dig_queue        whole = queue_of(store, &plan);
+    size_t                  seen = 0, digs = 0;
+    plan.shards = 5;
+    for (plan.shard = 0; plan.shard < plan.shards; plan.shard++) {
+        struct dig_queue part = queue_of(store, &plan);
+        digs += part.digs_total;
+        assert_true(part.jobs == 3 || part.jobs == 4);
+        for (size_t i = 0; i < part.jobs; i++) {
+            size_t times = 0;
+            for (size_t k = 0; k < whole.jobs; k++) {
+                times += part.job[i].seed == whole.job[k].seed ? 1 : 0;
+            }
+            assert_int_equal(times, 1);
+            seen++;
+        }
+        // What a shard holds does not depend on what is done.
+        if (plan.shard == 2) {
+            const struct dig_job *const first = &part.job[0];
+            fixture_put(store, first->gravel.value[0], first->gravel.value[1], first->packing, 0,
+                        1);
+            fixture_put(store, first->gravel.value[0], first->gravel.value[1], first->packing, 1,
+                        1);
+            struct dig_queue later = queue_of(store, &plan);
+            assert_int_equal(later.jobs, part.jobs - 1);
+            assert_true(later.job[0].seed == part.job[1].seed);
+            dig_queue_finish(&later);
+        }
+        dig_queue_finish(&part);
+    }
+    assert_int_equal(seen, whole.jobs);
+    assert_int_equal(digs, whole.digs_total);
+    dig_queue_finish(&whole);
+    dig_store_close(store);
+}
+
 // sha256sum of the documented text, first 16 hex digits, halved.
 static void the_seed_is_the_documented_hash(void **state)
 {
@@ -100,6 +178,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_point_has_a_first_bed_before_any_has_a_second),
         cmocka_unit_test(what_the_table_holds_is_not_dug_again),
+        cmocka_unit_test(points_differ_in_effect_magnitude_and_packings),
+        cmocka_unit_test(the_shards_of_a_plan_are_all_of_it_once),
         cmocka_unit_test(the_seed_is_the_documented_hash),
     };
     return cmocka_run_group_tests_name("queue", tests, scratch_setup, scratch_teardown);

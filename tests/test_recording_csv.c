@@ -176,7 +176,7 @@ static void what_is_written_is_read_back(void **state)
         const double k = (double)i;
         rows[i]        = (struct dig_force_row){
                    0.005 * k + 0.0025, k / 7, -k / 3,  1e-7 * k, 1e5 / (k + 1), k * k,
-                   -1e-9 * k,          3,     1.0 / 3, -0.0
+                   -1e-9 * k,          3,     1.0 / 3, -0.0,     k / 11
         };
     }
     struct dig_recording read = { 0 };
@@ -189,7 +189,15 @@ static void what_is_written_is_read_back(void **state)
         assert_close(read.row[i].pin_x_m, rows[i].pin_x_m, 1e-8 * fabs(rows[i].pin_x_m));
         assert_close(read.row[i].Fx_N, rows[i].Fx_N, 1e-8 * rows[i].Fx_N);
         assert_close(read.row[i].My_Nm, rows[i].My_Nm, 1e-9);
+        assert_close(read.row[i].carried_kg, rows[i].carried_kg, 1e-8);
     }
+    dig_recording_finish(&read);
+
+    // A mass that is not known is no column, and no column is a mass that is not known.
+    rows[7].carried_kg = (double)NAN;
+    assert_int_equal(dig_recording_write(path, &written, NULL), DIG_OK);
+    assert_int_equal(dig_recording_read(path, &read, NULL), DIG_OK);
+    assert_true(isnan(read.row[0].carried_kg) && isnan(read.row[49].carried_kg));
     dig_recording_finish(&read);
     assert_false(scratch_exists("out.csv.part"));
 }

@@ -39,7 +39,7 @@ static void a_new_table_says_what_it_is(void **state)
     (void)state;
     dig_store_close(fixture_create("new.sqlite"));
     assert_int_equal(ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
-    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 1);
+    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 2);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
@@ -68,19 +68,22 @@ static enum dig_status see(void *const context, const struct dig_run *const run,
     return DIG_OK;
 }
 
+static bool has(struct dig_store *const store, const struct dig_run_origin key)
+{
+    bool there = false;
+    assert_int_equal(dig_store_has(store, &key, &there, NULL), DIG_OK);
+    return there;
+}
+
 static void a_run_comes_back_with_where_it_came_from(void **state)
 {
     (void)state;
     struct dig_store *store = fixture_create("run.sqlite");
     fixture_put(store, .3, .5, 7, 1, 0.75);
-    bool                    there  = false;
-    const struct dig_gravel gravel = { { .3, .5, 2500.0 } };
-    assert_int_equal(dig_store_has(store, &gravel, 7, 1, &there, NULL), DIG_OK);
-    assert_true(there);
-    assert_int_equal(dig_store_has(store, &gravel, 7, 0, &there, NULL), DIG_OK);
-    assert_false(there);
-    assert_int_equal(dig_store_has(store, &gravel, 6, 1, &there, NULL), DIG_OK);
-    assert_false(there);
+    assert_true(has(store, fixture_origin(.3, .5, 2500.0, 7, 1)));
+    assert_false(has(store, fixture_origin(.3, .5, 2500.0, 7, 0)));
+    assert_false(has(store, fixture_origin(.3, .5, 2500.0, 6, 1)));
+    assert_false(has(store, fixture_varied(fixture_origin(.3, .5, 2500.0, 7, 1), "cohesion", 1)));
     dig_store_close(store);
 
     assert_int_equal(dig_store_open(scratch_path("run.sqlite"), &store, NULL), DIG_OK);
@@ -128,7 +131,7 @@ static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
     assert_int_equal(dig_store_put(store, &second, &recording, &error), DIG_EINVAL);
     dig_store_close(store);
     assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM run"), 1);
-    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM gravel"), 1);
+    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM ground"), 1);
     assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
 }
 
@@ -177,10 +180,10 @@ static void what_cannot_become_a_table_is_left_as_it_was(void **state)
     assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
 
     dig_store_close(fixture_create("newer.sqlite"));
-    run_sql("newer.sqlite", "PRAGMA user_version = 2");
+    run_sql("newer.sqlite", "PRAGMA user_version = 3");
     assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
                      DIG_ESCHEMA);
-    assert_contains(error.text, "newer.sqlite: user_version: table format 2, expected 1");
+    assert_contains(error.text, "newer.sqlite: user_version: table format 3, expected 2");
 
     assert_int_equal(
         dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);
@@ -278,11 +281,11 @@ static void the_check_counts_holes_and_finds_entries_that_lie(void **state)
     dig_store_close(store);
 
     static const char *const lies[] = {
-        "UPDATE entry SET mean = (SELECT mean FROM entry WHERE gravel = 2) WHERE gravel = 1",
-        "UPDATE entry SET spread = mean WHERE gravel = 3",
-        "UPDATE entry SET packings = 3 WHERE gravel = 3",
-        "DELETE FROM entry WHERE gravel = 1",
-        "DELETE FROM run WHERE gravel = 2",
+        "UPDATE entry SET mean = (SELECT mean FROM entry WHERE ground = 2) WHERE ground = 1",
+        "UPDATE entry SET spread = mean WHERE ground = 3",
+        "UPDATE entry SET packings = 3 WHERE ground = 3",
+        "DELETE FROM entry WHERE ground = 1",
+        "DELETE FROM run WHERE ground = 2",
     };
     for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
         struct dig_error error = { "" };

@@ -124,18 +124,36 @@ static void fake_bed_finish(struct dig_bed *const bed)
     *bed = (struct dig_bed){ 0 };
 }
 
-static const struct dig_engine engine = { "fake", "3.1", fake_pour, fake_dig, fake_bed_finish };
+// The effect adds its magnitude to the second trajectory's phases: any change that shows.
+static enum dig_status fake_vary(const struct dig_scene *const  scene,
+                                 const struct dig_gravel *const gravel,
+                                 const enum dig_effect_id effect, const double magnitude,
+                                 struct dig_scene *const varied, struct dig_error *const error)
+{
+    (void)gravel;
+    if (magnitude > 90.0) {
+        return dig_error_set(error, DIG_EINVAL, "%s %g: too much", dig_effect_name(effect),
+                             magnitude);
+    }
+    *varied                          = *scene;
+    varied->trajectory[0].theta0_rad = magnitude;
+    return DIG_OK;
+}
 
-static const double frictions[] = { .3, .5 }, rollings[] = { .1, .2, .4 }, densities[] = { 2500 };
+static const struct dig_engine engine = { "fake",   "3.1",           fake_pour,
+                                          fake_dig, fake_bed_finish, fake_vary };
+
+// Two frictions by three rolling frictions.
 static struct dig_plan plan_of(const size_t packings)
 {
-    return (struct dig_plan){
-        .count        = { 2, 3, 1 },
-        .value        = { frictions, rollings, densities },
-        .packings     = packings,
-        .trajectories = 2,
-        .trajectory   = { 0, 1 },
-    };
+    static struct dig_plan_point point[6];
+    static const double          rolling[] = { .1, .2, .4 };
+    for (size_t i = 0; i < 6; i++) {
+        point[i] = (struct dig_plan_point){ .gravel = { { i < 3 ? .3 : .5, rolling[i % 3], 2500 } },
+                                            .packings = packings };
+    }
+    return (
+        struct dig_plan){ .points = 6, .point = point, .trajectories = 2, .trajectory = { 0, 1 } };
 }
 #define DIGS_A_PACKING ((size_t)12)
 

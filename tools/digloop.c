@@ -240,7 +240,9 @@ static enum dig_status write_curve(const char *const path, const struct dig_curv
                                                                  .theta_deg = pose.theta_rad * 180.0 / acos(-1.0),
                                                                  .Fx_N      = at(curve->mean[DIG_CHANNEL_FX_N], progress),
                                                                  .Fz_N      = at(curve->mean[DIG_CHANNEL_FZ_N], progress),
-                                                                 .My_Nm = at(curve->mean[DIG_CHANNEL_MY_Nm], progress) };
+                                                                 .My_Nm = at(curve->mean[DIG_CHANNEL_MY_Nm], progress),
+                                                                 .carried_kg =
+                                                                     at(curve->mean[DIG_CHANNEL_CARRIED_kg], progress) };
     }
     const enum dig_status status = dig_recording_write(path, &r, error);
     dig_recording_finish(&r);

@@ -20,7 +20,7 @@ static const char help_text[] =
     "               [--vtk DIR] -o CURVE.csv\n"
     "      one dig; the curve is a force recording\n"
     "  digtable generate SCENE.yaml GRID.yaml -o TABLE.sqlite\n"
-    "               [-j N] [--packings N] [--time-limit S] [--engine kernel]\n"
+    "               [-j N] [--packings N] [--time-limit S] [--shard I/N] [--engine kernel]\n"
     "      every dig of the grid, on all cores; what the table holds already is not computed "
     "again,\n"
     "      and Ctrl-C keeps all that is finished\n"
@@ -50,7 +50,7 @@ static const struct dig_command commands[] = {
     { "dig", dig_cli_dig, 1, 1, "SCENE.yaml",
       " trajectory friction rolling density young seed engine bed save-bed vtk output " },
     { "generate", dig_cli_generate, 2, 2, "SCENE.yaml GRID.yaml",
-      " output jobs packings time-limit engine " },
+      " output jobs packings time-limit shard engine " },
     { "list", dig_cli_list, 1, 1, "TABLE.sqlite", " json " },
     { "check", dig_cli_check, 1, 1, "TABLE.sqlite", " json complete " },
     { "show", dig_cli_show, 1, 2, "TABLE.sqlite",

@@ -23,6 +23,7 @@ enum option_id {
     OPTION_VTK,
     OPTION_PACKINGS,
     OPTION_TIME_LIMIT,
+    OPTION_SHARD,
     OPTION_CHANNEL,
     OPTION_CSV,
     OPTION_JSON,
@@ -43,6 +44,7 @@ static const struct option long_options[] = {
     { "vtk", required_argument, NULL, OPTION_VTK },
     { "packings", required_argument, NULL, OPTION_PACKINGS },
     { "time-limit", required_argument, NULL, OPTION_TIME_LIMIT },
+    { "shard", required_argument, NULL, OPTION_SHARD },
     { "channel", required_argument, NULL, OPTION_CHANNEL },
     { "csv", no_argument, NULL, OPTION_CSV },
     { "json", no_argument, NULL, OPTION_JSON },
@@ -103,7 +105,7 @@ bool dig_cli_count(const char *const text, const unsigned long least, const unsi
 
 static bool parse_channel(const char *const text, enum dig_channel *const channel)
 {
-    static const char *const names[DIG_CHANNELS] = { "My", "Fx", "Fz" };
+    static const char *const names[DIG_CHANNELS] = { "My", "Fx", "Fz", "carried" };
     for (int c = 0; c < DIG_CHANNELS; c++) {
         if (strcmp(text, names[c]) == 0) {
             *channel = (enum dig_channel)c;
@@ -111,6 +113,28 @@ static bool parse_channel(const char *const text, enum dig_channel *const channe
         }
     }
     return false;
+}
+
+// "2/8": the second of eight.
+static bool parse_shard(const char *const text, struct dig_arguments *const a)
+{
+    char              first[16];
+    const char *const slash  = strchr(text, '/');
+    const size_t      length = slash != NULL ? (size_t)(slash - text) : sizeof first;
+    unsigned long     shard  = 0;
+    unsigned long     shards = 0;
+    if (length >= sizeof first) {
+        return false;
+    }
+    memcpy(first, text, length);
+    first[length] = '\0';
+    if (!dig_cli_count(text + length + 1, 1, 1000000, &shards) ||
+        !dig_cli_count(first, 1, shards, &shard)) {
+        return false;
+    }
+    a->shard  = shard - 1;
+    a->shards = shards;
+    return true;
 }
 
 static unsigned long all_cores(void)
@@ -155,7 +179,10 @@ static const char *take_option(const int option, const char *const value,
     case OPTION_TIME_LIMIT:
         ok = number(value, 0.0, 1e9, &a->time_limit_s);
         return ok ? NULL : "seconds, >= 0";
-    case OPTION_CHANNEL: ok = parse_channel(value, &a->channel); return ok ? NULL : "My, Fx or Fz";
+    case OPTION_SHARD: return parse_shard(value, a) ? NULL : "I/N, I from 1 to N";
+    case OPTION_CHANNEL:
+        ok = parse_channel(value, &a->channel);
+        return ok ? NULL : "My, Fx, Fz or carried";
     case OPTION_CSV: a->csv = true; break;
     case OPTION_JSON: a->json = true; break;
     case OPTION_RUNS: a->runs = true; break;

@@ -19,6 +19,7 @@ struct dig_arguments {
     double           gravel[DIG_AXES];        // NaN: not given
     double           young_Pa;                // NaN: the scene's
     unsigned long    seed, workers, packings; // 0 packings: the grid's
+    unsigned long    shard, shards;           // from 0; 0 shards: all
     double           time_limit_s;
     enum dig_channel channel;
     bool             csv, json, runs, complete;

@@ -7,11 +7,13 @@
 #include "offline_dem/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
+#include "tools/digtable/plan.h"
 #include "tools/digtable/progress.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -173,39 +175,26 @@ static int tell_end(const struct dig_arguments *const a, const struct dig_sweep_
     return *a->stop != 0 && s->digs_done < s->digs_total ? EXIT_WORK_FAILED : EXIT_DONE;
 }
 
-int dig_cli_generate(const struct dig_arguments *const a)
+static struct dig_engine engine_of(const struct dig_arguments *const a)
 {
-    if (a->output == NULL) {
-        return dig_cli_bad_usage("generate: %s missing", "-o TABLE.sqlite");
-    }
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    struct dig_grid  grid;
-    enum dig_status  status = dig_scene_read(a->positional[0], &scene, &error);
-    if (status == DIG_OK) {
-        status = dig_grid_read(a->positional[1], &grid, &error);
-    }
-    if (status != DIG_OK) {
-        return dig_cli_bad_input(status, &error);
-    }
-    struct dig_plan plan = { .packings = a->packings > 0 ? a->packings : grid.packings };
-    for (int i = 0; i < DIG_AXES; i++) {
-        plan.count[i] = grid.count[i];
-        plan.value[i] = grid.value[i];
-    }
-    status = dig_grid_trajectories(a->positional[1], &grid, &scene, &plan.trajectories,
-                                   plan.trajectory, &error);
-    if (status != DIG_OK) {
-        return dig_cli_bad_input(status, &error);
-    }
+    (void)a;
+    return dig_engine_kernel();
+}
 
-    struct dig_store *store = NULL;
-    status                  = dig_store_create(a->output, &scene, &store, &error);
+static int sweep(const struct dig_arguments *const a, const struct dig_scene *const scene,
+                 const struct dig_plan *const plan)
+{
+    struct dig_error        error  = { "" };
+    struct dig_store       *store  = NULL;
+    const struct dig_engine engine = engine_of(a);
+    enum dig_status         status = dig_plan_check(plan, scene, &engine, &error);
+    if (status == DIG_OK) {
+        status = dig_store_create(a->output, scene, &store, &error);
+    }
     if (status != DIG_OK) {
         return dig_cli_work_failed(status, &error);
     }
     struct dig_progress_line       line    = dig_progress_line();
-    const struct dig_engine        engine  = dig_engine_kernel();
     const struct dig_sweep_options options = {
         .workers      = a->workers,
         .time_limit_s = a->time_limit_s,
@@ -214,10 +203,41 @@ int dig_cli_generate(const struct dig_arguments *const a)
         .context      = &line,
     };
     struct dig_sweep_state state = { .digs_total = 0 };
-    status = dig_sweep_run(&scene, &plan, &engine, &options, store, &state, &error);
+    status = dig_sweep_run(scene, plan, &engine, &options, store, &state, &error);
     dig_store_close(store);
     if (line.tty) {
         dig_progress_end(&line, true);
     }
     return tell_end(a, &state, status, &error);
+}
+
+int dig_cli_generate(const struct dig_arguments *const a)
+{
+    if (a->output == NULL) {
+        return dig_cli_bad_usage("generate: %s missing", "-o TABLE.sqlite");
+    }
+    struct dig_error error = { "" };
+    struct dig_scene scene;
+    struct dig_grid  grid;
+    struct dig_plan  plan   = { .shard = a->shard, .shards = a->shards };
+    enum dig_status  status = dig_scene_read(a->positional[0], &scene, &error);
+    if (status == DIG_OK) {
+        status = dig_grid_read(a->positional[1], &grid, &error);
+    }
+    if (status == DIG_OK) {
+        status = dig_grid_trajectories(a->positional[1], &grid, &scene, &plan.trajectories,
+                                       plan.trajectory, &error);
+    }
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    struct dig_plan_point *const point = dig_plan_points(&grid, a->packings, &plan.points);
+    if (point == NULL) {
+        (void)dig_error_set(&error, DIG_ENOMEM, "no memory for the grid");
+        return dig_cli_work_failed(DIG_ENOMEM, &error);
+    }
+    plan.point     = point;
+    const int code = sweep(a, &scene, &plan);
+    free(point);
+    return code;
 }

@@ -1,0 +1,111 @@
+#include "tools/digtable/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dig_gravel gravel_at(const struct dig_grid *const grid, size_t index)
+{
+    struct dig_gravel gravel;
+    for (int a = DIG_AXES - 1; a >= 0; a--) {
+        gravel.value[a] = grid->value[a][index % grid->count[a]];
+        index /= grid->count[a];
+    }
+    return gravel;
+}
+
+static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
+{
+    return memcmp(a->value, b->value, sizeof a->value) == 0;
+}
+
+// The plain points: the axes' product, then what stands beside it.
+static size_t fill_plain(const struct dig_grid *const grid, const size_t product,
+                         struct dig_plan_point point[const])
+{
+    size_t n = 0;
+    for (; n < product; n++) {
+        point[n] =
+            (struct dig_plan_point){ .gravel = gravel_at(grid, n), .packings = grid->packings };
+    }
+    for (size_t i = 0; i < grid->points; i++) {
+        size_t at = 0;
+        while (at < n && !is_same(&point[at].gravel, &grid->point[i].gravel)) {
+            at++;
+        }
+        point[at] = (struct dig_plan_point){ .gravel   = grid->point[i].gravel,
+                                             .packings = grid->point[i].packings };
+        n += at == n ? 1 : 0;
+    }
+    return n;
+}
+
+// Every plain point with every effect: effects outermost.
+static size_t fill_varied(const struct dig_grid *const grid, const size_t plain,
+                          const struct dig_plan_point from[const], struct dig_plan_point to[const])
+{
+    size_t n = 0;
+    for (size_t e = 0; e < grid->effects; e++) {
+        for (size_t m = 0; m < grid->effect[e].magnitudes; m++) {
+            for (size_t i = 0; i < plain; i++) {
+                const char *const name = dig_effect_name(grid->effect[e].effect);
+                to[n]                  = from[i];
+                memcpy(to[n].effect, name, strlen(name) + 1);
+                to[n++].magnitude = grid->effect[e].magnitude[m];
+            }
+        }
+    }
+    return n;
+}
+
+struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const size_t packings,
+                                       size_t *const count)
+{
+    size_t product = grid->count[0] > 0 ? 1 : 0;
+    size_t times   = grid->effects > 0 ? 0 : 1;
+    for (int a = 0; a < DIG_AXES && product > 0; a++) {
+        product *= grid->count[a];
+    }
+    for (size_t e = 0; e < grid->effects; e++) {
+        times += grid->effect[e].magnitudes;
+    }
+    struct dig_plan_point *point = calloc(product + grid->points, sizeof *point);
+    if (point == NULL) {
+        return NULL;
+    }
+    size_t n = fill_plain(grid, product, point);
+    if (grid->effects > 0) {
+        struct dig_plan_point *const varied = calloc(n * times + 1, sizeof *varied);
+        n = varied != NULL ? fill_varied(grid, n, point, varied) : 0;
+        free(point);
+        point = varied;
+    }
+    for (size_t i = 0; i < n && packings > 0 && point != NULL; i++) {
+        point[i].packings = packings;
+    }
+    *count = n;
+    return point;
+}
+
+enum dig_status dig_plan_check(const struct dig_plan *const   plan,
+                               const struct dig_scene *const  scene,
+                               const struct dig_engine *const engine, struct dig_error *const error)
+{
+    for (size_t i = 0; i < plan->points; i++) {
+        const struct dig_plan_point *const p      = &plan->point[i];
+        const int                          effect = dig_effect_find(p->effect);
+        if (p->effect[0] == '\0') {
+            continue;
+        }
+        if (effect < 0 || engine->vary == NULL) {
+            return dig_error_set(error, DIG_EINVAL, "effects: the engine %s knows no \"%s\"",
+                                 engine->name, p->effect);
+        }
+        struct dig_scene      varied;
+        const enum dig_status status = engine->vary(scene, &p->gravel, (enum dig_effect_id)effect,
+                                                    p->magnitude, &varied, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    return DIG_OK;
+}

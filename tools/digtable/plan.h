@@ -1,0 +1,21 @@
+// What a grid asks for, point by point.
+
+#ifndef DIG_TOOLS_DIGTABLE_PLAN_H
+#define DIG_TOOLS_DIGTABLE_PLAN_H
+
+#include "files/grid_yaml.h"
+#include "offline_dem/sweep.h"
+#include "tables/queue.h"
+
+/// The points of a grid, free() them: every gravel of the axes and every single point, plain or
+/// with each effect at each magnitude. packings overrides the grid's numbers unless it is 0. NULL
+/// without memory.
+struct dig_plan_point *dig_plan_points(const struct dig_grid *grid, size_t packings, size_t *count);
+
+/// Refuses a point whose effect the engine cannot put into the scene at that magnitude.
+DIG_MUST_CHECK enum dig_status dig_plan_check(const struct dig_plan   *plan,
+                                              const struct dig_scene  *scene,
+                                              const struct dig_engine *engine,
+                                              struct dig_error        *error);
+
+#endif // DIG_TOOLS_DIGTABLE_PLAN_H
