@@ -21,6 +21,23 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_string_equal(grid.trajectory[0], "scrape");
 }
 
+static void points_and_effects_load_as_they_are_written(void **state)
+{
+    (void)state;
+    struct dig_grid grid;
+    assert_int_equal(dig_grid_read("tests/data/formats/grid_effects.yaml", &grid, NULL), DIG_OK);
+    assert_int_equal(grid.count[DIG_AXIS_FRICTION], 0);
+    assert_int_equal(grid.points, 2);
+    assert_close(grid.point[1].gravel.value[DIG_AXIS_FRICTION], 0.6, 0.0);
+    assert_close(grid.point[1].gravel.value[DIG_AXIS_ROLLING], 0.4, 0.0);
+    assert_int_equal(grid.point[0].packings, 2);
+    assert_int_equal(grid.effects, 2);
+    assert_int_equal(grid.effect[1].effect, DIG_EFFECT_GROUND_SLOPE);
+    assert_int_equal(grid.effect[1].magnitudes, 2);
+    assert_close(grid.effect[1].magnitude[0], -5.0, 0.0);
+    assert_int_equal(grid.trajectories, 0);
+}
+
 static void every_grid_that_is_shipped_fits_the_rig(void **state)
 {
     (void)state;
@@ -46,6 +63,8 @@ static void every_grid_that_is_shipped_fits_the_rig(void **state)
 }
 
 #define AXES "friction: [.3, .5]\nrolling: [0]\ndensity_kgpm3: [2500]\n"
+
+#define POINT "points:\n  - {friction: .3, rolling: 0, density_kgpm3: 2500, packings: 1}\n"
 
 static void trajectories_are_found_in_the_scene_or_refused(void **state)
 {
@@ -97,6 +116,26 @@ static void what_is_no_grid_is_refused_with_line_and_key(void **state)
           ":3: density_kgpm3[0]: 2.5, expected 100 to 20000" },
         { "friction: []\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
           ":1: friction: 0 values, expected 1 to 32" },
+        { "rolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
+          ":1: friction: missing, expected a list" },
+        { POINT "rolling: [0]\n", ":1: friction: missing, expected a list" },
+        { POINT "  - {friction: .3, rolling: .1, density_kgpm3: 900, packings: 0}\n",
+          ":3: points[1].packings: 0, expected 1 to 1000" },
+        { POINT "  - {friction: .3, rolling: .1, density_kgpm3: 9, packings: 1}\n",
+          ":3: points[1].density_kgpm3: 9, expected 100 to 20000" },
+        { POINT "  - {friction: .3, rolling: 0, density_kgpm3: 2500, packings: 7}\n",
+          ":3: points[1]: the gravel of points[0], expected another" },
+        { POINT "effects:\n  - {name: gremlins, magnitudes: [1]}\n",
+          ":4: effects[0].name: \"gremlins\", expected an effect of the soil" },
+        { POINT "effects:\n  - {name: cylinder_friction, magnitudes: [1]}\n",
+          ":4: effects[0].name: \"cylinder_friction\", expected an effect of the soil" },
+        { POINT "effects:\n  - {name: cohesion, magnitudes: [1]}\n"
+                "  - {name: cohesion, magnitudes: [2]}\n",
+          ":5: effects[1].name: \"cohesion\" again, expected a new effect" },
+        { POINT "effects:\n  - {name: cohesion, magnitudes: [1, 2, 1]}\n",
+          ":4: effects[0].magnitudes[2]: 1 again, expected another" },
+        { POINT "effects:\n  - {name: cohesion, magnitudes: []}\n",
+          ":4: effects[0].magnitudes: 0 values, expected 1 to 16" },
         { AXES "packings: 0\n", ":4: packings: 0, expected 1 to 1000" },
         { AXES "packings: -1\n", ":4: packings: \"-1\", expected a whole number" },
         { AXES, ":1: packings: missing, expected a whole number" },
@@ -121,6 +160,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(points_and_effects_load_as_they_are_written),
         cmocka_unit_test(every_grid_that_is_shipped_fits_the_rig),
         cmocka_unit_test(trajectories_are_found_in_the_scene_or_refused),
         cmocka_unit_test(what_is_no_grid_is_refused_with_line_and_key),

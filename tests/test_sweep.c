@@ -81,7 +81,8 @@ static enum dig_status fake_pour(const struct dig_scene *const  scene,
 static double moment_of(const struct dig_gravel *const gravel, const size_t grains,
                         const struct dig_trajectory *const t)
 {
-    return gravel->value[DIG_AXIS_FRICTION] + 0.001 * (double)grains + (double)(t->phases);
+    return gravel->value[DIG_AXIS_FRICTION] + 0.001 * (double)grains + (double)(t->phases) +
+           t->theta0_rad;
 }
 
 static enum dig_status
@@ -124,7 +125,7 @@ static void fake_bed_finish(struct dig_bed *const bed)
     *bed = (struct dig_bed){ 0 };
 }
 
-// The effect adds its magnitude to the second trajectory's phases: any change that shows.
+// The effect sets the first trajectory's angle: any change that shows.
 static enum dig_status fake_vary(const struct dig_scene *const  scene,
                                  const struct dig_gravel *const gravel,
                                  const enum dig_effect_id effect, const double magnitude,
@@ -414,6 +415,15 @@ static void a_stop_keeps_what_is_finished_and_ends_at_once(void **state)
     assert_int_equal(check_table("stop.sqlite").runs, DIGS_A_PACKING);
 }
 
+static enum dig_status note_moment(void *const context, const struct dig_run *const run,
+                                   struct dig_error *const error)
+{
+    (void)error;
+    double *const seen                          = context;
+    seen[run->origin.effect[0] != '\0' ? 1 : 0] = (double)run->value[7];
+    return DIG_OK;
+}
+
 static void after_the_time_limit_nothing_is_begun(void **state)
 {
     (void)state;
@@ -423,6 +433,34 @@ static void after_the_time_limit_nothing_is_begun(void **state)
     assert_int_equal(o.state.digs_done, 0);
     assert_int_equal(o.state.digs_total, DIGS_A_PACKING);
     assert_int_equal(marks('p'), 0);
+}
+
+// The moment is that of the varied scene: the engine was given it.
+static void an_effect_is_put_into_the_scene_of_its_beds_alone(void **state)
+{
+    (void)state;
+    const struct dig_scene      scene    = fixture_scene();
+    const struct dig_plan_point points[] = {
+        { .gravel = { { .3, .2, 2500 } }, .packings = 1 },
+        { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 7, .packings = 1 },
+        { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 99, .packings = 1 },
+    };
+    const struct dig_plan          plan    = { .points = 3, .point = points, .trajectories = 1 };
+    const struct dig_sweep_options options = { .workers = 2, .time_limit_s = (double)INFINITY };
+    struct dig_sweep_state         st      = { .failed = 0 };
+    struct dig_error               error   = { "" };
+    struct dig_store              *store   = fixture_create("vary.sqlite");
+    assert_int_equal(dig_sweep_run(&scene, &plan, &engine, &options, store, &st, &error), DIG_EIO);
+    assert_contains(error.text, "2500 kg/m3, cohesion 99, packing 0: cohesion 99: too much");
+    assert_int_equal(st.digs_done, 2);
+    assert_int_equal(st.failed, 1);
+    dig_store_close(store);
+    assert_int_equal(dig_store_open(scratch_path("vary.sqlite"), &store, NULL), DIG_OK);
+    double                       seen[2] = { 0.0 };
+    const struct dig_run_visitor visitor = { note_moment, seen };
+    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
+    assert_close(seen[1] - seen[0], 7.0, 1e-5);
+    dig_store_close(store);
 }
 
 static void progress_is_told_after_each_dig(void **state)
@@ -448,6 +486,7 @@ int main(void)
         cmocka_unit_test_setup(a_killed_sweep_takes_its_workers_along_and_is_resumed, before_each),
         cmocka_unit_test_setup(a_stop_keeps_what_is_finished_and_ends_at_once, before_each),
         cmocka_unit_test_setup(after_the_time_limit_nothing_is_begun, before_each),
+        cmocka_unit_test_setup(an_effect_is_put_into_the_scene_of_its_beds_alone, before_each),
         cmocka_unit_test_setup(progress_is_told_after_each_dig, before_each),
     };
     return cmocka_run_group_tests_name("sweep", tests, scratch_setup, scratch_teardown);
