@@ -9,11 +9,9 @@
 #define DIG_ESTIMATOR_CORRECTION_H
 
 #include "core/machine.h"
-#include "core/sample.h"
 #include "core/status.h"
-#include "estimator/estimator.h"
-#include "estimator/rates.h"
-#include "estimator/statics.h"
+
+#include <stdbool.h>
 
 enum dig_chamber { DIG_CHAMBER_HEAD, DIG_CHAMBER_ROD, DIG_CHAMBERS };
 
@@ -32,11 +30,12 @@ struct dig_friction {
 /// Below this speed of the rod the direction of friction is not told, m/s.
 #define DIG_FRICTION_STILL_mps 0.003
 
-/// A body more than the file's bucket, in the bucket's frame; its inertia about its own centre.
+/// What is more in or on the bucket than the file says. Alone, mass_kg lies in the file's centre of
+/// mass and leaves the inertia about the centre as it is.
 struct dig_burden {
     double          mass_kg;
-    struct dig_vec2 moment_kgm;   // mass times its centre's place
-    double          inertia_kgm2; // about the bucket pin
+    struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, bucket frame
+    double          inertia_kgm2; // about the centre of mass of all
 };
 
 struct dig_correction {
@@ -64,23 +63,5 @@ DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    
 /// The machine with its geometry and its bucket corrected; a payload is part of its bucket.
 struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
                                           const struct dig_correction *correction);
-
-/// What remains of the joints' balance in free air, Nm: drives, weights and inertia about each pin.
-/// 0 when the machine is as corrected and nothing touches the bucket; the soil's moments
-/// otherwise. corrected: dig_correction_machine() of the same. Fails as dig_wrench_solve(), and
-/// DIG_EUNREACHABLE where a linkage does not close.
-DIG_MUST_CHECK enum dig_status dig_correction_balance(const struct dig_machine    *corrected,
-                                                      const struct dig_correction *correction,
-                                                      const struct dig_sample     *sample,
-                                                      const struct dig_rates      *rates,
-                                                      double moment_Nm[DIG_JOINTS]);
-
-/// dig_wrench_solve() of the machine as corrected, inertia taken off. The front is where it was
-/// when the pressures were: delay_s before the sample's angles. Fails as dig_wrench_solve(). sigma
-/// also holds what the rates' noise does through friction and inertia.
-DIG_MUST_CHECK enum dig_status
-dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correction *correction,
-                   const struct dig_sample *sample, const struct dig_rates *rates,
-                   struct dig_wrench *wrench, struct dig_front *front);
 
 #endif // DIG_ESTIMATOR_CORRECTION_H

@@ -16,7 +16,9 @@
 #include "core/machine.h"
 #include "core/sample.h"
 #include "core/status.h"
+#include "estimator/correction.h"
 #include "estimator/estimator.h"
+#include "estimator/rates.h"
 #include "estimator/statics.h"
 
 /// Below this sine of the angle between r_arm and r_boom the soil's force is not told.
@@ -35,5 +37,14 @@
 DIG_MUST_CHECK enum dig_status dig_wrench_solve(const struct dig_machine *machine,
                                                 const struct dig_sample  *sample,
                                                 struct dig_wrench *wrench, struct dig_front *front);
+
+/// The same of the machine as corrected, weight and inertia both taken off: corrected is
+/// dig_correction_machine() of the same correction, whose zero is allowed. The front is where it
+/// was when the pressures were: delay_s before the sample's angles. sigma also holds what the
+/// rates' noise does through friction and inertia.
+DIG_MUST_CHECK enum dig_status
+dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correction *correction,
+                   const struct dig_sample *sample, const struct dig_rates *rates,
+                   struct dig_wrench *wrench, struct dig_front *front);
 
 #endif // DIG_ESTIMATOR_WRENCH_H

@@ -2,10 +2,11 @@
 // and what it does. One file each; this is the list.
 //
 // An effect of the machine writes into a struct dig_correction, one of the soil adds to a curve. A
-// soil effect with templates (template.h) takes them; rate_dependence and wear, and compaction and
-// adhesion where no bed was dug, have a documented reduced form. Parameters stand in the order of
-// the effect's list wherever they are an array; their names carry the unit and are what a model
-// file and a report say.
+// soil effect that a bed was dug with has templates (template.h): its parameter 0 is then their
+// magnitude, and it can be told only where the set of effects holds it. Its further parameters, and
+// all of rate_dependence and wear, act in a reduced form that needs no bed and is documented in the
+// effect's file. Parameters stand in the order of the list wherever they are an array; their names
+// carry the unit and are what a model file and a report say.
 
 #ifndef DIG_ESTIMATOR_EFFECTS_EFFECT_H
 #define DIG_ESTIMATOR_EFFECTS_EFFECT_H
@@ -41,18 +42,22 @@ struct dig_effect_dig {
 
 struct dig_effect {
     enum dig_effect_id          id;
-    const char                 *summary; // one phrase for people
-    unsigned                    parts;
+    const char                 *summary;   // one phrase for people
+    unsigned                    parts;     // of enum dig_effect_part
+    bool                        templated; // parameter 0 is the magnitude of templates
     size_t                      parameters;
     struct dig_effect_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
 
-    /// Of the machine: writes the parameters' values into *correction. NULL for the soil's.
+    /// Of the machine: adds the parameters' values to *correction. NULL for the soil's.
     void (*correct)(const double value[], struct dig_correction *correction);
 
-    /// Of the soil: the reduced form, what is added to the plain curve of this dig. NULL for the
-    /// machine's, and for an effect that only templates can tell.
+    /// Of the soil: the reduced form, added to what delta holds for this dig's plain curve. NULL
+    /// for the machine's, and for an effect that only templates can tell.
     void (*reduce)(const double value[], const struct dig_effect_dig *dig,
                    const struct dig_curve *plain, double delta[DIG_CHANNELS][DIG_CURVE_POINTS]);
+
+    /// Of the soil: the template's magnitude in this dig. NULL: parameter 0 as it stands.
+    double (*magnitude)(const double value[], const struct dig_effect_dig *dig);
 };
 
 /// The effect of that id; NULL for DIG_EFFECT_UNLISTED.
@@ -66,9 +71,10 @@ void dig_effect_absent(const struct dig_effect *effect, double value[DIG_MODEL_P
 DIG_MUST_CHECK enum dig_status dig_effect_values(const struct dig_model_effect *found,
                                                  double value[DIG_MODEL_PARAMETERS_MAX]);
 
-/// What an effect of the soil adds to the plain curve of one dig at a gravel: from templates where
-/// the set has them along this trajectory, else in its reduced form. effects may be NULL. sigma of
-/// a reduced form is 0. Fails as dig_template_find(); DIG_ENOMATCH as well where there is neither.
+/// What an effect of the soil adds to the plain curve of one dig at a gravel: its template, when
+/// its magnitude in this dig is not the absent one, and its reduced form. effects may be NULL.
+/// sigma is the template's alone. Fails as dig_template_find(); DIG_ENOMATCH as well for a gravel
+/// outside the grid.
 DIG_MUST_CHECK enum dig_status dig_effect_add(const struct dig_effect     *effect,
                                               const struct dig_curve_set  *plain,
                                               const struct dig_effect_set *effects,

@@ -1,0 +1,17 @@
+// The bucket is harder to turn than the file says: shows where its turning speeds up or slows down.
+
+#include "estimator/effects/list.h"
+
+static void correct(const double value[], struct dig_correction *const correction)
+{
+    correction->bucket.inertia_kgm2 += value[0];
+}
+
+const struct dig_effect dig_effect_bucket_inertia = {
+    .id         = DIG_EFFECT_BUCKET_INERTIA,
+    .summary    = "a bucket with another moment of inertia",
+    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
+    .parameters = 1,
+    .parameter  = { { "inertia_kgm2", 0.0, -1e4, 1e5, 100.0 } },
+    .correct    = correct,
+};

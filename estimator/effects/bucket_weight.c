@@ -1,0 +1,25 @@
+// The bucket is heavier or lighter than the file says, or its weight lies elsewhere: in every dig.
+
+#include "estimator/effects/list.h"
+
+enum { MASS, MOMENT_X, MOMENT_Y, PARAMETERS };
+
+static void correct(const double value[], struct dig_correction *const correction)
+{
+    correction->bucket.mass_kg += value[MASS];
+    correction->bucket.moment_kgm.x += value[MOMENT_X];
+    correction->bucket.moment_kgm.y += value[MOMENT_Y];
+}
+
+const struct dig_effect dig_effect_bucket_weight = {
+    .id         = DIG_EFFECT_BUCKET_WEIGHT,
+    .summary    = "a bucket of another mass or another centre of mass",
+    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
+    .parameters = PARAMETERS,
+    .parameter  = {
+        [MASS]     = { "mass_kg", 0.0, -1e4, 1e4, 50.0 },
+        [MOMENT_X] = { "moment_x_kgm", 0.0, -1e4, 1e4, 20.0 },
+        [MOMENT_Y] = { "moment_y_kgm", 0.0, -1e4, 1e4, 20.0 },
+    },
+    .correct = correct,
+};

@@ -1,0 +1,12 @@
+// Grains of three sizes: the ratio of the largest diameter to the smallest.
+
+#include "estimator/effects/list.h"
+
+const struct dig_effect dig_effect_polydispersity = {
+    .id         = DIG_EFFECT_POLYDISPERSITY,
+    .summary    = "grains of several sizes",
+    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
+    .templated  = true,
+    .parameters = 1,
+    .parameter  = { { "size_ratio", 1.0, 1.0, 10.0, 0.5 } },
+};

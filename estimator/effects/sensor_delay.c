@@ -1,0 +1,17 @@
+// The pressures of a sample are older than its angles (or, below 0, younger).
+
+#include "estimator/effects/list.h"
+
+static void correct(const double value[], struct dig_correction *const correction)
+{
+    correction->delay_s += value[0];
+}
+
+const struct dig_effect dig_effect_sensor_delay = {
+    .id         = DIG_EFFECT_SENSOR_DELAY,
+    .summary    = "pressures that are older than the angles beside them",
+    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
+    .parameters = 1,
+    .parameter  = { { "delay_s", 0.0, -0.5, 0.5, 0.1 } },
+    .correct    = correct,
+};
