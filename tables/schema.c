@@ -182,21 +182,25 @@ static bool insert_trajectory(sqlite3 *const db, const int id, const struct dig_
     return done;
 }
 
-enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
-                                  const struct dig_scene *const scene,
-                                  struct dig_error *const       error)
+enum dig_status dig_schema_tables(sqlite3 *const db, const char *const path,
+                                  struct dig_error *const error)
 {
     char ids[128];
     (void)snprintf(ids, sizeof ids, "PRAGMA application_id = %d; PRAGMA user_version = %d;",
                    DIG_TABLE_APPLICATION_ID, DIG_TABLE_VERSION);
+    const enum dig_status status = dig_sql_run(db, path, schema_sql, error);
+    return status == DIG_OK ? dig_sql_run(db, path, ids, error) : status;
+}
+
+enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
+                                  const struct dig_scene *const scene,
+                                  struct dig_error *const       error)
+{
     enum dig_status status = dig_sql_run(db, path, "BEGIN IMMEDIATE", error);
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_sql_run(db, path, schema_sql, error);
-    if (status == DIG_OK) {
-        status = dig_sql_run(db, path, ids, error);
-    }
+    status = dig_schema_tables(db, path, error);
     if (status == DIG_OK && !insert_scene(db, scene)) {
         status = dig_sql_refuse(db, path, error);
     }

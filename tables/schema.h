@@ -37,6 +37,10 @@ DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
 DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
                                            struct dig_error *error);
 
+/// Makes an empty database a table without rows.
+DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path,
+                                                 struct dig_error *error);
+
 /// Makes an empty database the table of this scene, in one transaction.
 DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
                                                  const struct dig_scene *scene,

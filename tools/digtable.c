@@ -29,6 +29,9 @@ static const char help_text[] =
     "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
     "               [--trajectory NAME] [--channel My|Fx|Fz] [--csv|--json]\n"
     "      one curve of the table\n"
+    "  digtable merge OUT.sqlite IN.sqlite...\n"
+    "      the runs of all tables, each once, in a new one, whose bytes do not depend on their "
+    "order\n"
     "  digtable export TABLE.sqlite [--runs] [-o FILE.csv]\n"
     "      all curves, or all runs behind them\n"
     "  digtable check TABLE.sqlite [--complete] [--json]\n"
@@ -43,6 +46,9 @@ static const char help_text[] =
     "           --density 2500 -o dig.csv\n"
     "  digtable generate config/scenes/rig.yaml config/grids/coarse.yaml -o rig.sqlite "
     "--time-limit 3600\n"
+    "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o part3.sqlite --shard "
+    "3/16\n"
+    "  digtable merge rig.sqlite part*.sqlite\n"
     "  digtable show rig.sqlite --friction .5 --rolling .5 --density 2500 --trajectory actual\n"
     "  digtable export rig.sqlite --runs -o runs.csv\n";
 
@@ -55,6 +61,7 @@ static const struct dig_command commands[] = {
     { "check", dig_cli_check, 1, 1, "TABLE.sqlite", " json complete " },
     { "show", dig_cli_show, 1, 2, "TABLE.sqlite",
       " friction rolling density trajectory channel csv json " },
+    { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
     { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs output " },
 };
 

@@ -11,9 +11,11 @@
 
 enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 
+#define DIG_POSITIONALS_MAX 1024 // tables to merge
+
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {
-    const char      *positional[2];
+    const char      *positional[DIG_POSITIONALS_MAX];
     int              positionals;
     const char      *output, *trajectory, *bed, *save_bed, *vtk;
     double           gravel[DIG_AXES];        // NaN: not given
