@@ -11,8 +11,8 @@ struct columns {
     size_t  rows;
     double *t_s;
     double *progress; // path travelled as a fraction of the whole
-    double *raw_Nm;
-    double *smooth_Nm;
+    double *raw;      // of one channel
+    double *smooth;
 };
 
 static double step_m(const struct dig_force_row *const a, const struct dig_force_row *const b,
@@ -31,7 +31,6 @@ static double fill_columns(const struct dig_recording *const recording, const do
         path_m += i == 0 ? 0.0 : step_m(row - 1, row, tooth_m);
         c->t_s[i]      = row->t_s;
         c->progress[i] = path_m;
-        c->raw_Nm[i]   = row->My_Nm;
     }
     for (size_t i = 0; i < c->rows && path_m > 0.0; i++) {
         c->progress[i] /= path_m;
@@ -91,24 +90,50 @@ static double path_distance(const struct dig_recording *const recording,
     return sqrt(sum_m2 / POINTS) / tooth_m;
 }
 
-static enum dig_status observe(const struct dig_curve_set *const set,
-                               const struct dig_recording *const recording,
-                               const struct columns *const       c,
-                               struct dig_observation *const     observation,
-                               struct dig_error *const           error)
+static double channel_of(const struct dig_force_row *const row, const enum dig_channel channel)
 {
-    if (!(fill_columns(recording, set->tooth_m, c) > 0.1 * set->tooth_m)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "the recording's bucket hardly moves, expected a dig");
+    if (channel == DIG_CHANNEL_MY_Nm) {
+        return row->My_Nm;
     }
+    return channel == DIG_CHANNEL_FX_N ? row->Fx_N : row->Fz_N;
+}
 
+// Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when a row
+// lacks it.
+static bool read_channel(const struct dig_curve_set *const set,
+                         const struct dig_recording *const recording, const struct columns *const c,
+                         const enum dig_channel channel, double value[DIG_CURVE_POINTS])
+{
+    bool whole = true;
+    for (size_t i = 0; i < c->rows; i++) {
+        c->raw[i] = channel_of(&recording->row[i], channel);
+        whole     = whole && isfinite(c->raw[i]);
+    }
+    if (whole) {
+        dig_curve_smooth(c->rows, c->t_s, c->raw, set->smooth_half_s, c->smooth);
+    }
+    size_t i = 0;
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        i                     = row_at(c, progress, i);
+        const double f        = fraction_at(c, i, progress);
+        value[k]              = whole ? c->smooth[i] + f * (c->smooth[i + 1] - c->smooth[i]) : 0.0;
+    }
+    return whole;
+}
+
+static enum dig_status find_trajectory(const struct dig_curve_set *const set,
+                                       const struct dig_recording *const recording,
+                                       const struct columns *const c, int *const trajectory,
+                                       double *const distance, struct dig_error *const error)
+{
     int    best          = -1;
     double best_distance = INFINITY;
     for (size_t t = 0; t < set->trajectories; t++) {
-        const double distance = path_distance(recording, c, &set->trajectory[t], set->tooth_m);
-        if (distance < best_distance) {
+        const double away = path_distance(recording, c, &set->trajectory[t], set->tooth_m);
+        if (away < best_distance) {
             best          = (int)t;
-            best_distance = distance;
+            best_distance = away;
         }
     }
     if (best < 0 || !(best_distance <= DIG_OBSERVE_PATH_LIMIT)) {
@@ -118,24 +143,59 @@ static enum dig_status observe(const struct dig_curve_set *const set,
                              best < 0 ? "" : set->trajectory[best].name, best_distance,
                              DIG_OBSERVE_PATH_LIMIT);
     }
-
-    dig_curve_smooth(c->rows, c->t_s, c->raw_Nm, set->smooth_half_s, c->smooth_Nm);
-    struct dig_observation o = {
-        .dig_count  = 1,
-        .trajectory = best,
-        .off_path_m = best_distance * set->tooth_m,
-        .first      = 0.0,
-        .last       = 1.0,
-    };
-    size_t i = 0;
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-        i                     = row_at(c, progress, i);
-        const double f        = fraction_at(c, i, progress);
-        o.moment_Nm[k]        = c->smooth_Nm[i] + f * (c->smooth_Nm[i + 1] - c->smooth_Nm[i]);
-    }
-    *observation = o;
+    *trajectory = best;
+    *distance   = best_distance;
     return DIG_OK;
+}
+
+static enum dig_status observe(const struct dig_curve_set *const set,
+                               const struct dig_recording *const recording,
+                               const struct columns *const c, struct dig_observed *const observed,
+                               struct dig_error *const error)
+{
+    if (!(fill_columns(recording, set->tooth_m, c) > 0.1 * set->tooth_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the recording's bucket hardly moves, expected a dig");
+    }
+    struct dig_observed   o        = { .trajectory = 0 };
+    double                distance = 0.0;
+    const enum dig_status status =
+        find_trajectory(set, recording, c, &o.trajectory, &distance, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    o.off_path_m = distance * set->tooth_m;
+    o.pace       = dig_trajectory_duration_s(&set->trajectory[o.trajectory]) /
+             (c->t_s[c->rows - 1] - c->t_s[0]);
+    for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+        o.measured[channel] =
+            read_channel(set, recording, c, (enum dig_channel)channel, o.value[channel]);
+    }
+    if (!o.measured[DIG_CHANNEL_MY_Nm]) {
+        return dig_error_set(error, DIG_EINVAL, "My_Nm is missing in a row, expected it in all");
+    }
+    *observed = o;
+    return DIG_OK;
+}
+
+enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
+                                const struct dig_recording *const recording,
+                                struct dig_observed *const observed, struct dig_error *const error)
+{
+    assert(set != NULL && recording != NULL && observed != NULL);
+    if (recording->rows < 2) {
+        return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
+                             recording->rows);
+    }
+    const size_t  n      = recording->rows;
+    double *const memory = calloc(4 * n, sizeof *memory);
+    if (memory == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    const struct columns  columns = { n, memory, memory + n, memory + 2 * n, memory + 3 * n };
+    const enum dig_status status  = observe(set, recording, &columns, observed, error);
+    free(memory);
+    return status;
 }
 
 enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
@@ -143,20 +203,22 @@ enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
                                       struct dig_observation *const     observation,
                                       struct dig_error *const           error)
 {
-    assert(set != NULL && recording != NULL && observation != NULL);
-    if (recording->rows < 2) {
-        return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
-                             recording->rows);
+    assert(observation != NULL);
+    struct dig_observed   o;
+    const enum dig_status status = dig_observe_dig(set, recording, &o, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    double *const memory = malloc(4 * recording->rows * sizeof *memory);
-    if (memory == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    struct dig_observation seen = { .dig_count  = 1,
+                                    .trajectory = o.trajectory,
+                                    .off_path_m = o.off_path_m,
+                                    .first      = 0.0,
+                                    .last       = 1.0 };
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        seen.moment_Nm[k] = o.value[DIG_CHANNEL_MY_Nm][k];
     }
-    const size_t          n       = recording->rows;
-    const struct columns  columns = { n, memory, memory + n, memory + 2 * n, memory + 3 * n };
-    const enum dig_status status  = observe(set, recording, &columns, observation, error);
-    free(memory);
-    return status;
+    *observation = seen;
+    return DIG_OK;
 }
 
 enum dig_status dig_observe_mean(const size_t n, const struct dig_observation one[],

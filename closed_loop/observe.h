@@ -9,9 +9,27 @@
 #include "core/recording.h"
 #include "estimator/estimator.h"
 
+#include <stdbool.h>
+
 /// A recording whose path is farther than this (rms, in bucket lengths) from every trajectory of
 /// the table is not one of its digs.
 #define DIG_OBSERVE_PATH_LIMIT 0.05
+
+/// A dig of a force recording on the table's grid, rig scale: every channel there is.
+struct dig_observed {
+    int    trajectory;
+    double off_path_m;
+    double pace; // duration of the table's trajectory / of this dig
+    bool   measured[DIG_FORCE_CHANNELS];
+    double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // smoothed; 0 where not measured
+};
+
+/// As dig_observe_recording(), all channels. A force that a row lacks is not measured at all;
+/// DIG_EINVAL when the moment is.
+DIG_MUST_CHECK enum dig_status dig_observe_dig(const struct dig_curve_set *set,
+                                               const struct dig_recording *recording,
+                                               struct dig_observed        *observed,
+                                               struct dig_error           *error);
 
 /// Finds the trajectory the recording followed, whole and at its own pace, and samples the smoothed
 /// moment (+-set->smooth_half_s of the recording's time) at DIG_CURVE_POINTS of its path progress.

@@ -1,0 +1,58 @@
+// The digs of a campaign as numbers of equal weight: features over the scatter's own size, so that
+// one dig of a known gravel scatters by 1 in every direction, independently.
+//
+// Per trajectory: y = L^-1 (features / amplitude), L L' the scatter's covariance of the features
+// that all digs of the trajectory have. An error that all digs of a trajectory share (of the
+// table, of a template, of the DEM) is counted in multiples of the same covariance.
+
+#ifndef DIG_CLOSED_LOOP_BATCH_H
+#define DIG_CLOSED_LOOP_BATCH_H
+
+#include "closed_loop/measured.h"
+#include "closed_loop/scatter.h"
+#include "closed_loop/surface.h"
+
+struct dig_batch_group {
+    size_t trajectory;
+    size_t digs;
+    size_t features;
+    size_t feature[DIG_FEATURES];              // which, ascending
+    double amplitude[DIG_FORCE_CHANNELS];      // of the mean dig, times sqrt(scatter's factor)
+    double lower[DIG_FEATURES * DIG_FEATURES]; // [features * features]
+    double mean[DIG_FEATURES];                 // of the digs' y
+    double about;                              // sum of squares of the digs' y about the mean
+};
+
+struct dig_batch_dig {
+    size_t group;
+    size_t measured;        // index into the campaign
+    double y[DIG_FEATURES]; // [features]
+};
+
+struct dig_batch {
+    const struct dig_surface  *surface;  // not owned
+    const struct dig_scatter  *scatter;  // not owned
+    const struct dig_measured *measured; // not owned
+    size_t                     groups;
+    struct dig_batch_group     group[DIG_TRAJECTORY_MAX];
+    size_t                     digs;
+    struct dig_batch_dig       dig[DIG_MEASURED_MAX];
+};
+
+/// Takes the digs that take[] allows, machine effects off. place: about which gravel it is (NULL:
+/// not known yet), for the scatter's factor. DIG_ENOMATCH: no dig, or a trajectory of which not
+/// half a channel was measured by all digs.
+DIG_MUST_CHECK enum dig_status dig_batch_make(const struct dig_surface *surface,
+                                              const struct dig_scatter *scatter, size_t digs,
+                                              const struct dig_measured measured[],
+                                              const bool take[], const double place[DIG_AXES],
+                                              struct dig_batch *batch);
+
+/// Writes y of features (units of the table) in a group.
+void dig_batch_whiten(const struct dig_batch_group *group, const double feature[DIG_FEATURES],
+                      double y[DIG_FEATURES]);
+
+/// Recomputes the groups' mean and about after the digs' y were changed.
+void dig_batch_summarise(struct dig_batch *batch);
+
+#endif // DIG_CLOSED_LOOP_BATCH_H

@@ -1,0 +1,317 @@
+#include "closed_loop/hypothesis.h"
+
+#include "closed_loop/dense.h"
+#include "closed_loop/levenberg.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    RESIDUALS_MAX = (DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES,
+    MEMORY        = RESIDUALS_MAX * (DIG_HYPOTHESIS_NUMBERS + 2),
+    ROUNDS        = 2, // of fitting and of weighing anew
+};
+
+// What our DEM and LIGGGHTS differ by beyond the scatter of both, in variances of one dig:
+// docs/numerics/closed_loop.md has the measurement.
+static const double discrepancy = 0.05;
+
+// A template is a likeness of what lies in the ground: this share of what it adds is its error.
+static const double unlikeness = 0.2;
+
+static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
+static const double sigmas_90   = 1.645;
+static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
+
+struct problem {
+    const struct dig_batch      *batch;
+    const struct dig_soil       *soil;
+    const struct dig_hypothesis *hypothesis;
+    bool                         differs;                    // from dig to dig of a trajectory
+    double                       weight[DIG_TRAJECTORY_MAX]; // of a group's mean: 1 / sigma
+};
+
+static bool differs_by_dig(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
+           effect == DIG_EFFECT_COMPACTION;
+}
+
+bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                             const enum dig_effect_id effect)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        if (!dig_soil_knows(soil, effect, batch->group[g].trajectory)) {
+            return false;
+        }
+    }
+    if (!differs_by_dig(effect)) {
+        return true;
+    }
+    double least = INFINITY;
+    double most  = -INFINITY;
+    for (size_t i = 0; i < batch->digs; i++) {
+        const double share = dig_soil_share(effect, &batch->measured[batch->dig[i].measured]);
+        least              = fmin(least, share);
+        most               = fmax(most, share);
+    }
+    return most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
+}
+
+void dig_hypothesis_features(const struct dig_soil *const       soil,
+                             const struct dig_hypothesis *const hypothesis, const double number[],
+                             const struct dig_measured *const dig, double feature[DIG_FEATURES],
+                             double *const noise)
+{
+    const size_t t = (size_t)dig->trajectory;
+    double       plain[DIG_FEATURES];
+    double       amplitude[DIG_FORCE_CHANNELS];
+    dig_surface_features(soil->surface, t, number, plain, amplitude);
+    memcpy(feature, plain, sizeof plain);
+    *noise = 0.0;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const double share = dig_soil_share(hypothesis->effect[e], dig);
+        dig_soil_add(soil, hypothesis->effect[e], t, number, number[DIG_AXES + e], share, plain,
+                     amplitude, feature, noise);
+    }
+}
+
+void dig_hypothesis_curve(const struct dig_soil *const       soil,
+                          const struct dig_hypothesis *const hypothesis, const double number[],
+                          const struct dig_measured *const dig,
+                          double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const size_t t = (size_t)dig->trajectory;
+    double       plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    dig_surface_curve(soil->surface, t, number, plain);
+    memcpy(curve, plain, sizeof plain);
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const double share = dig_soil_share(hypothesis->effect[e], dig);
+        dig_soil_add_curve(soil, hypothesis->effect[e], t, number, number[DIG_AXES + e], share,
+                           (const double(*)[DIG_CURVE_POINTS])plain, curve);
+    }
+}
+
+// y of the model of one dig of a group.
+static void model_of(const struct problem *const p, const size_t group,
+                     const struct dig_measured *const dig, const double x[], double y[])
+{
+    double feature[DIG_FEATURES];
+    double noise;
+    dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &noise);
+    dig_batch_whiten(&p->batch->group[group], feature, y);
+}
+
+static const struct dig_measured *first_of(const struct dig_batch *const batch, const size_t group)
+{
+    size_t i = 0;
+    while (batch->dig[i].group != group) {
+        i++;
+    }
+    return &batch->measured[batch->dig[i].measured];
+}
+
+// Where all digs of a trajectory are alike only their mean counts.
+static size_t means_alone(const struct problem *const p, const double x[], double r[])
+{
+    size_t n = 0;
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        const struct dig_batch_group *const group = &p->batch->group[g];
+        double                              y[DIG_FEATURES];
+        model_of(p, g, first_of(p->batch, g), x, y);
+        for (size_t k = 0; k < group->features; k++) {
+            r[n++] = (group->mean[k] - y[k]) * p->weight[g];
+        }
+    }
+    return n;
+}
+
+static size_t means_and_digs(const struct problem *const p, const double x[], double r[])
+{
+    size_t n = 0;
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        const struct dig_batch_group *const group              = &p->batch->group[g];
+        double                              mean[DIG_FEATURES] = { 0.0 };
+        double                              y[DIG_MEASURED_MAX][DIG_FEATURES];
+        for (size_t i = 0; i < p->batch->digs; i++) {
+            if (p->batch->dig[i].group == g) {
+                model_of(p, g, &p->batch->measured[p->batch->dig[i].measured], x, y[i]);
+                for (size_t k = 0; k < group->features; k++) {
+                    mean[k] += y[i][k] / (double)group->digs;
+                }
+            }
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            r[n++] = (group->mean[k] - mean[k]) * p->weight[g];
+        }
+        for (size_t i = 0; i < p->batch->digs; i++) {
+            for (size_t k = 0; p->batch->dig[i].group == g && k < group->features; k++) {
+                r[n++] = p->batch->dig[i].y[k] - group->mean[k] - (y[i][k] - mean[k]);
+            }
+        }
+    }
+    return n;
+}
+
+static void residual(void *const context, const double x[], double r[])
+{
+    const struct problem *const p = context;
+    (void)(p->differs ? means_and_digs(p, x, r) : means_alone(p, x, r));
+}
+
+// How much larger an effect makes a dig than it would be plain, in the batch's units squared.
+static double effect_squares(const struct problem *const p, const size_t g, const double x[])
+{
+    const struct dig_measured *const dig = first_of(p->batch, g);
+    double                           with[DIG_FEATURES];
+    double                           plain[DIG_FEATURES];
+    double                           amplitude[DIG_FORCE_CHANNELS];
+    double                           y[DIG_FEATURES];
+    model_of(p, g, dig, x, with);
+    dig_surface_features(p->soil->surface, (size_t)dig->trajectory, x, plain, amplitude);
+    dig_batch_whiten(&p->batch->group[g], plain, y);
+    double sum = 0.0;
+    for (size_t k = 0; k < p->batch->group[g].features; k++) {
+        sum += (with[k] - y[k]) * (with[k] - y[k]);
+    }
+    return sum;
+}
+
+// v of each group at x.
+static void weigh(struct problem *const p, const double x[], double noise[])
+{
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        const struct dig_batch_group *const group = &p->batch->group[g];
+        double                              feature[DIG_FEATURES];
+        double                              of_templates;
+        dig_hypothesis_features(p->soil, p->hypothesis, x, first_of(p->batch, g), feature,
+                                &of_templates);
+        noise[g] = discrepancy + dig_surface_noise(p->soil->surface, group->trajectory, x) +
+                   of_templates +
+                   unlikeness * unlikeness * effect_squares(p, g, x) / (double)group->features;
+        p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + noise[g]);
+    }
+}
+
+static void set_bounds(const struct problem *const p, struct dig_levenberg *const l)
+{
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        const bool   is_free = p->soil->surface->set->axis_count[a] > 1;
+        const double reach   = p->hypothesis->outside ? 2.0 : 1.0;
+        l->low[a]            = is_free ? -reach : 0.0;
+        l->high[a] = is_free ? fmin(reach, p->hypothesis->outside ? beyond_grid : 1.0) : 0.0;
+    }
+    for (size_t e = 0; e < p->hypothesis->effects; e++) {
+        l->low[DIG_AXES + e]  = p->soil->low[p->hypothesis->effect[e]];
+        l->high[DIG_AXES + e] = p->soil->high[p->hypothesis->effect[e]];
+    }
+}
+
+static size_t count_residuals(const struct problem *const p)
+{
+    size_t n = 0;
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        n += p->batch->group[g].features * (1 + (p->differs ? p->batch->group[g].digs : 0));
+    }
+    return n;
+}
+
+// The misfit of what was fitted; digs that a hypothesis takes for alike scatter about their mean.
+static void judge(const struct problem *const p, const double squares, struct dig_fitted *const f)
+{
+    f->squares      = squares;
+    f->misfit       = 0.0;
+    f->observations = 0;
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        const struct dig_batch_group *const group = &p->batch->group[g];
+        f->squares += p->differs ? 0.0 : group->about;
+        f->misfit -= 2.0 * (double)group->features * log(p->weight[g]);
+        f->observations += group->features * group->digs;
+    }
+    f->misfit += f->squares;
+}
+
+static void set_interval(const struct dig_levenberg *const l, const double normal[],
+                         struct dig_fitted *const f)
+{
+    const size_t n = l->unknowns;
+    double       lower[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
+    f->free = 0;
+    for (size_t j = 0; j < n; j++) {
+        f->free += l->high[j] > l->low[j] ? 1 : 0;
+        for (size_t i = 0; i < n; i++) {
+            // A prior as wide as the bounds: a direction that nothing tells about stays finite.
+            const double width = fmax(l->high[j] - l->low[j], 1e-6);
+            lower[j * n + i]   = normal[j * n + i] + (i == j ? 3.0 / (width * width) : 0.0);
+        }
+    }
+    const bool known = dig_cholesky(n, lower) == DIG_OK;
+    for (size_t j = 0; j < n; j++) {
+        double column[DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
+        column[j]                             = 1.0;
+        dig_lower_solve(n, lower, column);
+        double variance = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            variance += column[i] * column[i];
+        }
+        const double half = known ? sigmas_90 * sqrt(variance) : l->high[j] - l->low[j];
+        f->low[j]         = fmax(f->number[j] - half, l->low[j]);
+        f->high[j]        = fmin(f->number[j] + half, l->high[j]);
+    }
+}
+
+static void fit_from(struct problem *const p, struct dig_levenberg *const l, const double start[],
+                     struct dig_fitted *const f)
+{
+    double normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
+    double squares = 0.0;
+    memcpy(f->number, start, l->unknowns * sizeof f->number[0]);
+    for (size_t j = 0; j < l->unknowns; j++) {
+        f->number[j] = fmin(fmax(f->number[j], l->low[j]), l->high[j]);
+    }
+    for (int round = 0; round < ROUNDS; round++) {
+        weigh(p, f->number, f->noise);
+        dig_levenberg_run(l, f->number, &squares, normal);
+    }
+    judge(p, squares, f);
+    set_interval(l, normal, f);
+}
+
+void dig_hypothesis_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                        const struct dig_hypothesis *const hypothesis, const double start[],
+                        const bool thorough, struct dig_fitted *const fitted)
+{
+    static const double places[][DIG_AXES] = {
+        { -0.6, -0.6, 0.0 }, { 0.6, -0.6, 0.0 }, { -0.6, 0.6, 0.0 }, { 0.6, 0.6, 0.0 }
+    };
+    const size_t   more = thorough ? sizeof places / sizeof places[0] : 0;
+    double         memory[MEMORY];
+    struct problem p = { .batch = batch, .soil = soil, .hypothesis = hypothesis };
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        p.differs = p.differs || differs_by_dig(hypothesis->effect[e]);
+    }
+    struct dig_levenberg l = { .unknowns   = DIG_AXES + hypothesis->effects,
+                               .residuals  = count_residuals(&p),
+                               .step       = 1e-4,
+                               .iterations = 25,
+                               .residual   = residual,
+                               .context    = &p,
+                               .memory     = memory };
+    set_bounds(&p, &l);
+    struct dig_fitted best = { .misfit = INFINITY };
+    for (size_t s = 0; s <= more; s++) {
+        double from[DIG_HYPOTHESIS_NUMBERS];
+        memcpy(from, start, l.unknowns * sizeof from[0]);
+        if (s > 0) {
+            memcpy(from, places[s - 1], sizeof places[0]);
+        }
+        struct dig_fitted tried = { .hypothesis = *hypothesis };
+        fit_from(&p, &l, from, &tried);
+        if (tried.misfit < best.misfit) {
+            best = tried;
+        }
+    }
+    *fitted = best;
+}

@@ -1,0 +1,277 @@
+#include "closed_loop/scatter.h"
+
+#include "closed_loop/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FOLDS = 5, LEAST_FREEDOM = 12 };
+
+// How far S is drawn towards its diagonal. Of 0.02 … 0.4 the held-out likelihood of the packings of
+// tables/coarse.sqlite is flat up to 0.1, where their held-out variance is right.
+static const double towards_diagonal = 0.1;
+
+static const double least_factor = 0.4;
+static const double most_factor  = 2.5;
+
+// Where a table has no second packings: neighbouring bins of a channel.
+static const double assumed_correlation = 0.5;
+
+double dig_scatter_factor(const struct dig_scatter *const scatter, const size_t trajectory,
+                          const double strength)
+{
+    const double factor =
+        1.0 + scatter->slope[trajectory] * (strength - scatter->strength[trajectory]);
+    return fmin(fmax(factor, least_factor), most_factor);
+}
+
+// Sums the pairs of one residual. Its share of a degree of freedom is 1 - 1 / packings.
+static void add_pairs(const struct dig_scatter_residual *const r, const double weight,
+                      double sum[DIG_FEATURES][DIG_FEATURES])
+{
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        for (size_t j = 0; j < DIG_FEATURES; j++) {
+            sum[i][j] += weight * r->value[i] * r->value[j];
+        }
+    }
+}
+
+static double freedom_of(const struct dig_scatter_residual *const r)
+{
+    return 1.0 - 1.0 / (double)r->packings;
+}
+
+// S of the residuals of one trajectory, without those of one fold of entries (fold FOLDS: of all),
+// each over its factor.
+static double pool(const struct dig_scatter *const scatter, const size_t t, const size_t n,
+                   const struct dig_scatter_residual r[], const size_t without,
+                   double s[DIG_FEATURES][DIG_FEATURES])
+{
+    memset(s, 0, DIG_FEATURES * sizeof s[0]);
+    double freedom = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory == t && r[i].packings > 1 && r[i].entry % FOLDS != without) {
+            add_pairs(&r[i], 1.0 / dig_scatter_factor(scatter, t, r[i].strength), s);
+            freedom += freedom_of(&r[i]);
+        }
+    }
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        for (size_t j = 0; j < DIG_FEATURES; j++) {
+            s[i][j] *= (i == j ? 1.0 : 1.0 - towards_diagonal) / fmax(freedom, 1.0);
+        }
+    }
+    return freedom;
+}
+
+static void add_floor(double s[DIG_FEATURES][DIG_FEATURES])
+{
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        s[i][i] += DIG_SCATTER_FLOOR * DIG_SCATTER_FLOOR;
+    }
+}
+
+// Variance of a residual over that of one dig, averaged over the directions S knows.
+static double size_of(const double                             lower[DIG_FEATURES][DIG_FEATURES],
+                      const struct dig_scatter_residual *const r)
+{
+    double whitened[DIG_FEATURES];
+    memcpy(whitened, r->value, sizeof whitened);
+    dig_lower_solve(DIG_FEATURES, &lower[0][0], whitened);
+    double sum = 0.0;
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        sum += whitened[i] * whitened[i];
+    }
+    return sum / DIG_FEATURES / freedom_of(r);
+}
+
+// Fits the factor: sizes of residuals over strength, weighted by their freedom.
+static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_t t, const size_t n,
+                                  const struct dig_scatter_residual r[])
+{
+    double s[DIG_FEATURES][DIG_FEATURES];
+    (void)pool(scatter, t, n, r, FOLDS, s);
+    add_floor(s);
+    if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
+        return DIG_EINVAL;
+    }
+    double sum[5] = { 0.0 }; // weight, x, y, xx, xy
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory == t && r[i].packings > 1) {
+            const double w = freedom_of(&r[i]);
+            const double y = size_of((const double(*)[DIG_FEATURES])s, &r[i]);
+            const double x = r[i].strength;
+            sum[0] += w;
+            sum[1] += w * x;
+            sum[2] += w * y;
+            sum[3] += w * x * x;
+            sum[4] += w * x * y;
+        }
+    }
+    const double mean_x  = sum[1] / sum[0];
+    const double mean_y  = sum[2] / sum[0];
+    const double xx      = sum[3] / sum[0] - mean_x * mean_x;
+    const double xy      = sum[4] / sum[0] - mean_x * mean_y;
+    scatter->strength[t] = mean_x;
+    scatter->slope[t]    = xx > 1e-6 ? xy / xx / mean_y : 0.0;
+    return DIG_OK;
+}
+
+// Variance of digs over an S they took no part in, averaged over folds of entries.
+static double held_out(const struct dig_scatter *const scatter, const size_t t, const size_t n,
+                       const struct dig_scatter_residual r[])
+{
+    double sum     = 0.0;
+    double freedom = 0.0;
+    for (size_t fold = 0; fold < FOLDS; fold++) {
+        double s[DIG_FEATURES][DIG_FEATURES];
+        if (pool(scatter, t, n, r, fold, s) < 1.0) {
+            continue;
+        }
+        add_floor(s);
+        if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
+            continue;
+        }
+        for (size_t i = 0; i < n; i++) {
+            if (r[i].trajectory == t && r[i].packings > 1 && r[i].entry % FOLDS == fold) {
+                sum += freedom_of(&r[i]) * size_of((const double(*)[DIG_FEATURES])s, &r[i]) /
+                       dig_scatter_factor(scatter, t, r[i].strength);
+                freedom += freedom_of(&r[i]);
+            }
+        }
+    }
+    return freedom > 0.0 ? sum / freedom : 1.0;
+}
+
+static enum dig_status keep_residuals(struct dig_scatter *const scatter, const size_t t,
+                                      const size_t n, const struct dig_scatter_residual r[])
+{
+    scatter->residual[t] = malloc((n + 1) * sizeof *scatter->residual[t]);
+    if (scatter->residual[t] == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory != t || r[i].packings < 2) {
+            continue;
+        }
+        const double scale =
+            1.0 / sqrt(freedom_of(&r[i]) * dig_scatter_factor(scatter, t, r[i].strength));
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            scatter->residual[t][scatter->residuals[t]][f] = scale * r[i].value[f];
+        }
+        scatter->residuals[t]++;
+    }
+    return DIG_OK;
+}
+
+static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const size_t t,
+                                       const size_t n, const struct dig_scatter_residual r[])
+{
+    enum dig_status status = fit_factor(scatter, t, n, r);
+    if (status != DIG_OK) {
+        return status;
+    }
+    scatter->freedom[t] = pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
+    scatter->widened[t] = fmax(held_out(scatter, t, n, r), 1.0);
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        for (size_t j = 0; j < DIG_FEATURES; j++) {
+            scatter->covariance[t][i][j] *= scatter->widened[t];
+        }
+    }
+    add_floor(scatter->covariance[t]);
+    return keep_residuals(scatter, t, n, r);
+}
+
+// S from the standard deviations of the table's curves.
+static void assume(const struct dig_surface *const surface, const size_t t,
+                   struct dig_scatter *const scatter)
+{
+    const struct dig_curve_set *const set                    = surface->set;
+    double                            variance[DIG_FEATURES] = { 0.0 };
+    double                            entries                = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const struct dig_curve *const curve = &set->curve[e * set->trajectories + t];
+        if (set->packings[e * set->trajectories + t] <= 0) {
+            continue;
+        }
+        double place[DIG_AXES];
+        double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double feature[DIG_FEATURES];
+        double amplitude[DIG_FORCE_CHANNELS];
+        dig_surface_place(surface, &set->gravel[e], place);
+        dig_surface_features(surface, t, place, feature, amplitude);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                sd[c][k] = (double)curve->sd[c][k];
+            }
+        }
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])sd, feature);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            variance[f] += pow(feature[f] / amplitude[f / DIG_FEATURE_BINS], 2.0);
+        }
+        entries += 1.0;
+    }
+    for (size_t i = 0; i < DIG_FEATURES; i++) {
+        for (size_t j = 0; j < DIG_FEATURES; j++) {
+            const bool   same = i / DIG_FEATURE_BINS == j / DIG_FEATURE_BINS;
+            const double away = fabs((double)i - (double)j);
+            scatter->covariance[t][i][j] =
+                same && entries > 0.0
+                    ? sqrt(variance[i] * variance[j]) / entries * pow(assumed_correlation, away)
+                    : 0.0;
+        }
+    }
+    add_floor(scatter->covariance[t]);
+    scatter->widened[t] = 1.0;
+}
+
+static double freedom_along(const size_t t, const size_t n, const struct dig_scatter_residual r[])
+{
+    double freedom = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        freedom += r[i].trajectory == t && r[i].packings > 1 ? freedom_of(&r[i]) : 0.0;
+    }
+    return freedom;
+}
+
+enum dig_status dig_scatter_pool(const struct dig_surface *const surface, const size_t residuals,
+                                 const struct dig_scatter_residual residual[],
+                                 struct dig_scatter **const        scatter)
+{
+    assert(surface != NULL && scatter != NULL);
+    struct dig_scatter *const made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t t = 0; t < surface->set->trajectories; t++) {
+        if (!surface->known[t]) {
+            continue;
+        }
+        enum dig_status status = DIG_EINVAL;
+        if (freedom_along(t, residuals, residual) >= LEAST_FREEDOM) {
+            status = pool_trajectory(made, t, residuals, residual);
+        }
+        if (status == DIG_ENOMEM) {
+            dig_scatter_destroy(made);
+            return status;
+        }
+        if (status != DIG_OK) {
+            made->slope[t] = 0.0;
+            assume(surface, t, made);
+        }
+    }
+    *scatter = made;
+    return DIG_OK;
+}
+
+void dig_scatter_destroy(struct dig_scatter *const scatter)
+{
+    if (scatter == NULL) {
+        return;
+    }
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        free(scatter->residual[t]);
+    }
+    free(scatter);
+}
