@@ -124,6 +124,23 @@ static size_t count_holes(const struct dig_curve_set *const set)
     return holes;
 }
 
+static enum dig_status count_builds(const struct dig_store *const store, size_t *const builds,
+                                    struct dig_error *const error)
+{
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = DIG_OK;
+    if (sqlite3_prepare_v2(store->db,
+                           "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", -1,
+                           &s, NULL) != SQLITE_OK ||
+        sqlite3_step(s) != SQLITE_ROW) {
+        status = dig_sql_refuse(store->db, store->path, error);
+    } else {
+        *builds = (size_t)sqlite3_column_int64(s, 0);
+    }
+    (void)sqlite3_finalize(s);
+    return status;
+}
+
 static enum dig_status check_all(struct dig_store *const        store,
                                  struct dig_store_report *const report,
                                  struct dig_error *const        error)
@@ -143,8 +160,12 @@ static enum dig_status check_all(struct dig_store *const        store,
         status =
             check_entry(store, &all, i / all.trajectories, i % all.trajectories, scratch, error);
     }
+    struct dig_store_report made = { .entries = 0 };
+    if (status == DIG_OK) {
+        status = count_builds(store, &made.builds, error);
+    }
     if (status == DIG_OK && set != NULL) {
-        struct dig_store_report made = { .holes = count_holes(set) };
+        made.holes = count_holes(set);
         count_entries(&all, &made);
         *report = made;
     }

@@ -38,13 +38,13 @@ static void put_number(const double value, FILE *const file)
     }
 }
 
-static void put_point(const struct dig_curve_set *const set, const size_t at,
+static void put_point(const struct dig_curve_set *const set, const struct dig_curve *const curve,
                       const size_t trajectory, const size_t k, FILE *const file)
 {
     (void)fprintf(file, "%.9g,%.9g", progress_of(k), time_of(set, trajectory, k));
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        put_number((double)set->curve[at].mean[c][k], file);
-        put_number((double)set->curve[at].sd[c][k], file);
+        put_number((double)curve->mean[c][k], file);
+        put_number((double)curve->sd[c][k], file);
     }
     (void)fputc('\n', file);
 }
@@ -61,7 +61,26 @@ void dig_export_curves(const struct dig_curve_set *const set, FILE *const file)
             for (size_t k = 0; set->packings[at] > 0 && k < DIG_CURVE_POINTS; k++) {
                 put_gravel(&set->gravel[e], file);
                 (void)fprintf(file, ",%s,%d,", set->trajectory[t].name, set->packings[at]);
-                put_point(set, at, t, k, file);
+                put_point(set, &set->curve[at], t, k, file);
+            }
+        }
+    }
+}
+
+void dig_export_effects(const struct dig_curve_set *const  set,
+                        const struct dig_effect_set *const effects, FILE *const file)
+{
+    (void)fprintf(
+        file, "effect,magnitude,friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS);
+    for (size_t e = 0; e < effects->entries; e++) {
+        const struct dig_effect_entry *const entry = &effects->entry[e];
+        for (size_t t = 0; t < effects->trajectories; t++) {
+            const size_t at = e * effects->trajectories + t;
+            for (size_t k = 0; effects->packings[at] > 0 && k < DIG_CURVE_POINTS; k++) {
+                (void)fprintf(file, "%s,%.9g,", dig_effect_name(entry->effect), entry->magnitude);
+                put_gravel(&entry->gravel, file);
+                (void)fprintf(file, ",%s,%d,", set->trajectory[t].name, effects->packings[at]);
+                put_point(set, &effects->curve[at], t, k, file);
             }
         }
     }
@@ -102,7 +121,16 @@ enum dig_status dig_export_runs(struct dig_store *const store, FILE *const file,
     return dig_store_walk(store, &visitor, error);
 }
 
-void dig_export_list(const struct dig_curve_set *const set, FILE *const file)
+static void put_packings(const size_t trajectories, const int packings[], FILE *const file)
+{
+    for (size_t t = 0; t < trajectories; t++) {
+        (void)fprintf(file, "  %10d", packings[t]);
+    }
+    (void)fputc('\n', file);
+}
+
+void dig_export_list(const struct dig_curve_set *const  set,
+                     const struct dig_effect_set *const effects, FILE *const file)
 {
     (void)fprintf(file, "scene %s %.12s  bucket %g m wide, tooth at %g m  E %g Pa\n",
                   set->scene_name, set->scene_hash, set->bucket_width_m, set->tooth_m,
@@ -116,10 +144,17 @@ void dig_export_list(const struct dig_curve_set *const set, FILE *const file)
         const double *const v = set->gravel[e].value;
         (void)fprintf(file, "%5zu  %8g  %8g  %8g ", e, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
                       v[DIG_AXIS_DENSITY_kgpm3]);
+        put_packings(set->trajectories, set->packings + e * set->trajectories, file);
+    }
+    for (size_t e = 0; e < effects->entries; e++) {
+        const struct dig_effect_entry *const x = &effects->entry[e];
+        const double *const                  v = x->gravel.value;
+        (void)fprintf(file, "%5s  %8g  %8g  %8g ", "", v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
+                      v[DIG_AXIS_DENSITY_kgpm3]);
         for (size_t t = 0; t < set->trajectories; t++) {
-            (void)fprintf(file, "  %10d", set->packings[e * set->trajectories + t]);
+            (void)fprintf(file, "  %10d", effects->packings[e * set->trajectories + t]);
         }
-        (void)fputc('\n', file);
+        (void)fprintf(file, "  %s %g\n", dig_effect_name(x->effect), x->magnitude);
     }
 }
 
@@ -158,7 +193,20 @@ static void put_json_scene(const struct dig_curve_set *const set, FILE *const fi
                   set->smooth_half_s);
 }
 
-void dig_export_list_json(const struct dig_curve_set *const set, FILE *const file)
+static void put_json_packings(const struct dig_curve_set *const set, const int packings[],
+                              FILE *const file)
+{
+    (void)fputs(", \"packings\": {", file);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        (void)fputs(t == 0 ? "" : ", ", file);
+        put_json_text(set->trajectory[t].name, file);
+        (void)fprintf(file, ": %d", packings[t]);
+    }
+    (void)fputs("}}", file);
+}
+
+void dig_export_list_json(const struct dig_curve_set *const  set,
+                          const struct dig_effect_set *const effects, FILE *const file)
 {
     (void)fputc('{', file);
     put_json_scene(set, file);
@@ -171,15 +219,16 @@ void dig_export_list_json(const struct dig_curve_set *const set, FILE *const fil
     for (size_t e = 0; e < set->entries; e++) {
         (void)fprintf(file, "%s\n  {\"entry\": %zu, ", e == 0 ? "" : ",", e);
         put_json_gravel(&set->gravel[e], file);
-        (void)fputs(", \"packings\": {", file);
-        for (size_t t = 0; t < set->trajectories; t++) {
-            (void)fputs(t == 0 ? "" : ", ", file);
-            put_json_text(set->trajectory[t].name, file);
-            (void)fprintf(file, ": %d", set->packings[e * set->trajectories + t]);
-        }
-        (void)fputs("}}", file);
+        put_json_packings(set, set->packings + e * set->trajectories, file);
     }
-    (void)fputs("\n ]}\n", file);
+    (void)fputs("\n ],\n \"effects\": [", file);
+    for (size_t e = 0; e < effects->entries; e++) {
+        (void)fprintf(file, "%s\n  {\"effect\": \"%s\", \"magnitude\": %.9g, ", e == 0 ? "" : ",",
+                      dig_effect_name(effects->entry[e].effect), effects->entry[e].magnitude);
+        put_json_gravel(&effects->entry[e].gravel, file);
+        put_json_packings(set, effects->packings + e * set->trajectories, file);
+    }
+    (void)fputs(effects->entries > 0 ? "\n ]}\n" : "]}\n", file);
 }
 
 void dig_export_curve_csv(const struct dig_curve_set *const set, const size_t entry,
@@ -187,7 +236,7 @@ void dig_export_curve_csv(const struct dig_curve_set *const set, const size_t en
 {
     (void)fputs(POINT_COLUMNS, file);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        put_point(set, entry * set->trajectories + trajectory, trajectory, k, file);
+        put_point(set, &set->curve[entry * set->trajectories + trajectory], trajectory, k, file);
     }
 }
 

@@ -6,6 +6,7 @@
 #define DIG_TABLES_EXPORT_H
 
 #include "core/curve.h"
+#include "core/effect_set.h"
 #include "core/error.h"
 #include "tables/store.h"
 
@@ -18,9 +19,15 @@ void dig_export_curves(const struct dig_curve_set *set, FILE *file);
 DIG_MUST_CHECK enum dig_status dig_export_runs(struct dig_store *store, FILE *file,
                                                struct dig_error *error);
 
-/// The entries and their packings, as a text table or as JSON.
-void dig_export_list(const struct dig_curve_set *set, FILE *file);
-void dig_export_list_json(const struct dig_curve_set *set, FILE *file);
+/// The entries and their packings, as a text table or as JSON. Either may have no entries.
+void dig_export_list(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+                     FILE *file);
+void dig_export_list_json(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+                          FILE *file);
+
+/// As dig_export_curves(), of what was dug with an effect; set names the trajectories.
+void dig_export_effects(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+                        FILE *file);
 
 /// One curve of an entry: CSV, JSON, or drawn with characters `width` columns wide.
 void dig_export_curve_csv(const struct dig_curve_set *set, size_t entry, size_t trajectory,

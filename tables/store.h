@@ -92,6 +92,7 @@ DIG_MUST_CHECK enum dig_status dig_store_walk(struct dig_store             *stor
 struct dig_store_report {
     size_t entries; // (gravel, effect, magnitude) x trajectory
     size_t runs;
+    size_t builds;     // engines and versions of them that made the runs
     size_t points;     // gravels without an effect
     size_t effects;    // gravels with one
     size_t holes;      // grid points between the axes' values that hold no gravel

@@ -3,7 +3,10 @@
 #include "tables/export.h"
 
 #include "tables/load.h"
+#include "tables/load_effects.h"
 #include "tests/tables_fixture.h"
+
+static struct dig_effect_set *effects;
 
 static struct dig_curve_set *example(void)
 {
@@ -12,9 +15,14 @@ static struct dig_curve_set *example(void)
     fixture_put(store, .3, .5, 1, 0, 2.0);
     fixture_put(store, .9, .5, 0, 0, 0.5);
     fixture_put(store, .9, .5, 0, 1, 0.25);
+    const struct dig_run_origin varied =
+        fixture_varied(fixture_origin(.9, .5, 2500.0, 0, 1), "cohesion", 1000.0);
+    const struct dig_recording recording = fixture_recording(200, 0.5);
+    assert_int_equal(dig_store_put(store, &varied, &recording, NULL), DIG_OK);
     dig_store_close(store);
     struct dig_curve_set *set = NULL;
-    assert_int_equal(dig_table_load(scratch_path("example.sqlite"), &set, NULL), DIG_OK);
+    dig_effect_set_destroy(effects);
+    assert_int_equal(dig_table_list(scratch_path("example.sqlite"), &set, &effects, NULL), DIG_OK);
     (void)unlink(scratch_path("example.sqlite"));
     return set;
 }
@@ -48,13 +56,15 @@ static void the_list_is_the_example_of_the_formats(void **state)
     (void)state;
     struct dig_curve_set *const set  = example();
     FILE                       *file = begin();
-    dig_export_list_json(set, file);
+    dig_export_list_json(set, effects, file);
     assert_is_example(end(file), "tests/data/formats/digtable_list.json");
     file = begin();
-    dig_export_list(set, file);
+    dig_export_list(set, effects, file);
     char *const text = end(file);
     assert_contains(text, "scene tub ");
     assert_contains(text, "    1       0.9       0.5      2500            1           1\n");
+    assert_contains(
+        text, "            0.9       0.5      2500            0           1  cohesion 1000\n");
     free(text);
     dig_curve_set_destroy(set);
 }
@@ -65,7 +75,7 @@ static void a_name_is_quoted_in_json(void **state)
     struct dig_curve_set *const set = example();
     (void)snprintf(set->scene_name, sizeof set->scene_name, "a\"b\\c\nd");
     FILE *const file = begin();
-    dig_export_list_json(set, file);
+    dig_export_list_json(set, effects, file);
     char *const text = end(file);
     assert_contains(text, "\"name\": \"a\\\"b\\\\c\\u000ad\"");
     free(text);
@@ -107,6 +117,22 @@ static void curves_are_one_line_a_point(void **state)
     assert_int_equal(lines_of(text, second), 1 + DIG_CURVE_POINTS);
     assert_contains(text,
                     "\n1,1,0.25,0.05"); // the end: progress 1, at 1 s, spread a fifth of the rms
+    free(text);
+    dig_curve_set_destroy(set);
+}
+
+static void curves_with_an_effect_are_a_table_of_their_own(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set = example();
+    char                        second[256];
+    FILE *const                 file = begin();
+    dig_export_effects(set, effects, file);
+    char *const text = end(file);
+    assert_int_equal(lines_of(text, second), 1 + DIG_CURVE_POINTS);
+    assert_ptr_equal(
+        strstr(text, "effect,magnitude,friction,rolling,density_kgpm3,trajectory,packings,"), text);
+    assert_ptr_equal(strstr(second, "cohesion,1000,0.9,0.5,2500,push,1,0,0,0.5,0.1"), second);
     free(text);
     dig_curve_set_destroy(set);
 }
@@ -154,14 +180,21 @@ static void the_plot_shows_the_mean_in_every_column(void **state)
     dig_curve_set_destroy(set);
 }
 
+static int free_effects(void **state)
+{
+    dig_effect_set_destroy(effects);
+    return scratch_teardown(state);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_list_is_the_example_of_the_formats),
         cmocka_unit_test(a_name_is_quoted_in_json),
         cmocka_unit_test(curves_are_one_line_a_point),
+        cmocka_unit_test(curves_with_an_effect_are_a_table_of_their_own),
         cmocka_unit_test(one_curve_as_json_holds_every_array),
         cmocka_unit_test(the_plot_shows_the_mean_in_every_column),
     };
-    return cmocka_run_group_tests_name("export", tests, scratch_setup, scratch_teardown);
+    return cmocka_run_group_tests_name("export", tests, scratch_setup, free_effects);
 }

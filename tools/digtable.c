@@ -27,13 +27,13 @@ static const char help_text[] =
     "  digtable list TABLE.sqlite [--json]\n"
     "      the entries and how many packings each has\n"
     "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
-    "               [--trajectory NAME] [--channel My|Fx|Fz] [--csv|--json]\n"
+    "               [--trajectory NAME] [--channel My|Fx|Fz|carried] [--csv|--json]\n"
     "      one curve of the table\n"
     "  digtable merge OUT.sqlite IN.sqlite...\n"
     "      the runs of all tables, each once, in a new one, whose bytes do not depend on their "
     "order\n"
-    "  digtable export TABLE.sqlite [--runs] [-o FILE.csv]\n"
-    "      all curves, or all runs behind them\n"
+    "  digtable export TABLE.sqlite [--effects|--runs] [-o FILE.csv]\n"
+    "      all curves; those dug with an effect; or all runs behind them\n"
     "  digtable check TABLE.sqlite [--complete] [--json]\n"
     "      version, integrity, and every curve against the runs it was made of; with --complete,\n"
     "      holes and missing packings fail too\n"
@@ -62,7 +62,7 @@ static const struct dig_command commands[] = {
     { "show", dig_cli_show, 1, 2, "TABLE.sqlite",
       " friction rolling density trajectory channel csv json " },
     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
-    { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs output " },
+    { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs effects output " },
 };
 
 // Ctrl-C and a polite kill: what is finished is kept.

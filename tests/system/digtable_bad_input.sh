@@ -34,6 +34,9 @@ refused "a friction that is nan" "--friction nan: expected 0 to 3" dig $scene --
 refused "a density in g/cm3" "--density 2.5: expected kg/m3, 100 to 20000" dig $scene --density 2.5
 refused "a negative seed" "--seed -1: expected a whole number" dig $scene --seed -1
 refused "no workers" "--jobs 0: expected 1 to" generate $scene $grid -j 0
+refused "a shard of none" "--shard 4/3: expected I/N" generate $scene $grid --shard 4/3
+refused "a shard that is no fraction" "--shard 3: expected I/N" generate $scene $grid --shard 3
+refused "merge without inputs" "expected OUT.sqlite IN.sqlite" merge "$out"
 refused "an engine that is not built in" "--engine ode: expected kernel" generate $scene $grid --engine ode -o "$out"
 refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
 refused "a scene that is not there" "absent.yaml: No such file" dig "$work/absent.yaml" "${dig[@]}" -o "$out"
@@ -112,8 +115,8 @@ spoil() {
 for command in list check show export "export --runs"; do
     arguments=($command "$work/bad.sqlite")
     [ "$command" = show ] && arguments+=(0)
-    spoil 'PRAGMA user_version = 2'
-    refused "$command: a table of another version" 'bad.sqlite: user_version: table format 2, expected 1' "${arguments[@]}"
+    spoil 'PRAGMA user_version = 1'
+    refused "$command: a table of another version" 'bad.sqlite: user_version: table format 1, expected 2' "${arguments[@]}"
     spoil 'PRAGMA application_id = 7'
     refused "$command: another program's database" 'bad.sqlite: not a digsight table .application_id 7, expected' "${arguments[@]}"
     spoil "UPDATE scene SET canonical = canonical || 'x'"
@@ -126,13 +129,18 @@ for command in list check show export "export --runs"; do
     refused "$command: no file" 'bad.sqlite: No such file' "${arguments[@]}"
 done
 spoil "UPDATE entry SET mean = x'00'"
-refused "a curve of the wrong size" 'bad.sqlite: entry.mean, entry.spread: expected 768 finite float32 each' list "$work/bad.sqlite"
+refused "a curve of the wrong size" 'bad.sqlite: entry.mean, entry.spread: expected 1024 finite float32 each' list "$work/bad.sqlite"
 spoil "UPDATE entry SET spread = mean"
 refused "an entry that is not its runs' spread" 'bad.sqlite: entry: .*differs from its 2 runs, expected' check "$work/bad.sqlite"
 spoil "UPDATE run SET curve = CAST(substr(curve, 1, 100) AS BLOB)"
 refused "a run of the wrong size" 'bad.sqlite: run.curve: 100 bytes for' export "$work/bad.sqlite" --runs -o "$out"
-spoil 'PRAGMA user_version = 2'
-refused "generate into a table of another version" 'user_version: table format 2, expected 1' generate $scene "$work/small.yaml" -o "$work/bad.sqlite"
+spoil 'PRAGMA user_version = 1'
+refused "generate into a table of another version" 'user_version: table format 1, expected 2' generate $scene "$work/small.yaml" -o "$work/bad.sqlite"
+refused "merge: an input of another version" 'bad.sqlite: user_version: table format 1, expected 2' merge "$out" "$work/good.sqlite" "$work/bad.sqlite"
+refused "merge: an input that is not there" 'absent.sqlite: No such file' merge "$out" "$work/good.sqlite" "$work/absent.sqlite"
+refused "merge: an output that is there" 'good.sqlite: exists, expected a new file' merge "$work/good.sqlite" "$work/bad.sqlite"
+spoil "UPDATE run SET seed = seed + 1"
+refused "merge: runs that differ" 'bad.sqlite: run: packing [01] of friction 0.3, rolling 0.1, 2500 kg.m3 on scrape differs' merge "$out" "$work/good.sqlite" "$work/bad.sqlite"
 refused "an entry there is not" 'no such entry' show "$work/good.sqlite" 7
 refused "a trajectory there is not" 'no such trajectory' show "$work/good.sqlite" 0 --trajectory waltz
 

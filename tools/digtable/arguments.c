@@ -28,6 +28,7 @@ enum option_id {
     OPTION_CSV,
     OPTION_JSON,
     OPTION_RUNS,
+    OPTION_EFFECTS,
     OPTION_COMPLETE,
 };
 
@@ -49,6 +50,7 @@ static const struct option long_options[] = {
     { "csv", no_argument, NULL, OPTION_CSV },
     { "json", no_argument, NULL, OPTION_JSON },
     { "runs", no_argument, NULL, OPTION_RUNS },
+    { "effects", no_argument, NULL, OPTION_EFFECTS },
     { "complete", no_argument, NULL, OPTION_COMPLETE },
     { "output", required_argument, NULL, 'o' },
     { "jobs", required_argument, NULL, 'j' },
@@ -186,6 +188,7 @@ static const char *take_option(const int option, const char *const value,
     case OPTION_CSV: a->csv = true; break;
     case OPTION_JSON: a->json = true; break;
     case OPTION_RUNS: a->runs = true; break;
+    case OPTION_EFFECTS: a->effects = true; break;
     case OPTION_COMPLETE: a->complete = true; break;
     default: break;
     }

@@ -24,7 +24,7 @@ struct dig_arguments {
     unsigned long    shard, shards;           // from 0; 0 shards: all
     double           time_limit_s;
     enum dig_channel channel;
-    bool             csv, json, runs, complete;
+    bool             csv, json, runs, effects, complete;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };

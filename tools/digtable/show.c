@@ -3,6 +3,7 @@
 #include "files/whole.h"
 #include "tables/export.h"
 #include "tables/load.h"
+#include "tables/load_effects.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
 
@@ -31,17 +32,19 @@ static int with_output(const struct dig_arguments *const a,
 
 int dig_cli_list(const struct dig_arguments *const a)
 {
-    struct dig_error      error  = { "" };
-    struct dig_curve_set *set    = NULL;
-    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    struct dig_error       error   = { "" };
+    struct dig_curve_set  *set     = NULL;
+    struct dig_effect_set *effects = NULL;
+    const enum dig_status  status  = dig_table_list(a->positional[0], &set, &effects, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
     if (a->json) {
-        dig_export_list_json(set, stdout);
+        dig_export_list_json(set, effects, stdout);
     } else {
-        dig_export_list(set, stdout);
+        dig_export_list(set, effects, stdout);
     }
+    dig_effect_set_destroy(effects);
     dig_curve_set_destroy(set);
     return EXIT_DONE;
 }
@@ -61,13 +64,18 @@ int dig_cli_check(const struct dig_arguments *const a)
     }
     if (a->json) {
         (void)printf("{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
-                     "\"incomplete\": %zu}\n",
-                     report.points, report.entries, report.runs, report.holes, report.incomplete);
+                     "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu}\n",
+                     report.points, report.entries, report.runs, report.holes, report.incomplete,
+                     report.effects, report.builds);
     } else {
         (void)printf("%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
-                     "entries with fewer packings\n",
+                     "entries with fewer packings",
                      a->positional[0], report.points, report.entries, report.runs, report.holes,
                      report.incomplete);
+        if (report.effects > 0) {
+            (void)printf("; %zu points with an effect", report.effects);
+        }
+        (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
     }
     return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
 }
@@ -139,11 +147,22 @@ int dig_cli_show(const struct dig_arguments *const a)
     return code;
 }
 
-static enum dig_status write_curves(const void *const set, FILE *const file,
+struct curves_to_write {
+    bool                   varied;
+    struct dig_curve_set  *set;
+    struct dig_effect_set *effects;
+};
+
+static enum dig_status write_curves(const void *const context, FILE *const file,
                                     struct dig_error *const error)
 {
     (void)error;
-    dig_export_curves(set, file);
+    const struct curves_to_write *const curves = context;
+    if (curves->varied) {
+        dig_export_effects(curves->set, curves->effects, file);
+    } else {
+        dig_export_curves(curves->set, file);
+    }
     return DIG_OK;
 }
 
@@ -171,12 +190,14 @@ int dig_cli_export(const struct dig_arguments *const a)
         dig_store_close(runs.store);
         return code;
     }
-    struct dig_curve_set *set    = NULL;
-    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    struct curves_to_write curves = { .varied = a->effects };
+    const enum dig_status  status =
+        dig_table_list(a->positional[0], &curves.set, &curves.effects, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    const int code = with_output(a, write_curves, set);
-    dig_curve_set_destroy(set);
+    const int code = with_output(a, write_curves, &curves);
+    dig_effect_set_destroy(curves.effects);
+    dig_curve_set_destroy(curves.set);
     return code;
 }
