@@ -1,14 +1,156 @@
 #include "offline_dem/bodies.h"
 
+#include <stdlib.h>
+#include <string.h>
+
+// A clump at rest where its spheres lie, but for its fall.
+static void place_clump(const struct dig_clump_shape *const shape, const struct dig_bed *const bed,
+                        const size_t first, const double mass_kg, const double fall_mps,
+                        struct dig_clump_body *const clump)
+{
+    double at_m[DIG_CLUMP_MAX][3];
+    double rotation[3][3];
+    for (size_t k = 0; k < shape->spheres; k++) {
+        at_m[k][0]       = bed->x_m[first + k];
+        at_m[k][1]       = bed->y_m[first + k];
+        at_m[k][2]       = bed->z_m[first + k];
+        clump->member[k] = (uint32_t)(first + k);
+    }
+    clump->unit_m       = bed->radius_m[first] / shape->radius[0];
+    clump->body.mass_kg = mass_kg;
+    dig_clump_orientation(shape, (const double(*)[3])at_m, rotation);
+    dig_rigid_quaternion((const double(*)[3])rotation, clump->body.q);
+    double arm[3];
+    dig_rigid_turn(clump->body.q, shape->at[0], arm);
+    for (int r = 0; r < 3; r++) {
+        clump->body.x_m[r] = at_m[0][r] - clump->unit_m * arm[r];
+        for (int c = 0; c < 3; c++) {
+            clump->body.inverse_pkgm2[r][c] =
+                shape->inverse[r][c] / (mass_kg * clump->unit_m * clump->unit_m);
+        }
+    }
+    clump->body.v_mps[2] = -fall_mps;
+}
+
+enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
+                                  const struct dig_bed *const         bed,
+                                  const struct dig_clump_shape *const shape, const double body_kg[],
+                                  const double fall_mps, struct dig_grains *const grains,
+                                  struct dig_bodies **const bodies)
+{
+    if (shape->spheres == 0 && scene->bed.obstacles == 0) {
+        *bodies = NULL;
+        return DIG_OK;
+    }
+    const size_t             clumps = shape->spheres > 0 ? bed->grains / shape->spheres : 0;
+    struct dig_bodies *const made   = calloc(1, sizeof *made);
+    struct dig_clump_body   *clump  = calloc(clumps + 1, sizeof *clump);
+    uint32_t *const          of     = calloc(bed->grains + 1, sizeof *of);
+    if (made == NULL || clump == NULL || of == NULL) {
+        free(made);
+        free(clump);
+        free(of);
+        return DIG_ENOMEM;
+    }
+    *made = (struct dig_bodies){
+        .shape = *shape, .clumps = clumps, .clump = clump, .obstacles = dig_obstacles_make(scene)
+    };
+    for (size_t b = 0; b < clumps; b++) {
+        const size_t first = b * shape->spheres;
+        place_clump(shape, bed, first, body_kg[first], fall_mps, &clump[b]);
+        for (size_t k = 0; k < shape->spheres; k++) {
+            of[first + k] = (uint32_t)(b + 1);
+        }
+    }
+    if (clumps > 0) {
+        grains->clump = of;
+    } else {
+        free(of);
+    }
+    *bodies = made;
+    return DIG_OK;
+}
+
+void dig_bodies_destroy(struct dig_bodies *const bodies)
+{
+    if (bodies == NULL) {
+        return;
+    }
+    dig_obstacles_finish(&bodies->obstacles);
+    free(bodies->clump);
+    free(bodies);
+}
+
 enum dig_status dig_bodies_pick(struct dig_world *const world)
 {
-    (void)world;
-    return DIG_OK;
+    return world->bodies->obstacles.rocks == 0
+               ? DIG_OK
+               : dig_obstacles_pick(&world->bodies->obstacles, world);
+}
+
+// Force and torque about the centre of mass, of the spheres' loads.
+static void gather(const struct dig_grains *const grains, const struct dig_clump_shape *const shape,
+                   const struct dig_clump_body *const clump, const double arm_m[][3],
+                   double force_N[3], double torque_Nm[3])
+{
+    for (int a = 0; a < 3; a++) {
+        force_N[a]   = 0.0;
+        torque_Nm[a] = 0.0;
+    }
+    for (size_t k = 0; k < shape->spheres; k++) {
+        const struct dig_load *const load = &grains->load[clump->member[k]];
+        for (int a = 0; a < 3; a++) {
+            force_N[a] += load->f_N[a];
+            torque_Nm[a] += load->t_Nm[a] + arm_m[k][(a + 1) % 3] * load->f_N[(a + 2) % 3] -
+                            arm_m[k][(a + 2) % 3] * load->f_N[(a + 1) % 3];
+        }
+    }
+}
+
+static void find_arms(const struct dig_clump_shape *const shape,
+                      const struct dig_clump_body *const clump, double arm_m[][3])
+{
+    for (size_t k = 0; k < shape->spheres; k++) {
+        dig_rigid_turn(clump->body.q, shape->at[k], arm_m[k]);
+        for (int a = 0; a < 3; a++) {
+            arm_m[k][a] *= clump->unit_m;
+        }
+    }
+}
+
+static void step_clump(struct dig_world *const world, const struct dig_clump_shape *const shape,
+                       struct dig_clump_body *const clump)
+{
+    const double kick_s = world->started ? world->dt_s : 0.5 * world->dt_s;
+    double       before_m[DIG_CLUMP_MAX][3];
+    double       after_m[DIG_CLUMP_MAX][3];
+    double       force_N[3];
+    double       torque_Nm[3];
+    find_arms(shape, clump, before_m);
+    gather(&world->grains, shape, clump, (const double(*)[3])before_m, force_N, torque_Nm);
+    dig_rigid_step(&clump->body, force_N, torque_Nm, world->gravity_mps2, kick_s, world->dt_s);
+    find_arms(shape, clump, after_m);
+    for (size_t k = 0; k < shape->spheres; k++) {
+        struct dig_motion *const motion = &world->grains.motion[clump->member[k]];
+        for (int a = 0; a < 3; a++) {
+            motion->v_mps[a] =
+                clump->body.v_mps[a] + (after_m[k][a] - before_m[k][a]) / world->dt_s;
+            motion->w_radps[a] = clump->body.w_radps[a];
+        }
+    }
 }
 
 void dig_bodies_push(struct dig_world *const world)
 {
-    (void)world;
+    struct dig_bodies *const bodies = world->bodies;
+    if (bodies->obstacles.rocks > 0) {
+        dig_obstacles_push(&bodies->obstacles, world);
+    }
+    for (size_t b = 0; b < bodies->clumps; b++) {
+        if (!bodies->clump[b].gone) {
+            step_clump(world, &bodies->shape, &bodies->clump[b]);
+        }
+    }
 }
 
 void dig_bodies_advance(struct dig_world *const world)
@@ -18,6 +160,15 @@ void dig_bodies_advance(struct dig_world *const world)
 
 void dig_bodies_move(struct dig_bodies *const bodies, const uint32_t place[])
 {
-    (void)bodies;
-    (void)place;
+    if (bodies == NULL) {
+        return;
+    }
+    for (size_t b = 0; b < bodies->clumps; b++) {
+        struct dig_clump_body *const clump = &bodies->clump[b];
+        for (size_t k = 0; k < bodies->shape.spheres && !clump->gone; k++) {
+            clump->member[k] = place[clump->member[k]];
+            clump->gone      = clump->member[k] == UINT32_MAX;
+        }
+    }
+    dig_obstacles_move(&bodies->obstacles, place);
 }

@@ -4,18 +4,48 @@
 #ifndef DIG_OFFLINE_DEM_BODIES_H
 #define DIG_OFFLINE_DEM_BODIES_H
 
+#include "core/scene.h"
 #include "core/status.h"
+#include "offline_dem/bed.h"
+#include "offline_dem/clump.h"
+#include "offline_dem/obstacles.h"
+#include "offline_dem/rigid.h"
 #include "offline_dem/world.h"
 
 #include <stdint.h>
 
-struct dig_bodies;
+/// A clump of the bed and where in memory its spheres are.
+struct dig_clump_body {
+    struct dig_rigid body;
+    double           unit_m; // diameter of the sphere of equal volume
+    uint32_t         member[DIG_CLUMP_MAX];
+    bool             gone; // dropped with all its spheres
+};
+
+struct dig_bodies {
+    struct dig_clump_shape shape;
+    size_t                 clumps;
+    struct dig_clump_body *clump; // [clumps]
+    struct dig_obstacles   obstacles;
+};
+
+/// Bodies for a bed whose grain i stands at place i of the world's grains, each clump falling at
+/// fall_mps; kg[grain] is the mass of the clump it belongs to. Numbers the grains of clumps
+/// (grains->clump is allocated). *bodies is NULL where there are none. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status
+dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
+                  const struct dig_clump_shape *shape, const double body_kg[], double fall_mps,
+                  struct dig_grains *grains, struct dig_bodies **bodies);
+
+/// NULL is allowed.
+void dig_bodies_destroy(struct dig_bodies *bodies);
 
 /// After the contact lists were remade: which grains may touch which obstacle. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_bodies_pick(struct dig_world *world);
 
 /// After the loads of pairs, walls and tool: adds those of obstacles, gathers the loads of the
-/// members of every clump and sets the members' velocities.
+/// members of every clump, steps the clumps and sets the members' velocities so that the kernel
+/// moves them to where the clump has gone.
 void dig_bodies_push(struct dig_world *world);
 
 /// After the grains have moved.

@@ -1,6 +1,7 @@
 #include "offline_dem/dig.h"
 
 #include "core/units.h"
+#include "offline_dem/level.h"
 #include "offline_dem/setup.h"
 #include "offline_dem/vtk.h"
 
@@ -10,6 +11,8 @@
 // Windows of a curve between two pictures, and between two calls of the progress function.
 #define PICTURE_WINDOWS 20
 #define TELL_WINDOWS    8
+// … and in a dig that is not recorded.
+#define TELL_STEPS 640
 
 // One dig under way.
 struct drive {
@@ -112,6 +115,62 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
     return status;
 }
 
+// Steps without a tool, until what the bucket let fall and what was raked lies.
+static enum dig_status settle(struct drive *const d)
+{
+    d->world.tool = NULL;
+    dig_world_touched(&d->world);
+    const size_t    steps  = (size_t)llround(d->scene->packing.settle_s / d->world.dt_s);
+    enum dig_status status = DIG_OK;
+    for (size_t s = 0; s < steps && status == DIG_OK; s++) {
+        status = dig_world_step(&d->world);
+    }
+    return status;
+}
+
+static enum dig_status dig_once(struct drive *const d)
+{
+    const double duration_s = dig_trajectory_duration_s(d->trajectory);
+    const size_t steps      = (size_t)floor(duration_s / d->world.dt_s);
+    d->world.tool           = &d->tool;
+    dig_world_touched(&d->world);
+    enum dig_status status = DIG_OK;
+    for (size_t s = 0; s <= steps && status == DIG_OK; s++) {
+        place_tool(d, (double)s * d->world.dt_s);
+        status = dig_world_step(&d->world);
+        if (status == DIG_OK && d->progress != NULL && s % TELL_STEPS == 0 &&
+            !d->progress->tell(d->progress->context, 0.0, duration_s)) {
+            status = DIG_ESTALE;
+        }
+    }
+    return status;
+}
+
+// The digs made in this bed before. The bucket is taken away where it ends, and what it carries
+// falls; then the ground is raked level as after the paper's digs, unless it is to stay as dug.
+static enum dig_status dig_before(struct drive *const d)
+{
+    const struct dig_bed_plan *const   bed    = &d->scene->bed;
+    const struct dig_trajectory *const own    = d->trajectory;
+    enum dig_status                    status = DIG_OK;
+    if (bed->earlier[0] != '\0') {
+        d->trajectory = dig_scene_find(d->scene, bed->earlier);
+    }
+    for (size_t i = 0; i < bed->earlier_digs && status == DIG_OK; i++) {
+        status = dig_once(d);
+        if (status == DIG_OK) {
+            status = settle(d);
+        }
+        if (status == DIG_OK && !bed->earlier_as_dug) {
+            status = dig_level_rake(d->scene, &d->world);
+            status = status == DIG_OK ? settle(d) : status;
+            status = status == DIG_OK ? dig_level_cut(d->scene, &d->world) : status;
+        }
+    }
+    d->trajectory = own;
+    return status;
+}
+
 enum dig_status dig_dig_run(const struct dig_scene *const  scene,
                             const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                             const struct dig_trajectory *const trajectory,
@@ -126,19 +185,8 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
         return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
                              trajectory->phases, DIG_PHASES_MAX);
     }
-    struct dig_grains grains;
-    status = dig_grains_create(bed->grains, bed->x_m, bed->y_m, bed->z_m, bed->radius_m,
-                               gravel->value[DIG_AXIS_DENSITY_kgpm3], &grains);
-    if (status == DIG_EINVAL) {
-        return dig_error_set(error, status,
-                             "bed: expected finite grains of at most %d different radii > 0",
-                             DIG_KINDS_MAX);
-    }
-    struct dig_ode_scene *const ode = status == DIG_OK ? dig_ode_scene_create(scene) : NULL;
+    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
     if (ode == NULL) {
-        if (status == DIG_OK) {
-            dig_grains_finish(&grains);
-        }
         return dig_setup_explain(DIG_ENOMEM, error);
     }
     struct drive d = {
@@ -147,17 +195,25 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
         .vtk_dir    = vtk_dir,
         .progress   = progress,
         .ode        = ode,
-        .world      = dig_setup_world(scene, gravel, ode, &grains),
         .tool       = dig_tool_make(&scene->bucket),
     };
-    d.world.tool              = &d.tool;
+    struct dig_kinds     kinds;
     struct dig_recording made = { 0 };
-    status                    = drive(&d, &made);
-    dig_world_finish(&d.world);
+    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &d.world, error);
+    if (status == DIG_OK) {
+        status = dig_before(&d);
+        if (status == DIG_OK) {
+            d.world.tool = &d.tool;
+            dig_world_touched(&d.world);
+            status = drive(&d, &made);
+        }
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+        dig_setup_finish(&d.world);
+    }
     dig_ode_scene_destroy(ode);
     if (status != DIG_OK) {
         dig_recording_finish(&made);
-        return dig_setup_explain(status, error);
+        return status;
     }
     *recording = made;
     return DIG_OK;

@@ -9,14 +9,9 @@
 #include "core/recording.h"
 #include "core/scene.h"
 #include "core/status.h"
+#include "offline_dem/bed.h"
 
 #include <stdint.h>
-
-/// A settled bed, one grain an index; owned by the caller, freed with dig_bed_finish().
-struct dig_bed {
-    size_t  grains;
-    double *x_m, *y_m, *z_m, *radius_m; // [grains]
-};
 
 /// Called now and then from the computing thread: done of total seconds of simulated time (packing
 /// counted in). Return false to stop; the call then returns DIG_ESTALE and writes nothing.
@@ -33,8 +28,6 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
                                             struct dig_bed *bed, struct dig_error *error);
-
-void dig_bed_finish(struct dig_bed *bed);
 
 /// Drives the bucket through the trajectory in a copy of the bed. 12 s of one core with AVX-512 for
 /// 3 s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging

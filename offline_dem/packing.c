@@ -1,5 +1,6 @@
 #include "offline_dem/packing.h"
 
+#include "core/ground.h"
 #include "core/units.h"
 #include "offline_dem/random.h"
 
@@ -25,7 +26,7 @@ size_t dig_packing_grains(const struct dig_scene *const scene)
     const double                d_m      = scene->material.diameter_m;
     const double                grain_m3 = DIG_PI / 6.0 * d_m * d_m * d_m;
     const double box_m3 = (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m) *
-                          (box->z_max_m - box->z_min_m);
+                          (dig_scene_ground_max_m(scene) - box->z_min_m);
     return (size_t)floor(scene->packing.fill_factor * box_m3 / grain_m3);
 }
 
@@ -94,10 +95,10 @@ static enum dig_status insert(struct cells *const cells, double high_m[3], const
 enum dig_status dig_packing_insert(const struct dig_scene *const scene, const uint64_t seed,
                                    const size_t n, double x_m[], double y_m[], double z_m[])
 {
-    const struct dig_box *const box = &scene->box;
-    const double                d_m = scene->material.diameter_m;
-    const double                column =
-        (box->z_max_m - box->z_min_m) * scene->packing.fill_factor / scene->packing.solid_fraction;
+    const struct dig_box *const box    = &scene->box;
+    const double                d_m    = scene->material.diameter_m;
+    const double                column = (dig_scene_ground_max_m(scene) - box->z_min_m) *
+                          scene->packing.fill_factor / scene->packing.solid_fraction;
     double       high_m[3] = { box->x_max_m - 0.5 * d_m, box->y_max_m - 0.5 * d_m,
                                box->z_min_m + column - 0.5 * d_m };
     struct cells cells     = {

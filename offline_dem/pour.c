@@ -1,5 +1,7 @@
 #include "offline_dem/dig.h"
+#include "offline_dem/level.h"
 #include "offline_dem/packing.h"
+#include "offline_dem/scatter.h"
 #include "offline_dem/setup.h"
 
 #include <math.h>
@@ -26,66 +28,109 @@ static enum dig_status go(struct dig_world *const world, const double duration_s
     return DIG_OK;
 }
 
-static enum dig_status level(struct dig_world *const world, const double z_max_m)
+// One kind of spheres on an empty floor: the packing every table of plain gravel is made of.
+static enum dig_status insert_plain(const struct dig_scene *const scene, const uint64_t seed,
+                                    struct dig_bed *const bed)
 {
-    unsigned char *const drop = calloc(world->grains.n + 1, 1);
-    if (drop == NULL) {
-        return DIG_ENOMEM;
+    struct dig_bed  made   = { 0 };
+    const size_t    n      = dig_packing_grains(scene);
+    enum dig_status status = dig_bed_create(n, false, false, &made);
+    if (status == DIG_OK) {
+        status = dig_packing_insert(scene, seed, n, made.x_m, made.y_m, made.z_m);
     }
-    for (size_t i = 0; i < world->grains.n; i++) {
-        const double radius_m = world->grains.kind[world->grains.of[i]].radius_m;
-        drop[i]               = world->grains.motion[i].x_m[2] > z_max_m - radius_m;
-    }
-    const enum dig_status status = dig_world_drop(world, drop);
-    free(drop);
-    return status;
-}
-
-static enum dig_status copy_bed(const struct dig_grains *const grains, struct dig_bed *const bed)
-{
-    const size_t   n    = grains->n;
-    struct dig_bed made = {
-        .grains   = n,
-        .x_m      = malloc((n + 1) * sizeof(double)),
-        .y_m      = malloc((n + 1) * sizeof(double)),
-        .z_m      = malloc((n + 1) * sizeof(double)),
-        .radius_m = malloc((n + 1) * sizeof(double)),
-    };
-    if (made.x_m == NULL || made.y_m == NULL || made.z_m == NULL || made.radius_m == NULL) {
+    if (status != DIG_OK) {
         dig_bed_finish(&made);
-        return DIG_ENOMEM;
+        return status;
     }
     for (size_t i = 0; i < n; i++) {
-        made.x_m[i]      = grains->motion[i].x_m[0];
-        made.y_m[i]      = grains->motion[i].x_m[1];
-        made.z_m[i]      = grains->motion[i].x_m[2];
-        made.radius_m[i] = grains->kind[grains->of[i]].radius_m;
+        made.radius_m[i] = 0.5 * scene->material.diameter_m;
     }
     *bed = made;
     return DIG_OK;
 }
 
-static enum dig_status insert(const struct dig_scene *const scene, const double density_kgpm3,
-                              const uint64_t seed, struct dig_grains *const grains)
+static enum dig_status insert(const struct dig_scene *const scene, const uint64_t seed,
+                              struct dig_bed *const bed)
 {
-    const size_t  n    = dig_packing_grains(scene);
-    double *const work = malloc((4 * n + 1) * sizeof *work);
-    if (work == NULL) {
-        return DIG_ENOMEM;
+    const struct dig_bed_plan *const plan = &scene->bed;
+    if (plan->sizes == 0 && plan->clump.spheres == 0 && plan->obstacles == 0 && !plan->periodic_y) {
+        return insert_plain(scene, seed, bed);
     }
-    for (size_t i = 0; i < n; i++) {
-        work[3 * n + i] = 0.5 * scene->material.diameter_m;
+    struct dig_clump_shape shape;
+    const enum dig_status  status = dig_clump_shape_make(&plan->clump, &shape);
+    return status == DIG_OK ? dig_scatter(scene, &shape, seed, bed) : status;
+}
+
+// What the grains are made of, by the height at which they, or the middles of their clumps, lie.
+static void assign_layers(const struct dig_scene *const scene, struct dig_bed *const bed)
+{
+    const size_t spheres = scene->bed.clump.spheres > 0 ? scene->bed.clump.spheres : 1;
+    for (size_t first = 0; first < bed->grains; first += spheres) {
+        double z_m = 0.0;
+        for (size_t k = 0; k < spheres; k++) {
+            z_m += bed->z_m[first + k] / (double)spheres;
+        }
+        size_t material = 0;
+        for (size_t l = 0; l < scene->bed.layers; l++) {
+            const struct dig_layer *const layer = &scene->bed.layer[l];
+            if (z_m >= layer->from_m && z_m < layer->to_m) {
+                material = layer->material;
+            }
+        }
+        for (size_t k = 0; k < spheres; k++) {
+            bed->material[first + k] = (uint8_t)material;
+        }
     }
-    enum dig_status status = dig_packing_insert(scene, seed, n, work, work + n, work + 2 * n);
+}
+
+// One pouring under way.
+struct pour {
+    const struct dig_scene     *scene;
+    const struct dig_gravel    *gravel;
+    const struct dig_ode_scene *ode;
+    struct dig_kinds            kinds;
+    struct dig_world            world;
+};
+
+// Makes the world anew with the layers' materials. The contacts begin again, as they do in a dig.
+static enum dig_status lay(struct pour *const p, struct dig_error *const error)
+{
+    struct dig_bed        bed    = { 0 };
+    const enum dig_status status = dig_bed_take(&p->world.grains, p->kinds.material, &bed);
+    if (status != DIG_OK) {
+        return dig_setup_explain(status, error);
+    }
+    assign_layers(p->scene, &bed);
+    dig_setup_finish(&p->world);
+    const enum dig_status made =
+        dig_setup_world(p->scene, p->gravel, p->ode, &bed, 0.0, &p->kinds, &p->world, error);
+    dig_bed_finish(&bed);
+    return made;
+}
+
+static enum dig_status prepare(struct pour *const p, const struct dig_progress *const progress,
+                               struct dig_error *const error)
+{
+    const struct dig_packing *const packing = &p->scene->packing;
+    const double                    total_s = packing->settle_s + packing->relax_s;
+    enum dig_status status = go(&p->world, packing->settle_s, 0.0, total_s, progress);
+    if (status == DIG_OK && p->scene->bed.preload_Pa > 0.0) {
+        status = dig_level_press(p->scene, p->scene->bed.preload_Pa, &p->world);
+    }
+    if (status != DIG_OK) {
+        return dig_setup_explain(status, error);
+    }
+    if (p->scene->bed.layers > 0) {
+        status = lay(p, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    status = dig_level_cut(p->scene, &p->world);
     if (status == DIG_OK) {
-        status =
-            dig_grains_create(n, work, work + n, work + 2 * n, work + 3 * n, density_kgpm3, grains);
+        status = go(&p->world, packing->relax_s, packing->settle_s, total_s, progress);
     }
-    free(work);
-    for (size_t i = 0; status == DIG_OK && i < n; i++) {
-        grains->motion[i].v_mps[2] = -scene->packing.fall_mps;
-    }
-    return status;
+    return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
 enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
@@ -97,41 +142,29 @@ enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_grains grains;
-    status = insert(scene, gravel->value[DIG_AXIS_DENSITY_kgpm3], seed, &grains);
+    struct dig_bed poured = { 0 };
+    status                = insert(scene, seed, &poured);
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
+    struct pour                 p   = { .scene = scene, .gravel = gravel, .ode = ode };
     if (ode == NULL) {
-        dig_grains_finish(&grains);
-        return dig_setup_explain(DIG_ENOMEM, error);
+        status = dig_setup_explain(DIG_ENOMEM, error);
+    } else {
+        status = dig_setup_world(scene, gravel, ode, &poured, scene->packing.fall_mps, &p.kinds,
+                                 &p.world, error);
     }
-    struct dig_world world = dig_setup_world(scene, gravel, ode, &grains);
+    dig_bed_finish(&poured);
+    if (status == DIG_OK) {
+        status = prepare(&p, progress, error);
+    }
+    if (status == DIG_OK) {
+        const size_t *const material = scene->bed.layers > 0 ? p.kinds.material : NULL;
+        status                       = dig_bed_take(&p.world.grains, material, bed);
+        status                       = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    dig_setup_finish(&p.world);
     dig_ode_scene_destroy(ode);
-    const double total_s = scene->packing.settle_s + scene->packing.relax_s;
-    status               = go(&world, scene->packing.settle_s, 0.0, total_s, progress);
-    if (status == DIG_OK) {
-        status = level(&world, scene->box.z_max_m);
-    }
-    if (status == DIG_OK) {
-        status = go(&world, scene->packing.relax_s, scene->packing.settle_s, total_s, progress);
-    }
-    if (status == DIG_OK) {
-        status = copy_bed(&world.grains, bed);
-    }
-    dig_world_finish(&world);
-    return status == DIG_OK ? status : dig_setup_explain(status, error);
-}
-
-void dig_bed_finish(struct dig_bed *const bed)
-{
-    if (bed == NULL) {
-        return;
-    }
-    free(bed->x_m);
-    free(bed->y_m);
-    free(bed->z_m);
-    free(bed->radius_m);
-    *bed = (struct dig_bed){ 0 };
+    return status;
 }

@@ -1,12 +1,10 @@
 #include "offline_dem/setup.h"
 
-#include "core/units.h"
+#include "offline_dem/bodies.h"
 #include "offline_dem/dig.h"
 
 #include <math.h>
-
-// As many contacts as a grain of a dense bed has at most, nearly.
-#define DAMPING_CONTACTS 8.0
+#include <stdlib.h>
 
 enum dig_status dig_setup_check(const struct dig_scene *const  scene,
                                 const struct dig_gravel *const gravel,
@@ -27,62 +25,102 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
     return DIG_OK;
 }
 
-static struct dig_law_material law_material(const struct dig_scene *const  scene,
-                                            const struct dig_gravel *const gravel)
-{
-    return (struct dig_law_material){
-        .young_Pa                    = scene->material.young_Pa,
-        .poisson                     = scene->material.poisson,
-        .restitution                 = scene->material.restitution,
-        .characteristic_velocity_mps = scene->material.characteristic_velocity_mps,
-        .friction                    = gravel->value[DIG_AXIS_FRICTION],
-        .rolling                     = gravel->value[DIG_AXIS_ROLLING],
-    };
-}
-
 double dig_time_step_s(const struct dig_scene *const scene, const double density_kgpm3)
 {
-    if (scene->time_step_s > 0.0) {
-        return scene->time_step_s;
-    }
-    const struct dig_material *const m       = &scene->material;
-    const double                     r_m     = 0.5 * m->diameter_m;
-    const double                     mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * r_m * r_m * r_m;
-    // Rayleigh wave over half a circumference, and half a period of the contact of two grains.
-    const double shear_Pa = m->young_Pa / (2.0 * (1.0 + m->poisson));
-    const double rayleigh_s =
-        DIG_PI * r_m * sqrt(density_kgpm3 / shear_Pa) / (0.1631 * m->poisson + 0.8766);
-    const struct dig_law_material material = {
-        .young_Pa                    = m->young_Pa,
-        .poisson                     = m->poisson,
-        .restitution                 = m->restitution,
-        .characteristic_velocity_mps = m->characteristic_velocity_mps,
-    };
-    const struct dig_law law       = dig_law_pair(&material, r_m, r_m, mass_kg, mass_kg);
-    const double         contact_s = DIG_PI * sqrt(0.5 * mass_kg / law.normal_Npm);
-    // Tangential damping takes spin off a grain with 8 contacts at a rate of 8 x 2/3 x gamma r^2 /
-    // I; a neighbour that turns the same way doubles it. Beyond 2 / rate the spin flips at every
-    // step.
-    const double damping_s =
-        2.0 * 0.4 * mass_kg / (DAMPING_CONTACTS * 2.0 / 3.0 * 2.0 * law.damping_Nspm);
-    return fmin(fmin(0.14 * rayleigh_s, contact_s / 20.0), damping_s);
+    const struct dig_gravel gravel = { { [DIG_AXIS_DENSITY_kgpm3] = density_kgpm3 } };
+    const double            r_m    = 0.5 * scene->material.diameter_m;
+    const struct dig_kinds  kinds  = { .kinds = 1, .kind = { { .radius_m = r_m } } };
+    return dig_kinds_time_step_s(scene, &gravel, &kinds);
 }
 
-struct dig_world dig_setup_world(const struct dig_scene *const     scene,
-                                 const struct dig_gravel *const    gravel,
-                                 const struct dig_ode_scene *const ode,
-                                 struct dig_grains *const          grains)
+// Mass of the body each grain is part of, in the bed's order.
+static double *body_masses(const struct dig_kinds *const kinds, const uint8_t of[], const size_t n)
 {
-    struct dig_world world = {
-        .dt_s         = dig_time_step_s(scene, gravel->value[DIG_AXIS_DENSITY_kgpm3]),
+    double *const kg = malloc((n + 1) * sizeof *kg);
+    for (size_t i = 0; kg != NULL && i < n; i++) {
+        kg[i] = kinds->contact_kg[of[i]];
+    }
+    return kg;
+}
+
+static enum dig_status make_grains(const struct dig_scene *const       scene,
+                                   const struct dig_bed *const         bed,
+                                   const struct dig_clump_shape *const shape, const double fall_mps,
+                                   const struct dig_kinds *const kinds, const uint8_t of[],
+                                   struct dig_grains *const  grains,
+                                   struct dig_bodies **const bodies)
+{
+    double *const   kg     = body_masses(kinds, of, bed->grains);
+    enum dig_status status = DIG_ENOMEM;
+    if (kg != NULL) {
+        status = dig_grains_place(kinds->kinds, kinds->kind, bed->grains, bed->x_m, bed->y_m,
+                                  bed->z_m, of, grains);
+    }
+    if (status == DIG_OK) {
+        for (size_t i = 0; i < bed->grains; i++) {
+            grains->motion[i].v_mps[2] = -fall_mps;
+        }
+        status = dig_bodies_create(scene, bed, shape, kg, fall_mps, grains, bodies);
+        if (status != DIG_OK) {
+            dig_grains_finish(grains);
+        }
+    }
+    free(kg);
+    return status;
+}
+
+enum dig_status dig_setup_world(const struct dig_scene *const     scene,
+                                const struct dig_gravel *const    gravel,
+                                const struct dig_ode_scene *const ode,
+                                const struct dig_bed *const bed, const double fall_mps,
+                                struct dig_kinds *const kinds, struct dig_world *const world,
+                                struct dig_error *const error)
+{
+    struct dig_clump_shape shape  = { 0 };
+    struct dig_kinds       found  = { 0 };
+    struct dig_grains      grains = { 0 };
+    struct dig_bodies     *bodies = NULL;
+    uint8_t *const         of     = malloc(bed->grains + 1);
+    enum dig_status        status = dig_clump_shape_make(&scene->bed.clump, &shape);
+    if (status != DIG_OK) {
+        status = dig_error_set(error, status, "bed.clump: no volume, expected some");
+    } else if (of == NULL) {
+        status = dig_setup_explain(DIG_ENOMEM, error);
+    } else {
+        status = dig_kinds_find(scene, gravel, bed, &shape, &found, of, error);
+    }
+    if (status == DIG_OK) {
+        status = make_grains(scene, bed, &shape, fall_mps, &found, of, &grains, &bodies);
+        if (status == DIG_EINVAL) {
+            status = dig_error_set(error, status,
+                                   "bed: a grain whose position is no number, expected numbers");
+        } else if (status != DIG_OK) {
+            status = dig_setup_explain(status, error);
+        }
+    }
+    free(of);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_world made = {
+        .dt_s         = dig_kinds_time_step_s(scene, gravel, &found),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
+        .bodies       = bodies,
     };
-    world.walls = dig_ode_scene_walls(ode, world.wall);
-    dig_world_init(&world, grains);
-    const struct dig_law_material material = law_material(scene, gravel);
-    dig_world_set_material(&world, &material);
-    return world;
+    made.walls = dig_ode_scene_walls(ode, made.wall);
+    dig_world_init(&made, &grains);
+    dig_kinds_set_laws(scene, gravel, &found, &made);
+    *kinds = found;
+    *world = made;
+    return DIG_OK;
+}
+
+void dig_setup_finish(struct dig_world *const world)
+{
+    dig_bodies_destroy(world->bodies);
+    world->bodies = NULL;
+    dig_world_finish(world);
 }
 
 enum dig_status dig_setup_explain(const enum dig_status status, struct dig_error *const error)

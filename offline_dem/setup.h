@@ -5,7 +5,8 @@
 
 #include "core/error.h"
 #include "core/scene.h"
-#include "offline_dem/grains.h"
+#include "offline_dem/bed.h"
+#include "offline_dem/kinds.h"
 #include "offline_dem/ode_scene.h"
 #include "offline_dem/world.h"
 
@@ -14,9 +15,16 @@ DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
                                                struct dig_error        *error);
 
-/// A world with the walls of the ODE scene, without a tool. Takes over *grains.
-struct dig_world dig_setup_world(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                                 const struct dig_ode_scene *ode, struct dig_grains *grains);
+/// A world of this bed with the walls of the ODE scene, without a tool, all of it falling at
+/// fall_mps. *kinds says what its grains are made of. DIG_EINVAL for a bed that cannot be (*error
+/// says which grain), DIG_ENOMEM; then *world is untouched.
+DIG_MUST_CHECK enum dig_status
+dig_setup_world(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                const struct dig_ode_scene *ode, const struct dig_bed *bed, double fall_mps,
+                struct dig_kinds *kinds, struct dig_world *world, struct dig_error *error);
+
+/// The world and its bodies.
+void dig_setup_finish(struct dig_world *world);
 
 /// Words for a failure of packing or stepping; returns status.
 enum dig_status dig_setup_explain(enum dig_status status, struct dig_error *error);

@@ -114,7 +114,7 @@ static void what_cannot_be_computed_is_refused_by_name(void **state)
     (void)state;
     struct dig_scene     scene = small_scene();
     double               at[2] = { 0.01, 0.03 }, radius[2] = { GRAIN_m, GRAIN_m };
-    const struct dig_bed bed = { 2, at, at, at, radius };
+    const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
 
     expect_refusal(&scene, &(struct dig_gravel){ { -0.1, 0.5, DENSITY } }, &bed, "friction");
     expect_refusal(&scene, &(struct dig_gravel){ { 0.5, NAN, DENSITY } }, &bed, "rolling");
@@ -194,7 +194,7 @@ static void pictures_are_written_where_they_are_wanted(void **state)
     (void)state;
     const struct dig_scene scene = small_scene();
     double                 x[1] = { 0.03 }, y[1] = { 0.0 }, z[1] = { GRAIN_m }, r[1] = { GRAIN_m };
-    const struct dig_bed   bed   = { 1, x, y, z, r };
+    const struct dig_bed   bed   = { .grains = 1, .x_m = x, .y_m = y, .z_m = z, .radius_m = r };
     char                   dir[] = "/tmp/dig_test_XXXXXX";
     struct dig_recording   made  = { 0 };
     assert_non_null(mkdtemp(dir));

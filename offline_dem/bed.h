@@ -1,0 +1,34 @@
+// A settled bed: what a pouring leaves and a dig starts from, one grain (or one sphere of a clump)
+// an index.
+
+#ifndef DIG_OFFLINE_DEM_BED_H
+#define DIG_OFFLINE_DEM_BED_H
+
+#include "core/status.h"
+#include "offline_dem/grains.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Owned by the caller, freed with dig_bed_finish().
+struct dig_bed {
+    size_t    grains;
+    double   *x_m, *y_m, *z_m, *radius_m; // [grains]
+    uint8_t  *material;                   // [grains] as in core/scene.h; NULL: all gravel
+    uint32_t *clump; // [grains] from 1, the spheres of one clump in a row and in the shape's order;
+                     // NULL: grains are spheres
+};
+
+/// Room for this many grains, all zero. DIG_ENOMEM leaves *bed as it was.
+DIG_MUST_CHECK enum dig_status dig_bed_create(size_t grains, bool materials, bool clumps,
+                                              struct dig_bed *bed);
+
+/// Where the grains lie now; material[kind] is what each kind is made of, NULL: all gravel. Clumps
+/// keep the order they were given in. DIG_ENOMEM leaves *bed as it was.
+DIG_MUST_CHECK enum dig_status dig_bed_take(const struct dig_grains *grains,
+                                            const size_t material[], struct dig_bed *bed);
+
+/// NULL and a zeroed bed are allowed.
+void dig_bed_finish(struct dig_bed *bed);
+
+#endif // DIG_OFFLINE_DEM_BED_H

@@ -1,0 +1,23 @@
+// What is done to the ground of a bed that lies: pressed, cut level, raked level.
+
+#ifndef DIG_OFFLINE_DEM_LEVEL_H
+#define DIG_OFFLINE_DEM_LEVEL_H
+
+#include "core/scene.h"
+#include "offline_dem/world.h"
+
+/// Takes out every grain, and every whole clump, that stands out of the ground.
+DIG_MUST_CHECK enum dig_status dig_level_cut(const struct dig_scene *scene,
+                                             struct dig_world       *world);
+
+/// Lifts every grain and clump that stands out of the ground and sets it down, at rest, where the
+/// bed lies lowest under it. They fall a little when time goes on.
+DIG_MUST_CHECK enum dig_status dig_level_rake(const struct dig_scene *scene,
+                                              struct dig_world       *world);
+
+/// Lowers a level plate onto the bed until the grains bear pressure_Pa on the box's area, and lifts
+/// it again. DIG_EINVAL when the plate reaches the floor first, and as dig_world_step().
+DIG_MUST_CHECK enum dig_status dig_level_press(const struct dig_scene *scene, double pressure_Pa,
+                                               struct dig_world *world);
+
+#endif // DIG_OFFLINE_DEM_LEVEL_H

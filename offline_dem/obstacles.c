@@ -1,0 +1,231 @@
+#include "offline_dem/obstacles.h"
+
+#include "core/units.h"
+#include "offline_dem/contacts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct dig_rock make_rock(const struct dig_obstacle *const o)
+{
+    struct dig_rock rock = { .shape = o->shape, .movable = o->movable, .body.q = { 1.0 } };
+    const bool      box  = o->shape == DIG_OBSTACLE_BOX;
+    for (size_t k = 0; k < 3; k++) {
+        rock.half_m[k]   = 0.5 * o->size_m[box ? k : 0];
+        rock.body.x_m[k] = o->centre_m[k];
+    }
+    const double *const h  = rock.half_m;
+    const double        m3 = box ? 8.0 * h[0] * h[1] * h[2] : DIG_PI / 0.75 * h[0] * h[0] * h[0];
+    rock.body.mass_kg      = o->density_kgpm3 * m3;
+    if (!o->movable) {
+        rock.body.mass_kg = 0.0;
+        return rock;
+    }
+    for (size_t k = 0; k < 3; k++) {
+        const double y2               = h[(k + 1) % 3] * h[(k + 1) % 3];
+        const double z2               = h[(k + 2) % 3] * h[(k + 2) % 3];
+        const double m2               = box ? (y2 + z2) / 3.0 : 0.4 * h[0] * h[0];
+        rock.body.inverse_pkgm2[k][k] = 1.0 / (rock.body.mass_kg * m2);
+    }
+    return rock;
+}
+
+struct dig_obstacles dig_obstacles_make(const struct dig_scene *const scene)
+{
+    struct dig_obstacles made = { .rocks = scene->bed.obstacles };
+    for (size_t i = 0; i < made.rocks; i++) {
+        made.rock[i] = make_rock(&scene->bed.obstacle[i]);
+    }
+    return made;
+}
+
+// The face of a box that a point inside it is closest to.
+static double nearest_face(const double half_m[3], const double p[3], double closest_m[3])
+{
+    int    axis    = 0;
+    double least_m = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        if (half_m[k] - fabs(p[k]) < least_m) {
+            least_m = half_m[k] - fabs(p[k]);
+            axis    = k;
+        }
+    }
+    memcpy(closest_m, p, 3 * sizeof *closest_m);
+    closest_m[axis] = copysign(half_m[axis], p[axis]);
+    return -least_m;
+}
+
+double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], double closest_m[3])
+{
+    const double *const x     = rock->body.x_m;
+    const double        d[3]  = { p_m[0] - x[0], p_m[1] - x[1], p_m[2] - x[2] };
+    double              apart = 0.0;
+    if (rock->shape == DIG_OBSTACLE_SPHERE) {
+        const double d_m = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + 1e-300;
+        for (int k = 0; k < 3; k++) {
+            closest_m[k] = x[k] + d[k] / d_m * rock->half_m[0];
+        }
+        return d_m - rock->half_m[0];
+    }
+    double p[3];
+    double c[3];
+    dig_rigid_turn_back(rock->body.q, d, p);
+    for (int k = 0; k < 3; k++) {
+        c[k] = fmin(fmax(p[k], -rock->half_m[k]), rock->half_m[k]);
+        apart += (p[k] - c[k]) * (p[k] - c[k]);
+    }
+    apart = apart > 0.0 ? sqrt(apart) : nearest_face(rock->half_m, p, c);
+    dig_rigid_turn(rock->body.q, c, closest_m);
+    for (int k = 0; k < 3; k++) {
+        closest_m[k] += x[k];
+    }
+    return apart;
+}
+
+enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
+                                   const struct dig_world *const world)
+{
+    const struct dig_grains *const g   = &world->grains;
+    uint32_t *const                was = malloc((g->n * o->rocks + 1) * sizeof *was);
+    if (was == NULL) {
+        return DIG_ENOMEM;
+    }
+    memset(was, 0xff, g->n * o->rocks * sizeof *was);
+    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+        for (size_t c = 0; c < o->contact[k].n; c++) {
+            was[o->contact[k].i[c] * o->rocks + o->contact[k].j[c]] = (uint32_t)c;
+        }
+    }
+    struct dig_contacts fresh[DIG_KINDS_MAX] = { 0 };
+    enum dig_status     status               = DIG_OK;
+    for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
+        const size_t kind    = g->of[i];
+        const double reach_m = g->kind[kind].radius_m + world->at_m[i][3];
+        for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
+            double closest_m[3];
+            if (dig_rock_closest(&o->rock[r], g->motion[i].x_m, closest_m) < reach_m) {
+                const uint32_t at = was[i * o->rocks + r];
+                status            = dig_contacts_add(&fresh[kind], i, r, r,
+                                          at == UINT32_MAX ? NULL : &o->contact[kind], at);
+            }
+        }
+    }
+    free(was);
+    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+        if (status == DIG_OK) {
+            dig_contacts_finish(&o->contact[k]);
+            o->contact[k] = fresh[k];
+        } else {
+            dig_contacts_finish(&fresh[k]);
+        }
+    }
+    return status;
+}
+
+// A grain pressed into a rock still stands on the outside of it.
+static void fill(const struct dig_rock *const rock, const struct dig_motion *const m,
+                 const double radius_m, const size_t c, struct dig_block *const block,
+                 double arm_m[3])
+{
+    double              closest_m[3];
+    const double        apart_m = dig_rock_closest(rock, m->x_m, closest_m);
+    const double        safe_m  = fmax(apart_m, 1e-3 * radius_m);
+    double              n[3];
+    double              length_m = 0.0;
+    const double *const w        = rock->body.w_radps;
+    for (int k = 0; k < 3; k++) {
+        n[k] = (m->x_m[k] - closest_m[k]) * (apart_m < 0.0 ? -1.0 : 1.0);
+        length_m += n[k] * n[k];
+        arm_m[k] = closest_m[k] - rock->body.x_m[k];
+    }
+    length_m = sqrt(length_m) + 1e-300;
+    for (int k = 0; k < 3; k++) {
+        const double v = rock->body.v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
+                         w[(k + 2) % 3] * arm_m[(k + 1) % 3];
+        block->in[k][c]     = safe_m * n[k] / length_m;
+        block->in[3 + k][c] = m->v_mps[k] - v;
+        block->in[6 + k][c] = m->w_radps[k];
+        block->in[9 + k][c] = w[k];
+    }
+}
+
+static void apply(struct dig_world *const world, struct dig_obstacles *const o,
+                  const struct dig_contacts *const list, const size_t first, const size_t count,
+                  const struct dig_block *const block, const double arm_m[DIG_BLOCK][3])
+{
+    for (size_t c = 0; c < count; c++) {
+        struct dig_load *const load = &world->grains.load[list->i[first + c]];
+        struct dig_rock *const rock = &o->rock[list->j[first + c]];
+        const double *const    a    = arm_m[c];
+        for (int k = 0; k < 3; k++) {
+            load->f_N[k] += block->out[k][c];
+            load->t_Nm[k] += block->out[3 + k][c];
+            rock->f_N[k] -= block->out[k][c];
+            rock->t_Nm[k] += block->out[6 + k][c] - (a[(k + 1) % 3] * block->out[(k + 2) % 3][c] -
+                                                     a[(k + 2) % 3] * block->out[(k + 1) % 3][c]);
+        }
+    }
+}
+
+void dig_obstacles_push(struct dig_obstacles *const o, struct dig_world *const world)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        memset(o->rock[r].f_N, 0, sizeof o->rock[r].f_N);
+        memset(o->rock[r].t_Nm, 0, sizeof o->rock[r].t_Nm);
+    }
+    for (size_t kind = 0; kind < world->grains.kinds; kind++) {
+        struct dig_contacts *const list     = &o->contact[kind];
+        const double               radius_m = world->grains.kind[kind].radius_m;
+        for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+            const size_t     left  = list->n - first;
+            const size_t     count = left < DIG_BLOCK ? left : DIG_BLOCK;
+            struct dig_block block;
+            double           arm_m[DIG_BLOCK][3];
+            double           memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
+            for (size_t c = 0; c < count; c++) {
+                fill(&o->rock[list->j[first + c]], &world->grains.motion[list->i[first + c]],
+                     radius_m, c, &block, arm_m[c]);
+            }
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+            }
+            dig_kernel_block(world->isa, &world->wall_law[kind], world->dt_s, count, memory,
+                             &block);
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+            }
+            apply(world, o, list, first, count, &block, (const double(*)[3])arm_m);
+        }
+    }
+}
+
+void dig_obstacles_move(struct dig_obstacles *const o, const uint32_t place[])
+{
+    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+        struct dig_contacts *const list = &o->contact[k];
+        size_t                     kept = 0;
+        for (size_t c = 0; c < list->n; c++) {
+            if (place[list->i[c]] == UINT32_MAX) {
+                continue;
+            }
+            list->i[kept]   = place[list->i[c]];
+            list->j[kept]   = list->j[c];
+            list->key[kept] = list->key[c];
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                list->memory[m][kept] = list->memory[m][c];
+            }
+            kept++;
+        }
+        list->n = kept;
+    }
+}
+
+void dig_obstacles_finish(struct dig_obstacles *const obstacles)
+{
+    if (obstacles == NULL) {
+        return;
+    }
+    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+        dig_contacts_finish(&obstacles->contact[k]);
+    }
+}
