@@ -1,0 +1,144 @@
+// The reference engine against the kernel on a short dig, and what it refuses.
+
+#include "offline_dem/engine_ode.h"
+#include "tests/dem_fixture.h"
+
+#include <math.h>
+
+static struct dig_scene small_scene(void)
+{
+    return (struct dig_scene){
+        .name         = "small",
+        .bucket       = { .points  = 5,
+                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
+                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
+                          .width_m = 0.028 },
+        .box          = { 0.0, 0.08, -0.0225, 0.0225, 0.0, 0.03 },
+        .packing      = { 0.3, 0.694, 0.3, 0.3, 0.1 },
+        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
+        .gravity_mps2 = GRAVITY,
+        .time_step_s  = STEP_s,
+        .output_s     = 0.005,
+        .trajectories = 1,
+        .trajectory   = { { .name      = "dip",
+                            .start_x_m = 0.03,
+                            .start_z_m = 0.066,
+                            .phases    = 2,
+                            .phase     = { { "down", 0.04, 0.0, -0.15, 0.0 },
+                                           { "drag", 0.02, 0.2, 0.0, 2.0 } } } },
+    };
+}
+
+static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+
+static struct dig_recording dig_with(const struct dig_engine *const engine,
+                                     const struct dig_scene *const  scene,
+                                     const struct dig_bed *const    bed)
+{
+    struct dig_recording r     = { 0 };
+    struct dig_error     error = { "" };
+    if (engine->dig(scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return r;
+}
+
+// Every window of a dig of some thousand steps.
+static void digs_agree(const struct dig_scene *const scene)
+{
+    const struct dig_engine kernel = dig_engine_kernel();
+    const struct dig_engine ode    = dig_engine_ode();
+    struct dig_bed          bed;
+    assert_int_equal(ode.pour(scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
+    struct dig_recording ours   = dig_with(&kernel, scene, &bed);
+    struct dig_recording theirs = dig_with(&ode, scene, &bed);
+    assert_int_equal(ours.rows, theirs.rows);
+    double most_N = 0.0;
+    for (size_t k = 0; k < ours.rows; k++) {
+        most_N = fmax(most_N, hypot(ours.row[k].Fx_N, ours.row[k].Fz_N));
+    }
+    assert_true(most_N > 20.0 * GRAIN_kg * GRAVITY);
+    for (size_t k = 0; k < ours.rows; k++) {
+        const struct dig_force_row *const a = &ours.row[k];
+        const struct dig_force_row *const b = &theirs.row[k];
+        assert_close(b->t_s, a->t_s, 0.0);
+        assert_close(b->Fx_N, a->Fx_N, 1e-9 * most_N);
+        assert_close(b->Fy_N, a->Fy_N, 1e-9 * most_N);
+        assert_close(b->Fz_N, a->Fz_N, 1e-9 * most_N);
+        assert_close(b->My_Nm, a->My_Nm, 1e-9 * most_N * 0.04);
+        assert_close(b->theta_deg, a->theta_deg, 0.0);
+        assert_close(b->carried_kg, a->carried_kg, 1e-12);
+    }
+    dig_recording_finish(&ours);
+    dig_recording_finish(&theirs);
+    ode.bed_finish(&bed);
+}
+
+static void a_short_dig_gives_the_kernels_curve(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    digs_agree(&scene);
+}
+
+static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.laws =
+        (struct dig_laws){ .normal = DIG_NORMAL_HERTZ, .cohesion_Jpm3 = 2e4, .adhesion_Jpm3 = 1e4 };
+    scene.bed.sizes   = 2;
+    scene.bed.size[0] = (struct dig_size){ 0.006, 0.5 };
+    scene.bed.size[1] = (struct dig_size){ 0.0085, 0.5 };
+    digs_agree(&scene);
+}
+
+static void refuses(const struct dig_scene *const scene, const char *const vtk_dir,
+                    const char *const key)
+{
+    const struct dig_engine      ode   = dig_engine_ode();
+    const struct dig_bed         bed   = { 0 };
+    struct dig_recording         r     = { .rows = 77 };
+    struct dig_error             error = { "" };
+    const struct dig_trajectory *t     = &scene->trajectory[0];
+    assert_int_equal(ode.dig(scene, &gravel, &bed, t, vtk_dir, NULL, &r, &error), DIG_EINVAL);
+    if (strstr(error.text, key) == NULL) {
+        fail_msg("%s, expected a word of %s", error.text, key);
+    }
+    assert_int_equal(r.rows, 77);
+}
+
+static void what_it_does_not_know_is_refused_by_name(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    refuses(&scene, "pictures-go-here", "pictures");
+    scene.bed.earlier_digs = 1;
+    refuses(&scene, NULL, "earlier_digs");
+    scene               = small_scene();
+    scene.bed.obstacles = 1;
+    scene.bed.obstacle[0] =
+        (struct dig_obstacle){ .centre_m = { 0.04, 0.0, 0.01 }, .size_m = { 0.01, 0.0, 0.0 } };
+    refuses(&scene, NULL, "obstacles");
+    scene                      = small_scene();
+    scene.trajectory[0].phases = 0;
+    refuses(&scene, NULL, "phases");
+}
+
+static void it_says_which_engine_it_is(void **state)
+{
+    (void)state;
+    assert_string_equal(dig_engine_ode().name, "ode");
+    assert_string_equal(dig_engine_ode().version, dig_engine_kernel().version);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
+        cmocka_unit_test(a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve),
+        cmocka_unit_test(what_it_does_not_know_is_refused_by_name),
+        cmocka_unit_test(it_says_which_engine_it_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
