@@ -1,0 +1,43 @@
+// What happens when ODE finds two geometries near each other: the law, as forces on bodies. Shared
+// by ode_bed.c, which makes the bodies and calls ODE, and ode_meet.c; for nobody else.
+
+#ifndef DIG_OFFLINE_DEM_ODE_MEET_H
+#define DIG_OFFLINE_DEM_ODE_MEET_H
+
+#include "offline_dem/ode_memory.h"
+#include "offline_dem/world.h"
+
+#include <ode/ode.h>
+
+struct dig_ode_bed {
+    dWorldID world;
+    dSpaceID grains_space, walls_space;
+    dGeomID  tool_box;
+    size_t   n;
+    dBodyID *body; // [n]
+    dGeomID *ball; // [n]
+    uint8_t *of;   // [n]
+
+    // Read from the world this was made from.
+    double          dt_s, gravity_mps2[3];
+    struct dig_kind kind[DIG_KINDS_MAX];
+    struct dig_law  pair_law[DIG_KINDS_MAX * DIG_KINDS_MAX], wall_law[DIG_KINDS_MAX],
+        tool_law[DIG_KINDS_MAX];
+
+    struct dig_ode_memory memory;
+    bool                  started;
+
+    // Of the step under way.
+    const struct dig_tool *tool;
+    struct dig_wrench      on_tool;
+    double                 share; // of a kick
+    bool                   short_of_memory;
+};
+
+/// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and the
+/// box about the tool. Loads are added to the bodies, contacts remembered.
+void dig_ode_meet_grain(void *data, dGeomID a, dGeomID b);
+void dig_ode_meet_wall(void *data, dGeomID a, dGeomID b);
+void dig_ode_meet_tool(void *data, dGeomID a, dGeomID b);
+
+#endif // DIG_OFFLINE_DEM_ODE_MEET_H
