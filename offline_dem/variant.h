@@ -1,5 +1,30 @@
 // A plain scene with one effect of the soil put into it at a magnitude: what a table of effects is
 // computed of.
+//
+//   effect          magnitude                                     absent at
+//   cohesion        J/m3   SJKR between grains                    0
+//   adhesion        J/m3   SJKR between grains and bucket         0
+//   polydispersity  1      largest / smallest diameter; three     1
+//                          classes, 30, 40 and 30 % by mass,
+//                          the middle one the plain diameter:
+//                          5/3 is .8, 1 and 4/3 of it
+//   grain_shape     1      length / width of a clump of two       1
+//                          spheres, volume as before; at most 2
+//   ground_slope    deg    the ground rises in +x                 0
+//   layering        m      top of a layer from the floor up:      0
+//                          .9/.9/4000, or .3/.3/1500 under
+//                          gravel with friction of .7 or more
+//   obstacle        m      diameter of a fixed sphere, its        0
+//                          centre at the ground's height, in the
+//                          middle of the first trajectory's drag;
+//                          the bucket goes through it, the
+//                          grains do not
+//   compaction      digs   made before in the same bed, the       0
+//                          ground raked level after each
+//
+// A slope keeps its height where the teeth start: the ground is the highest plane of that slope
+// above which every trajectory's tooth starts. A time step that is given is shortened with the
+// smallest sphere.
 
 #ifndef DIG_OFFLINE_DEM_VARIANT_H
 #define DIG_OFFLINE_DEM_VARIANT_H
