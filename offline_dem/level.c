@@ -3,6 +3,7 @@
 #include "core/ground.h"
 #include "offline_dem/bodies.h"
 #include "offline_dem/law_general.h"
+#include "offline_dem/setup.h"
 
 #include <assert.h>
 #include <math.h>
@@ -10,6 +11,7 @@
 #include <string.h>
 
 #define PLATE_mps   0.05 // slow beside what a bed of grains answers with
+#define DEEPEST     0.5  // radii a plate may be in a grain
 #define CHECK_STEPS 4    // between two looks at the plate's load
 
 static double radius(const struct dig_world *const world, const size_t i)
@@ -207,10 +209,13 @@ enum dig_status dig_level_rake(const struct dig_scene *const scene, struct dig_w
     return status;
 }
 
-// What the grains push up a level plate with, at rest.
-static double plate_load_N(const struct dig_world *const world, const double plate_m)
+// What the grains push up a level plate with, at rest, and how deep the plate is in the one it is
+// deepest in, in its radii.
+static double plate_load_N(const struct dig_world *const world, const double plate_m,
+                           double *const deepest)
 {
     double sum_N = 0.0;
+    *deepest     = 0.0;
     for (size_t i = 0; i < world->grains.n; i++) {
         const struct dig_law law   = world->wall_law[world->grains.of[i]];
         const double         gap_m = plate_m - world->grains.motion[i].x_m[2];
@@ -221,17 +226,18 @@ static double plate_load_N(const struct dig_world *const world, const double pla
                                                 ? dig_law_general(law, world->dt_s, touch, &memory)
                                                 : dig_law_step(law, world->dt_s, touch, &memory);
             sum_N -= push.fz_N;
+            *deepest = fmax(*deepest, 1.0 - gap_m / law.reach_m);
         }
     }
     return sum_N;
 }
 
-enum dig_status dig_level_press(const struct dig_scene *const scene, const double pressure_Pa,
-                                struct dig_world *const world)
+enum dig_status dig_level_press(const struct dig_scene *const scene, struct dig_world *const world,
+                                struct dig_error *const error)
 {
     const struct dig_box *const box = &scene->box;
     const double                load_N =
-        pressure_Pa * (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m);
+        scene->bed.preload_Pa * (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m);
     double plate_m = box->z_min_m;
     for (size_t i = 0; i < world->grains.n; i++) {
         plate_m = fmax(plate_m, world->grains.motion[i].x_m[2] + radius(world, i));
@@ -240,8 +246,18 @@ enum dig_status dig_level_press(const struct dig_scene *const scene, const doubl
     const size_t    plate  = world->walls++;
     enum dig_status status = DIG_OK;
     for (size_t s = 0; status == DIG_OK; s++) {
-        if (s % CHECK_STEPS == 0 && plate_load_N(world, plate_m) >= load_N) {
-            break;
+        if (s % CHECK_STEPS == 0) {
+            double deepest = 0.0;
+            if (plate_load_N(world, plate_m, &deepest) >= load_N) {
+                break;
+            }
+            if (deepest > DEEPEST) {
+                status = dig_error_set(error, DIG_EINVAL,
+                                       "bed.preload_Pa: %g presses grains of young_Pa %g flat, "
+                                       "expected less",
+                                       scene->bed.preload_Pa, scene->material.young_Pa);
+                continue;
+            }
         }
         plate_m -= PLATE_mps * world->dt_s;
         world->wall[plate] = (struct dig_wall){ { 0.0, 0.0, -1.0 }, -plate_m };
@@ -249,7 +265,8 @@ enum dig_status dig_level_press(const struct dig_scene *const scene, const doubl
         if (s % CHECK_STEPS == 0) {
             dig_world_touched(world);
         }
-        status = plate_m > box->z_min_m ? dig_world_step(world) : DIG_EINVAL;
+        status = dig_world_step(world);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
     }
     world->walls--;
     dig_world_touched(world);

@@ -15,9 +15,10 @@ DIG_MUST_CHECK enum dig_status dig_level_cut(const struct dig_scene *scene,
 DIG_MUST_CHECK enum dig_status dig_level_rake(const struct dig_scene *scene,
                                               struct dig_world       *world);
 
-/// Lowers a level plate onto the bed until the grains bear pressure_Pa on the box's area, and lifts
-/// it again. DIG_EINVAL when the plate reaches the floor first, and as dig_world_step().
-DIG_MUST_CHECK enum dig_status dig_level_press(const struct dig_scene *scene, double pressure_Pa,
-                                               struct dig_world *world);
+/// Lowers a level plate onto the bed until the grains bear the scene's preload_Pa on the box's
+/// area, and takes it away. DIG_EINVAL, with the key in *error, when that flattens the grains; else
+/// as dig_world_step().
+DIG_MUST_CHECK enum dig_status dig_level_press(const struct dig_scene *scene,
+                                               struct dig_world *world, struct dig_error *error);
 
 #endif // DIG_OFFLINE_DEM_LEVEL_H

@@ -114,11 +114,14 @@ static enum dig_status prepare(struct pour *const p, const struct dig_progress *
     const struct dig_packing *const packing = &p->scene->packing;
     const double                    total_s = packing->settle_s + packing->relax_s;
     enum dig_status status = go(&p->world, packing->settle_s, 0.0, total_s, progress);
-    if (status == DIG_OK && p->scene->bed.preload_Pa > 0.0) {
-        status = dig_level_press(p->scene, p->scene->bed.preload_Pa, &p->world);
-    }
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
+    }
+    if (p->scene->bed.preload_Pa > 0.0) {
+        status = dig_level_press(p->scene, &p->world, error);
+        if (status != DIG_OK) {
+            return status;
+        }
     }
     if (p->scene->bed.layers > 0) {
         status = lay(p, error);
