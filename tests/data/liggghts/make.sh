@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the decks of this folder with LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts) and writes the
-# CSV files test_liggghts.c compares with. About a minute. Usage: ./make.sh
+# CSV files test_liggghts.c compares with. Five minutes. Usage: ./make.sh
 set -eu
 cd "$(dirname "$0")"
 here=$PWD
@@ -57,4 +57,16 @@ for prime in 15485867 67867967 86028121; do # LIGGGHTS takes primes only
     liggghts -var seed $prime -in "$here/in.column" > column.log
     { echo x_m,y_m,z_m; last column.dump 0; } > "$here/column_start_$seed.csv"
     { echo x_m,y_m,z_m; last column.dump 12000; } > "$here/column_end_$seed.csv"
+done
+
+# Columns that slump at three rolling frictions: where they stood, all of it, and the profile after.
+seed=0
+for prime in 15485867 67867967 86028121; do
+    seed=$((seed + 1))
+    for rolling in 0.0 0.3 0.9; do
+        liggghts -var rolling $rolling -var seed $prime -in "$here/in.slump" > slump.log
+        { echo x_m,y_m,z_m; last slump.dump 0; } > "$here/slump_start_${rolling}_$seed.csv"
+        { echo x_m,z_m; last slump.dump 20000 | awk -F, '{ printf "%.5g,%.5g\n", $1, $3 }'; } \
+            > "$here/slump_end_${rolling}_$seed.csv"
+    done
 done
