@@ -51,6 +51,14 @@ liggghts -in "$here/in.cluster" > cluster.log
   for step in 20 40 60 80 100 200 400; do last cluster.dump $step | sed "s/^/$step,/"; done
 } > "$here/cluster.csv"
 
+# Sizes in turn: types 1, 2, 3.
+sed -e 's/^1 atom types/3 atom types/' cluster.data | awk '!rows { print } /^Atoms/ { rows = 1; next }
+    rows && NF { t = (NR % 3) + 1; print $1, t, (t == 1 ? 0.006 : t == 2 ? 0.0068 : 0.0075), $4, $5, $6, $7 } rows && !NF { print }' > cluster_laws.data
+liggghts -in "$here/in.cluster_laws" > cluster_laws.log
+{ echo step,x_m,y_m,z_m
+  for step in 40 80 120 160 200 400 800; do last cluster_laws.dump $step | sed "s/^/$step,/"; done
+} > "$here/cluster_laws.csv"
+
 seed=0
 for prime in 15485867 67867967 86028121; do # LIGGGHTS takes primes only
     seed=$((seed + 1))
@@ -70,3 +78,10 @@ for prime in 15485867 67867967 86028121; do
             > "$here/slump_end_${rolling}_$seed.csv"
     done
 done
+
+# A column at rest, every tenth grain.
+data "$here/slump_start_0.0_1.csv" 0.09 0.05 | sed 's/ 0.3 zlo/ 0.6 zlo/' > rest.data
+liggghts -in "$here/in.rest" > rest.log
+{ echo step,grain,x_m,y_m,z_m
+  for step in 4 8 20; do last rest.dump $step | awk -v s=$step 'NR % 10 == 1 { print s "," NR - 1 "," $0 }'; done
+} > "$here/rest.csv"
