@@ -118,6 +118,28 @@ static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_
     return DIG_OK;
 }
 
+// Variance of digs over an S they took part in.
+static double taken_part(const struct dig_scatter *const scatter, const size_t t, const size_t n,
+                         const struct dig_scatter_residual r[])
+{
+    double s[DIG_FEATURES][DIG_FEATURES];
+    double sum     = 0.0;
+    double freedom = 0.0;
+    (void)pool(scatter, t, n, r, FOLDS, s);
+    add_floor(s);
+    if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
+        return 1.0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory == t && r[i].packings > 1) {
+            sum += freedom_of(&r[i]) * size_of((const double(*)[DIG_FEATURES])s, &r[i]) /
+                   dig_scatter_factor(scatter, t, r[i].strength);
+            freedom += freedom_of(&r[i]);
+        }
+    }
+    return freedom > 0.0 ? sum / freedom : 1.0;
+}
+
 // Variance of digs over an S they took no part in, averaged over folds of entries.
 static double held_out(const struct dig_scatter *const scatter, const size_t t, const size_t n,
                        const struct dig_scatter_residual r[])
@@ -144,8 +166,10 @@ static double held_out(const struct dig_scatter *const scatter, const size_t t, 
     return freedom > 0.0 ? sum / freedom : 1.0;
 }
 
+// A residual is smaller against an S it took part in than a campaign's dig is: larger makes it one.
 static enum dig_status keep_residuals(struct dig_scatter *const scatter, const size_t t,
-                                      const size_t n, const struct dig_scatter_residual r[])
+                                      const size_t n, const struct dig_scatter_residual r[],
+                                      const double larger)
 {
     scatter->residual[t] = malloc((n + 1) * sizeof *scatter->residual[t]);
     if (scatter->residual[t] == NULL) {
@@ -156,7 +180,7 @@ static enum dig_status keep_residuals(struct dig_scatter *const scatter, const s
             continue;
         }
         const double scale =
-            1.0 / sqrt(freedom_of(&r[i]) * dig_scatter_factor(scatter, t, r[i].strength));
+            sqrt(larger / (freedom_of(&r[i]) * dig_scatter_factor(scatter, t, r[i].strength)));
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             scatter->residual[t][scatter->residuals[t]][f] = scale * r[i].value[f];
         }
@@ -172,15 +196,17 @@ static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const 
     if (status != DIG_OK) {
         return status;
     }
-    scatter->freedom[t] = pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
-    scatter->widened[t] = fmax(held_out(scatter, t, n, r), 1.0);
+    scatter->freedom[t]        = pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
+    const double held_out_size = held_out(scatter, t, n, r);
+    const double larger = fmax(held_out_size / fmax(taken_part(scatter, t, n, r), 1e-3), 1.0);
+    scatter->widened[t] = fmax(held_out_size, 1.0);
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         for (size_t j = 0; j < DIG_FEATURES; j++) {
             scatter->covariance[t][i][j] *= scatter->widened[t];
         }
     }
     add_floor(scatter->covariance[t]);
-    return keep_residuals(scatter, t, n, r);
+    return keep_residuals(scatter, t, n, r, larger);
 }
 
 // S from the standard deviations of the table's curves.

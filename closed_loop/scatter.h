@@ -23,7 +23,7 @@ struct dig_scatter {
     double widened[DIG_TRAJECTORY_MAX];  // variance of digs that took no part, over S
     double strength[DIG_TRAJECTORY_MAX]; // at which the factor is 1
     double slope[DIG_TRAJECTORY_MAX];    // of the factor over strength
-    // What S was pooled from, each with the covariance factor(strength) = 1 would have.
+    // What S was pooled from, as large as digs at factor 1 that took no part in S.
     size_t residuals[DIG_TRAJECTORY_MAX];
     double (*residual[DIG_TRAJECTORY_MAX])[DIG_FEATURES];
 };

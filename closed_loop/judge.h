@@ -1,0 +1,28 @@
+// How wrong curves are against the digs they are for: CONTRACT's error, its interval, its floor.
+
+#ifndef DIG_CLOSED_LOOP_JUDGE_H
+#define DIG_CLOSED_LOOP_JUDGE_H
+
+#include "closed_loop/scatter.h"
+#include "closed_loop/trace.h"
+
+/// 1 sigma of one dig about a predicted curve: the table's own relative scatter at each point, at
+/// the size and strength of the gravel at place; noise: variance of the prediction itself, in those
+/// of one dig.
+void dig_judge_sd(const struct dig_surface *surface, const struct dig_scatter *scatter,
+                  size_t trajectory, const double place[DIG_AXES], double noise,
+                  double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
+/// The error of the moment before or after over the digs that take[] allows, and its 90 % interval
+/// by drawing recordings: of one recording alone both ends are the value. All NaN without any.
+struct dig_error_range dig_judge_error(const struct dig_curve_set *set, size_t digs,
+                                       const struct dig_measured     measured[],
+                                       const struct dig_trace_curves curves[], const bool take[],
+                                       bool after, uint64_t seed);
+
+/// 1 sigma of what the error after would be of a complete model.
+double dig_judge_floor(const struct dig_curve_set *set, size_t digs,
+                       const struct dig_measured measured[], const struct dig_trace_curves curves[],
+                       const bool take[]);
+
+#endif // DIG_CLOSED_LOOP_JUDGE_H

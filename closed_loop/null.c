@@ -1,0 +1,146 @@
+#include "closed_loop/null.h"
+
+#include "closed_loop/chance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The misfit of means and of digs about them, without what does not depend on the digs.
+static void split(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                  struct dig_statistic *const statistic)
+{
+    statistic->about = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        statistic->about += batch->group[g].about;
+    }
+    statistic->misfit = fitted->squares - statistic->about;
+}
+
+void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                  const struct dig_hypothesis *const base, const size_t rivals,
+                  const struct dig_hypothesis rival[], const double start[], const bool thorough,
+                  struct dig_fitted fitted[], struct dig_statistic *const statistic)
+{
+    assert(rivals <= DIG_NULL_RIVALS);
+    dig_hypothesis_fit(batch, soil, base, start, thorough, &fitted[0]);
+    split(batch, &fitted[0], statistic);
+    statistic->gain = 0.0;
+    statistic->best = rivals;
+    for (size_t i = 0; i < rivals; i++) {
+        // The added effect starts on the side it may be on, a third of its range in.
+        double       from[DIG_HYPOTHESIS_NUMBERS];
+        const size_t last = DIG_AXES + rival[i].effects - 1;
+        memcpy(from, fitted[0].number, sizeof from);
+        if (rival[i].effects > base->effects) {
+            from[last] = 0.3 * soil->high[rival[i].effect[rival[i].effects - 1]];
+        }
+        dig_hypothesis_fit(batch, soil, &rival[i], from, thorough, &fitted[1 + i]);
+        const double gain = fitted[0].misfit - fitted[1 + i].misfit;
+        if (gain > statistic->gain) {
+            statistic->gain = gain;
+            statistic->best = i;
+        }
+    }
+}
+
+// One dig's scatter, whitened: a residual of the table, or normal numbers.
+static void draw_scatter(const struct dig_batch *const batch, const size_t g, uint64_t *const seed,
+                         double y[DIG_FEATURES])
+{
+    const struct dig_batch_group *const group = &batch->group[g];
+    const size_t                        n     = batch->scatter->residuals[group->trajectory];
+    if (n == 0) {
+        for (size_t k = 0; k < group->features; k++) {
+            y[k] = dig_chance_normal(seed);
+        }
+        return;
+    }
+    // In the group's units a residual of the table is one of its amplitude.
+    const double *const residual =
+        batch->scatter->residual[group->trajectory][dig_chance_index(seed, n)];
+    const double sign = dig_chance_uniform(seed) < 0.5 ? -1.0 : 1.0;
+    double       feature[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] = sign * residual[f] * group->amplitude[f / DIG_FEATURE_BINS];
+    }
+    dig_batch_whiten(group, feature, y);
+}
+
+// Fills drawn with digs that the fitted hypothesis might have made.
+static void draw_batch(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                       const struct dig_fitted *const fitted, uint64_t *const seed,
+                       struct dig_batch *const drawn)
+{
+    double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    for (size_t g = 0; g < batch->groups; g++) {
+        draw_scatter(batch, g, seed, common[g]);
+        for (size_t k = 0; k < batch->group[g].features; k++) {
+            common[g][k] *= sqrt(fitted->noise[g]);
+        }
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        const size_t g = batch->dig[i].group;
+        double       feature[DIG_FEATURES];
+        double       model[DIG_FEATURES];
+        double       own[DIG_FEATURES];
+        double       noise;
+        dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
+                                &batch->measured[batch->dig[i].measured], feature, &noise);
+        dig_batch_whiten(&batch->group[g], feature, model);
+        draw_scatter(batch, g, seed, own);
+        for (size_t k = 0; k < batch->group[g].features; k++) {
+            drawn->dig[i].y[k] = model[k] + common[g][k] + own[k];
+        }
+    }
+    dig_batch_summarise(drawn);
+}
+
+enum dig_status dig_null_draw(const struct dig_batch *const  batch,
+                              const struct dig_soil *const   soil,
+                              const struct dig_fitted *const fitted, const size_t rivals,
+                              const struct dig_hypothesis rival[], const size_t draws,
+                              uint64_t *const seed, struct dig_null *const null)
+{
+    assert(draws > 1 && rivals <= DIG_NULL_RIVALS);
+    struct dig_batch *const  drawn = malloc(sizeof *drawn);
+    struct dig_fitted *const again = malloc((rivals + 1) * sizeof *again);
+    if (drawn == NULL || again == NULL) {
+        free(drawn);
+        free(again);
+        return DIG_ENOMEM;
+    }
+    *drawn                     = *batch;
+    struct dig_null made       = { .draws = draws };
+    double          squares[3] = { 0.0 };
+    for (size_t d = 0; d < draws; d++) {
+        struct dig_statistic s;
+        draw_batch(batch, soil, fitted, seed, drawn);
+        dig_null_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number, false, again,
+                     &s);
+        const double value[3] = { s.misfit, s.about, s.gain };
+        for (size_t i = 0; i < 3; i++) {
+            const double off = value[i] - made.mean[i];
+            made.mean[i] += off / (double)(d + 1);
+            squares[i] += off * (value[i] - made.mean[i]);
+        }
+        made.chosen[s.best] += 1.0 / (double)draws;
+    }
+    for (size_t i = 0; i < 3; i++) {
+        made.variance[i] = squares[i] / (double)(draws - 1);
+    }
+    free(drawn);
+    free(again);
+    *null = made;
+    return DIG_OK;
+}
+
+double dig_null_p(const struct dig_null *const null, const size_t index, const double value)
+{
+    assert(index < 3);
+    if (!(null->mean[index] > 0.0) || !(null->variance[index] > 0.0)) {
+        return 1.0;
+    }
+    return dig_chance_gamma_tail(null->mean[index], null->variance[index], value);
+}

@@ -1,0 +1,49 @@
+// What a hypothesis would make of digs that it made itself: the distribution that decides what is
+// significant and what fits, by simulation with refit.
+//
+// Digs are drawn about the fitted model with the table's own residuals (or normal numbers where the
+// table has none), the errors common to a trajectory with the variance the fit gave them; each
+// draw is fitted as the campaign was. A tail beyond the draws is that of the gamma distribution
+// with their mean and variance.
+
+#ifndef DIG_CLOSED_LOOP_NULL_H
+#define DIG_CLOSED_LOOP_NULL_H
+
+#include "closed_loop/hypothesis.h"
+
+#include <stdint.h>
+
+#define DIG_NULL_RIVALS 24
+
+/// The statistics of one batch.
+struct dig_statistic {
+    double misfit; // of the means: what is left after the fit
+    double about;  // of the digs about their means
+    double gain;   // the most that a rival takes off the misfit
+    size_t best;   // which rival; the number of rivals when none takes anything off
+};
+
+struct dig_null {
+    size_t draws;
+    double mean[3], variance[3];        // of misfit, about, gain over the draws
+    double chosen[DIG_NULL_RIVALS + 1]; // share of draws in which a rival was best
+};
+
+/// Fits a batch by base and by base with each rival added, from the numbers given. Writes the
+/// fits: fitted[0] by base, fitted[1 + i] by rival i.
+void dig_null_fit(const struct dig_batch *batch, const struct dig_soil *soil,
+                  const struct dig_hypothesis *base, size_t rivals,
+                  const struct dig_hypothesis rival[], const double start[], bool thorough,
+                  struct dig_fitted fitted[], struct dig_statistic *statistic);
+
+/// Draws from fitted and fits again, draws times. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_null_draw(const struct dig_batch  *batch,
+                                             const struct dig_soil   *soil,
+                                             const struct dig_fitted *fitted, size_t rivals,
+                                             const struct dig_hypothesis rival[], size_t draws,
+                                             uint64_t *seed, struct dig_null *null);
+
+/// Chance of a statistic (index 0 misfit, 1 about, 2 gain) this large.
+double dig_null_p(const struct dig_null *null, size_t index, double value);
+
+#endif // DIG_CLOSED_LOOP_NULL_H

@@ -1,0 +1,310 @@
+#include "closed_loop/trace.h"
+
+#include "closed_loop/judge.h"
+#include "closed_loop/machine_side.h"
+#include "closed_loop/trace_parts.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct dig_trace_settings dig_trace_settings_default(void)
+{
+    return (struct dig_trace_settings){ .false_alarm = 0.01, .seed = 1, .bootstraps = 200 };
+}
+
+void dig_trace_finish(struct dig_trace *const trace)
+{
+    if (trace != NULL) {
+        free(trace->unlisted);
+        free(trace->curves);
+        memset(trace, 0, sizeof *trace);
+    }
+}
+
+// Everything that a trace needs memory for.
+struct work {
+    struct dig_surface         *surface;
+    struct dig_scatter         *scatter;
+    struct dig_soil            *soil;
+    struct dig_batch           *batch;
+    struct dig_search          *search;
+    struct dig_machine_finding *air;
+    struct dig_fitted           before;
+    bool                        fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
+};
+
+static void finish(struct work *const w)
+{
+    free(w->surface);
+    dig_scatter_destroy(w->scatter);
+    free(w->soil);
+    free(w->batch);
+    free(w->search);
+    free(w->air);
+}
+
+static enum dig_status out_of_memory(struct dig_error *const error)
+{
+    return dig_error_set(error, DIG_ENOMEM, "out of memory");
+}
+
+static enum dig_status prepare(const struct dig_curve_set *const set, const char *const table,
+                               const struct dig_effect_set *const effects, struct work *const w,
+                               struct dig_error *const error)
+{
+    w->surface = calloc(1, sizeof *w->surface);
+    w->batch   = calloc(1, sizeof *w->batch);
+    w->search  = calloc(1, sizeof *w->search);
+    w->air     = calloc(1, sizeof *w->air);
+    if (w->surface == NULL || w->batch == NULL || w->search == NULL || w->air == NULL) {
+        return out_of_memory(error);
+    }
+    if (dig_surface_fit(set, w->surface) != DIG_OK) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the table holds too few gravels to trace with, expected %d or more",
+                             DIG_SURFACE_TERMS);
+    }
+    enum dig_status status = table != NULL
+                                 ? dig_scatter_measure(table, w->surface, &w->scatter, error)
+                                 : dig_scatter_pool(w->surface, 0, NULL, &w->scatter);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_soil_create(w->surface, effects, &w->soil);
+    return status == DIG_EINVAL
+               ? dig_error_set(error, status,
+                               "the table of effects is of another scene, expected "
+                               "that of the table")
+               : status;
+}
+
+static enum dig_status check_digs(const struct dig_curve_set *const set, const size_t digs,
+                                  const struct dig_measured measured[], struct work *const w,
+                                  struct dig_error *const error)
+{
+    size_t fits = 0;
+    if (digs > DIG_MEASURED_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%zu digs, expected at most %d", digs,
+                             DIG_MEASURED_MAX);
+    }
+    for (size_t i = 0; i < digs; i++) {
+        const int t = measured[i].trajectory;
+        if (t < 0 || (size_t)t >= set->trajectories || !w->surface->known[t]) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: along a trajectory whose curves the table lacks",
+                                 measured[i].name);
+        }
+        w->holdout[i] = measured[i].use == DIG_USE_HOLDOUT;
+        w->fit[i]     = !w->holdout[i];
+        fits += w->fit[i] ? 1 : 0;
+    }
+    return fits >= 2 ? DIG_OK
+                     : dig_error_set(error, DIG_EINVAL,
+                                     "%zu identify and fit recordings, expected two or more: one "
+                                     "dig alone cannot tell a gravel from an effect",
+                                     fits);
+}
+
+// The batch of the digs to fit to, its scatter that of the gravel it turns out to be.
+static enum dig_status make_batch(const struct work *const w, const size_t digs,
+                                  const struct dig_measured measured[],
+                                  struct dig_fitted *const plain, struct dig_error *const error)
+{
+    static const struct dig_hypothesis none                           = { .effects = 0 };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    enum dig_status                    status =
+        dig_batch_make(w->surface, w->scatter, digs, measured, w->fit, NULL, w->batch);
+    for (int round = 0; round < 2 && status == DIG_OK; round++) {
+        dig_hypothesis_fit(w->batch, w->soil, &none, middle, true, plain);
+        if (round == 0) {
+            status = dig_batch_make(w->surface, w->scatter, digs, measured, w->fit, plain->number,
+                                    w->batch);
+        }
+    }
+    return status == DIG_OK
+               ? status
+               : dig_error_set(error, DIG_EINVAL,
+                               "the digs of one trajectory have too little measured in common");
+}
+
+static enum dig_status trace_machine(struct dig_machine_side *const         machine,
+                                     const struct dig_trace_settings *const settings,
+                                     struct work *const w, struct dig_measured measured[])
+{
+    enum dig_status status =
+        dig_machine_side_trace(machine, settings->false_alarm / 2.0, settings->seed, w->air);
+    if (status == DIG_OK && w->air->effects > 0) {
+        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
+    }
+    return status;
+}
+
+static struct dig_gravel gravel_at(const struct dig_surface *const surface, const double number[])
+{
+    return dig_surface_gravel(surface, number);
+}
+
+// Verdict of both sides, the machine's first.
+static enum dig_status fill_verdict(const struct dig_tracing *const         t,
+                                    const struct dig_machine_finding *const air,
+                                    struct dig_trace *const                 trace)
+{
+    const struct dig_search *const s = t->search;
+    for (size_t e = 0; e < air->effects; e++) {
+        trace->seen_in[trace->effects]  = DIG_PART_AIR;
+        trace->effect[trace->effects++] = air->effect[e];
+    }
+    for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects &&
+                       trace->effects < DIG_MODEL_EFFECTS_MAX;
+         e++) {
+        trace->seen_in[trace->effects] = dig_trace_seen_in(t, &s->chosen, e);
+        trace->effect[trace->effects++] =
+            dig_trace_effect(t->soil, &s->chosen, e, s->probability[e]);
+    }
+    const bool of_soil = s->significant && s->unlisted;
+    if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
+        trace->unlisted = calloc(1, sizeof *trace->unlisted);
+        if (trace->unlisted == NULL) {
+            return DIG_ENOMEM;
+        }
+        dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
+        (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
+                       of_soil ? s->without_name.depends_on : "the machine's motion in free air");
+        trace->seen_in[trace->effects] = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
+        trace->effect[trace->effects++] =
+            (struct dig_model_effect){ .effect = DIG_EFFECT_UNLISTED,
+                                       .probability =
+                                           of_soil ? 1.0 - s->p_complete : 1.0 - air->p_complete };
+    }
+    return DIG_OK;
+}
+
+static void fill_sets(const struct dig_search *const s, const struct dig_machine_finding *const air,
+                      struct dig_trace *const trace)
+{
+    for (size_t i = 0; i < air->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
+        trace->set[trace->sets++] = air->set[i];
+    }
+    for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
+        trace->set[trace->sets++] = s->set[i];
+    }
+}
+
+static void fill_decision(const struct dig_tracing *const t, const struct dig_machine_side *const m,
+                          const struct dig_machine_finding *const air,
+                          struct dig_trace *const                 trace)
+{
+    const struct dig_search *const s = t->search;
+    trace->false_alarm               = t->settings->false_alarm;
+    trace->significant               = air->significant || (s->significant && !s->outside);
+    trace->p_complete =
+        m != NULL ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;
+    dig_trace_fill_residuals(t, trace->residual);
+    trace->residual[DIG_PART_AIR] = m != NULL ? air->residual_air : (double)NAN;
+    for (size_t i = 0; i < air->candidates && trace->candidates < DIG_TRACE_CANDIDATES_MAX; i++) {
+        trace->candidate[trace->candidates++] = air->candidate[i];
+    }
+    trace->gravel_before = gravel_at(t->surface, t->before->number);
+    trace->gravel        = gravel_at(t->surface, s->chosen.number);
+    trace->low           = gravel_at(t->surface, s->chosen.low);
+    trace->high          = gravel_at(t->surface, s->chosen.high);
+}
+
+static void fill_errors(const struct dig_tracing *const t, const struct work *const w,
+                        struct dig_trace *const trace)
+{
+    bool any = false;
+    for (size_t i = 0; i < t->digs; i++) {
+        any = any || w->holdout[i];
+        trace->holdouts += w->holdout[i] ? 1 : 0;
+    }
+    trace->before = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, false,
+                                    t->settings->seed);
+    trace->after  = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, true,
+                                    t->settings->seed);
+    trace->noise_floor =
+        dig_judge_floor(t->set, t->digs, t->measured, trace->curves, any ? w->holdout : w->fit);
+}
+
+static enum dig_status report(const struct dig_tracing *const t, const struct work *const w,
+                              const struct dig_machine_side *const machine,
+                              struct dig_trace *const              trace)
+{
+    trace->curves          = calloc(t->digs, sizeof *trace->curves);
+    trace->digs            = t->digs;
+    enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
+    if (status == DIG_OK) {
+        fill_decision(t, machine, w->air, trace);
+        status = fill_verdict(t, w->air, trace);
+    }
+    if (status == DIG_OK) {
+        fill_sets(t->search, w->air, trace);
+        dig_trace_fill_candidates(t, trace);
+        dig_trace_fill_curves(t, trace->unlisted, trace->curves);
+        fill_errors(t, w, trace);
+        dig_trace_advise(t, trace);
+    }
+    return status;
+}
+
+static enum dig_status run(const struct dig_curve_set *const set, const char *const table,
+                           const struct dig_effect_set *const     effects,
+                           const struct dig_trace_settings *const settings,
+                           struct dig_machine_side *const machine, const size_t digs,
+                           struct dig_measured measured[], struct work *const w,
+                           struct dig_trace *const trace, struct dig_error *const error)
+{
+    enum dig_status status = prepare(set, table, effects, w, error);
+    if (status == DIG_OK) {
+        status = check_digs(set, digs, measured, w, error);
+    }
+    if (status == DIG_OK) {
+        status = make_batch(w, digs, measured, &w->before, error);
+    }
+    struct dig_fitted plain = w->before;
+    if (status == DIG_OK && machine != NULL) {
+        status = trace_machine(machine, settings, w, measured);
+        if (status == DIG_OK && w->air->effects > 0) {
+            status = make_batch(w, digs, measured, &plain, error);
+        }
+    }
+    if (status == DIG_OK) {
+        const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
+        status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
+                                w->search);
+    }
+    const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
+                                   digs, measured,   w->batch,   &w->before, w->search };
+    return status == DIG_OK ? report(&t, w, machine, trace) : status;
+}
+
+enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char *const table,
+                              const struct dig_effect_set *const     effects,
+                              const struct dig_trace_settings *const settings,
+                              struct dig_machine_side *const machine, const size_t digs,
+                              struct dig_measured measured[], struct dig_trace *const trace,
+                              struct dig_error *const error)
+{
+    assert(set != NULL && settings != NULL && measured != NULL && trace != NULL);
+    struct dig_error  why  = { "" };
+    struct work       w    = { .surface = NULL };
+    struct dig_trace *made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return out_of_memory(error);
+    }
+    const enum dig_status status =
+        run(set, table, effects, settings, machine, digs, measured, &w, made, &why);
+    if (status == DIG_OK) {
+        *trace = *made;
+    } else {
+        dig_trace_finish(made);
+        (void)dig_error_set(error, status, "%s",
+                            why.text[0] != '\0' ? why.text : dig_status_str(status));
+    }
+    free(made);
+    finish(&w);
+    return status;
+}

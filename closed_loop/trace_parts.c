@@ -1,0 +1,314 @@
+#include "closed_loop/trace_parts.h"
+
+#include "closed_loop/judge.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
+                                         const struct dig_fitted *const fitted, const size_t effect,
+                                         const double probability)
+{
+    const enum dig_effect_id       id    = fitted->hypothesis.effect[effect];
+    const size_t                   n     = DIG_AXES + effect;
+    const struct dig_effect *const known = dig_effect_of(id);
+    struct dig_model_effect made = { .effect = id, .probability = probability, .parameters = 1 };
+    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
+                   known != NULL ? known->parameter[0].name : "magnitude");
+    made.parameter[0].value = dig_soil_magnitude(soil, id, fitted->number[n]);
+    made.parameter[0].low   = dig_soil_magnitude(soil, id, fitted->low[n]);
+    made.parameter[0].high  = dig_soil_magnitude(soil, id, fitted->high[n]);
+    return made;
+}
+
+static bool is_lifting(const struct dig_curve_set *const set, const size_t trajectory,
+                       const size_t bin)
+{
+    const struct dig_trajectory *const t = &set->trajectory[trajectory];
+    size_t                             from;
+    size_t                             to;
+    dig_feature_bin(bin, &from, &to);
+    const double middle = 0.5 * (double)(from + to - 1) / (DIG_CURVE_POINTS - 1);
+    const size_t phase  = dig_trajectory_phase(t, dig_trajectory_time_s(t, set->tooth_m, middle));
+    return phase + 1 == t->phases && t->phase[phase].vz_mps > 0.0;
+}
+
+// Sums squares over the scatter's by part: what[] is in units of the table.
+static void sum_by_part(const struct dig_tracing *const     t,
+                        const struct dig_batch_group *const group, const double what[DIG_FEATURES],
+                        const double variance, double sum[DIG_TRACE_PHASES],
+                        double count[DIG_TRACE_PHASES])
+{
+    for (size_t i = 0; i < group->features; i++) {
+        const size_t        f        = group->feature[i];
+        const enum dig_part part     = is_lifting(t->set, group->trajectory, f % DIG_FEATURE_BINS)
+                                           ? DIG_PART_LIFTED
+                                           : DIG_PART_SOIL;
+        const double        relative = what[f] / group->amplitude[f / DIG_FEATURE_BINS];
+        sum[part] +=
+            relative * relative / (t->scatter->covariance[group->trajectory][f][f] * variance);
+        count[part] += 1.0;
+    }
+}
+
+static const struct dig_measured *first_of(const struct dig_batch *const batch, const size_t group)
+{
+    size_t i = 0;
+    while (batch->dig[i].group != group) {
+        i++;
+    }
+    return &batch->measured[batch->dig[i].measured];
+}
+
+enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
+                                const struct dig_fitted *const fitted, const size_t effect)
+{
+    double sum[DIG_TRACE_PHASES]   = { 0.0 };
+    double count[DIG_TRACE_PHASES] = { 0.0 };
+    double without[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(without, fitted->number, sizeof without);
+    without[DIG_AXES + effect] = 0.0;
+    for (size_t i = 0; i < t->batch->digs; i++) {
+        const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+        double                           with[DIG_FEATURES];
+        double                           plain[DIG_FEATURES];
+        double                           noise;
+        dig_hypothesis_features(t->soil, &fitted->hypothesis, fitted->number, dig, with, &noise);
+        dig_hypothesis_features(t->soil, &fitted->hypothesis, without, dig, plain, &noise);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            with[f] -= plain[f];
+        }
+        sum_by_part(t, &t->batch->group[t->batch->dig[i].group], with, 1.0, sum, count);
+    }
+    return sum[DIG_PART_LIFTED] > sum[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
+}
+
+void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual[DIG_TRACE_PHASES])
+{
+    double sum[DIG_TRACE_PHASES]   = { 0.0 };
+    double count[DIG_TRACE_PHASES] = { 0.0 };
+    for (size_t g = 0; g < t->batch->groups; g++) {
+        const struct dig_batch_group *const group = &t->batch->group[g];
+        double                              model[DIG_FEATURES];
+        double                              mean[DIG_FEATURES] = { 0.0 };
+        double                              noise;
+        dig_hypothesis_features(t->soil, &t->search->plain.hypothesis, t->search->plain.number,
+                                first_of(t->batch, g), model, &noise);
+        for (size_t i = 0; i < t->batch->digs; i++) {
+            if (t->batch->dig[i].group != g) {
+                continue;
+            }
+            double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+            double                           feature[DIG_FEATURES];
+            const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                    curve[c][k] = dig->value[c][k] - dig->machine[c][k];
+                }
+            }
+            dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                mean[f] += feature[f] / (double)group->digs;
+            }
+        }
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            mean[f] -= model[f];
+        }
+        sum_by_part(t, group, mean, 1.0 / (double)group->digs + t->search->plain.noise[g], sum,
+                    count);
+    }
+    for (size_t p = 0; p < DIG_TRACE_PHASES; p++) {
+        residual[p] = count[p] > 0.0 ? sqrt(sum[p] / count[p]) : (double)NAN;
+    }
+}
+
+// v of a trajectory at a fitted hypothesis; of one that no dig was fitted along, the surface's.
+static double noise_along(const struct dig_tracing *const t, const struct dig_fitted *const fitted,
+                          const size_t trajectory)
+{
+    for (size_t g = 0; g < t->batch->groups; g++) {
+        if (t->batch->group[g].trajectory == trajectory) {
+            return fitted->noise[g];
+        }
+    }
+    return dig_surface_noise(t->surface, trajectory, fitted->number);
+}
+
+static void add_unlisted(const struct dig_model_unlisted *const unlisted, const size_t trajectory,
+                         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double squares = 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            squares += curve[c][k] * curve[c][k] / DIG_CURVE_POINTS;
+        }
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve[c][k] += sqrt(squares) * (double)unlisted->share[trajectory][c][k];
+        }
+    }
+}
+
+void dig_trace_fill_curves(const struct dig_tracing *const        t,
+                           const struct dig_model_unlisted *const unlisted,
+                           struct dig_trace_curves                curves[])
+{
+    const struct dig_fitted *const before = t->before;
+    const struct dig_fitted *const after  = &t->search->chosen;
+    for (size_t i = 0; i < t->digs; i++) {
+        const struct dig_measured *const dig        = &t->measured[i];
+        const size_t                     trajectory = (size_t)dig->trajectory;
+        struct dig_trace_curves *const   c          = &curves[i];
+        memset(c, 0, sizeof *c);
+        if (!t->surface->known[trajectory]) {
+            continue;
+        }
+        dig_hypothesis_curve(t->soil, &before->hypothesis, before->number, dig, c->before);
+        dig_judge_sd(t->surface, t->scatter, trajectory, before->number,
+                     noise_along(t, before, trajectory), c->before_sd);
+        dig_hypothesis_curve(t->soil, &after->hypothesis, after->number, dig, c->after);
+        dig_judge_sd(t->surface, t->scatter, trajectory, after->number,
+                     noise_along(t, after, trajectory), c->after_sd);
+        if (unlisted != NULL) {
+            add_unlisted(unlisted, trajectory, c->after);
+        }
+        for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                c->after[channel][k] += dig->machine[channel][k];
+            }
+        }
+    }
+}
+
+// CONTRACT's error of the digs fitted to, by one candidate.
+static double fit_error(const struct dig_tracing *const t, const struct dig_fitted *const fitted)
+{
+    bool                           take[DIG_MEASURED_MAX] = { false };
+    struct dig_trace_curves *const curves                 = calloc(t->digs, sizeof *curves);
+    if (curves == NULL) {
+        return (double)NAN;
+    }
+    for (size_t i = 0; i < t->batch->digs; i++) {
+        const size_t m = t->batch->dig[i].measured;
+        take[m]        = true;
+        dig_hypothesis_curve(t->soil, &fitted->hypothesis, fitted->number, &t->measured[m],
+                             curves[m].after);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curves[m].after[DIG_CHANNEL_MY_Nm][k] += t->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    const double error = dig_judge_error(t->set, t->digs, t->measured, curves, take, true, 1).value;
+    free(curves);
+    return error;
+}
+
+void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_search *const s                      = t->search;
+    bool                           taken[DIG_NULL_RIVALS] = { false };
+    for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
+         turn++) {
+        size_t next = s->rivals;
+        for (size_t i = 0; i < s->rivals; i++) {
+            if (!taken[i] && (next == s->rivals || s->log_evidence[i] > s->log_evidence[next])) {
+                next = i;
+            }
+        }
+        taken[next]                         = true;
+        const struct dig_fitted *const f    = &s->rival[next];
+        const struct dig_model_effect  made = dig_trace_effect(t->soil, f, 0, 0.0);
+        struct dig_candidate *const    c    = &trace->candidate[trace->candidates++];
+        *c                                  = (struct dig_candidate){ .effect       = made.effect,
+                                                                      .log_evidence = s->log_evidence[next],
+                                                                      .p_fit        = s->rival_fit[next],
+                                                                      .inclusion    = s->inclusion[next],
+                                                                      .error        = fit_error(t, f),
+                                                                      .parameters   = made.parameters,
+                                                                      .seen_in      = dig_trace_seen_in(t, f, 0),
+                                                                      .gravel       = dig_surface_gravel(t->surface, f->number) };
+        memcpy(c->parameter, made.parameter, sizeof c->parameter);
+    }
+}
+
+// How far apart two fitted hypotheses are along a trajectory, in scatters of one dig.
+static double apart(const struct dig_tracing *const t, const struct dig_fitted *const a,
+                    const struct dig_fitted *const b, const size_t trajectory)
+{
+    const struct dig_measured dig = { .trajectory = (int)trajectory, .pass = 1, .pace = 1.0 };
+    double                    x[DIG_FEATURES];
+    double                    y[DIG_FEATURES];
+    double                    size[DIG_FORCE_CHANNELS];
+    double                    noise;
+    double                    sum = 0.0;
+    dig_hypothesis_features(t->soil, &a->hypothesis, a->number, &dig, x, &noise);
+    dig_hypothesis_features(t->soil, &b->hypothesis, b->number, &dig, y, &noise);
+    dig_features_amplitude(x, NULL, size);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const double off = (x[f] - y[f]) / size[f / DIG_FEATURE_BINS];
+        sum += off * off / t->scatter->covariance[trajectory][f][f];
+    }
+    return sqrt(sum / DIG_FEATURES);
+}
+
+static const struct dig_fitted *rival_of(const struct dig_search *const s,
+                                         const enum dig_effect_id       effect)
+{
+    for (size_t i = 0; i < s->rivals; i++) {
+        if (s->rival[i].hypothesis.effect[0] == effect) {
+            return &s->rival[i];
+        }
+    }
+    return NULL;
+}
+
+static void advise_on_set(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_candidate_set *const set  = &trace->set[0];
+    const struct dig_fitted *const        a    = rival_of(t->search, set->effect[0]);
+    const struct dig_fitted *const        b    = rival_of(t->search, set->effect[1]);
+    size_t                                best = t->set->trajectories;
+    double                                most = 0.0;
+    for (size_t k = 0; a != NULL && b != NULL && k < t->set->trajectories; k++) {
+        const bool known = t->surface->known[k] && dig_soil_knows(t->soil, set->effect[0], k) &&
+                           dig_soil_knows(t->soil, set->effect[1], k);
+        const double far = known ? apart(t, a, b, k) : 0.0;
+        best             = far > most ? k : best;
+        most             = fmax(far, most);
+    }
+    if (best < t->set->trajectories) {
+        const double digs = fmax(ceil(pow(3.0 / fmax(most, 0.1), 2.0)), 1.0);
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "%s and %s differ most along %s, by %.1f scatters of one dig: %.0f more "
+                       "digs of it would tell them apart",
+                       dig_effect_name(set->effect[0]), dig_effect_name(set->effect[1]),
+                       t->set->trajectory[best].name, most, digs);
+    }
+}
+
+void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_search *const s = t->search;
+    if (s->outside) {
+        const struct dig_gravel g = dig_surface_gravel(t->surface, s->chosen.number);
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "no effect: the gravel lies beyond the table's grid, near friction %.2f, "
+                       "rolling %.2f, %.0f kg/m3; compute a table that holds it",
+                       g.value[DIG_AXIS_FRICTION], g.value[DIG_AXIS_ROLLING],
+                       g.value[DIG_AXIS_DENSITY_kgpm3]);
+    } else if (s->unlisted) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "no effect of the list explains the digs; what is left depends on %s",
+                       s->without_name.functions > 0 ? s->without_name.depends_on
+                                                     : "nothing that was tried");
+    } else if (trace->sets > 0 && trace->set[0].effects > 1 &&
+               !dig_effect_is_of_machine(trace->set[0].effect[0])) {
+        advise_on_set(t, trace);
+    } else if (s->significant && s->chosen.hypothesis.effects > 0) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "a table computed with %s in its beds would serve better than a correction",
+                       dig_effect_name(s->chosen.hypothesis.effect[0]));
+    }
+}

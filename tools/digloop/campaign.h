@@ -1,0 +1,27 @@
+// A campaign folder as the closed loop wants it: its digs measured, its machine's samples at hand.
+
+#ifndef DIG_TOOLS_DIGLOOP_CAMPAIGN_H
+#define DIG_TOOLS_DIGLOOP_CAMPAIGN_H
+
+#include "closed_loop/machine_side.h"
+#include "closed_loop/measured.h"
+#include "core/curve.h"
+#include "core/error.h"
+
+struct digloop_campaign {
+    size_t                   digs;
+    struct dig_measured     *measured; // [digs], malloc'ed
+    struct dig_machine_side *machine;  // NULL: the digs are force recordings
+};
+
+/// Reads FOLDER/campaign.yaml, its recordings and its machine. Refuses a scene that is not similar
+/// to the table's, a dig that is not along the trajectory named for it, force and machine
+/// recordings mixed; *error names file and reason. Free with digloop_campaign_finish().
+DIG_MUST_CHECK enum dig_status digloop_campaign_load(const char                 *folder,
+                                                     const struct dig_curve_set *set,
+                                                     struct digloop_campaign    *campaign,
+                                                     struct dig_error           *error);
+
+void digloop_campaign_finish(struct digloop_campaign *campaign);
+
+#endif // DIG_TOOLS_DIGLOOP_CAMPAIGN_H

@@ -1,0 +1,37 @@
+// digloop's commands, and what its command line asks for.
+
+#ifndef DIG_TOOLS_DIGLOOP_COMMANDS_H
+#define DIG_TOOLS_DIGLOOP_COMMANDS_H
+
+#include "core/curve.h"
+#include "core/error.h"
+
+#include <stdbool.h>
+
+#define DIGLOOP_RECORDINGS_MAX 64
+
+struct digloop_options {
+    const char *command, *table;
+    int         recordings; // or campaign folders: what stands after the table
+    char      **recording;
+    const char *identified, *trajectory, *out, *measured; // identify, predict
+    const char *effects, *json_out, *html, *add;          // trace
+    bool        json;
+};
+
+/// Reads the command line; prints help or version and exits where asked to. *error says what is
+/// wrong with it.
+DIG_MUST_CHECK enum dig_status
+digloop_parse(int argc, char *argv[], struct digloop_options *options, struct dig_error *error);
+
+DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_options *options,
+                                                const struct dig_curve_set   *set,
+                                                struct dig_error             *error);
+DIG_MUST_CHECK enum dig_status digloop_predict(const struct digloop_options *options,
+                                               const struct dig_curve_set   *set,
+                                               struct dig_error             *error);
+DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *options,
+                                             const struct dig_curve_set   *set,
+                                             struct dig_error             *error);
+
+#endif // DIG_TOOLS_DIGLOOP_COMMANDS_H

@@ -1,0 +1,179 @@
+#include "estimator/predict.h"
+#include "closed_loop/observe.h"
+#include "closed_loop/score.h"
+#include "estimator/match.h"
+#include "files/identity_json.h"
+#include "files/recording_csv.h"
+#include "tools/digloop/commands.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GRID_s 0.005
+
+// The match as far as a prediction needs it.
+static struct dig_match match_of(const struct dig_identity *const id)
+{
+    struct dig_match m = { .valid       = true,
+                           .gravel      = id->gravel,
+                           .mean        = id->mean,
+                           .low         = id->low,
+                           .high        = id->high,
+                           .distance    = id->distance,
+                           .noise_floor = id->noise_floor,
+                           .outside     = id->outside };
+    m.samples          = id->samples < DIG_MATCH_SAMPLES ? id->samples : DIG_MATCH_SAMPLES;
+    memcpy(m.sample, id->sample, m.samples * sizeof m.sample[0]);
+    return m;
+}
+
+static double at(const float curve[DIG_CURVE_POINTS], const double progress)
+{
+    const double place = fmin(fmax(progress, 0.0), 1.0) * (DIG_CURVE_POINTS - 1);
+    const size_t i     = (size_t)fmin(floor(place), DIG_CURVE_POINTS - 2);
+    const double f     = place - (double)i;
+    return (1.0 - f) * (double)curve[i] + f * (double)curve[i + 1];
+}
+
+// The predicted curve as a force recording: what another program may read like a measured one.
+static enum dig_status write_curve(const char *const path, const struct dig_curve_set *const set,
+                                   const struct dig_trajectory *const t,
+                                   const struct dig_curve *const      curve,
+                                   struct dig_error *const            error)
+{
+    const double         duration_s = dig_trajectory_duration_s(t);
+    const double         whole_m    = dig_trajectory_path_m(t, set->tooth_m, duration_s);
+    const size_t         rows       = (size_t)floor(duration_s / GRID_s) + 1;
+    struct dig_recording r          = { rows, calloc(rows, sizeof *r.row) };
+    if (r.row == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    for (size_t i = 0; i < rows; i++) {
+        const double          t_s      = (double)i * GRID_s;
+        const double          progress = dig_trajectory_path_m(t, set->tooth_m, t_s) / whole_m;
+        const struct dig_pose pose     = dig_trajectory_pose(t, t_s);
+        r.row[i]                       = (struct dig_force_row){ .t_s       = t_s,
+                                                                 .pin_x_m   = pose.x_m,
+                                                                 .pin_z_m   = pose.z_m,
+                                                                 .theta_deg = pose.theta_rad * 180.0 / acos(-1.0),
+                                                                 .Fx_N      = at(curve->mean[DIG_CHANNEL_FX_N], progress),
+                                                                 .Fz_N      = at(curve->mean[DIG_CHANNEL_FZ_N], progress),
+                                                                 .My_Nm = at(curve->mean[DIG_CHANNEL_MY_Nm], progress),
+                                                                 .carried_kg =
+                                                                     at(curve->mean[DIG_CHANNEL_CARRIED_kg], progress) };
+    }
+    const enum dig_status status = dig_recording_write(path, &r, error);
+    dig_recording_finish(&r);
+    return status;
+}
+
+static void put_array(FILE *const to, const char *const name, const float curve[DIG_CURVE_POINTS])
+{
+    (void)fprintf(to, ",\n \"%s\": [", name);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(to, "%s%.5g", k == 0 ? "" : ", ", (double)curve[k]);
+    }
+    (void)fputs("]", to);
+}
+
+// How wrong the predicted curve is against a measured dig.
+static enum dig_status score_measured(const struct digloop_options *const options,
+                                      const struct dig_curve_set *const set, const size_t t,
+                                      const struct dig_curve *const curve,
+                                      struct dig_score *const score, struct dig_error *const error)
+{
+    struct dig_recording   recording = { 0 };
+    struct dig_observation seen      = { .trajectory = 0 };
+    enum dig_status        status    = dig_recording_read(options->measured, &recording, error);
+    if (status == DIG_OK) {
+        struct dig_error why = { "" };
+        status               = dig_observe_recording(set, &recording, &seen, &why);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", options->measured, why.text);
+        }
+    }
+    dig_recording_finish(&recording);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if ((size_t)seen.trajectory != t) {
+        return dig_error_set(error, DIG_EINVAL, "%s: a dig along %s, expected one along %s",
+                             options->measured, set->trajectory[seen.trajectory].name,
+                             set->trajectory[t].name);
+    }
+    double predicted_Nm[DIG_CURVE_POINTS];
+    double sigma_Nm[DIG_CURVE_POINTS];
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        predicted_Nm[k] = (double)curve->mean[DIG_CHANNEL_MY_Nm][k];
+        sigma_Nm[k]     = (double)curve->sd[DIG_CHANNEL_MY_Nm][k];
+    }
+    dig_score_add(score, &set->trajectory[t], set->tooth_m, seen.first, seen.last, seen.moment_Nm,
+                  predicted_Nm, sigma_Nm);
+    return DIG_OK;
+}
+
+enum dig_status digloop_predict(const struct digloop_options *const options,
+                                const struct dig_curve_set *const   set,
+                                struct dig_error *const             error)
+{
+    assert(options->identified != NULL && options->trajectory != NULL);
+    struct dig_identity id;
+    enum dig_status     status = dig_identity_read(options->identified, &id, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (strcmp(id.scene_hash, set->scene_hash) != 0) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "
+                             "one scene",
+                             options->identified, id.scene_hash, options->table, set->scene_hash);
+    }
+    size_t t = 0;
+    while (t < set->trajectories && strcmp(set->trajectory[t].name, options->trajectory) != 0) {
+        t++;
+    }
+    if (t == set->trajectories) {
+        return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory",
+                             options->trajectory, options->table);
+    }
+
+    const struct dig_match match = match_of(&id);
+    struct dig_curve       curve;
+    status = dig_predict_curve(set, &match, t, &curve);
+    if (status != DIG_OK) {
+        return dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+    }
+    const double peak_Nm  = dig_predict_peak_Nm(&curve);
+    const double energy_J = dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &curve);
+    if (options->out != NULL) {
+        status = write_curve(options->out, set, &set->trajectory[t], &curve, error);
+    }
+    struct dig_score score = { 0 };
+    if (status == DIG_OK && options->measured != NULL) {
+        status = score_measured(options, set, t, &curve, &score, error);
+    }
+    if (status == DIG_OK && options->json) {
+        (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",
+                     set->trajectory[t].name, peak_Nm, energy_J);
+        if (options->measured != NULL) {
+            (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&score),
+                         dig_score_noise_floor(&score));
+        }
+        put_array(stdout, "moment_Nm", curve.mean[DIG_CHANNEL_MY_Nm]);
+        put_array(stdout, "sigma_Nm", curve.sd[DIG_CHANNEL_MY_Nm]);
+        put_array(stdout, "force_x_N", curve.mean[DIG_CHANNEL_FX_N]);
+        put_array(stdout, "force_z_N", curve.mean[DIG_CHANNEL_FZ_N]);
+        (void)puts("}");
+    } else if (status == DIG_OK) {
+        (void)printf("  %s: peak %.3f N·m, energy %.3f J at the table's scale\n",
+                     set->trajectory[t].name, peak_Nm, energy_J);
+        if (options->measured != NULL) {
+            (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
+                         dig_score_error(&score), dig_score_noise_floor(&score));
+        }
+    }
+    return status;
+}

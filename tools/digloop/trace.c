@@ -1,0 +1,127 @@
+// digloop trace: a campaign folder in, what the model lacks out.
+
+#include "closed_loop/trace.h"
+#include "closed_loop/trace_report.h"
+#include "tables/load_effects.h"
+#include "tools/digloop/campaign.h"
+#include "tools/digloop/commands.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define PATH_SIZE 1024
+
+// TABLE_effects.sqlite beside TABLE.sqlite.
+static void name_effects(const char *const table, char path[const PATH_SIZE])
+{
+    const char *const dot = strrchr(table, '.');
+    const int         stem =
+        dot != NULL && strchr(dot, '/') == NULL ? (int)(dot - table) : (int)strlen(table);
+    (void)snprintf(path, PATH_SIZE, "%.*s_effects%s", stem, table, table + stem);
+}
+
+// The table of effects asked for, or the one beside the table if there is one; *path names it, ""
+// when there is none.
+static enum dig_status load_effects(const struct digloop_options *const options,
+                                    const struct dig_curve_set *const   set,
+                                    char                                path[const PATH_SIZE],
+                                    struct dig_effect_set **const       effects,
+                                    struct dig_error *const             error)
+{
+    struct stat found;
+    if (options->effects != NULL) {
+        (void)snprintf(path, PATH_SIZE, "%s", options->effects);
+    } else {
+        name_effects(options->table, path);
+        if (stat(path, &found) != 0) {
+            (void)fprintf(stderr,
+                          "digloop: no %s: of the soil's effects only rate dependence and wear can "
+                          "be named, and anything else is \"unlisted\"\n",
+                          path);
+            path[0] = '\0';
+            return DIG_OK;
+        }
+    }
+    return dig_effects_load(path, set, effects, error);
+}
+
+static enum dig_status write_json(const char *const path, const struct dig_trace *const trace,
+                                  struct dig_error *const error)
+{
+    if (strcmp(path, "-") == 0) {
+        dig_trace_json(trace, stdout);
+        return DIG_OK;
+    }
+    FILE *const to = fopen(path, "w");
+    if (to == NULL) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    dig_trace_json(trace, to);
+    const bool failed = ferror(to) != 0;
+    return fclose(to) == 0 && !failed ? DIG_OK
+                                      : dig_error_set(error, DIG_EIO, "%s: not written", path);
+}
+
+static enum dig_status write_results(const struct digloop_options *const  options,
+                                     const struct dig_curve_set *const    set,
+                                     const struct digloop_campaign *const campaign,
+                                     const struct dig_trace *const        trace,
+                                     struct dig_error *const              error)
+{
+    enum dig_status status = DIG_OK;
+    if (options->json_out != NULL) {
+        status = write_json(options->json_out, trace, error);
+    }
+    if (status == DIG_OK && options->html != NULL) {
+        const struct dig_trace_subject subject = {
+            .campaign = options->recording[0],
+            .table    = options->table,
+            .set      = set,
+            .digs     = campaign->digs,
+            .measured = campaign->measured,
+        };
+        status = dig_trace_html(trace, &subject, options->html, error);
+    }
+    // People read on standard error when a program reads standard output.
+    const bool for_program = options->json_out != NULL && strcmp(options->json_out, "-") == 0;
+    dig_trace_text(trace, for_program ? stderr : stdout);
+    return status;
+}
+
+enum dig_status digloop_trace(const struct digloop_options *const options,
+                              const struct dig_curve_set *const set, struct dig_error *const error)
+{
+    char                    path[PATH_SIZE];
+    struct dig_effect_set  *effects  = NULL;
+    struct digloop_campaign campaign = { .digs = 0 };
+    struct dig_trace       *trace    = calloc(1, sizeof *trace);
+    enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
+    if (status == DIG_OK) {
+        status = load_effects(options, set, path, &effects, error);
+    }
+    if (status == DIG_OK) {
+        status = digloop_campaign_load(options->recording[0], set, &campaign, error);
+    }
+    if (status == DIG_OK) {
+        const struct dig_trace_settings settings = dig_trace_settings_default();
+        struct dig_error                why      = { "" };
+        status = dig_trace_run(set, options->table, effects, &settings, campaign.machine,
+                               campaign.digs, campaign.measured, trace, &why);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", options->recording[0], why.text);
+        }
+    }
+    if (status == DIG_OK) {
+        status = write_results(options, set, &campaign, trace, error);
+    }
+    if (trace != NULL) {
+        dig_trace_finish(trace);
+    }
+    free(trace);
+    digloop_campaign_finish(&campaign);
+    dig_effect_set_destroy(effects);
+    return status;
+}
