@@ -58,7 +58,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup demo tables evaluate test check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
+.PHONY: all setup demo tables evaluate test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -171,6 +171,20 @@ fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S second
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
+# Another machine, other formulas: what digloop trace is judged by. BLIND_N campaigns without an
+# effect and, in proportion, those with one; BLIND_ARGS: see tests/blind/README.md.
+BLIND_N     ?= 1000
+BLIND_TABLE ?= $(firstword $(wildcard tables/rig.sqlite tables/coarse.sqlite))
+blind_objs  := $(call objs,$(wildcard tests/blind/*.c))
+bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig ## How often digloop trace is right, on campaigns it never saw
+	$(Q)mkdir -p $(BUILD)/blind
+	$(Q)$(BUILD)/tests/blind/blind --table $(BLIND_TABLE) --bin $(BUILD)/bin --cache $(BUILD)/blind \
+	    --split judge -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
+
+$(BUILD)/tests/blind/blind: $(blind_objs) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
 
