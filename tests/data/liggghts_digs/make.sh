@@ -1,0 +1,182 @@
+#!/bin/sh
+# Digs of the rig scene (config/scenes/rig.yaml) in gravels that hold one effect, computed with
+# LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts): writes GRAVEL_seedN__TRAJECTORY.csv beside itself.
+# Five minutes of one core for one seed. Usage: ./make.sh GRAVEL SEED
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+gravel=$1
+seed=$2
+case $seed in # LIGGGHTS takes primes only
+1) prime=15485867 ;; 2) prime=67867967 ;; 3) prime=86028121 ;;
+*) echo "seed: $seed, expected 1, 2 or 3" >&2; exit 2 ;;
+esac
+
+# What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1.
+friction=.5 rolling=.5 density=2500
+radii=".00375" shares="1" clump= slope_deg=0
+pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
+case $gravel in
+plain) ;;
+poly) radii=".003 .00375 .005" shares=".3 .4 .3" ;;
+cohesion) pull=1e5 ;;
+cohesion_all) pull=1e5 stick=1e5 ;;
+clump) clump=yes ;;
+other) friction=.7 density=1500 ;;
+slope_up) slope_deg=8 ;;
+slope_down) slope_deg=-8 ;;
+*) echo "gravel: $gravel, expected one of the case above" >&2; exit 2 ;;
+esac
+
+law="hooke tangential history rolling_friction epsd2"
+[ "$pull" = 0 ] || law="hooke tangential history cohesion sjkr rolling_friction epsd2"
+
+work=$(mktemp -d)
+[ -n "${KEEP:-}" ] || trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# The bucket of config/scenes/rig.yaml: four plates across the width, two sides as fans.
+awk 'function point(k, y) { print "   vertex", x[k], y, z[k] }
+    function facet(a, ya, b, yb, c, yc) {
+        print " facet normal 0 0 0\n  outer loop"; point(a, ya); point(b, yb); point(c, yc)
+        print "  endloop\n endfacet" }
+    BEGIN {
+        split("0 -.04 -.052 -.04 -.012", x, " "); split("-.09 -.072 -.042 -.012 0", z, " ")
+        print "solid bucket"
+        for (k = 1; k < 5; k++) { facet(k, -.035, k + 1, -.035, k + 1, .035); facet(k, -.035, k + 1, .035, k, .035) }
+        for (k = 2; k < 5; k++) { facet(1, -.035, k, -.035, k + 1, -.035); facet(1, .035, k, .035, k + 1, .035) }
+        print "endsolid bucket" }' > bucket.stl
+
+wall() { # NAME AXISplane OFFSET
+    echo "fix $1 all wall/gran model $law primitive type 1 $2 $3"
+}
+pairs() { # GRAIN-GRAIN GRAIN-OTHER: a 4 x 4 matrix of types
+    echo "4 $1 $1 $1 $2  $1 $1 $1 $2  $1 $1 $1 $2  $2 $2 $2 $2"
+}
+
+laws() {
+    cat <<EOF
+atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+region reg block -0.01 0.32 -0.07 0.07 -0.01 0.6 units box
+create_box 4 reg
+neighbor 0.0015 bin
+neigh_modify delay 0 every 1 check yes
+fix m1 all property/global youngsModulus peratomtype 5e6 5e6 5e6 5e6
+fix m2 all property/global poissonsRatio peratomtype .2 .2 .2 .2
+fix m3 all property/global coefficientRestitution peratomtypepair $(pairs .2 .2)
+fix m4 all property/global coefficientFriction peratomtypepair $(pairs $friction $friction)
+fix m5 all property/global characteristicVelocity scalar 2
+fix m6 all property/global coefficientRollingFriction peratomtypepair $(pairs $rolling $rolling)
+fix m7 all property/global cohesionEnergyDensity peratomtypepair $(pairs $pull $stick)
+pair_style gran model $law
+pair_coeff * *
+timestep 6.25e-5
+fix gravi all gravity 9.81 vector 0 0 -1
+EOF
+    wall x1 xplane 0
+    wall x2 xplane .31
+    wall y1 yplane -.06
+    wall y2 yplane .06
+    # Walls know grains by the type that is named here; all grains have the same constants.
+    wall z1 zplane 0
+}
+
+# Volume poured: 0.694401 times the levelled box, at a volume fraction of 0.3.
+pour() {
+    type=0
+    names=
+    for radius in $radii; do
+        type=$((type + 1))
+        share=$(echo "$shares" | cut -d' ' -f$type)
+        names="$names pts$type $share"
+        seed_of=$(echo "32452843 49979693 86028157" | cut -d' ' -f$type)
+        if [ "$clump" ]; then
+            # Two spheres a radius apart, together as large as one of 7.5 mm.
+            echo "fix pts$type all particletemplate/multisphere $seed_of atom_type 1 volume_limit 1e-15 density constant $density nspheres 2 ntry 4000000 spheres" \
+                "-.00157481 0 0 .00314962  .00157481 0 0 .00314962 type 1"
+        else
+            echo "fix pts$type all particletemplate/sphere $seed_of atom_type $type density constant $density radius constant $radius"
+        fi
+    done
+    fall="vel constant 0 0 -0.3 insert_every once overlapcheck yes all_in yes maxattempt 300 region fill ntry_mc 10000 volumefraction_region 0.3"
+    [ -z "$clump" ] || fall="vel constant 0 0 -0.3 orientation random insert_every once overlapcheck yes all_in yes maxattempt 300 region fill ntry_mc 10000 volumefraction_region 0.3"
+    cat <<EOF
+fix pdd all particledistribution/discrete 49979687 $type$names
+region fill block 0 .31 -.06 .06 0 .196747 units box
+fix ins all insert/pack seed $prime distributiontemplate pdd $fall
+fix integr all $([ "$clump" ] && echo multisphere || echo nve/sphere)
+thermo_style custom step atoms ke cpu
+thermo 3200
+thermo_modify lost ignore norm no
+run 1
+unfix ins
+run 7200
+EOF
+    # A slope turns the surface about the place where the bucket enters.
+    type=0
+    for radius in $radii; do
+        type=$((type + 1))
+        awk -v r="$radius" -v t=$type -v s="$slope_deg" -v c="$clump" 'BEGIN {
+            a = s * atan2(0, -1) / 180
+            if (c != "") r = .00314962
+            printf "region cut%d plane .09 0 %.8g %.8g 0 %.8g side in units box\n", t, .085 - r / cos(a), -sin(a), cos(a)
+            printf "group type%d type %d\ngroup top%d region cut%d\ngroup del%d intersect type%d top%d\n", t, t, t, t, t, t, t }'
+        echo "delete_atoms group del$type compress no"
+    done
+    echo "run 2400"
+}
+
+# The trajectories of config/scenes/rig.yaml.
+dig() { # TRAJECTORY
+    case $1 in
+    simpleA) start=".08329371406 .1719333244 -15" phases="L 9600 .02515 -.04356107781
+L 32000 .0463 0
+L 6400 0 .0915" ;;
+    actual) start=".09 .1629422863 -30" phases="L 12800 .02956559819 -.04069355482
+R 17600 17.93 .1136524786 .1303874425
+L 35200 .0463 0
+R 32000 20.05 .2155124786 .1303874425
+L 11200 0 .0915" ;;
+    esac
+    echo "$start" | { read -r x z theta
+        echo "fix bucket all mesh/surface/stress file bucket.stl type 4 rotate axis 0 -1 0 angle $theta move $x 0 $z reference_point $x 0 $z"; }
+    cat <<EOF
+fix bw all wall/gran model $law mesh n_meshes 1 meshes bucket
+thermo 16000
+run 0
+reset_timestep 0
+fix out all ave/time 1 80 80 f_bucket[1] f_bucket[2] f_bucket[3] f_bucket[4] f_bucket[5] f_bucket[6] f_bucket[7] f_bucket[9] file $1.txt
+EOF
+    echo "$phases" | while read -r kind steps a b c; do
+        if [ "$kind" = L ]; then
+            echo "fix mv all move/mesh mesh bucket linear $a 0 $b"
+        else
+            echo "fix mv all move/mesh mesh bucket rotate origin $b 0 $c axis 0 -1 0 period $(awk -v w="$a" 'BEGIN { printf "%.10g", 360 / w }')"
+        fi
+        echo "run $steps"
+        echo "unfix mv"
+    done
+}
+
+# Windows of 80 steps into a force recording.
+recording() { # TRAJECTORY
+    echo "# LIGGGHTS-PUBLIC 3.8, gravel $gravel, seed $seed: tests/data/liggghts_digs/make.sh"
+    echo "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm"
+    awk -v name="$1" '!/^#/ {
+        t = ($1 - 39.5) * 6.25e-5
+        theta = -15
+        if (name == "actual") {
+            theta = -30 + 17.93 * (t < .8 ? 0 : t < 1.9 ? t - .8 : 1.1) + 20.05 * (t < 4.1 ? 0 : t < 6.1 ? t - 4.1 : 2)
+        }
+        printf "%.6f,%.6f,%.6f,%.4f,%.5g,%.5g,%.5g,%.5g,%.5g,%.5g\n", t, $8, $9, theta, $2, $3, $4, $5, $6, $7 }' "$1.txt"
+}
+
+for trajectory in ${3:-simpleA actual}; do
+    { laws; pour; dig "$trajectory"; } > "in.$trajectory"
+    liggghts -in "in.$trajectory" > "$trajectory.log" || { tail -20 "$trajectory.log" >&2; exit 1; }
+    recording "$trajectory" > "$here/${gravel}_seed${seed}__$trajectory.csv"
+done
