@@ -47,7 +47,7 @@ BODY size_t pad(const size_t count, struct dig_block *const block)
     const size_t padded = (count + LANES - 1) / LANES * LANES;
     for (size_t c = count; c < padded; c++) {
         for (int k = 0; k < 12; k++) {
-            block->in[k][c] = 1e9;
+            block->in[k][c] = 1e3;
         }
     }
     return padded;
@@ -131,6 +131,7 @@ BODY void put_columns(const four row[4], double (*const field)[DIG_BLOCK], const
 {
     four column[4];
     transpose(row, column);
+#pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         store_four(&field[k][c], &column[k]);
     }
@@ -145,6 +146,7 @@ BODY void gather(const struct dig_contacts *const list, const struct dig_motion 
         four v[4];
         four wi[4];
         four wj[4];
+#pragma GCC unroll 4
         for (int l = 0; l < 4; l++) {
             const struct dig_motion *const a = &motion[list->i[first + c + (size_t)l]];
             const struct dig_motion *const b = &motion[list->j[first + c + (size_t)l]];
@@ -185,6 +187,7 @@ BODY void scatter(const struct dig_contacts *const list, const struct dig_block 
         get_rows(out, c, f);
         get_rows(out + 3, c, ti);
         get_rows(out + 6, c, tj);
+#pragma GCC unroll 4
         for (int l = 0; l < 4; l++) {
             struct dig_load *const a        = &load[list->i[first + c + (size_t)l]];
             struct dig_load *const b        = &load[list->j[first + c + (size_t)l]];
@@ -198,9 +201,11 @@ BODY void scatter(const struct dig_contacts *const list, const struct dig_block 
 }
 
 BODY void pairs_body(const bool general, const struct dig_law law, const double dt_s,
-                     struct dig_contacts *const list, struct dig_grains *const grains)
+                     const bool still, struct dig_contacts *const list,
+                     struct dig_grains *const grains)
 {
     struct dig_block block;
+    double           copy[DIG_MEMORIES][DIG_BLOCK];
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
@@ -208,6 +213,10 @@ BODY void pairs_body(const bool general, const struct dig_law law, const double 
         double *memories[DIG_MEMORIES];
         for (int m = 0; m < DIG_MEMORIES; m++) {
             memories[m] = list->memory[m] + first;
+            if (still) {
+                memcpy(copy[m], memories[m], sizeof copy[m]);
+                memories[m] = copy[m];
+            }
         }
         block_body(general, law, dt_s, count, memories, &block);
         scatter(list, &block, first, count, grains->load);
@@ -241,7 +250,8 @@ BODY four advance_one(const struct answer *const answer, const double kick_s, co
 }
 
 BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
-                       const double (*const at_m)[4], struct dig_grains *const grains)
+                       const double (*const at_m)[4], const size_t count,
+                       const uint32_t *const which, struct dig_grains *const grains)
 {
     const four    g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
     struct answer answer[DIG_KINDS_MAX];
@@ -251,12 +261,14 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
         answer[k].per_kg           = kind.driven ? 0.0 : 1.0 / kind.mass_kg;
         answer[k].per_kgm2         = kind.driven ? 0.0 : 1.0 / kind.inertia_kgm2;
     }
-    four_index left = { 0, 0, 0, 0 };
-    for (size_t i = 0; i < grains->n; i += 4) {
+    four_index   left = { 0, 0, 0, 0 };
+    const size_t n    = which == NULL ? grains->n : count;
+    for (size_t k = 0; k < n; k += 4) {
         four d[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
-        for (size_t l = 0; l < 4 && i + l < grains->n; l++) {
-            d[l] = advance_one(&answer[grains->of[i + l]], kick_s, dt_s, at_m[i + l],
-                               &grains->motion[i + l], &grains->load[i + l]);
+        for (size_t l = 0; l < 4 && k + l < n; l++) {
+            const size_t i = which == NULL ? k + l : which[k + l];
+            d[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
+                               &grains->load[i]);
         }
         four c[4];
         transpose(d, c);
@@ -279,20 +291,21 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
         }                                                                                          \
     }                                                                                              \
     attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
-                                         struct dig_contacts *const list,                          \
-                                         struct dig_grains *const   grains)                        \
+                                         const bool still, struct dig_contacts *const list,        \
+                                         struct dig_grains *const grains)                          \
     {                                                                                              \
         if (law->general) {                                                                        \
-            pairs_body(true, *law, dt_s, list, grains);                                            \
+            pairs_body(true, *law, dt_s, still, list, grains);                                     \
         } else {                                                                                   \
-            pairs_body(false, *law, dt_s, list, grains);                                           \
+            pairs_body(false, *law, dt_s, still, list, grains);                                    \
         }                                                                                          \
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
                                            const double dt_s, const double(*const at_m)[4],        \
+                                           const size_t count, const uint32_t *const which,        \
                                            struct dig_grains *const grains)                        \
     {                                                                                              \
-        return advance_body(gravity_mps2, kick_s, dt_s, at_m, grains);                             \
+        return advance_body(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);               \
     }
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -313,23 +326,38 @@ void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, c
     }
 }
 
-void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      struct dig_contacts *const list, struct dig_grains *const grains)
+static void run_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const bool still, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
 {
     switch (isa) {
-    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, list, grains); break;
-    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, list, grains); break;
-    case DIG_ISA_BASE: pairs_base(law, dt_s, list, grains); break;
+    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, still, list, grains); break;
+    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, still, list, grains); break;
+    case DIG_ISA_BASE: pairs_base(law, dt_s, still, list, grains); break;
     }
 }
 
+void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      struct dig_contacts *const list, struct dig_grains *const grains)
+{
+    run_pairs(isa, law, dt_s, false, list, grains);
+}
+
+void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      struct dig_contacts *const list, struct dig_grains *const grains)
+{
+    run_pairs(isa, law, dt_s, true, list, grains);
+}
+
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,
-                        const double dt_s, const double at_m[][4], struct dig_grains *const grains)
+                        const double dt_s, const double at_m[][4], const size_t count,
+                        const uint32_t which[], struct dig_grains *const grains)
 {
     switch (isa) {
-    case DIG_ISA_AVX512: return advance_avx512(gravity_mps2, kick_s, dt_s, at_m, grains);
-    case DIG_ISA_AVX2: return advance_avx2(gravity_mps2, kick_s, dt_s, at_m, grains);
+    case DIG_ISA_AVX512:
+        return advance_avx512(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+    case DIG_ISA_AVX2: return advance_avx2(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
     case DIG_ISA_BASE: break;
     }
-    return advance_base(gravity_mps2, kick_s, dt_s, at_m, grains);
+    return advance_base(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
 }

@@ -11,7 +11,7 @@
 #define SKIN_RADII    0.16 // neighbour list: what a slow grain may move, in its radii
 #define SKIN_STEPS    100  // … and a fast one, in steps of its speed
 #define CONTACT_RADII 0.008
-#define CONTACT_STEPS 10
+#define CONTACT_STEPS 20
 
 static double speed(const struct dig_motion *const m)
 {
@@ -25,28 +25,35 @@ static double contact_margin(const struct dig_world *const w, const size_t i)
            CONTACT_STEPS * w->dt_s * speed(&g->motion[i]);
 }
 
+static void move_list(struct dig_contacts *const list, const bool pairs, const uint32_t place[])
+{
+    size_t kept = 0;
+    for (size_t c = 0; c < list->n; c++) {
+        const uint32_t i = place[list->i[c]];
+        const uint32_t j = pairs ? place[list->j[c]] : list->j[c];
+        if (i == DIG_NO_SLOT || j == DIG_NO_SLOT) {
+            continue;
+        }
+        list->i[kept]   = i;
+        list->j[kept]   = j;
+        list->key[kept] = DIG_NO_SLOT;
+        for (int m = 0; m < DIG_MEMORIES; m++) {
+            list->memory[m][kept] = list->memory[m][c];
+        }
+        kept++;
+    }
+    list->n = kept;
+}
+
 void dig_lists_move(struct dig_world *const w, const uint32_t place[])
 {
-    for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX + (size_t)2 * DIG_KINDS_MAX; l++) {
-        const bool                 pairs = l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX;
-        struct dig_contacts *const list =
-            pairs ? &w->pair[l] : &w->surface[l - (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX];
-        size_t kept = 0;
-        for (size_t c = 0; c < list->n; c++) {
-            const uint32_t i = place[list->i[c]];
-            const uint32_t j = pairs ? place[list->j[c]] : list->j[c];
-            if (i == DIG_NO_SLOT || j == DIG_NO_SLOT) {
-                continue;
-            }
-            list->i[kept]   = i;
-            list->j[kept]   = j;
-            list->key[kept] = DIG_NO_SLOT;
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                list->memory[m][kept] = list->memory[m][c];
-            }
-            kept++;
-        }
-        list->n = kept;
+    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
+        move_list(&w->pair[l], true, place);
+        move_list(&w->held_pair[l], true, place);
+    }
+    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
+        move_list(&w->surface[l], false, place);
+        move_list(&w->held_surface[l], false, place);
     }
 }
 
@@ -62,27 +69,24 @@ static uint32_t find_slot(const struct dig_neighbours *const near, const uint32_
 }
 
 // Where each contact stands in a new neighbour list. A pair listed the other way round turns over.
-static void find_slots(struct dig_world *const w)
+static void find_slots(const struct dig_neighbours *const near, const bool like,
+                       struct dig_contacts *const list)
 {
-    for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX; l++) {
-        struct dig_contacts *const list = &w->pair[l];
-        const bool                 like = l / DIG_KINDS_MAX == l % DIG_KINDS_MAX;
-        for (size_t c = 0; c < list->n; c++) {
-            const uint32_t i    = list->i[c];
-            const uint32_t j    = list->j[c];
-            uint32_t       slot = find_slot(&w->near_list, i, j);
-            if (slot == DIG_NO_SLOT) {
-                slot = find_slot(&w->near_list, j, i);
-                if (like && slot != DIG_NO_SLOT) {
-                    list->i[c] = j;
-                    list->j[c] = i;
-                    for (int m = 0; m < DIG_MEMORIES; m++) {
-                        list->memory[m][c] = -list->memory[m][c];
-                    }
+    for (size_t c = 0; c < list->n; c++) {
+        const uint32_t i    = list->i[c];
+        const uint32_t j    = list->j[c];
+        uint32_t       slot = find_slot(near, i, j);
+        if (slot == DIG_NO_SLOT) {
+            slot = find_slot(near, j, i);
+            if (like && slot != DIG_NO_SLOT) {
+                list->i[c] = j;
+                list->j[c] = i;
+                for (int m = 0; m < DIG_MEMORIES; m++) {
+                    list->memory[m][c] = -list->memory[m][c];
                 }
             }
-            list->key[c] = slot;
         }
+        list->key[c] = slot;
     }
 }
 
@@ -108,6 +112,10 @@ static enum dig_status relist(struct dig_world *const w)
     for (size_t k = 0; k < n; k++) {
         place[order[k]] = (uint32_t)k;
     }
+    status = dig_rest_move(w, place);
+    if (status != DIG_OK) {
+        goto done;
+    }
     status = dig_grains_reorder(&w->grains, order);
     if (status != DIG_OK) {
         goto done;
@@ -122,7 +130,11 @@ static enum dig_status relist(struct dig_world *const w)
     if (status != DIG_OK) {
         goto done;
     }
-    find_slots(w);
+    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
+        const bool like = l / DIG_KINDS_MAX == l % DIG_KINDS_MAX;
+        find_slots(&w->near_list, like, &w->pair[l]);
+        find_slots(&w->near_list, like, &w->held_pair[l]);
+    }
     w->list_rebuilds++;
 
 done:
@@ -177,6 +189,7 @@ enum dig_status dig_lists_update(struct dig_world *const w)
         w->at_m    = at;
         w->at_room = n + 1;
     }
+    bool all = w->rest.changed;
     set_margins(w);
     if (!is_covered(w)) {
         const enum dig_status status = relist(w);
@@ -184,16 +197,21 @@ enum dig_status dig_lists_update(struct dig_world *const w)
             return status;
         }
         set_margins(w);
+        all = true;
     }
-    enum dig_status status = dig_pick_pairs(w);
+    if (all) {
+        dig_rest_mark(w);
+    }
+    enum dig_status status = dig_pick_pairs(w, all);
     if (status == DIG_OK) {
-        status = dig_pick_surfaces(w);
+        status = dig_pick_surfaces(w, all);
     }
     if (status == DIG_OK && w->bodies != NULL) {
         status = dig_bodies_pick(w);
     }
     if (status == DIG_OK) {
-        w->stale = false;
+        w->stale        = false;
+        w->rest.changed = false;
         w->contact_rebuilds++;
     }
     return status;
@@ -201,12 +219,16 @@ enum dig_status dig_lists_update(struct dig_world *const w)
 
 void dig_lists_finish(struct dig_world *const w)
 {
-    for (size_t l = 0; l < (size_t)DIG_KINDS_MAX * DIG_KINDS_MAX; l++) {
+    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         dig_contacts_finish(&w->pair[l]);
+        dig_contacts_finish(&w->held_pair[l]);
     }
-    for (size_t k = 0; k < (size_t)2 * DIG_KINDS_MAX; k++) {
+    for (size_t k = 0; k < DIG_SURFACE_LISTS; k++) {
         dig_contacts_finish(&w->surface[k]);
+        dig_contacts_finish(&w->held_surface[k]);
     }
+    dig_pick_finish(&w->pick);
+    dig_rest_finish(&w->rest);
     dig_neighbours_finish(&w->near_list);
     free(w->at_m);
     w->at_m    = NULL;

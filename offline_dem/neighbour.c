@@ -11,6 +11,8 @@ struct grid {
     double    low_m[3];
     double    cell_m;
     ptrdiff_t count[3];
+    int axis[3]; // rows of cells run along axis[0]: the shortest, so that what is near in space
+                 // is near in memory
     size_t    cells;
     uint32_t *start;  // [cells + 1]
     uint32_t *member; // [n], cell by cell
@@ -29,10 +31,13 @@ static ptrdiff_t clamp_cell(const struct grid *const g, const int axis, const do
 
 static size_t cell_of(const struct grid *const g, const double x_m[])
 {
-    const ptrdiff_t ix = clamp_cell(g, 0, x_m[0]);
-    const ptrdiff_t iy = clamp_cell(g, 1, x_m[1]);
-    const ptrdiff_t iz = clamp_cell(g, 2, x_m[2]);
-    return (size_t)(ix + g->count[0] * (iy + g->count[1] * iz));
+    const int       a  = g->axis[0];
+    const int       b  = g->axis[1];
+    const int       c  = g->axis[2];
+    const ptrdiff_t ia = clamp_cell(g, a, x_m[a]);
+    const ptrdiff_t ib = clamp_cell(g, b, x_m[b]);
+    const ptrdiff_t ic = clamp_cell(g, c, x_m[c]);
+    return (size_t)(ia + g->count[a] * (ib + g->count[b] * ic));
 }
 
 static void size_grid(const struct dig_grains *const grains, struct grid *const g)
@@ -61,6 +66,13 @@ static void size_grid(const struct dig_grains *const grains, struct grid *const 
         g->cell_m *= 1.5;
     }
     g->cells = (size_t)(g->count[0] * g->count[1] * g->count[2]);
+    for (int a = 0; a < 3; a++) {
+        int shorter = 0;
+        for (int b = 0; b < 3; b++) {
+            shorter += g->count[b] < g->count[a] || (g->count[b] == g->count[a] && b < a);
+        }
+        g->axis[shorter] = a;
+    }
 }
 
 static enum dig_status fill_grid(const struct dig_grains *const grains, const double cell_m,
@@ -143,11 +155,14 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
         low[a]  = clamp_cell(g, a, x[a] - far_m);
         high[a] = clamp_cell(g, a, x[a] + far_m);
     }
-    for (ptrdiff_t iz = low[2]; iz <= high[2]; iz++) {
-        for (ptrdiff_t iy = low[1]; iy <= high[1]; iy++) {
-            const size_t row   = (size_t)(g->count[0] * (iy + g->count[1] * iz));
-            const size_t first = g->start[row + (size_t)low[0]];
-            const size_t last  = g->start[row + (size_t)high[0] + 1];
+    const int a = g->axis[0];
+    const int b = g->axis[1];
+    const int c = g->axis[2];
+    for (ptrdiff_t ic = low[c]; ic <= high[c]; ic++) {
+        for (ptrdiff_t ib = low[b]; ib <= high[b]; ib++) {
+            const size_t row   = (size_t)(g->count[a] * (ib + g->count[b] * ic));
+            const size_t first = g->start[row + (size_t)low[a]];
+            const size_t last  = g->start[row + (size_t)high[a] + 1];
             if (make_room(list, count + (last - first)) != DIG_OK) {
                 return DIG_ENOMEM;
             }

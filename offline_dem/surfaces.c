@@ -194,39 +194,48 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-void dig_surfaces_step(struct dig_world *const w)
+// One list of contacts of grains of one radius. Contacts of held grains remember nothing new.
+static void step_list(struct dig_world *const w, const struct dig_law *const law,
+                      const double radius_m, const bool held, struct dig_contacts *const list)
+{
+    for (size_t first = 0; first < list->n;) {
+        const size_t     count = block_length(list, first);
+        struct dig_block block;
+        double           arm_m[DIG_BLOCK][3];
+        for (size_t c = 0; c < count;) {
+            if (list->j[first + c] < w->walls) {
+                fill_wall(&w->wall[list->j[first + c]], radius_m,
+                          &w->grains.motion[list->i[first + c]], c, &block);
+                c++;
+            } else {
+                c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
+            }
+        }
+        double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
+        for (int m = 0; m < DIG_MEMORIES; m++) {
+            memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+        }
+        dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
+        for (int m = 0; m < DIG_MEMORIES && !held; m++) {
+            memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+        }
+        apply(w, list, first, count, &block, (const double(*)[3])arm_m);
+        first += count;
+    }
+}
+
+void dig_surfaces_step(struct dig_world *const w, const bool held)
 {
     w->on_tool  = (struct dig_wrench){ 0 };
     w->on_walls = (struct dig_wrench){ 0 };
-    for (size_t l = 0; l < (size_t)2 * DIG_KINDS_MAX; l++) {
-        struct dig_contacts *const  list     = &w->surface[l];
+    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         const size_t                kind     = l % DIG_KINDS_MAX;
         const double                radius_m = w->grains.kind[kind].radius_m;
         const struct dig_law *const law =
             l < DIG_KINDS_MAX ? &w->wall_law[kind] : &w->tool_law[kind];
-        for (size_t first = 0; first < list->n;) {
-            const size_t     count = block_length(list, first);
-            struct dig_block block;
-            double           arm_m[DIG_BLOCK][3];
-            for (size_t c = 0; c < count;) {
-                if (list->j[first + c] < w->walls) {
-                    fill_wall(&w->wall[list->j[first + c]], radius_m,
-                              &w->grains.motion[list->i[first + c]], c, &block);
-                    c++;
-                } else {
-                    c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
-                }
-            }
-            double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
-            }
-            dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
-            }
-            apply(w, list, first, count, &block, (const double(*)[3])arm_m);
-            first += count;
+        step_list(w, law, radius_m, false, &w->surface[l]);
+        if (held) {
+            step_list(w, law, radius_m, true, &w->held_surface[l]);
         }
     }
 }

@@ -10,7 +10,8 @@
 
 #include "offline_dem/world.h"
 
-/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls.
-void dig_surfaces_step(struct dig_world *world);
+/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls; those of held
+/// grains only where `held`.
+void dig_surfaces_step(struct dig_world *world, bool held);
 
 #endif // DIG_OFFLINE_DEM_SURFACES_H

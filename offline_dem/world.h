@@ -11,10 +11,12 @@
 #include "offline_dem/kernel.h"
 #include "offline_dem/law.h"
 #include "offline_dem/neighbour.h"
+#include "offline_dem/rest.h"
 #include "offline_dem/tool.h"
 #include "offline_dem/wall.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct dig_bodies;
 
@@ -24,18 +26,31 @@ struct dig_wrench {
     double t_Nm[3]; // about the moving pin
 };
 
+#define DIG_PAIR_LISTS    ((size_t)DIG_KINDS_MAX * DIG_KINDS_MAX)
+#define DIG_SURFACE_LISTS ((size_t)2 * DIG_KINDS_MAX)
+
+/// Memory of pick.c, kept from pick to pick: where each pair and surface stands in the lists that
+/// are being replaced (all ones in between), and the lists to fill.
+struct dig_pick {
+    uint32_t           *was_pair, *was_surface, *close;
+    size_t              pairs, surfaces, closes; // room
+    struct dig_contacts pair[DIG_PAIR_LISTS], held_pair[DIG_PAIR_LISTS];
+    struct dig_contacts surface[DIG_SURFACE_LISTS], held_surface[DIG_SURFACE_LISTS];
+};
+
 struct dig_world {
     // Fixed at start.
     double dt_s;
     double gravity_mps2[3];
     // Laws of every kind pair [kind_i * DIG_KINDS_MAX + kind_j], kind_i <= kind_j, and of every
     // kind with the walls and with the tool.
-    struct dig_law  pair_law[DIG_KINDS_MAX * DIG_KINDS_MAX];
+    struct dig_law  pair_law[DIG_PAIR_LISTS];
     struct dig_law  wall_law[DIG_KINDS_MAX];
     struct dig_law  tool_law[DIG_KINDS_MAX];
     size_t          walls;
     struct dig_wall wall[DIG_WALLS_MAX];
     enum dig_isa    isa;
+    double freeze; // what a grain that is held still may be pushed, rest.h; 0: none is held
 
     // May be placed between steps; NULL: no tool.
     struct dig_tool *tool;
@@ -53,9 +68,14 @@ struct dig_world {
     // Lists and their validity.
     struct dig_neighbours near_list;
     struct dig_contacts   pair[DIG_KINDS_MAX * DIG_KINDS_MAX]; // kind_i * KINDS_MAX + kind_j
-    struct dig_contacts   surface[2 * DIG_KINDS_MAX]; // kind with wall j; KINDS_MAX + kind with
+    struct dig_contacts   surface[DIG_SURFACE_LISTS]; // kind with wall j; KINDS_MAX + kind with
                                                       // plate j - walls
-    double (*at_m)[4];                                // [n] where the lists were made
+    // Contacts of held grains among themselves, and with walls: worked out at looks only.
+    struct dig_contacts held_pair[DIG_PAIR_LISTS];
+    struct dig_contacts held_surface[DIG_SURFACE_LISTS];
+    struct dig_rest     rest;
+    struct dig_pick     pick;
+    double (*at_m)[4]; // [n] where the lists were made
     size_t          at_room;
     struct dig_pose tool_at;
     double          tool_margin_m;
