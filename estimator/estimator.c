@@ -76,15 +76,39 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
     // A megabyte: cleared in place, not by way of the stack.
     memset(estimator, 0, sizeof *estimator);
     estimator->machine  = machine;
-    estimator->set      = set;
     estimator->settings = *settings;
     estimator->raw      = &estimator->own_raw;
-    estimator->lambda   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    dig_estimator_adopt(estimator, set);
+    return DIG_OK;
+}
+
+bool dig_estimator_is_idle(const struct dig_estimator *const estimator)
+{
+    assert(estimator != NULL);
+    return !estimator->raw->window.open;
+}
+
+bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
+{
+    assert(estimator != NULL);
+    bool off = estimator->raw->window.open && estimator->set->trajectories > 0;
+    for (size_t t = 0; off && t < estimator->set->trajectories; t++) {
+        off = estimator->follower[t].track.rms_m > estimator->settings.path_limit_m;
+    }
+    return off;
+}
+
+void dig_estimator_adopt(struct dig_estimator *const       estimator,
+                         const struct dig_curve_set *const set)
+{
+    assert(estimator != NULL && set != NULL && dig_estimator_is_idle(estimator));
+    estimator->set      = set;
+    estimator->forecast = NULL;
+    estimator->lambda   = estimator->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t t = 0; t < set->trajectories; t++) {
         estimator->route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
     }
     forget_dig(estimator);
-    return DIG_OK;
 }
 
 // The bucket in rig scale and axes: x = -X, theta = -pi/2 - phi.

@@ -136,6 +136,16 @@ DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estim
                                                   const struct dig_sample *sample,
                                                   struct dig_estimate     *estimate);
 
+/// True while no dig goes on.
+bool dig_estimator_is_idle(const struct dig_estimator *estimator);
+
+/// True while a dig goes on that is farther than path_limit_m from each of the table's.
+bool dig_estimator_is_off_table(const struct dig_estimator *estimator);
+
+/// Exchanges the table while idle; what was forecast is forgotten. The set must be one that an
+/// estimator of this machine was initialised with, and outlive this one. Constant time.
+void dig_estimator_adopt(struct dig_estimator *estimator, const struct dig_curve_set *set);
+
 /// A finished dig as it was recorded, not yet laid along any trajectory; about 2.5 MB.
 struct dig_raw;
 size_t dig_raw_size(void);

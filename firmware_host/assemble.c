@@ -2,13 +2,15 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 void dig_assembler_init(struct dig_assembler *const                assembler,
                         const struct dig_assembler_settings *const settings)
 {
     assert(assembler != NULL && settings != NULL);
     assert(settings->time_scale > 0.0 && settings->groups <= DIG_GROUPS_MAX);
-    *assembler = (struct dig_assembler){ .settings = *settings };
+    memset(assembler, 0, sizeof *assembler);
+    assembler->settings = *settings;
 }
 
 static int64_t ns(const double seconds)
@@ -34,17 +36,43 @@ static void count_drop(struct dig_drops *const drops, const uint8_t state)
     }
 }
 
-static void store_values(struct dig_assembler *const a, const struct dig_reading *const reading,
-                         const int64_t time_ns)
+// Frames that a busy bus or host bunches up carry the changes of this long at once.
+static const double bunched_s = 0.02;
+
+// Within what the signal can have changed by since it was last believed: a value that stays where
+// it jumped to is believed once it could have come there.
+static bool is_believable(struct dig_assembler *const a, const size_t signal, const double value,
+                          const int64_t time_ns)
 {
+    const double rate = a->settings.max_rate[signal];
+    if (rate > 0.0 && a->good_ns[signal] > 0) {
+        const double since_s = 1e-9 * (double)(time_ns - a->good_ns[signal]);
+        if (!(fabs(value - a->good[signal]) <= rate * (fmax(since_s, 0.0) + bunched_s))) {
+            a->drops.jump += signal < DIG_SIGNALS_NEEDED ? 1 : 0;
+            return false;
+        }
+    }
+    a->good[signal]    = value;
+    a->good_ns[signal] = time_ns;
+    return true;
+}
+
+static void remember(struct dig_assembler *const a, const struct dig_reading *const reading,
+                     const int64_t time_ns)
+{
+    const unsigned                 group = reading->group;
+    struct dig_past_reading *const past  = &a->past[group][a->came[group]++ % DIG_HISTORY];
+
+    *past = (struct dig_past_reading){ .time_ns = time_ns };
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         if (reading->state[i] == DIG_READING_ABSENT) {
             continue;
         }
-        const bool ok   = reading->state[i] == DIG_READING_OK;
-        a->now.valid[i] = ok;
-        a->now.value[i] = ok ? reading->value[i] : 0.0;
-        a->value_ns[i]  = time_ns;
+        a->carried[i]  = true;
+        a->group_of[i] = group;
+        past->valid[i] =
+            reading->state[i] == DIG_READING_OK && is_believable(a, i, reading->value[i], time_ns);
+        past->value[i] = past->valid[i] ? reading->value[i] : 0.0;
         if (i < DIG_SIGNALS_NEEDED) {
             count_drop(&a->drops, reading->state[i]);
         }
@@ -70,8 +98,18 @@ static bool watch_alive(struct dig_assembler *const a, const struct dig_reading 
     return moved || !reading->has_alive || !a->settings.repeats;
 }
 
-// Every needed group came since the last sample, and they belong together.
-static bool is_due(const struct dig_assembler *const a)
+// The n-th last reading of a group, n below what it remembers; NULL: there is none.
+static const struct dig_past_reading *past_of(const struct dig_assembler *const a,
+                                              const unsigned group, const size_t n)
+{
+    return n < a->came[group] && n < DIG_HISTORY
+               ? &a->past[group][(a->came[group] - 1 - n) % DIG_HISTORY]
+               : NULL;
+}
+
+// Every needed group came since the last sample, and they belong together: *time_ns is the moment
+// all of them reach.
+static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
 {
     int64_t oldest   = INT64_MAX;
     int64_t youngest = INT64_MIN;
@@ -79,24 +117,72 @@ static bool is_due(const struct dig_assembler *const a)
         if (!a->settings.needed[g]) {
             continue;
         }
-        oldest   = a->group_ns[g] < oldest ? a->group_ns[g] : oldest;
-        youngest = a->group_ns[g] > youngest ? a->group_ns[g] : youngest;
         if (!a->fresh[g]) {
             return false;
         }
+        const int64_t last_ns = past_of(a, g, 0)->time_ns;
+        oldest                = last_ns < oldest ? last_ns : oldest;
+        youngest              = last_ns > youngest ? last_ns : youngest;
     }
+    *time_ns = oldest;
     return youngest >= oldest && youngest - oldest <= ns(a->settings.coherent_s);
 }
 
-static int64_t youngest_needed(const struct dig_assembler *const a)
+// A signal at a moment: between the two readings around it, the younger alone where the older has
+// no value, the last one for what is older than the moment.
+static void read_off(const struct dig_assembler *const a, const size_t signal,
+                     const int64_t time_ns, struct dig_sample *const sample)
 {
-    int64_t youngest = 0;
-    for (unsigned g = 0; g < a->settings.groups; g++) {
-        if (a->settings.needed[g] && a->group_ns[g] > youngest) {
-            youngest = a->group_ns[g];
+    const unsigned                 group   = a->group_of[signal];
+    const struct dig_past_reading *younger = past_of(a, group, 0);
+    const struct dig_past_reading *older   = past_of(a, group, 1);
+    for (size_t n = 1; older != NULL && older->time_ns > time_ns; n++) {
+        younger = older;
+        older   = past_of(a, group, n + 1);
+    }
+    sample->valid[signal] = younger->valid[signal];
+    sample->value[signal] = younger->value[signal];
+    if (younger->time_ns > time_ns && younger->valid[signal] && older != NULL &&
+        older->valid[signal]) {
+        const double share =
+            (double)(time_ns - older->time_ns) / (double)(younger->time_ns - older->time_ns);
+        sample->value[signal] =
+            older->value[signal] + share * (younger->value[signal] - older->value[signal]);
+    }
+}
+
+static struct dig_sample sample_at(const struct dig_assembler *const a, const int64_t time_ns)
+{
+    struct dig_sample sample = { .time_ns = time_ns };
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        const struct dig_past_reading *const last =
+            a->carried[i] ? past_of(a, a->group_of[i], 0) : NULL;
+        const bool old = last == NULL || (i >= DIG_SIGNALS_NEEDED &&
+                                          time_ns - last->time_ns > ns(a->settings.optional_s));
+        if (!old) {
+            read_off(a, i, time_ns, &sample);
         }
     }
-    return youngest;
+    return sample;
+}
+
+// Takes the frame's stamp and counters; false when it says nothing new or nothing true.
+static bool is_news(struct dig_assembler *const a, const struct dig_reading *const reading,
+                    const int64_t time_ns)
+{
+    const unsigned                group = reading->group;
+    struct dig_frame_watch *const watch = &a->watch[group];
+    const int64_t                 owed  = watch->missed;
+    const bool                    next =
+        dig_frame_watch_take(watch, &a->settings.frame[group], time_ns, reading->counter);
+    a->drops.missed += watch->missed - owed;
+    a->drops.repeated += next ? 0 : 1;
+    if (!next) {
+        return false;
+    }
+    const bool moved = watch_alive(a, reading, time_ns);
+    a->drops.frozen += a->frozen ? 1 : 0;
+    return moved && !a->frozen;
 }
 
 bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading *const reading,
@@ -109,35 +195,35 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
         a->first_ns = reading->time_ns;
         a->alive_ns = reading->time_ns;
     }
-    const int64_t time_ns = machine_time(a, reading->time_ns);
-    const bool    news    = watch_alive(a, reading, time_ns);
-    if (a->frozen) {
-        a->drops.frozen++;
+    const int64_t time_ns =
+        machine_time(a, reading->time_ns) - ns(a->settings.frame[reading->group].delay_s);
+    if (!is_news(a, reading, time_ns)) {
         return false;
     }
-    if (!news) {
-        return false;
+    const struct dig_past_reading *const before = past_of(a, reading->group, 0);
+    if (before != NULL && time_ns <= before->time_ns) {
+        return false; // a clock that was set back; samples ascend
     }
-    store_values(a, reading, time_ns);
-    a->group_ns[reading->group] = time_ns;
-    a->fresh[reading->group]    = true;
-    if (!is_due(a)) {
+    remember(a, reading, time_ns);
+    a->fresh[reading->group] = true;
+    int64_t due_ns           = 0;
+    if (!is_due(a, &due_ns)) {
         return false;
     }
     for (unsigned g = 0; g < a->settings.groups; g++) {
         a->fresh[g] = false;
     }
-    a->now.time_ns = youngest_needed(a);
-    if (a->now.time_ns <= a->last_ns) {
-        return false; // a clock that was set back; samples ascend
+    if (due_ns <= a->last_ns) {
+        return false;
     }
-    a->last_ns = a->now.time_ns;
-    *sample    = a->now;
-    for (size_t i = DIG_SIGNALS_NEEDED; i < DIG_SIGNALS; i++) {
-        if (a->now.time_ns - a->value_ns[i] > ns(a->settings.optional_s)) {
-            sample->valid[i] = false;
-            sample->value[i] = 0.0;
-        }
+    a->last_ns = due_ns;
+
+    const struct dig_sample made = sample_at(a, due_ns);
+    if (a->settings.stuck_s > 0.0 && dig_sample_is_complete(&made) &&
+        dig_stuck_step(&a->stuck, a->settings.stuck_s, &made)) {
+        a->drops.stuck++;
+        return false;
     }
+    *sample = made;
     return true;
 }

@@ -149,7 +149,7 @@ static enum dig_status take_modbus(const struct work *const            work,
 {
     struct dig_config *const         config   = work->config;
     struct dig_modbus_address *const address  = &config->modbus;
-    double                           poll_Hz  = 1.0 / config->tick_s;
+    double                           poll_Hz  = 200.0;
     const struct number              number[] = {
                      { "input.modbus.poll_Hz", text->poll_Hz, 1.0, 1000.0, &poll_Hz },
     };
@@ -189,6 +189,7 @@ static enum dig_status take_replay(const struct work *const            work,
     };
     const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
     config->time_scale           = config->replay_speed;
+    config->estimator.tick_s     = 0.005; // what digrig records at
     return status == DIG_OK ? take_path(work, "input.replay.file", text->file, &config->replay)
                             : status;
 }
@@ -283,11 +284,22 @@ static enum dig_status take_publish(const struct work *const             work,
 static enum dig_status take_match(const struct work *const           work,
                                   const struct dig_match_text *const text)
 {
-    const struct whole whole[] = {
-        { "match.max_evaluations", text->max_evaluations, 1, 1000000,
-          &work->config->match_evaluations },
+    struct dig_config *const config    = work->config;
+    double                   expires_h = config->match_expires_s / 3600.0;
+    const struct whole       whole[]   = {
+                { "match.max_evaluations", text->max_evaluations, 1, 1000000, &config->match_evaluations },
     };
-    return take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
+    const struct number number[] = {
+        { "match.expires_h", text->expires_h, 0.01, 1000.0, &expires_h },
+        { "match.drift_floors", text->drift_floors, 1.0, 1000.0, &config->drift_floors },
+    };
+    enum dig_status status = take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
+    status = status == DIG_OK ? take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
+    if (status == DIG_OK && text->state != NULL) {
+        status = take_path(work, "match.state", text->state, &config->match_state);
+    }
+    config->match_expires_s = expires_h * 3600.0;
+    return status;
 }
 
 // A part that is absent takes its defaults: nothing of it is given.
@@ -355,13 +367,15 @@ static struct dig_config defaults(void)
     struct dig_config config = {
         .modbus            = { .baud = 115200, .parity = 'E', .unit = 1 },
         .replay_speed      = 1.0,
-        .tick_s            = 1.0 / 200.0,
+        .tick_s            = 1.0 / 1000.0,
         .stale_s           = 0.1,
         .time_scale        = 1.0,
         .realtime          = { .priority = 80, .lock_memory = true, .cpu = -1 },
         .lcm_url           = DEFAULT_LCM_URL,
         .estimator         = dig_estimator_settings_default(),
         .match_evaluations = 2000,
+        .match_expires_s   = 12.0 * 3600.0,
+        .drift_floors      = 3.0,
         .estimate_every    = 1,
         .prediction_s      = 1.0 / 15.0,
     };

@@ -1,5 +1,6 @@
 // The daemon's configuration: a YAML file (docs/formats.md) as plain settings. All of them are
-// fixed at start. File names in it are relative to the folder of the configuration.
+// fixed at start but the table, which a reload exchanges. File names in it are relative to the
+// folder of the configuration.
 
 #ifndef DIG_FIRMWARE_HOST_CONFIG_H
 #define DIG_FIRMWARE_HOST_CONFIG_H
@@ -42,6 +43,9 @@ struct dig_config {
     char                          lcm_url[256];
     struct dig_estimator_settings estimator;
     int                           match_evaluations;
+    struct dig_path               match_state; // where the gravel known is kept; "": nowhere
+    double                        match_expires_s;
+    double                        drift_floors;
     size_t                        identify_trajectories; // 0: all whose name begins with "simple"
     char                          identify_trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
     int    estimate_every; // of the samples and estimates, one in so many is published

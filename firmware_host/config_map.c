@@ -19,24 +19,38 @@ struct alive_text {
     double                 frozen_ms;
 };
 
+struct checksum_text {
+    char             *signal;
+    enum dig_checksum kind;
+};
+
+struct message_text {
+    char                 *message, *counter;
+    double                delay_ms, cycle_ms;
+    struct checksum_text *checksum;
+};
+
 struct signal_text {
     char                  *name, *message, *signal;
     unsigned              *reg;
     enum dig_register_type type;
     int                    sign;
-    double                 scale, offset, min, max;
+    double                 scale, offset, min, max, max_rate;
     uint64_t              *not_available;
     unsigned               not_available_count;
 };
 
 struct map_text {
-    enum dig_map_kind   kind;
-    unsigned            function;
-    bool                low_word_first;
-    double              coherent_ms;
-    struct alive_text  *alive;
-    struct signal_text *signals;
-    unsigned            signals_count;
+    enum dig_map_kind    kind;
+    unsigned             function;
+    bool                 low_word_first, j1939;
+    double               coherent_ms;
+    double              *stuck_ms;
+    struct alive_text   *alive;
+    struct message_text *messages;
+    unsigned             messages_count;
+    struct signal_text  *signals;
+    unsigned             signals_count;
 };
 
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -72,6 +86,7 @@ static const cyaml_schema_field_t signal_fields[] = {
     CYAML_FIELD_FLOAT("offset", OPTIONAL, struct signal_text, offset),
     CYAML_FIELD_FLOAT("min", REQUIRED, struct signal_text, min),
     CYAML_FIELD_FLOAT("max", REQUIRED, struct signal_text, max),
+    CYAML_FIELD_FLOAT("max_rate", OPTIONAL, struct signal_text, max_rate),
     CYAML_FIELD_SEQUENCE("not_available", OPTIONAL | POINTER, struct signal_text, not_available,
                          &raw_value, 0, DIG_NOT_AVAILABLE_MAX),
     CYAML_FIELD_END,
@@ -80,11 +95,42 @@ static const cyaml_schema_field_t signal_fields[] = {
 static const cyaml_schema_value_t signal_value = { CYAML_VALUE_MAPPING(REQUIRED, struct signal_text,
                                                                        signal_fields) };
 
+static const cyaml_strval_t checksums[] = {
+    { "sum8", DIG_CHECKSUM_SUM8 },
+    { "xor8", DIG_CHECKSUM_XOR8 },
+    { "crc8_sae_j1850", DIG_CHECKSUM_CRC8_SAE_J1850 },
+    { "j1939_tsc1", DIG_CHECKSUM_J1939_TSC1 },
+};
+
+static const cyaml_schema_field_t checksum_fields[] = {
+    CYAML_FIELD_STRING_PTR("signal", POINTER, struct checksum_text, signal, 1, 63),
+    CYAML_FIELD_ENUM("kind", REQUIRED, struct checksum_text, kind, checksums,
+                     CYAML_ARRAY_LEN(checksums)),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t message_fields[] = {
+    CYAML_FIELD_STRING_PTR("message", POINTER, struct message_text, message, 1, 63),
+    CYAML_FIELD_STRING_PTR("counter", OPTIONAL | POINTER, struct message_text, counter, 1, 63),
+    CYAML_FIELD_FLOAT("delay_ms", OPTIONAL, struct message_text, delay_ms),
+    CYAML_FIELD_FLOAT("cycle_ms", OPTIONAL, struct message_text, cycle_ms),
+    CYAML_FIELD_MAPPING_PTR("checksum", OPTIONAL | POINTER, struct message_text, checksum,
+                            checksum_fields),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t message_value = { CYAML_VALUE_MAPPING(
+    REQUIRED, struct message_text, message_fields) };
+
 static const cyaml_schema_field_t map_fields[] = {
     CYAML_FIELD_ENUM("kind", REQUIRED, struct map_text, kind, kinds, CYAML_ARRAY_LEN(kinds)),
     CYAML_FIELD_UINT("function", OPTIONAL, struct map_text, function),
     CYAML_FIELD_BOOL("low_word_first", OPTIONAL, struct map_text, low_word_first),
+    CYAML_FIELD_BOOL("j1939", OPTIONAL, struct map_text, j1939),
     CYAML_FIELD_FLOAT("coherent_ms", OPTIONAL, struct map_text, coherent_ms),
+    CYAML_FIELD_FLOAT_PTR("stuck_ms", OPTIONAL | POINTER, struct map_text, stuck_ms),
+    CYAML_FIELD_SEQUENCE("messages", OPTIONAL | POINTER, struct map_text, messages, &message_value,
+                         0, DIG_GROUPS_MAX),
     CYAML_FIELD_MAPPING_PTR("alive", OPTIONAL | POINTER, struct map_text, alive, alive_fields),
     CYAML_FIELD_SEQUENCE("signals", POINTER, struct map_text, signals, &signal_value, 1,
                          DIG_SIGNALS),
@@ -184,7 +230,8 @@ static enum dig_status group_of(const struct work *const work, const char *const
     struct dig_map_group *const added = &map->group[map->groups];
     *added                            = (struct dig_map_group){ .id       = message->id,
                                                                 .extended = message->extended,
-                                                                .bytes    = message->bytes };
+                                                                .bytes    = message->bytes,
+                                                                .frame    = { .cycle_s = message->cycle_s } };
     memcpy(added->name, message->name, sizeof added->name);
     *group = (unsigned)map->groups++;
     return DIG_OK;
@@ -282,6 +329,11 @@ static enum dig_status read_signal(const struct work *const work, const size_t i
         return dig_yaml_refuse(work->path, key.text, work->error, "%g, expected more than min %g",
                                text->max, text->min);
     }
+    if (!(text->max_rate >= 0.0)) {
+        const struct key key = key_of(at.text, "max_rate");
+        return dig_yaml_refuse(work->path, key.text, work->error, "%g, expected 0 (any) or more",
+                               text->max_rate);
+    }
     const bool           scale_given = fabs(text->scale) > 0.0;
     struct dig_map_entry entry       = {
               .used          = true,
@@ -289,6 +341,7 @@ static enum dig_status read_signal(const struct work *const work, const size_t i
               .sign          = text->sign < 0 ? -1.0 : 1.0,
               .scale         = scale_given ? text->scale : 1.0,
               .offset        = text->offset,
+              .max_rate      = text->max_rate,
               .min           = text->min,
               .max           = text->max,
               .not_available = text->not_available_count,
@@ -333,6 +386,88 @@ static enum dig_status read_alive(const struct work *const       work,
     return status;
 }
 
+// A signal of the frame that is no value: its counter, its checksum.
+static enum dig_status find_own(const struct work *const work, const char *const at,
+                                const char *const key_name, const char *const message,
+                                const char *const signal, struct dig_dbc_signal *const found)
+{
+    struct dig_map_entry  entry  = { .used = true };
+    const struct key      key    = key_of(at, key_name);
+    const enum dig_status status = find_can(work, at, message, signal, &entry);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (entry.can.bits > 32) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               "\"%s\" has %u bits, expected at most 32", signal, entry.can.bits);
+    }
+    *found = entry.can;
+    return DIG_OK;
+}
+
+static enum dig_status read_checksum(const struct work *const work, const char *const at,
+                                     const struct message_text *const text,
+                                     struct dig_map_group *const      group)
+{
+    const struct key      key = key_of(at, "checksum");
+    const enum dig_status status =
+        find_own(work, at, "checksum", text->message, text->checksum->signal, &group->checksum_at);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const bool     tsc1 = text->checksum->kind == DIG_CHECKSUM_J1939_TSC1;
+    const unsigned bits = group->checksum_at.bits;
+    const unsigned from = group->checksum_at.start_bit % 8;
+    if (tsc1 ? bits > 4 || text->counter == NULL
+             : bits != 8 || from != (group->checksum_at.intel ? 0U : 7U)) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               tsc1 ? "expected up to 4 bits, and a counter beside it"
+                                    : "expected a signal of one whole byte");
+    }
+    group->checksum = text->checksum->kind;
+    return DIG_OK;
+}
+
+// What is said of a message beyond its signals. It must carry one that is mapped.
+static enum dig_status read_message(const struct work *const work, const size_t index,
+                                    const struct message_text *const text)
+{
+    struct key at;
+    (void)snprintf(at.text, sizeof at.text, "messages[%zu]", index);
+    const struct key                    key     = key_of(at.text, "message");
+    const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, text->message);
+    const int                           known =
+        message != NULL ? dig_signal_map_group(work->map, message->id, message->extended) : -1;
+    if (known < 0) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               "\"%s\", expected a message that carries one of the signals",
+                               text->message);
+    }
+    struct dig_map_group *const group = &work->map->group[known];
+    if (!(text->delay_ms >= 0.0 && text->delay_ms <= 1000.0)) {
+        const struct key delay = key_of(at.text, "delay_ms");
+        return dig_yaml_refuse(work->path, delay.text, work->error, "%g, expected 0 … 1000",
+                               text->delay_ms);
+    }
+    if (!(text->cycle_ms >= 0.0 && text->cycle_ms <= 60e3)) {
+        const struct key cycle = key_of(at.text, "cycle_ms");
+        return dig_yaml_refuse(work->path, cycle.text, work->error, "%g, expected 0 … 60000",
+                               text->cycle_ms);
+    }
+    group->frame.delay_s = text->delay_ms * 1e-3;
+    group->frame.cycle_s = text->cycle_ms > 0.0 ? text->cycle_ms * 1e-3 : group->frame.cycle_s;
+
+    enum dig_status status = DIG_OK;
+    if (text->counter != NULL) {
+        status = find_own(work, at.text, "counter", text->message, text->counter, &group->counter);
+        group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32
+                                       ? 1U << group->counter.bits
+                                       : UINT32_MAX;
+    }
+    return status == DIG_OK && text->checksum != NULL ? read_checksum(work, at.text, text, group)
+                                                      : status;
+}
+
 static enum dig_status read_map(const struct work *const work, const struct map_text *const text)
 {
     struct dig_signal_map *const map = work->map;
@@ -349,9 +484,19 @@ static enum dig_status read_map(const struct work *const work, const struct map_
         return dig_yaml_refuse(work->path, "coherent_ms", work->error, "%g, expected 0 … 1000",
                                text->coherent_ms);
     }
+    if (text->stuck_ms != NULL && !(*text->stuck_ms >= 0.0 && *text->stuck_ms <= 60e3)) {
+        return dig_yaml_refuse(work->path, "stuck_ms", work->error, "%g, expected 0 … 60000",
+                               *text->stuck_ms);
+    }
+    if (text->kind != DIG_MAP_CAN && (text->messages_count > 0 || text->j1939)) {
+        return dig_yaml_refuse(work->path, text->j1939 ? "j1939" : "messages", work->error,
+                               "given for modbus, expected with kind: can only");
+    }
     map->kind           = text->kind;
     map->function       = text->function == 3 ? 3 : 4;
     map->low_word_first = text->low_word_first;
+    map->j1939          = text->j1939;
+    map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 1.0;
     map->coherent_s     = text->coherent_ms > 0.0 ? text->coherent_ms * 1e-3 : 6e-3;
 
     enum dig_status status = DIG_OK;
@@ -360,6 +505,9 @@ static enum dig_status read_map(const struct work *const work, const struct map_
     }
     if (status == DIG_OK && text->alive != NULL) {
         status = read_alive(work, text->alive);
+    }
+    for (unsigned i = 0; status == DIG_OK && i < text->messages_count; i++) {
+        status = read_message(work, i, &text->messages[i]);
     }
     for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS_NEEDED; i++) {
         if (!map->entry[i].used) {

@@ -45,7 +45,9 @@ struct dig_estimator_text {
 };
 
 struct dig_match_text {
-    int *max_evaluations;
+    int    *max_evaluations;
+    char   *state;
+    double *expires_h, *drift_floors;
 };
 
 struct dig_identify_text {

@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <limits.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -16,32 +17,36 @@
 
 #define READINGS    4096
 #define RECORDS     4096
-#define DIGS        4
+#define DIGS        4 // memory for finished digs: one in the tick's hands, the others on the way
 #define RESULTS     16
 #define STACK_BYTES ((size_t)512 * 1024)
 #define LINE        512
 
 /// Bytes behind the handoffs, in one block with everything else the threads touch.
 struct handoff_memory {
-    struct dig_reading     readings[READINGS];
-    struct dig_record      records[RECORDS];
-    struct dig_observation digs[DIGS];
-    struct dig_fit_result  results[RESULTS];
-    struct dig_match       match[3];
-    struct dig_outlook     outlook[3];
-    struct dig_pulse       pulse[3];
-    struct dig_note        input_notes[3], fit_notes[3];
+    struct dig_reading    readings[READINGS];
+    struct dig_record     records[RECORDS];
+    struct dig_raw       *digs[DIGS], *spares[DIGS];
+    struct dig_fit_result results[RESULTS];
+    struct dig_offer      offer[3], table[3];
+    struct dig_table_news tables[3];
+    struct dig_outlook    outlook[3];
+    struct dig_pulse      pulse[3];
+    struct dig_note       input_notes[3], fit_notes[3];
 };
 
 struct dig_daemon {
+    char                  path[PATH_MAX];
     struct dig_loaded     loaded;
     struct dig_estimator *estimator;
+    struct dig_raw       *raw[DIGS];
     struct dig_input      input;
     struct dig_loop       loop;
     struct dig_fit        fit;
     struct dig_publisher  publisher;
-    struct dig_ring       readings, records, digs, results;
-    struct dig_latest     match, outlook, pulse, input_notes, fit_notes;
+    struct dig_ring       readings, records, digs, spares, results;
+    struct dig_latest     offer, table, tables, outlook, pulse, input_notes, fit_notes;
+    atomic_llong          publish_generation;
     struct handoff_memory memory;
     struct dig_rt_grant   grant;
     sem_t                 granted;
@@ -88,11 +93,16 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
     settings.has_alive = l->map.has_alive;
     settings.frozen_s  = l->map.frozen_s;
     settings.repeats   = l->map.kind == DIG_MAP_MODBUS;
+    settings.stuck_s   = l->map.stuck_s;
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        settings.max_rate[i] = l->map.entry[i].max_rate;
+    }
     if (l->map.kind == DIG_MAP_CAN) {
         settings.coherent_s = l->map.coherent_s;
         settings.groups     = (unsigned)l->map.groups;
         for (size_t g = 0; g < l->map.groups; g++) {
             settings.needed[g] = l->map.group[g].needed;
+            settings.frame[g]  = l->map.group[g].frame;
         }
     }
     return settings;
@@ -105,7 +115,10 @@ static void connect_threads(struct dig_daemon *const d)
     dig_ring_init(&d->records, sizeof m->records[0], RECORDS, m->records);
     dig_ring_init(&d->digs, sizeof m->digs[0], DIGS, m->digs);
     dig_ring_init(&d->results, sizeof m->results[0], RESULTS, m->results);
-    dig_latest_init(&d->match, sizeof m->match[0], m->match);
+    dig_ring_init(&d->spares, sizeof m->spares[0], DIGS, m->spares);
+    dig_latest_init(&d->offer, sizeof m->offer[0], m->offer);
+    dig_latest_init(&d->table, sizeof m->table[0], m->table);
+    dig_latest_init(&d->tables, sizeof m->tables[0], m->tables);
     dig_latest_init(&d->outlook, sizeof m->outlook[0], m->outlook);
     dig_latest_init(&d->pulse, sizeof m->pulse[0], m->pulse);
     dig_latest_init(&d->input_notes, sizeof m->input_notes[0], m->input_notes);
@@ -122,19 +135,35 @@ static void connect_threads(struct dig_daemon *const d)
         .stale_s      = config->stale_s,
         .prediction_s = config->prediction_s,
         .ahead_s      = 0.5,
-        .trajectories = (int)d->loaded.set->trajectories,
+        .set          = d->loaded.set,
     };
-    const struct dig_loop_ports ports = { &d->readings, &d->match,   &d->records,
-                                          &d->digs,     &d->outlook, &d->pulse };
+    const struct dig_loop_ports ports = { &d->readings, &d->offer, &d->table,   &d->spares,
+                                          &d->records,  &d->digs,  &d->outlook, &d->pulse };
     dig_loop_init(&d->loop, &settings, &ports, d->estimator);
+    for (size_t i = 0; i < DIGS; i++) {
+        (void)dig_ring_push(&d->spares, &d->raw[i]);
+    }
 
-    d->fit       = (struct dig_fit){ .config  = config,
-                                     .set     = d->loaded.set,
-                                     .digs    = &d->digs,
-                                     .match   = &d->match,
-                                     .results = &d->results,
-                                     .notes   = &d->fit_notes,
-                                     .stop    = &d->stop };
+    atomic_store(&d->publish_generation, 1);
+    d->fit = (struct dig_fit){
+        .config_path = d->path,
+        .config      = config,
+        .machine     = &d->loaded.machine,
+        .set         = d->loaded.set,
+        .generation  = 1,
+        .lambda      = d->loaded.machine.link[DIG_JOINT_BUCKET].length_m / d->loaded.set->tooth_m,
+        .known_settings     = { config->match_expires_s, config->drift_floors },
+        .digs               = &d->digs,
+        .spares             = &d->spares,
+        .offer              = &d->offer,
+        .table              = &d->table,
+        .results            = &d->results,
+        .tables             = &d->tables,
+        .notes              = &d->fit_notes,
+        .stop               = &d->stop,
+        .tick_generation    = &d->loop.generation,
+        .publish_generation = &d->publish_generation,
+    };
     d->publisher = (struct dig_publisher){ .config      = config,
                                            .set         = d->loaded.set,
                                            .input       = &d->input,
@@ -142,10 +171,23 @@ static void connect_threads(struct dig_daemon *const d)
                                            .records     = &d->records,
                                            .outlook     = &d->outlook,
                                            .results     = &d->results,
+                                           .tables      = &d->tables,
+                                           .generation  = &d->publish_generation,
                                            .pulse       = &d->pulse,
                                            .input_notes = &d->input_notes,
                                            .fit_notes   = &d->fit_notes,
                                            .stop        = &d->stop_publish };
+}
+
+static bool allocate(struct dig_daemon *const d)
+{
+    bool all     = true;
+    d->estimator = calloc(1, dig_estimator_size());
+    for (size_t i = 0; i < DIGS; i++) {
+        d->raw[i] = calloc(1, dig_raw_size());
+        all       = all && d->raw[i] != NULL;
+    }
+    return all && d->estimator != NULL;
 }
 
 enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **const daemon,
@@ -156,10 +198,10 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
     if (d == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "no memory");
     }
+    (void)snprintf(d->path, sizeof d->path, "%s", path);
     enum dig_status status = dig_load(path, &d->loaded, error);
     if (status == DIG_OK) {
-        d->estimator = calloc(1, dig_estimator_size());
-        status = d->estimator != NULL ? DIG_OK : dig_error_set(error, DIG_ENOMEM, "no memory");
+        status = allocate(d) ? DIG_OK : dig_error_set(error, DIG_ENOMEM, "no memory");
     }
     if (status == DIG_OK) {
         status = dig_estimator_init(d->estimator, &d->loaded.machine, d->loaded.set,
@@ -178,6 +220,8 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
         return status;
     }
     connect_threads(d);
+    d->loaded.set = NULL; // the matcher's from now on, as it may exchange it
+    dig_fit_restore(&d->fit);
     *daemon = d;
     return DIG_OK;
 }
@@ -186,7 +230,11 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
 {
     if (daemon != NULL) {
         dig_input_destroy(&daemon->input);
+        dig_fit_finish(&daemon->fit);
         free(daemon->estimator);
+        for (size_t i = 0; i < DIGS; i++) {
+            free(daemon->raw[i]);
+        }
         dig_loaded_finish(&daemon->loaded);
         free(daemon);
     }
@@ -196,7 +244,7 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
 {
     assert(d != NULL && say != NULL);
     const struct dig_loaded *const    l   = &d->loaded;
-    const struct dig_curve_set *const set = l->set;
+    const struct dig_curve_set *const set = d->fit.set;
     char                              line[LINE];
     char                              digs[LINE] = "";
     for (size_t t = 0; t < set->trajectories; t++) {
@@ -218,9 +266,21 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
     say(line);
 }
 
+// The input's and the publisher's threads stand a little below the tick: a sample is of use only
+// when it comes in and goes out.
+static void enter_below(const struct dig_daemon *const d, const int below)
+{
+    const struct dig_rt_settings *const rt       = &d->loaded.config.realtime;
+    const struct dig_rt_settings        settings = { .priority =
+                                                  rt->priority > below ? rt->priority - below : 0,
+                                                     .cpu = -1 };
+    (void)dig_rt_enter(&settings);
+}
+
 static void *input_main(void *const context)
 {
     struct dig_daemon *const d = context;
+    enter_below(d, 1);
     dig_input_run(&d->input);
     return NULL;
 }
@@ -244,6 +304,7 @@ static void *fit_main(void *const context)
 static void *publish_main(void *const context)
 {
     struct dig_daemon *const d = context;
+    enter_below(d, 2);
     dig_publisher_run(&d->publisher);
     return NULL;
 }
@@ -262,7 +323,10 @@ static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signa
 {
     const struct timespec slice = { .tv_nsec = 50000000L };
     for (int quiet = 0; quiet < 5;) {
-        if (sigtimedwait(signals, NULL, &slice) > 0) {
+        const int signal = sigtimedwait(signals, NULL, &slice);
+        if (signal == SIGHUP) {
+            atomic_store(&d->fit.reload, true);
+        } else if (signal > 0) {
             return;
         }
         quiet = is_quiet(d) ? quiet + 1 : 0;
@@ -280,6 +344,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_voic
     (void)sigemptyset(&signals);
     (void)sigaddset(&signals, SIGTERM);
     (void)sigaddset(&signals, SIGINT);
+    (void)sigaddset(&signals, SIGHUP);
     (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
     static void *(*const mains[])(void *) = { tick_main, publish_main, fit_main, input_main };

@@ -2,7 +2,7 @@
 //
 //   input thread -> readings -> tick -> records, outlook, pulse -> publisher -> LCM
 //                               ^  |                                  ^
-//                       match --+  +-- digs -> matcher -- results ----+
+//                offer, table --+  +-- digs -> matcher -- results ----+
 
 #ifndef DIG_FIRMWARE_HOST_DAEMON_H
 #define DIG_FIRMWARE_HOST_DAEMON_H
@@ -26,8 +26,8 @@ void dig_daemon_destroy(struct dig_daemon *daemon);
 /// What was loaded, for people, as lines through say.
 void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char *line));
 
-/// Runs until SIGTERM or SIGINT, or until a replay has ended and all of it is published. DIG_EIO: a
-/// thread could not be started.
+/// Runs until SIGTERM or SIGINT (SIGHUP exchanges the table), or until a replay has ended and all
+/// of it is published. DIG_EIO: a thread could not be started.
 DIG_MUST_CHECK enum dig_status
 dig_daemon_run(struct dig_daemon *daemon, const struct dig_voice *voice, struct dig_error *error);
 

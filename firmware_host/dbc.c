@@ -185,6 +185,24 @@ static void read_type(const char *const text, const struct dig_dbc *const dbc)
     }
 }
 
+// BA_ "GenMsgCycleTime" BO_ 2566879720 10;   in ms
+static void read_cycle(const char *const text, const struct dig_dbc *const dbc)
+{
+    unsigned long long id       = 0;
+    double             cycle_ms = 0.0;
+    // NOLINTNEXTLINE(cert-err34-c): an unreadable line says nothing of ours
+    if (sscanf(text, " BA_ \"GenMsgCycleTime\" BO_ %10llu %lf", &id, &cycle_ms) != 2 ||
+        !(cycle_ms > 0.0 && cycle_ms <= 60e3)) {
+        return;
+    }
+    for (size_t i = 0; i < dbc->messages; i++) {
+        struct dig_dbc_message *const m = &dbc->message[i];
+        if ((m->id | (m->extended ? EXTENDED_FLAG : 0)) == id) {
+            m->cycle_s = cycle_ms * 1e-3;
+        }
+    }
+}
+
 static enum dig_status read_lines(const char *const path, char *const text,
                                   struct dig_dbc *const dbc, struct dig_error *const error)
 {
@@ -207,6 +225,8 @@ static enum dig_status read_lines(const char *const path, char *const text,
             status = read_signal(&place, word, dbc);
         } else if (!in_string && strncmp(word, "SIG_VALTYPE_ ", 13) == 0) {
             read_type(word, dbc);
+        } else if (!in_string && strncmp(word, "BA_ ", 4) == 0) {
+            read_cycle(word, dbc);
         }
         if (status != DIG_OK) {
             return status;

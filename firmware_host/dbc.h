@@ -1,7 +1,8 @@
 // What of a CAN database (.dbc) it takes to read frames: messages (BO_) and their signals (SG_),
-// with start bit, length, byte order, sign, factor, offset and unit. Every other section is passed
-// over. Multiplexed signals, and floating-point ones (SIG_VALTYPE_), are refused when they are
-// asked for, as they would decode to nonsense.
+// with start bit, length, byte order, sign, factor, offset and unit, and the cycle of a message
+// (the attribute GenMsgCycleTime). Every other section is passed over. Multiplexed signals, and
+// floating-point ones (SIG_VALTYPE_), are refused when they are asked for, as they would decode to
+// nonsense.
 //
 //   BO_ 2566879720 Pressure_1: 8 Machine         id (bit 31: extended frame), name, bytes, sender
 //    SG_ name : 8|16@1+ (0.2,-10) [-10|40] "MPa" Receiver
@@ -36,6 +37,7 @@ struct dig_dbc_message {
     bool     extended;
     unsigned bytes;
     size_t   first, signals; // in dig_dbc.signal
+    double   cycle_s;        // 0: not said
     int      line;
 };
 

@@ -1,16 +1,68 @@
 #include "firmware_host/fit.h"
 
-#include <assert.h>
-#include <stdio.h>
-#include <time.h>
+#include "firmware_host/load.h"
+#include "tables/load.h"
 
-static void note(struct dig_fit *const fit, const struct dig_observation *const dig,
-                 const char *const what, const enum dig_status status)
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static void note(struct dig_fit *const fit, const char *const text)
 {
     struct dig_note note;
-    (void)snprintf(note.text, sizeof note.text, "dig %u (%s): %s: %s", dig->dig_count,
-                   fit->set->trajectory[dig->trajectory].name, what, dig_status_str(status));
+    (void)snprintf(note.text, sizeof note.text, "%.199s", text);
     dig_latest_put(fit->notes, &note);
+}
+
+static void note_dig(struct dig_fit *const fit, const struct dig_observation *const dig,
+                     const char *const what, const enum dig_status status)
+{
+    char text[200];
+    (void)snprintf(text, sizeof text, "dig %u (%s): %s: %s", dig->dig_count,
+                   fit->set->trajectory[dig->trajectory].name, what, dig_status_str(status));
+    note(fit, text);
+}
+
+// Tells tick and publisher what is known now.
+static void tell(struct dig_fit *const fit)
+{
+    struct dig_offer *const       next = &fit->next;
+    const struct dig_known *const k    = &fit->known;
+    next->set                          = fit->set;
+    next->generation                   = fit->generation;
+    next->known                        = k->valid;
+    next->outside                      = k->match.outside;
+    next->dig_count                    = k->match.dig_count;
+    next->expires_ns                   = k->any ? k->expires_ns : 0;
+    dig_forecast_make(fit->set, fit->lambda, &k->match, &next->forecast);
+
+    // Until the tick has the table, what belongs to it goes with it.
+    const bool adopted = atomic_load(fit->tick_generation) == fit->generation;
+    dig_latest_put(adopted ? fit->offer : fit->table, next);
+    if (k->any) {
+        struct dig_fit_result result = { .known = *k };
+        const int             hint =
+            k->valid ? dig_known_hint(fit->set, &next->forecast, fit->lambda, &result.hint_J_per_kg)
+                                 : -1;
+        if (hint >= 0) {
+            (void)snprintf(result.hint_trajectory, sizeof result.hint_trajectory, "%s",
+                           fit->set->trajectory[hint].name);
+        }
+        (void)dig_ring_push(fit->results, &result);
+    }
+}
+
+static void keep(struct dig_fit *const fit)
+{
+    struct dig_error error = { "" };
+    if (fit->config->match_state.text[0] != '\0' &&
+        dig_known_write(fit->config->match_state.text, &fit->known, &error) != DIG_OK) {
+        note(fit, error.text);
+    }
 }
 
 static void match_dig(struct dig_fit *const fit, const struct dig_observation *const dig)
@@ -19,35 +71,136 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
     enum dig_status  status =
         dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match);
     if (status != DIG_OK) {
-        note(fit, dig,
-             status == DIG_ENOMATCH ? "no match, the table holds no curve of this dig" : "no match",
-             status);
+        note_dig(fit, dig,
+                 status == DIG_ENOMATCH ? "no match, the table holds no curve of this dig"
+                                        : "no match",
+                 status);
         return;
     }
     status = dig_fit_refine(fit->set, dig, fit->config->match_evaluations, &match);
     if (status != DIG_OK) {
         // The nearest entry stands: it is exact, only coarse.
-        note(fit, dig, "nearest entry only", status);
+        note_dig(fit, dig, "nearest entry only", status);
     }
-    const struct dig_fit_result result = { .match      = match,
-                                           .time_ns    = dig_input_now_ns(),
-                                           .trajectory = dig->trajectory };
-    dig_latest_put(fit->match, &match);
-    (void)dig_ring_push(fit->results, &result);
+    fit->known =
+        dig_known_of(fit->set, &match, dig->trajectory, dig_input_now_ns(), &fit->known_settings);
+    tell(fit);
+    keep(fit);
     atomic_fetch_add(&fit->matches, 1);
+}
+
+void dig_fit_take(struct dig_fit *const fit, const struct dig_observation *const dig)
+{
+    assert(fit != NULL && dig != NULL);
+    if (dig->trajectory < 0 || (size_t)dig->trajectory >= fit->set->trajectories) {
+        return;
+    }
+    if (dig_config_identifies(fit->config, fit->set->trajectory[dig->trajectory].name)) {
+        match_dig(fit, dig);
+    } else if (dig_known_watch(&fit->known, dig, &fit->next.forecast.along[dig->trajectory],
+                               &fit->known_settings)) {
+        tell(fit);
+    }
+}
+
+// Judges a table as at start, with an estimator that is thrown away.
+static enum dig_status check_table(const struct dig_fit *const       fit,
+                                   const struct dig_curve_set *const set,
+                                   struct dig_error *const           error)
+{
+    struct dig_estimator *const scratch = calloc(1, dig_estimator_size());
+    if (scratch == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "no memory");
+    }
+    const enum dig_status status =
+        dig_estimator_init(scratch, fit->machine, set, &fit->config->estimator);
+    free(scratch);
+    return status == DIG_OK ? DIG_OK
+                            : dig_error_set(error, status, "%s: table: %s", fit->config_path,
+                                            dig_status_str(status));
+}
+
+// The table the configuration names now. All is checked before anything changes; a gravel that is
+// known stays known where the new table holds it.
+static void reload(struct dig_fit *const fit)
+{
+    struct dig_error      error  = { "" };
+    struct dig_curve_set *set    = NULL;
+    enum dig_status       status = dig_load_table(fit->config_path, fit->machine, &set, &error);
+    status                       = status == DIG_OK ? check_table(fit, set, &error) : status;
+    if (status != DIG_OK) {
+        char text[200];
+        dig_curve_set_destroy(set);
+        (void)snprintf(text, sizeof text, "reload refused, the table before stays: %.150s",
+                       error.text[0] != '\0' ? error.text : dig_status_str(status));
+        note(fit, text);
+        atomic_fetch_add(&fit->reloads_refused, 1);
+        return;
+    }
+    fit->retiring = fit->set;
+    fit->set      = set;
+    fit->generation++;
+    fit->lambda = fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    if (!dig_known_move(&fit->known, set)) {
+        fit->known.valid       = false;
+        fit->known.match.valid = false;
+        (void)snprintf(fit->known.wanted, sizeof fit->known.wanted,
+                       "another table: dig a simple dig");
+    }
+    const struct dig_table_news news = { set, fit->generation };
+    dig_latest_put(fit->tables, &news);
+    tell(fit);
+    note(fit, "");
+    atomic_fetch_add(&fit->reloads, 1);
+}
+
+// Frees the table before once tick and publisher use the new one.
+static void retire(struct dig_fit *const fit)
+{
+    if (fit->retiring != NULL && atomic_load(fit->tick_generation) == fit->generation &&
+        atomic_load(fit->publish_generation) == fit->generation) {
+        dig_curve_set_destroy(fit->retiring);
+        fit->retiring = NULL;
+    }
+}
+
+void dig_fit_restore(struct dig_fit *const fit)
+{
+    assert(fit != NULL);
+    const char *const path  = fit->config->match_state.text;
+    struct dig_error  error = { "" };
+    fit->known.drift        = (double)NAN;
+    if (path[0] == '\0' || access(path, F_OK) != 0) {
+        return;
+    }
+    const enum dig_status status = dig_known_read(path, fit->set, dig_input_now_ns(),
+                                                  &fit->known_settings, &fit->known, &error);
+    if (status == DIG_OK) {
+        tell(fit);
+    } else {
+        note(fit, error.text);
+    }
 }
 
 bool dig_fit_once(struct dig_fit *const fit)
 {
     assert(fit != NULL);
-    struct dig_observation dig;
+    struct dig_raw *raw = NULL;
     atomic_store(&fit->busy, true);
-    const bool any = dig_ring_pop(fit->digs, &dig);
-    if (any && dig.trajectory >= 0 && (size_t)dig.trajectory < fit->set->trajectories &&
-        dig_config_identifies(fit->config, fit->set->trajectory[dig.trajectory].name)) {
-        match_dig(fit, &dig);
+    retire(fit);
+    if (fit->retiring == NULL && atomic_exchange(&fit->reload, false)) {
+        reload(fit);
     }
+    if (dig_known_age(&fit->known, dig_input_now_ns())) {
+        tell(fit);
+    }
+    const bool any = dig_ring_pop(fit->digs, &raw);
     if (any) {
+        struct dig_observation dig;
+        if (dig_raw_observe(fit->set, &fit->config->estimator, raw, &dig) == DIG_OK) {
+            dig_fit_take(fit, &dig);
+        }
+        (void)dig_ring_push(fit->spares, &raw);
         atomic_fetch_add(&fit->seen, 1);
     }
     atomic_store(&fit->busy, false);
@@ -63,4 +216,13 @@ void dig_fit_run(struct dig_fit *const fit)
             (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, NULL);
         }
     }
+}
+
+void dig_fit_finish(struct dig_fit *const fit)
+{
+    assert(fit != NULL);
+    dig_curve_set_destroy(fit->retiring);
+    dig_curve_set_destroy(fit->set);
+    fit->retiring = NULL;
+    fit->set      = NULL;
 }

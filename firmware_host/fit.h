@@ -1,39 +1,76 @@
-// The matching thread: digs that are finished go in, gravels come out. Allocates (in NLopt), so it
-// lives beside the tick, never in it.
+// The matching thread: digs that are finished go in as the tick recorded them, gravels and what
+// they will resist with come out. It also exchanges the table when asked to. Allocates (in NLopt,
+// in SQLite), so it lives beside the tick, never in it.
 
 #ifndef DIG_FIRMWARE_HOST_FIT_H
 #define DIG_FIRMWARE_HOST_FIT_H
 
 #include "estimator/match.h"
 #include "firmware_host/config.h"
+#include "firmware_host/known.h"
+#include "firmware_host/loop.h"
 
 #include <stdatomic.h>
 
-/// A match, and what it was made from; for the publisher.
+/// What is known, for the publisher; whole in itself, whatever table is in use.
 struct dig_fit_result {
-    struct dig_match match;
-    int64_t          time_ns; // CLOCK_MONOTONIC
-    int              trajectory;
+    struct dig_known known;
+    char             hint_trajectory[DIG_NAME_SIZE]; // "" not known
+    double           hint_J_per_kg;
+};
+
+/// A table in use, for the publisher's names.
+struct dig_table_news {
+    const struct dig_curve_set *set;
+    int64_t                     generation;
 };
 
 struct dig_fit {
-    const struct dig_config    *config;
-    const struct dig_curve_set *set;
-    struct dig_ring            *digs;    // in:  struct dig_observation
-    struct dig_latest          *match;   // out: struct dig_match, to the tick
-    struct dig_ring            *results; // out: struct dig_fit_result, to the publisher
-    struct dig_latest          *notes;   // out: struct dig_note, why a dig gave no match
-    const atomic_bool          *stop;
-    atomic_llong                seen;    // digs taken
-    atomic_llong                matches; // digs matched
-    atomic_bool                 busy;
+    const char               *config_path; // read again for a reload
+    const struct dig_config  *config;
+    const struct dig_machine *machine;
+    struct dig_curve_set     *set;        // in use; owned
+    struct dig_curve_set     *retiring;   // the one before, until no one looks at it; owned
+    int64_t                   generation; // of set, counted from 1
+    double                    lambda;
+    struct dig_known_settings known_settings;
+    struct dig_ring          *digs;    // in:  struct dig_raw *
+    struct dig_ring          *spares;  // out: the same memory, back
+    struct dig_latest        *offer;   // out: struct dig_offer, to the tick
+    struct dig_latest        *table;   // out: struct dig_offer of another table, to the tick
+    struct dig_ring          *results; // out: struct dig_fit_result, to the publisher
+    struct dig_latest        *tables;  // out: struct dig_table_news, to the publisher
+    struct dig_latest        *notes;   // out: struct dig_note, what went wrong
+    const atomic_bool        *stop;
+    const atomic_llong       *tick_generation;    // that the tick uses
+    const atomic_llong       *publish_generation; // that the publisher uses
+    atomic_bool               reload;             // asked for; taken by the thread
+    atomic_llong              seen;               // digs taken
+    atomic_llong              matches;            // digs matched
+    atomic_llong              reloads, reloads_refused;
+    atomic_bool               busy;
+
+    // the thread's own
+    struct dig_known known;
+    struct dig_offer next; // what is offered
 };
 
-/// Takes what waits in the ring; true when there was a dig. Digs of trajectories that do not
-/// identify are passed over.
+/// Takes up what the state file knows, if there is one, and offers it. Before the thread starts.
+/// What is wrong with the file is noted, no error: the daemon then knows nothing.
+void dig_fit_restore(struct dig_fit *fit);
+
+/// One dig as observed: matched when its trajectory identifies, else compared with what was
+/// expected.
+void dig_fit_take(struct dig_fit *fit, const struct dig_observation *dig);
+
+/// One turn: a dig that waits in the ring, a reload asked for, what is too old. True when there was
+/// a dig. Digs of trajectories that do not identify are compared with what was expected of them.
 bool dig_fit_once(struct dig_fit *fit);
 
-/// The thread: looks every 20 ms until *stop.
+/// The thread: a turn every 20 ms until *stop.
 void dig_fit_run(struct dig_fit *fit);
+
+/// Frees the tables.
+void dig_fit_finish(struct dig_fit *fit);
 
 #endif // DIG_FIRMWARE_HOST_FIT_H

@@ -62,15 +62,24 @@ void dig_latest_put(struct dig_latest *const latest, const void *const record)
     latest->back = before & ~NEWS;
 }
 
-bool dig_latest_take(struct dig_latest *const latest, void *const record)
+const void *dig_latest_look(struct dig_latest *const latest)
 {
-    assert(latest != NULL && record != NULL);
+    assert(latest != NULL);
     if ((atomic_load_explicit(&latest->middle, memory_order_relaxed) & NEWS) == 0) {
-        return false;
+        return NULL;
     }
     const unsigned news =
         atomic_exchange_explicit(&latest->middle, latest->front, memory_order_acq_rel);
     latest->front = news & ~NEWS;
-    memcpy(record, latest->memory + latest->size * latest->front, latest->size);
-    return true;
+    return latest->memory + latest->size * latest->front;
+}
+
+bool dig_latest_take(struct dig_latest *const latest, void *const record)
+{
+    assert(latest != NULL && record != NULL);
+    const void *const news = dig_latest_look(latest);
+    if (news != NULL) {
+        memcpy(record, news, latest->size);
+    }
+    return news != NULL;
 }

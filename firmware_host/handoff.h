@@ -51,4 +51,8 @@ void dig_latest_put(struct dig_latest *latest, const void *record);
 /// True when something was put since the last take; *record is untouched otherwise. Consumer only.
 bool dig_latest_take(struct dig_latest *latest, void *record);
 
+/// The same without a copy: what was put last, unchanged until the next look or take; NULL when
+/// nothing was put since. Consumer only.
+const void *dig_latest_look(struct dig_latest *latest);
+
 #endif // DIG_FIRMWARE_HOST_HANDOFF_H

@@ -28,6 +28,7 @@ struct can_source {
     char                         interface[IFNAMSIZ];
     const struct dig_signal_map *map;
     int                          fd;
+    bool                         off; // the controller left the bus, and nothing came since
 };
 
 static enum dig_status refuse(const struct dig_input *const input, const char *const what,
@@ -118,19 +119,53 @@ static int64_t stamp_of(struct msghdr *const message)
     return now_ns;
 }
 
+static void note(struct dig_input *const input, const char *const text)
+{
+    struct dig_note note = { "" };
+    if (text[0] != '\0') {
+        (void)snprintf(note.text, sizeof note.text, "%.40s: %.150s", input->name, text);
+    }
+    dig_latest_put(input->notes, &note);
+}
+
+// What the controller says of its bus. A daemon that only listens cannot bring a bus back: that is
+// the interface's restart-ms. It says so, counts, and goes on when frames come again.
+static void take_error(struct dig_input *const input, const struct can_frame *const frame)
+{
+    struct can_source *const s   = input->source;
+    const bool               off = (frame->can_id & CAN_ERR_BUSOFF) != 0;
+    atomic_fetch_add(&input->errors, 1);
+    if (off && !s->off) {
+        atomic_fetch_add(&input->bus_offs, 1);
+        note(input, "bus off (ip link set … type can restart-ms 100 lets it come back by itself)");
+    }
+    s->off = s->off || off;
+}
+
 static void take_frame(struct dig_input *const input, const struct can_frame *const frame,
                        const int64_t time_ns)
 {
-    const struct can_source *const s        = input->source;
-    const bool                     extended = (frame->can_id & CAN_EFF_FLAG) != 0;
-    const uint32_t                 id    = frame->can_id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-    const int                      group = dig_signal_map_group(s->map, id, extended);
-    struct dig_reading             reading;
-    if ((frame->can_id & CAN_ERR_FLAG) != 0 || group < 0 ||
-        dig_signal_map_frame(s->map, (unsigned)group, frame->can_dlc, frame->data, time_ns,
-                             &reading) != DIG_OK) {
-        atomic_fetch_add(&input->malformed, 1);
+    struct can_source *const s = input->source;
+    if ((frame->can_id & CAN_ERR_FLAG) != 0) {
+        take_error(input, frame);
         return;
+    }
+    const bool         extended = (frame->can_id & CAN_EFF_FLAG) != 0;
+    const uint32_t     id       = frame->can_id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+    const int          group    = dig_signal_map_group(s->map, id, extended);
+    struct dig_reading reading;
+    enum dig_status    status = group < 0 ? DIG_EINVAL : DIG_OK;
+    if (status == DIG_OK) {
+        status = dig_signal_map_frame(s->map, (unsigned)group, frame->can_dlc, frame->data, time_ns,
+                                      &reading);
+    }
+    if (status != DIG_OK) {
+        atomic_fetch_add(status == DIG_ESTALE ? &input->checksum : &input->malformed, 1);
+        return;
+    }
+    if (s->off) {
+        s->off = false;
+        note(input, "");
     }
     atomic_fetch_add(&input->frames, 1);
     dig_input_give(input, &reading);

@@ -60,6 +60,8 @@ static enum dig_status bear(struct dig_input *const input, struct dig_error *con
     const bool                  borne = errno > MODBUS_ENOBASE || errno == ETIMEDOUT;
     if (errno > MODBUS_ENOBASE) {
         atomic_fetch_add(&input->malformed, 1);
+    } else if (errno == ETIMEDOUT) {
+        atomic_fetch_add(&input->timeouts, 1);
     }
     if (borne && ++s->failures < FAILURES_BORNE) {
         (void)modbus_flush(s->bus);

@@ -13,35 +13,37 @@
 
 // The table asked for by name or hash, and a bucket of the machine's shape: else its curves say
 // nothing about this machine.
-static enum dig_status check_scene(const char *const path, const struct dig_loaded *const l,
-                                   struct dig_error *const error)
+static enum dig_status check_scene(const char *const path, const struct dig_config *const config,
+                                   const struct dig_machine *const   machine_read,
+                                   const struct dig_curve_set *const set,
+                                   struct dig_error *const           error)
 {
-    const struct dig_curve_set *const set  = l->set;
-    const char *const                 want = l->config.scene;
+    const char *const want = config->scene;
     if (want[0] != '\0' && strcmp(want, set->scene_name) != 0 &&
         strcmp(want, set->scene_hash) != 0) {
         return dig_yaml_refuse(path, "scene", error,
                                "\"%s\", but %s is of scene \"%s\" (%s); expected the same", want,
-                               l->config.table.text, set->scene_name, set->scene_hash);
+                               config->table.text, set->scene_name, set->scene_hash);
     }
-    const double machine = l->machine.bucket_width_m / l->machine.link[DIG_JOINT_BUCKET].length_m;
-    const double scene   = set->bucket_width_m / set->tooth_m;
+    const double machine =
+        machine_read->bucket_width_m / machine_read->link[DIG_JOINT_BUCKET].length_m;
+    const double scene = set->bucket_width_m / set->tooth_m;
     if (!(fabs(machine / scene - 1.0) <= DIG_SHAPE_TOLERANCE)) {
         return dig_yaml_refuse(
             path, "table", error,
             "scene \"%s\" has a bucket %.3f times as wide as long, machine \"%s\" "
             "one %.3f times; expected the same shape within %.0f %%",
-            set->scene_name, scene, l->machine.name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
+            set->scene_name, scene, machine_read->name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
     }
-    for (size_t i = 0; i < l->config.identify_trajectories; i++) {
+    for (size_t i = 0; i < config->identify_trajectories; i++) {
         bool found = false;
         for (size_t t = 0; t < set->trajectories; t++) {
-            found |= strcmp(l->config.identify_trajectory[i], set->trajectory[t].name) == 0;
+            found |= strcmp(config->identify_trajectory[i], set->trajectory[t].name) == 0;
         }
         if (!found) {
             return dig_yaml_refuse(path, "identify.trajectories", error,
                                    "\"%s\", expected a trajectory of the table",
-                                   l->config.identify_trajectory[i]);
+                                   config->identify_trajectory[i]);
         }
     }
     return DIG_OK;
@@ -88,13 +90,30 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
         status = dig_table_load(l.config.table.text, &l.set, error);
     }
     if (status == DIG_OK) {
-        status = check_scene(path, &l, error);
+        status = check_scene(path, &l.config, &l.machine, l.set, error);
     }
     if (status != DIG_OK) {
         dig_loaded_finish(&l);
         return status;
     }
     *loaded = l;
+    return DIG_OK;
+}
+
+enum dig_status dig_load_table(const char *const path, const struct dig_machine *const machine,
+                               struct dig_curve_set **const set, struct dig_error *const error)
+{
+    assert(path != NULL && machine != NULL && set != NULL);
+    struct dig_config     config;
+    struct dig_curve_set *loaded = NULL;
+    enum dig_status       status = dig_config_read(path, &config, error);
+    status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
+    status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
+    if (status != DIG_OK) {
+        dig_curve_set_destroy(loaded);
+        return status;
+    }
+    *set = loaded;
     return DIG_OK;
 }
 

@@ -8,6 +8,25 @@
 #include "firmware_host/fit.h"
 #include "firmware_host/loop.h"
 
+/// What every message says of itself.
+#define DIG_ADVICE "advice, not a safety function"
+
+/// How long samples took from their last frame's stamp to LCM: counts over bins a quarter of an
+/// octave wide, from 16 us on.
+#define DIG_LATENCY_BINS 80
+struct dig_latency {
+    int64_t count[DIG_LATENCY_BINS]; // the last one holds all that was later
+    int64_t samples;
+};
+
+/// Upper end of a bin, us.
+double dig_latency_to_us(int bin);
+
+void dig_latency_add(struct dig_latency *latency, int64_t took_ns);
+
+/// Upper end of the bin below which the share of all samples lies; 0 before the first.
+double dig_latency_quantile_us(const struct dig_latency *latency, double share);
+
 /// HEALTH in plain words; the fields are those of messages/health_t.lcm.
 struct dig_health {
     int64_t             time_ns; // CLOCK_MONOTONIC
@@ -16,7 +35,10 @@ struct dig_health {
     double              tick_s;
     struct dig_pulse    pulse;
     int64_t             frames, malformed, reconnects, lost;
+    int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
     int32_t             matches;
+    struct dig_latency  latency;
+    const char         *table; // scene hash
 };
 
 struct dig_output;
@@ -34,7 +56,6 @@ DIG_MUST_CHECK enum dig_status dig_output_record(struct dig_output          *out
                                                  const struct dig_curve_set *set,
                                                  const struct dig_record    *record);
 DIG_MUST_CHECK enum dig_status dig_output_match(struct dig_output           *output,
-                                                const struct dig_curve_set  *set,
                                                 const struct dig_fit_result *result);
 DIG_MUST_CHECK enum dig_status dig_output_outlook(struct dig_output          *output,
                                                   const struct dig_curve_set *set,

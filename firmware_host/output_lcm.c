@@ -93,11 +93,19 @@ static enum dig_status publish_sample(struct dig_output *const       output,
     return sent(digsight_sample_t_publish(output->lcm, "DIGSIGHT_SAMPLE", &message));
 }
 
+// lcm-gen's structs hold text as char *; publishing does not write to it.
+static char *advice(void)
+{
+    static char text[] = DIG_ADVICE;
+    return text;
+}
+
 static enum dig_status publish_estimate(struct dig_output *const          output,
                                         const struct dig_curve_set *const set,
-                                        const struct dig_estimate *const  e)
+                                        const struct dig_record *const    record)
 {
-    char name[TEXT_SIZE];
+    const struct dig_estimate *const e = &record->estimate;
+    char                             name[TEXT_SIZE];
     (void)snprintf(name, sizeof name, "%s", trajectory_name(set, e->trajectory));
     const digsight_estimate_t message = {
         .time_ns         = e->time_ns,
@@ -118,6 +126,8 @@ static enum dig_status publish_estimate(struct dig_output *const          output
         .trajectory      = name,
         .progress        = e->progress,
         .off_path_m      = e->off_path_m,
+        .expires_ns      = record->expires_ns,
+        .advice          = advice(),
     };
     return sent(digsight_estimate_t_publish(output->lcm, "DIGSIGHT_ESTIMATE", &message));
 }
@@ -128,36 +138,43 @@ enum dig_status dig_output_record(struct dig_output *const          output,
 {
     assert(output != NULL && set != NULL && record != NULL);
     const enum dig_status status = publish_sample(output, &record->sample);
-    return status == DIG_OK && record->has_estimate
-               ? publish_estimate(output, set, &record->estimate)
-               : status;
+    return status == DIG_OK && record->has_estimate ? publish_estimate(output, set, record)
+                                                    : status;
 }
 
 enum dig_status dig_output_match(struct dig_output *const           output,
-                                 const struct dig_curve_set *const  set,
                                  const struct dig_fit_result *const result)
 {
-    assert(output != NULL && set != NULL && result != NULL);
-    const struct dig_match *const m       = &result->match;
-    const bool                    in_set  = m->nearest >= 0 && (size_t)m->nearest < set->entries;
-    const struct dig_gravel       nothing = { { NAN, NAN, NAN } };
-    const struct dig_gravel       nearest = in_set ? set->gravel[m->nearest] : nothing;
-    char                          name[TEXT_SIZE];
-    char                          table[TEXT_SIZE];
-    (void)snprintf(name, sizeof name, "%s", trajectory_name(set, result->trajectory));
-    (void)snprintf(table, sizeof table, "%s", set->scene_hash);
+    assert(output != NULL && result != NULL);
+    const struct dig_known *const  k       = &result->known;
+    const struct dig_match *const  m       = &k->match;
+    const struct dig_gravel *const nearest = &k->nearest;
+    char                           name[TEXT_SIZE];
+    char                           table[TEXT_SIZE];
+    char                           wanted[TEXT_SIZE];
+    char                           hint[TEXT_SIZE];
+    double                         sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
+    (void)snprintf(name, sizeof name, "%s", k->trajectory);
+    (void)snprintf(table, sizeof table, "%s", k->table);
+    (void)snprintf(wanted, sizeof wanted, "%s", k->wanted);
+    (void)snprintf(hint, sizeof hint, "%s", result->hint_trajectory);
+    for (size_t s = 0; s < m->samples; s++) {
+        for (int a = 0; a < DIG_AXES; a++) {
+            sample[a][s] = m->sample[s].value[a];
+        }
+    }
     const digsight_match_t message = {
-        .time_ns               = result->time_ns,
-        .utc_us                = utc_us(result->time_ns),
-        .valid                 = m->valid ? 1 : 0,
+        .time_ns               = k->time_ns,
+        .utc_us                = utc_us(k->time_ns),
+        .valid                 = k->valid ? 1 : 0,
         .outside               = m->outside ? 1 : 0,
         .dig_count             = (int32_t)m->dig_count,
         .trajectory            = name,
         .table                 = table,
         .nearest_entry         = m->nearest,
-        .nearest_friction      = nearest.value[DIG_AXIS_FRICTION],
-        .nearest_rolling       = nearest.value[DIG_AXIS_ROLLING],
-        .nearest_density_kgpm3 = nearest.value[DIG_AXIS_DENSITY_kgpm3],
+        .nearest_friction      = nearest->value[DIG_AXIS_FRICTION],
+        .nearest_rolling       = nearest->value[DIG_AXIS_ROLLING],
+        .nearest_density_kgpm3 = nearest->value[DIG_AXIS_DENSITY_kgpm3],
         .nearest_distance      = m->nearest_distance,
         .friction              = m->gravel.value[DIG_AXIS_FRICTION],
         .friction_low          = m->low.value[DIG_AXIS_FRICTION],
@@ -170,6 +187,17 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .density_high_kgpm3    = m->high.value[DIG_AXIS_DENSITY_kgpm3],
         .distance              = m->distance,
         .noise_floor           = m->noise_floor,
+        .expires_ns            = k->expires_ns,
+        .restored              = k->restored ? 1 : 0,
+        .drift                 = k->drift,
+        .wanted                = wanted,
+        .samples               = (int32_t)m->samples,
+        .sample_friction       = sample[DIG_AXIS_FRICTION],
+        .sample_rolling        = sample[DIG_AXIS_ROLLING],
+        .sample_density_kgpm3  = sample[DIG_AXIS_DENSITY_kgpm3],
+        .hint_trajectory       = hint,
+        .hint_J_per_kg         = result->hint_J_per_kg,
+        .advice                = advice(),
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
 }
@@ -181,6 +209,8 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
     assert(output != NULL && set != NULL && outlook != NULL);
     struct dig_prediction prediction = outlook->prediction;
     char                  name[TEXT_SIZE];
+    char                  reason[TEXT_SIZE];
+    (void)snprintf(reason, sizeof reason, "%s", dig_why_not_str(outlook->why_not));
     (void)snprintf(name, sizeof name, "%s",
                    prediction.valid ? trajectory_name(set, prediction.trajectory) : "");
     const digsight_prediction_t message = {
@@ -200,6 +230,9 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
         .force_z_N     = prediction.Fz_N,
         .peak_Nm       = prediction.peak_Nm,
         .energy_J      = prediction.energy_J,
+        .outside       = outlook->outside ? 1 : 0,
+        .reason        = reason,
+        .advice        = advice(),
     };
     return sent(digsight_prediction_t_publish(output->lcm, "DIGSIGHT_PREDICTION", &message));
 }
@@ -208,9 +241,17 @@ enum dig_status dig_output_health(struct dig_output *const       output,
                                   const struct dig_health *const health)
 {
     assert(output != NULL && health != NULL);
-    char state[TEXT_SIZE];
-    char input[TEXT_SIZE];
-    char note[TEXT_SIZE];
+    char    state[TEXT_SIZE];
+    char    input[TEXT_SIZE];
+    char    note[TEXT_SIZE];
+    char    table[TEXT_SIZE];
+    double  latency_to_us[DIG_LATENCY_BINS];
+    int64_t latency_count[DIG_LATENCY_BINS];
+    for (int i = 0; i < DIG_LATENCY_BINS; i++) {
+        latency_to_us[i] = dig_latency_to_us(i);
+        latency_count[i] = health->latency.count[i];
+    }
+    (void)snprintf(table, sizeof table, "%s", health->table);
     (void)snprintf(state, sizeof state, "%s", health->state);
     (void)snprintf(input, sizeof input, "%s", health->input);
     (void)snprintf(note, sizeof note, "%s", health->note);
@@ -238,6 +279,24 @@ enum dig_status dig_output_health(struct dig_output *const       output,
               .digs                  = (int32_t)pulse->digs,
               .matches               = health->matches,
               .lost                  = health->lost,
+              .dropped_checksum      = health->checksum,
+              .dropped_repeated      = pulse->drops.repeated,
+              .dropped_jump          = pulse->drops.jump,
+              .dropped_stuck         = pulse->drops.stuck,
+              .missed                = pulse->drops.missed,
+              .error_frames          = health->errors,
+              .bus_offs              = health->bus_offs,
+              .timeouts              = health->timeouts,
+              .unsent                = health->unsent,
+              .reloads               = health->reloads,
+              .reloads_refused       = health->reloads_refused,
+              .worst_tick_cpu_us     = pulse->worst_tick_cpu_us,
+              .latency_p99_us        = dig_latency_quantile_us(&health->latency, 0.99),
+              .latency_bins          = DIG_LATENCY_BINS,
+              .latency_to_us         = latency_to_us,
+              .latency_count         = latency_count,
+              .table                 = table,
+              .advice                = advice(),
     };
     return sent(digsight_health_t_publish(output->lcm, "DIGSIGHT_HEALTH", &message));
 }

@@ -10,7 +10,8 @@
 #include <time.h>
 
 #define NS_PER_S 1000000000LL
-#define BURST    6 // records, two messages each
+#define BURST    6        // records, two messages each
+#define TURN_ns  500000LL // between two turns, at most
 
 __attribute__((format(printf, 2, 3))) static void say(const struct dig_publisher *const p,
                                                       const char *const                 format, ...)
@@ -52,6 +53,7 @@ static bool is_online(struct dig_publisher *const p, const int64_t now_ns)
 // LCM's own buffers may be full for a moment; a network that is gone is joined anew.
 static void check_sent(struct dig_publisher *const p, const enum dig_status status)
 {
+    p->health.unsent += status == DIG_OK ? 0 : 1;
     if (status != DIG_OK && p->output != NULL) {
         say(p, "LCM %s: sending failed; joining again", p->config->lcm_url);
         dig_output_destroy(p->output);
@@ -73,8 +75,10 @@ static void publish_records(struct dig_publisher *const p)
             p->estimate = record.estimate;
         }
         const bool due = p->records_seen++ % (uint64_t)p->config->estimate_every == 0;
+        p->health.unsent += due && p->output == NULL ? 1 : 0;
         if (due && p->output != NULL) {
             check_sent(p, dig_output_record(p->output, p->set, &record));
+            dig_latency_add(&p->health.latency, dig_input_now_ns() - record.arrived_ns);
             if (++burst % BURST == 0) {
                 (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &breath, NULL);
             }
@@ -82,21 +86,40 @@ static void publish_records(struct dig_publisher *const p)
     }
 }
 
+// A table the tick has adopted is used here from now on.
+static void follow_table(struct dig_publisher *const p)
+{
+    (void)dig_latest_take(p->tables, &p->news);
+    if (p->news.generation == p->health.pulse.generation && p->news.set != NULL) {
+        p->set      = p->news.set;
+        p->news.set = NULL;
+        atomic_store(p->generation, p->news.generation);
+        say(p, "table exchanged: scene %.60s (%.12s…), %zu gravels", p->set->scene_name,
+            p->set->scene_hash, p->set->entries);
+    }
+}
+
 static void publish_outlook(struct dig_publisher *const p)
 {
     struct dig_outlook outlook;
-    if (dig_latest_take(p->outlook, &outlook) && p->output != NULL) {
+    if (dig_latest_take(p->outlook, &outlook) && p->output != NULL &&
+        outlook.generation == atomic_load(p->generation)) {
         check_sent(p, dig_output_outlook(p->output, p->set, &outlook));
     }
 }
 
-static void say_match(const struct dig_publisher *const p)
+static void say_known(const struct dig_publisher *const p)
 {
-    const struct dig_match *const m = &p->result.match;
+    const struct dig_known *const k = &p->result.known;
+    const struct dig_match *const m = &k->match;
+    if (!k->valid) {
+        say(p, "no gravel known: %s", k->wanted);
+        return;
+    }
     say(p,
-        "dig %u (%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
+        "%s %u (%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
         "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s",
-        m->dig_count, p->set->trajectory[p->result.trajectory].name,
+        k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory,
         m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
         m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
         m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
@@ -107,15 +130,22 @@ static void say_match(const struct dig_publisher *const p)
 
 static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
 {
-    bool news = false;
+    bool                  news   = false;
+    struct dig_fit_result before = p->result;
     while (dig_ring_pop(p->results, &p->result)) {
+        // A drift that was watched is no news for a person.
+        const bool same = p->any_result && p->result.known.time_ns == before.known.time_ns &&
+                          p->result.known.valid == before.known.valid;
         news          = true;
         p->any_result = true;
-        say_match(p);
+        before        = p->result;
+        if (!same) {
+            say_known(p);
+        }
     }
     if (p->any_result && (news || now_ns >= p->next_match_ns) && p->output != NULL) {
         p->next_match_ns = now_ns + NS_PER_S;
-        check_sent(p, dig_output_match(p->output, p->set, &p->result));
+        check_sent(p, dig_output_match(p->output, &p->result));
     }
 }
 
@@ -156,8 +186,11 @@ static void say_drops(struct dig_publisher *const p, const int64_t now_ns)
         p->next_say_ns = now_ns + 10 * NS_PER_S;
         say(p,
             "dropped so far: %" PRId64 " not available, %" PRId64 " out of range, %" PRId64
-            " frozen, %" PRId64 " NaN, %" PRId64 " malformed, %" PRId64 " lost",
+            " frozen, %" PRId64 " NaN, %" PRId64 " malformed, %" PRId64 " wrong checksums, %" PRId64
+            " repeated, %" PRId64 " jumps, %" PRId64 " stuck, %" PRId64 " missed, %" PRId64
+            " timeouts, %" PRId64 " lost",
             d->not_available, d->out_of_range, d->frozen, d->nan, p->health.malformed,
+            p->health.checksum, d->repeated, d->jump, d->stuck, d->missed, p->health.timeouts,
             p->health.lost);
     }
 }
@@ -182,8 +215,16 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     p->health.frames     = atomic_load(&p->input->frames);
     p->health.malformed  = atomic_load(&p->input->malformed);
     p->health.reconnects = atomic_load(&p->input->reconnects);
-    p->health.lost       = atomic_load(&p->input->overflow) + p->health.pulse.lost;
-    p->health.matches    = (int32_t)atomic_load(&p->fit->matches);
+    p->health.lost =
+        atomic_load(&p->input->overflow) + p->health.pulse.lost + p->health.pulse.lost_digs;
+    p->health.checksum        = atomic_load(&p->input->checksum);
+    p->health.errors          = atomic_load(&p->input->errors);
+    p->health.bus_offs        = atomic_load(&p->input->bus_offs);
+    p->health.timeouts        = atomic_load(&p->input->timeouts);
+    p->health.reloads         = atomic_load(&p->fit->reloads);
+    p->health.reloads_refused = atomic_load(&p->fit->reloads_refused);
+    p->health.table           = p->set->scene_hash;
+    p->health.matches         = (int32_t)atomic_load(&p->fit->matches);
     say_drops(p, now_ns);
     if ((news || now_ns >= p->next_health_ns) && p->output != NULL) {
         p->next_health_ns = now_ns + NS_PER_S;
@@ -204,10 +245,11 @@ static void show(struct dig_publisher *const p, const int64_t now_ns)
     char                             line[256];
     (void)snprintf(gravel, sizeof gravel, "gravel not known");
     if (p->any_result) {
-        const struct dig_gravel *const g = &p->result.match.gravel;
-        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3",
+        const struct dig_gravel *const g = &p->result.known.match.gravel;
+        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3%s",
                        g->value[DIG_AXIS_FRICTION], g->value[DIG_AXIS_ROLLING],
-                       g->value[DIG_AXIS_DENSITY_kgpm3]);
+                       g->value[DIG_AXIS_DENSITY_kgpm3],
+                       p->result.known.valid ? "" : " (no longer)");
     }
     (void)snprintf(line, sizeof line, "%s | %s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
                    p->state, phases[e->phase], on ? " " : "",
@@ -230,7 +272,8 @@ static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
 void dig_publisher_run(struct dig_publisher *const p)
 {
     assert(p != NULL && p->voice.say != NULL);
-    const struct timespec pause    = { .tv_nsec = (long)(p->config->tick_s * 1e9) };
+    const int64_t         tick_ns  = (int64_t)(p->config->tick_s * 1e9);
+    const struct timespec pause    = { .tv_nsec = (long)(tick_ns < TURN_ns ? tick_ns : TURN_ns) };
     bool                  stopping = false;
     while (!stopping) {
         // Read before the last round, so that it finds everything that was put before *stop.
@@ -238,6 +281,7 @@ void dig_publisher_run(struct dig_publisher *const p)
         const int64_t now_ns = dig_input_now_ns();
         (void)is_online(p, now_ns);
         publish_records(p);
+        follow_table(p);
         publish_outlook(p);
         publish_matches(p, now_ns);
         publish_health(p, now_ns, stopping);

@@ -27,10 +27,12 @@ struct dig_publisher {
     struct dig_ring            *records;     // in
     struct dig_latest          *outlook;     // in
     struct dig_ring            *results;     // in
+    struct dig_latest          *tables;      // in
     struct dig_latest          *pulse;       // in
     struct dig_latest          *input_notes; // in
     struct dig_latest          *fit_notes;   // in
     const atomic_bool          *stop;
+    atomic_llong               *generation; // out: of the table in use here
     struct dig_rt_grant         grant;
     struct dig_voice            voice; // used on this thread
 
@@ -43,6 +45,7 @@ struct dig_publisher {
     const char           *state;
     int64_t               next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_say_ns;
     int64_t               lcm_pause_ns;
+    struct dig_table_news news; // a table the tick may not use yet
     int64_t               said_drops;
     int64_t               next_show_ns;
     uint64_t              records_seen;

@@ -22,7 +22,8 @@ struct dig_reading {
     int64_t  time_ns; // CLOCK_MONOTONIC at which it arrived
     unsigned group;   // which message of the map
     bool     has_alive;
-    uint64_t alive; // the sender's counter, raw
+    uint64_t alive;   // the sender's counter, raw
+    uint64_t counter; // the frame's own counter, raw, where the map names one
     uint8_t  state[DIG_SIGNALS];
     double   value[DIG_SIGNALS]; // SI; meaningful where state is OK
 };

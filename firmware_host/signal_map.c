@@ -14,6 +14,16 @@ static bool is_not_available(const struct dig_map_entry *const entry, const uint
     return false;
 }
 
+// What J1939-71 sets apart for "error" and "not available" in a field of so many bits.
+static bool is_apart(const unsigned bits, const uint64_t raw)
+{
+    if (bits < 8 || (bits > 8 && bits < 16)) {
+        const uint64_t top = (UINT64_C(1) << bits) - 1;
+        return bits > 1 && raw >= top - 1;
+    }
+    return raw >> (bits - 8) >= 0xFBU;
+}
+
 static void decode(const struct dig_map_entry *const entry, const uint64_t raw,
                    const double physical, uint8_t *const state, double *const value)
 {
@@ -47,15 +57,26 @@ enum dig_status dig_signal_map_frame(const struct dig_signal_map *const map, con
                                      const int64_t time_ns, struct dig_reading *const reading)
 {
     assert(map != NULL && map->kind == DIG_MAP_CAN && group < map->groups && reading != NULL);
-    if (bytes < map->group[group].bytes) {
+    const struct dig_map_group *const g = &map->group[group];
+    if (bytes < g->bytes) {
         return DIG_EINVAL;
     }
     struct dig_reading out = { .time_ns = time_ns, .group = group };
+    out.counter            = g->frame.counter_mod > 0 ? dig_dbc_raw(&g->counter, data) : 0;
+    if (g->checksum != DIG_CHECKSUM_NONE &&
+        dig_dbc_raw(&g->checksum_at, data) != dig_checksum_of(g->checksum, g->bytes, data,
+                                                              g->checksum_at.start_bit / 8, g->id,
+                                                              out.counter)) {
+        return DIG_ESTALE;
+    }
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         const struct dig_map_entry *const entry = &map->entry[i];
         if (entry->used && entry->group == group) {
             const uint64_t raw = dig_dbc_raw(&entry->can, data);
             decode(entry, raw, dig_dbc_value(&entry->can, raw), &out.state[i], &out.value[i]);
+            if (map->j1939 && is_apart(entry->can.bits, raw)) {
+                out.state[i] = DIG_READING_NOT_AVAILABLE;
+            }
         }
     }
     if (map->has_alive && map->alive.group == group) {

@@ -4,13 +4,17 @@
 //   SI value = sign * (scale * physical + offset)
 //
 // where physical is the DBC's factor * raw + DBC offset, or the raw register. Raw values listed as
-// not_available, and values outside min … max, never become a number.
+// not_available, and values outside min … max, never become a number. Nor do, where the map says
+// j1939, the values that SAE J1939-71 sets apart: the topmost raw value ("not available") and the
+// one below ("error"), of 8 bits all from 0xFB on, of more the top bytes 0xFB to 0xFF.
 
 #ifndef DIG_FIRMWARE_HOST_SIGNAL_MAP_H
 #define DIG_FIRMWARE_HOST_SIGNAL_MAP_H
 
 #include "core/error.h"
+#include "firmware_host/checksum.h"
 #include "firmware_host/dbc.h"
+#include "firmware_host/frame_watch.h"
 #include "firmware_host/reading.h"
 
 #include <stddef.h>
@@ -36,16 +40,21 @@ struct dig_map_entry {
     unsigned               reg; // Modbus: first register
     enum dig_register_type type;
     double                 sign, scale, offset, min, max;
+    double                 max_rate;      // SI per second; 0: any
     size_t                 not_available; // raw values listed
     uint64_t               not_available_raw[DIG_NOT_AVAILABLE_MAX];
 };
 
 /// A CAN message that is listened to.
 struct dig_map_group {
-    uint32_t id;
-    bool     extended, needed; // needed: carries a signal a wrench needs
-    unsigned bytes;
-    char     name[DIG_DBC_NAME_SIZE];
+    uint32_t                  id;
+    bool                      extended, needed; // needed: carries a signal a wrench needs
+    unsigned                  bytes;
+    char                      name[DIG_DBC_NAME_SIZE];
+    struct dig_frame_settings frame;
+    struct dig_dbc_signal     counter; // where frame.counter_mod > 0
+    enum dig_checksum         checksum;
+    struct dig_dbc_signal     checksum_at;
 };
 
 struct dig_signal_map {
@@ -55,6 +64,8 @@ struct dig_signal_map {
     struct dig_map_entry alive;
     double               frozen_s;   // the alive counter may stand still this long
     double               coherent_s; // signals of one sample may lie this far apart
+    double               stuck_s;    // values may stand this long; 0: for ever
+    bool                 j1939;
     size_t               groups;
     struct dig_map_group group[DIG_GROUPS_MAX];
     unsigned             first_register, registers; // Modbus: the block that is polled
@@ -73,7 +84,8 @@ DIG_MUST_CHECK enum dig_status dig_signal_map_read(const char *path, const struc
 /// The group (in map->group) of a CAN id, or -1.
 int dig_signal_map_group(const struct dig_signal_map *map, uint32_t id, bool extended);
 
-/// Decodes one frame of a group. DIG_EINVAL: shorter than the DBC says; *reading is untouched.
+/// Decodes one frame of a group. DIG_EINVAL: shorter than the DBC says; DIG_ESTALE: its checksum is
+/// wrong. Then *reading is untouched.
 DIG_MUST_CHECK enum dig_status dig_signal_map_frame(const struct dig_signal_map *map,
                                                     unsigned group, size_t bytes,
                                                     const uint8_t data[], int64_t time_ns,

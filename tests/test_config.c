@@ -60,6 +60,10 @@ static void the_example_of_the_formats_shows_the_defaults(void **state)
     assert_close(example.estimator.exit_hold_s, minimal.estimator.exit_hold_s, 0.0);
     assert_close(example.estimator.air_bias_s, minimal.estimator.air_bias_s, 0.0);
     assert_close(example.estimator.path_limit_m, minimal.estimator.path_limit_m, 0.0);
+    assert_close(example.match_expires_s, minimal.match_expires_s, 0.0);
+    assert_close(example.drift_floors, minimal.drift_floors, 0.0);
+    assert_string_equal(minimal.match_state.text, "");
+    assert_string_equal(example.match_state.text, "tests/data/formats/match.json");
     assert_close(example.estimator.outside_floors, minimal.estimator.outside_floors, 0.0);
 }
 
@@ -85,7 +89,7 @@ static void every_input_is_read(void **state)
     assert_int_equal(c.modbus.baud, 9600);
     assert_int_equal(c.modbus.parity, 'O');
     assert_int_equal(c.modbus.unit, 17);
-    assert_close(c.modbus.poll_s, c.tick_s, 1e-15);
+    assert_close(c.modbus.poll_s, 0.005, 1e-15);
 
     c = read_good(
         scratch_write("c.yaml", MINIMAL

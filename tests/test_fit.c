@@ -2,30 +2,35 @@
 
 #include "firmware_host/fit.h"
 
-#include "tests/testlib.h"
+#include "tests/scratch.h"
 
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 
 #define GRAVELS      8
 #define TRAJECTORIES 2
 
 // Gravels at the corners of a cube, whose curves differ by a factor; only simpleA has curves.
 struct bench {
-    struct dig_config      config;
-    struct dig_curve_set   set;
-    struct dig_gravel      gravel[GRAVELS];
-    double                 axis[DIG_AXES][2];
-    int                    cell[GRAVELS], packings[GRAVELS * TRAJECTORIES];
-    struct dig_curve       curve[GRAVELS * TRAJECTORIES];
-    struct dig_ring        digs, results;
-    struct dig_latest      match, notes;
-    struct dig_observation dig_memory[4];
-    struct dig_fit_result  result_memory[4];
-    struct dig_match       match_memory[3];
-    struct dig_note        note_memory[3];
-    atomic_bool            stop;
-    struct dig_fit         fit;
+    struct dig_config     config;
+    struct dig_curve_set  set;
+    struct dig_gravel     gravel[GRAVELS];
+    double                axis[DIG_AXES][2];
+    int                   cell[GRAVELS], packings[GRAVELS * TRAJECTORIES];
+    struct dig_curve      curve[GRAVELS * TRAJECTORIES];
+    struct dig_ring       digs, spares, results;
+    struct dig_latest     offer, table, tables, notes;
+    struct dig_raw       *dig_memory[4], *spare_memory[4];
+    struct dig_fit_result result_memory[16];
+    struct dig_offer      offer_memory[3], table_memory[3];
+    struct dig_table_news tables_memory[3];
+    struct dig_note       note_memory[3];
+    atomic_bool           stop;
+    atomic_llong          tick_generation, publish_generation;
+    struct dig_fit        fit;
 };
 
 static double moment_Nm(const int gravel, const int point)
@@ -72,30 +77,47 @@ static struct bench *bench_create(void)
     }
     b->config.estimator         = dig_estimator_settings_default();
     b->config.match_evaluations = 300;
+    b->config.match_expires_s   = 3600.0;
+    b->config.drift_floors      = 3.0;
     dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_ring_init(&b->results, sizeof b->result_memory[0], 4, b->result_memory);
-    dig_latest_init(&b->match, sizeof b->match_memory[0], b->match_memory);
+    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
+    dig_ring_init(&b->results, sizeof b->result_memory[0], 16, b->result_memory);
+    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
+    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
+    dig_latest_init(&b->tables, sizeof b->tables_memory[0], b->tables_memory);
     dig_latest_init(&b->notes, sizeof b->note_memory[0], b->note_memory);
-    b->fit = (struct dig_fit){ .config  = &b->config,
-                               .set     = set,
-                               .digs    = &b->digs,
-                               .match   = &b->match,
-                               .results = &b->results,
-                               .notes   = &b->notes,
-                               .stop    = &b->stop };
+    atomic_store(&b->tick_generation, 1);
+    atomic_store(&b->publish_generation, 1);
+    b->fit = (struct dig_fit){ .config             = &b->config,
+                               .set                = set,
+                               .generation         = 1,
+                               .lambda             = 10.0,
+                               .known_settings     = { 3600.0, 3.0 },
+                               .digs               = &b->digs,
+                               .spares             = &b->spares,
+                               .offer              = &b->offer,
+                               .table              = &b->table,
+                               .results            = &b->results,
+                               .tables             = &b->tables,
+                               .notes              = &b->notes,
+                               .stop               = &b->stop,
+                               .tick_generation    = &b->tick_generation,
+                               .publish_generation = &b->publish_generation };
     return b;
 }
 
-static void dig_in(struct bench *const b, const int gravel, const int trajectory)
+// A dig in one of the gravels, its moment times a factor.
+static void dig_in(struct bench *const b, const int gravel, const int trajectory,
+                   const double factor)
 {
     struct dig_observation dig = {
         .dig_count = 5, .trajectory = trajectory, .first = 0.0, .last = 1.0
     };
     for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-        dig.moment_Nm[p] = moment_Nm(gravel, p);
+        dig.moment_Nm[p] = factor * moment_Nm(gravel, p);
         dig.sigma_Nm[p]  = 0.005;
     }
-    assert_true(dig_ring_push(&b->digs, &dig));
+    dig_fit_take(&b->fit, &dig);
 }
 
 static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
@@ -103,17 +125,19 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
     (void)state;
     struct bench *const b = bench_create();
     for (int gravel = 0; gravel < GRAVELS; gravel++) {
-        struct dig_match      match;
         struct dig_fit_result result;
-        dig_in(b, gravel, 0);
-        assert_true(dig_fit_once(&b->fit));
-        assert_true(dig_latest_take(&b->match, &match));
-        assert_true(match.valid);
-        assert_int_equal(match.nearest, gravel);
-        assert_int_equal(match.dig_count, 5);
+        dig_in(b, gravel, 0, 1.0);
+        const struct dig_offer *const offer = dig_latest_look(&b->offer);
+        assert_non_null(offer);
+        assert_true(offer->known && offer->set == &b->set && offer->generation == 1);
+        assert_int_equal(offer->dig_count, 5);
+        assert_true(offer->forecast.along[0].valid);
+        assert_false(offer->forecast.along[1].valid); // the table has no such curve
         assert_true(dig_ring_pop(&b->results, &result));
-        assert_int_equal(result.match.nearest, gravel);
-        assert_int_equal(result.trajectory, 0);
+        assert_true(result.known.valid && !result.known.restored);
+        assert_int_equal(result.known.match.nearest, gravel);
+        assert_string_equal(result.known.trajectory, "simpleA");
+        assert_string_equal(result.hint_trajectory, ""); // nor says it what a bucket carries
     }
     assert_int_equal(atomic_load(&b->fit.matches), GRAVELS);
     assert_false(dig_fit_once(&b->fit));
@@ -124,13 +148,10 @@ static void a_dig_that_does_not_identify_is_passed_over(void **state)
 {
     (void)state;
     struct bench *const b = bench_create();
-    struct dig_match    match;
     struct dig_note     note;
-    dig_in(b, 0, 1);
-    assert_true(dig_fit_once(&b->fit));
-    assert_false(dig_latest_take(&b->match, &match));
+    dig_in(b, 0, 1, 1.0);
+    assert_null(dig_latest_look(&b->offer));
     assert_false(dig_latest_take(&b->notes, &note));
-    assert_int_equal(atomic_load(&b->fit.seen), 1);
     assert_int_equal(atomic_load(&b->fit.matches), 0);
     free(b);
 }
@@ -139,15 +160,172 @@ static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **
 {
     (void)state;
     struct bench *const b = bench_create();
-    struct dig_match    match;
     struct dig_note     note;
     (void)strcpy(b->config.identify_trajectory[0], "actual");
     b->config.identify_trajectories = 1;
-    dig_in(b, 0, 1);
-    assert_true(dig_fit_once(&b->fit));
-    assert_false(dig_latest_take(&b->match, &match));
+    dig_in(b, 0, 1, 1.0);
+    assert_null(dig_latest_look(&b->offer));
     assert_true(dig_latest_take(&b->notes, &note));
     assert_non_null(strstr(note.text, "dig 5 (actual): no match"));
+    free(b);
+}
+
+// Digs that identify nothing watch the ground: as predicted it is the same; two in a row that are
+// not, and it counts as another.
+static void ground_that_changed_is_no_longer_known(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    for (int g = 0; g < GRAVELS; g++) {
+        b->packings[g * TRAJECTORIES + 1] = 3;
+        b->curve[g * TRAJECTORIES + 1]    = b->curve[g * TRAJECTORIES];
+    }
+    dig_in(b, 3, 0, 1.0);
+    assert_true(b->fit.known.valid);
+    for (int i = 0; i < 5; i++) {
+        dig_in(b, 3, 1, 1.0);
+        assert_true(b->fit.known.valid);
+        assert_true(b->fit.known.drift < 1.0);
+    }
+    const double factor[] = { 1.5, 1.0, 1.5, 1.5 };
+    for (int i = 0; i < 4; i++) {
+        dig_in(b, 3, 1, factor[i]);
+        assert_true((b->fit.known.drift > 3.0) == (factor[i] > 1.0));
+        assert_true(b->fit.known.valid == (i < 3));
+    }
+    const struct dig_offer *const offer = dig_latest_look(&b->offer);
+    assert_non_null(offer);
+    assert_false(offer->known);
+    assert_true(offer->expires_ns > 0);
+    struct dig_fit_result result;
+    while (dig_ring_pop(&b->results, &result)) {
+    }
+    assert_false(result.known.valid);
+    assert_string_equal(result.known.wanted, "the ground has changed: dig a simple dig");
+
+    // A simple dig, and it is known again.
+    dig_in(b, 5, 0, 1.0);
+    assert_true(b->fit.known.valid);
+    assert_int_equal(b->fit.known.match.nearest, 5);
+    free(b);
+}
+
+static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
+{
+    (void)state;
+    struct bench *const b           = bench_create();
+    b->fit.known_settings.expires_s = 0.05;
+    dig_in(b, 3, 0, 1.0);
+    assert_false(dig_fit_once(&b->fit));
+    assert_true(b->fit.known.valid);
+    (void)dig_latest_look(&b->offer);
+    const struct timespec pause = { .tv_nsec = 60000000L };
+    (void)nanosleep(&pause, NULL);
+    assert_false(dig_fit_once(&b->fit));
+    assert_false(b->fit.known.valid);
+    const struct dig_offer *const offer = dig_latest_look(&b->offer);
+    assert_non_null(offer);
+    assert_false(offer->known);
+    free(b);
+}
+
+// A file of a match comes back as that match; another table's, an old one or a damaged one does
+// not.
+static void what_is_known_survives_in_its_file(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
+                   scratch_path("match.json"));
+    (void)strcpy(b->set.scene_hash,
+                 "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
+    dig_in(b, 6, 0, 1.0);
+    const struct dig_known before = b->fit.known;
+
+    struct bench *const again = bench_create();
+    again->config.match_state = b->config.match_state;
+    memcpy(again->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+    dig_fit_restore(&again->fit);
+    const struct dig_known *const k = &again->fit.known;
+    assert_true(k->valid && k->restored);
+    assert_int_equal(k->match.nearest, 6);
+    assert_int_equal(k->match.samples, before.match.samples);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(k->match.gravel.value[a], before.match.gravel.value[a],
+                     1e-8 * before.match.gravel.value[a]);
+    }
+    const struct dig_offer *const offer = dig_latest_look(&again->offer);
+    assert_non_null(offer);
+    assert_true(offer->known && offer->forecast.along[0].valid);
+
+    static const struct {
+        const char *what, *expected;
+    } bad[] = { { "table", "expected one of the table's" },
+                { "old", "h old, expected at most" },
+                { "future", "h old, expected at most" },
+                { "damaged", "match.json" } };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct bench *const other = bench_create();
+        other->config.match_state = b->config.match_state;
+        memcpy(other->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+        struct timespec wall;
+        (void)clock_gettime(CLOCK_REALTIME, &wall);
+        struct timespec times[2] = { wall, wall };
+        if (i == 0) {
+            other->set.scene_hash[0] = 'b';
+        }
+        times[1].tv_sec += i == 1 ? -3700 : i == 2 ? 7200 : 0;
+        assert_int_equal(utimensat(AT_FDCWD, scratch_path("match.json"), times, 0), 0);
+        if (i == 3) {
+            (void)scratch_write("match.json", "{\"scene_hash\": 3}\n");
+        }
+        dig_fit_restore(&other->fit);
+        struct dig_note note = { "" };
+        assert_false(other->fit.known.any);
+        assert_null(dig_latest_look(&other->offer));
+        assert_true(dig_latest_take(&other->notes, &note));
+        assert_non_null(strstr(note.text, bad[i].expected));
+        free(other);
+    }
+    free(b);
+    free(again);
+}
+
+static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    (void)strcpy(b->config.match_state.text, "/dev/full");
+    dig_in(b, 6, 0, 1.0);
+    struct dig_note note = { "" };
+    assert_true(b->fit.known.valid);
+    assert_true(dig_latest_take(&b->notes, &note));
+    assert_non_null(strstr(note.text, "/dev/full"));
+    free(b);
+}
+
+// Energy per kilogram: the bucket that is filled with less work wins, unless it carries too little.
+static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
+{
+    (void)state;
+    struct bench *const  b          = bench_create();
+    struct dig_forecast *f          = calloc(1, sizeof *f);
+    double               J_per_kg   = -1.0;
+    const double         energy_J[] = { 900.0, 500.0 }, carried_kg[] = { 2.0, 1.5 };
+    for (int t = 0; t < TRAJECTORIES; t++) {
+        f->along[t].valid                                                    = true;
+        f->along[t].energy_J                                                 = energy_J[t];
+        f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = (float)carried_kg[t];
+    }
+    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), 1);
+    assert_close(J_per_kg, 500.0 / 1500.0, 1e-9);
+    f->along[1].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = 0.9F;
+    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), 0);
+    for (int t = 0; t < TRAJECTORIES; t++) {
+        f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = NAN;
+    }
+    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), -1);
+    free(f);
     free(b);
 }
 
@@ -157,6 +335,11 @@ int main(void)
         cmocka_unit_test(a_simple_dig_identifies_the_gravel_it_was_made_of),
         cmocka_unit_test(a_dig_that_does_not_identify_is_passed_over),
         cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),
+        cmocka_unit_test(ground_that_changed_is_no_longer_known),
+        cmocka_unit_test(a_gravel_that_is_too_old_is_no_longer_known),
+        cmocka_unit_test(what_is_known_survives_in_its_file),
+        cmocka_unit_test(a_file_that_cannot_be_written_is_said_and_the_match_stands),
+        cmocka_unit_test(the_hint_is_the_dig_that_carries_for_the_least_energy),
     };
-    return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("fit", tests, scratch_setup, scratch_teardown);
 }

@@ -140,7 +140,13 @@ static void other_messages_are_handed_on_one_by_one(void **state)
     char                   trajectory[] = "simpleA", table[] = "hash";
     lcm_eventlog_t *const  log   = begin("match.lcm");
     const digsight_match_t match = {
-        .valid = 1, .friction = 0.45, .trajectory = trajectory, .table = table
+        .valid           = 1,
+        .friction        = 0.45,
+        .trajectory      = trajectory,
+        .table           = table,
+        .wanted          = table,
+        .hint_trajectory = table,
+        .advice          = table,
     };
     put_sample(log, 1, DIG_SIGNALS);
     log_match(log, "DIGSIGHT_MATCH", &match);
@@ -210,8 +216,10 @@ static void defects_are_refused_and_write_nothing(void **state)
 
     // Another type's fingerprint under our channel's name: what an older build's log looks like.
     char                   text[] = "";
-    const digsight_match_t match  = { .trajectory = text, .table = text };
-    log                           = begin("version.lcm");
+    const digsight_match_t match  = {
+         .trajectory = text, .table = text, .wanted = text, .hint_trajectory = text, .advice = text
+    };
+    log = begin("version.lcm");
     log_match(log, "DIGSIGHT_SAMPLE", &match);
     lcm_eventlog_destroy(log);
     check_refused("version.lcm", DIG_ESCHEMA, "DIGSIGHT_SAMPLE is of another version of its type");

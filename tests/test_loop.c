@@ -56,12 +56,12 @@ struct bench {
     struct dig_curve              curve[GRAVELS * DIG_TRAJECTORY_MAX];
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
-    struct dig_ring               readings, records, digs;
-    struct dig_latest             match, outlook, pulse;
+    struct dig_ring               readings, records, digs, spares;
+    struct dig_latest             offer, table, outlook, pulse;
     struct dig_reading            reading_memory[1024];
     struct dig_record             record_memory[1024];
-    struct dig_observation        dig_memory[4];
-    struct dig_match              match_memory[3];
+    struct dig_raw               *dig_memory[4], *spare_memory[4], *raw[2];
+    struct dig_offer              offer_memory[3], table_memory[3];
     struct dig_outlook            outlook_memory[3];
     struct dig_pulse              pulse_memory[3];
     struct dig_loop               loop;
@@ -118,7 +118,14 @@ static struct bench *bench_create(void)
     dig_ring_init(&b->readings, sizeof b->reading_memory[0], 1024, b->reading_memory);
     dig_ring_init(&b->records, sizeof b->record_memory[0], 1024, b->record_memory);
     dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_latest_init(&b->match, sizeof b->match_memory[0], b->match_memory);
+    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
+    for (int i = 0; i < 2; i++) {
+        b->raw[i] = calloc(1, dig_raw_size());
+        assert_non_null(b->raw[i]);
+        (void)dig_ring_push(&b->spares, &b->raw[i]);
+    }
+    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
+    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
     dig_latest_init(&b->outlook, sizeof b->outlook_memory[0], b->outlook_memory);
     dig_latest_init(&b->pulse, sizeof b->pulse_memory[0], b->pulse_memory);
     const struct dig_loop_settings settings = {
@@ -130,9 +137,11 @@ static struct bench *bench_create(void)
         .tick_s       = 0.005,
         .stale_s      = 0.1,
         .prediction_s = 0.05,
+        .ahead_s      = 0.5,
+        .set          = &b->set,
     };
-    const struct dig_loop_ports ports = { &b->readings, &b->match,   &b->records,
-                                          &b->digs,     &b->outlook, &b->pulse };
+    const struct dig_loop_ports ports = { &b->readings, &b->offer, &b->table,   &b->spares,
+                                          &b->records,  &b->digs,  &b->outlook, &b->pulse };
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     return b;
 }
@@ -140,7 +149,28 @@ static struct bench *bench_create(void)
 static void bench_destroy(struct bench *const b)
 {
     free(b->estimator);
+    free(b->raw[0]);
+    free(b->raw[1]);
     free(b);
+}
+
+// What the matcher says of a gravel of the table.
+static void offer(struct bench *const b, struct dig_latest *const to, const int gravel,
+                  const int64_t generation, const int64_t expires_ns)
+{
+    const struct dig_match  match = { .valid   = true,
+                                      .gravel  = b->gravel[gravel],
+                                      .nearest = gravel };
+    struct dig_offer *const made  = calloc(1, sizeof *made);
+    assert_non_null(made);
+    made->set        = &b->set;
+    made->generation = generation;
+    made->known      = true;
+    made->dig_count  = 7;
+    made->expires_ns = expires_ns;
+    dig_forecast_make(&b->set, 10.0, &match, &made->forecast);
+    dig_latest_put(to, made);
+    free(made);
 }
 
 // The bucket held still in the air.
@@ -253,26 +283,25 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     bench_destroy(b);
 }
 
-// The bucket held in the air for a while, with a gravel known or not.
-static int outlooks_in_the_air(struct bench *const b, const struct dig_match *const match,
+// The bucket held in the air for two seconds; counts the outlooks, the valid ones by trajectory.
+static int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
                                bool seen[DIG_TRAJECTORY_MAX])
 {
     int                outlooks = 0;
     struct dig_outlook outlook;
-    if (match != NULL) {
-        dig_latest_put(&b->match, match);
-    }
     for (int64_t i = 0; i < 400; i++) {
-        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        const struct dig_reading r = still((from_ms + i * 5) * MS);
         assert_true(dig_ring_push(&b->readings, &r));
-        dig_loop_tick(&b->loop, 1001 * MS + i * 5 * MS);
+        dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
         if (dig_latest_take(&b->outlook, &outlook)) {
             outlooks++;
             assert_true(outlook.prediction.valid);
+            assert_int_equal(outlook.why_not, DIG_WHY_NOT_VALID);
             assert_close(outlook.prediction.from_progress, 0.0, 0.0);
             assert_close(outlook.prediction.to_progress, 1.0, 0.0);
-            assert_true(outlook.time_ns == 1000 * MS + i * 5 * MS);
+            assert_true(outlook.time_ns == (from_ms + i * 5) * MS);
             assert_true(outlook.expires_ns > outlook.time_ns);
+            assert_int_equal(outlook.dig_count, 7);
             seen[outlook.prediction.trajectory] = true;
         }
     }
@@ -282,22 +311,46 @@ static int outlooks_in_the_air(struct bench *const b, const struct dig_match *co
 static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void **state)
 {
     (void)state;
-    struct bench *const    b     = bench_create();
-    const struct dig_match match = { .valid = true, .gravel = b->gravel[3], .nearest = 3 };
-    bool                   seen[DIG_TRAJECTORY_MAX] = { false };
-    b->loop.settings.ahead_s                        = 0.5;
-    b->loop.settings.trajectories                   = (int)b->set.trajectories;
-    assert_int_equal(outlooks_in_the_air(b, NULL, seen), 0);
-    bench_destroy(b);
-
-    struct bench *const known         = bench_create();
-    known->loop.settings.ahead_s      = 0.5;
-    known->loop.settings.trajectories = (int)known->set.trajectories;
-    assert_in_range(outlooks_in_the_air(known, &match, seen), 3, 5);
-    for (size_t t = 0; t < known->set.trajectories; t++) {
+    struct bench *const b                        = bench_create();
+    bool                seen[DIG_TRAJECTORY_MAX] = { false };
+    assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
+    offer(b, &b->offer, 3, 1, INT64_MAX);
+    assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
+    for (size_t t = 0; t < b->set.trajectories; t++) {
         assert_true(seen[t]);
     }
-    bench_destroy(known);
+    bench_destroy(b);
+}
+
+static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
+{
+    (void)state;
+    struct bench *const b                        = bench_create();
+    bool                seen[DIG_TRAJECTORY_MAX] = { false };
+    offer(b, &b->offer, 3, 1, 2000 * MS);
+    assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
+    assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
+    bench_destroy(b);
+}
+
+// Another table: what belongs to the one before is not used with it, and the other way round.
+static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **state)
+{
+    (void)state;
+    struct bench *const b                        = bench_create();
+    bool                seen[DIG_TRAJECTORY_MAX] = { false };
+    offer(b, &b->offer, 3, 1, INT64_MAX);
+    assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
+    assert_int_equal(atomic_load(&b->loop.generation), 1);
+    offer(b, &b->table, 5, 2, INT64_MAX);
+    assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
+    assert_int_equal(atomic_load(&b->loop.generation), 2);
+    assert_int_equal(pulse_of(b).generation, 2);
+    const double with_five = b->loop.outlook.prediction.peak_Nm;
+    offer(b, &b->offer, 3, 1, INT64_MAX); // late: of the table before
+    assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
+    assert_close(b->loop.outlook.prediction.peak_Nm, with_five, 1e-9);
+    bench_destroy(b);
 }
 
 static void a_tick_allocates_nothing(void **state)
@@ -307,9 +360,10 @@ static void a_tick_allocates_nothing(void **state)
         print_message("SKIP: a sanitizer owns malloc, allocations are counted without it\n");
         skip();
     }
-    struct bench *const    b      = bench_create();
-    const struct dig_match match  = { .valid = true, .gravel = b->gravel[3], .nearest = 3 };
-    const unsigned long    before = allocations;
+    struct bench *const b = bench_create();
+    offer(b, &b->offer, 3, 1, INT64_MAX);
+    unsigned long in_ticks = 0;
+    int           digs     = 0;
     for (int64_t i = 0; i < 2000; i++) {
         struct dig_reading r = still(1000 * MS + i * 5 * MS);
 
@@ -317,12 +371,22 @@ static void a_tick_allocates_nothing(void **state)
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
         (void)dig_ring_push(&b->readings, &r);
         if (i % 100 == 0) {
-            dig_latest_put(&b->match, &match);
+            offer(b, &b->offer, 3, 1, INT64_MAX);
         }
+        const unsigned long before = allocations;
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
+        in_ticks += allocations - before;
+
+        struct dig_raw *raw = NULL;
+        if (dig_ring_pop(&b->digs, &raw)) {
+            digs++;
+            assert_true(dig_ring_push(&b->spares, &raw));
+        }
     }
-    assert_true(allocations == before);
-    assert_true(b->loop.pulse.digs > 0);
+    assert_true(in_ticks == 0);
+    assert_true(b->loop.pulse.digs > 1);
+    assert_int_equal(digs, b->loop.pulse.digs);
+    assert_int_equal(b->loop.pulse.lost_digs, 0);
     bench_destroy(b);
 }
 
@@ -378,6 +442,8 @@ int main(void)
         cmocka_unit_test(a_publisher_that_does_not_keep_up_is_counted_not_waited_for),
         cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),
         cmocka_unit_test(in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known),
+        cmocka_unit_test(nothing_is_predicted_from_a_gravel_that_expired),
+        cmocka_unit_test(a_table_is_exchanged_with_the_forecast_that_belongs_to_it),
         cmocka_unit_test(a_tick_allocates_nothing),
         cmocka_unit_test(the_loop_runs_beside_its_neighbours),
     };

@@ -38,11 +38,14 @@ struct seen {
     int                   points;
     double                moment_Nm[DIG_PREDICTION_POINTS], sigma_Nm[DIG_PREDICTION_POINTS];
     digsight_prediction_t prediction;
+    char                  text[3][64];
+    double                sample[2];
+    int64_t               late;
 };
 
 static void keep(char to[32], const char *const text)
 {
-    (void)snprintf(to, 32, "%s", text);
+    (void)snprintf(to, 32, "%.31s", text);
 }
 
 static void on_estimate(void *const context, const int64_t time_us,
@@ -53,6 +56,7 @@ static void on_estimate(void *const context, const int64_t time_us,
     seen->estimates++;
     seen->estimate = *m;
     keep(seen->trajectory[0], m->trajectory);
+    keep(seen->text[2], m->advice);
 }
 
 static void on_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
@@ -63,6 +67,11 @@ static void on_match(void *const context, const int64_t time_us, const digsight_
     seen->match = *m;
     keep(seen->trajectory[1], m->trajectory);
     keep(seen->trajectory[3], m->table);
+    keep(seen->text[0], m->wanted);
+    keep(seen->text[1], m->hint_trajectory);
+    keep(seen->text[2], m->advice);
+    seen->sample[0] = m->samples > 0 ? m->sample_friction[0] : 0.0;
+    seen->sample[1] = m->samples > 1 ? m->sample_density_kgpm3[1] : 0.0;
 }
 
 static void on_prediction(void *const context, const int64_t time_us,
@@ -73,6 +82,8 @@ static void on_prediction(void *const context, const int64_t time_us,
     seen->predictions++;
     seen->prediction = *m;
     keep(seen->trajectory[2], m->trajectory);
+    keep(seen->text[0], m->reason);
+    keep(seen->text[2], m->advice);
     for (int i = 0; i < m->points; i++) {
         seen->moment_Nm[i] = m->moment_Nm[i];
         seen->sigma_Nm[i]  = m->sigma_Nm[i];
@@ -88,6 +99,13 @@ static void on_health(void *const context, const int64_t time_us, const digsight
     assert_string_equal(m->state, "running");
     assert_string_equal(m->input, "can vcan0");
     assert_string_equal(m->note, "trouble");
+    keep(seen->text[0], m->table);
+    keep(seen->text[2], m->advice);
+    assert_int_equal(m->latency_bins, DIG_LATENCY_BINS);
+    for (int i = 0; i < m->latency_bins; i++) {
+        seen->late += m->latency_count[i];
+        assert_true(i == 0 || m->latency_to_us[i] > m->latency_to_us[i - 1]);
+    }
 }
 
 static struct seen read_back(const char *const name)
@@ -109,6 +127,7 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     assert_int_equal(dig_output_record(output, set(), &record), DIG_OK);
 
     record.sample.time_ns = 200;
+    record.expires_ns     = 250;
     record.has_estimate   = true;
     record.estimate       = (struct dig_estimate){
               .time_ns    = 200,
@@ -145,6 +164,8 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     assert_close(seen.estimate.bucket_phi_rad, 6.0, 0.0);
     assert_int_equal(seen.estimate.phase, 2);
     assert_int_equal(seen.estimate.dig_count, 7);
+    assert_true(seen.estimate.expires_ns == 250);
+    assert_string_equal(seen.text[2], DIG_ADVICE);
 
     struct dig_machine_recording samples;
     assert_int_equal(dig_lcm_log_read(scratch_path("record.lcm"), &samples, NULL), DIG_OK);
@@ -159,19 +180,31 @@ static void a_match_names_gravel_interval_and_table(void **state)
     (void)state;
     struct dig_output *const    output = begin("match.lcm");
     const struct dig_fit_result result = {
-        .match      = { .valid            = true,
-                        .dig_count        = 3,
-                        .nearest          = 1,
-                        .nearest_distance = 0.2,
-                        .gravel           = { { 0.5, 0.15, 2000 } },
-                        .distance         = 0.1,
-                        .low              = { { 0.4, 0.1, 1800 } },
-                        .high             = { { 0.55, 0.2, 2400 } },
-                        .noise_floor      = 0.05,
-                        .outside          = true },
-        .trajectory = 0,
+        .known.any        = true,
+        .known.valid      = true,
+        .known.expires_ns = 77,
+        .known.drift      = 1.5,
+        .known.restored   = true,
+        .known.trajectory = "simpleA",
+        .known.table      = "abc123",
+        .known.wanted     = "a simple dig",
+        .known.nearest    = { { 0.6, 0.2, 2500 } },
+        .hint_trajectory  = "actual",
+        .hint_J_per_kg    = 12.5,
+        .known.match      = { .valid            = true,
+                              .dig_count        = 3,
+                              .nearest          = 1,
+                              .nearest_distance = 0.2,
+                              .gravel           = { { 0.5, 0.15, 2000 } },
+                              .distance         = 0.1,
+                              .low              = { { 0.4, 0.1, 1800 } },
+                              .high             = { { 0.55, 0.2, 2400 } },
+                              .noise_floor      = 0.05,
+                              .outside          = true,
+                              .samples          = 2,
+                              .sample           = { { { 0.4, 0.1, 1900 } }, { { 0.5, 0.2, 2100 } } } },
     };
-    assert_int_equal(dig_output_match(output, set(), &result), DIG_OK);
+    assert_int_equal(dig_output_match(output, &result), DIG_OK);
     dig_output_destroy(output);
     const struct seen seen = read_back("match.lcm");
     assert_int_equal(seen.matches, 1);
@@ -186,6 +219,15 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_close(seen.match.density_kgpm3, 2000, 0.0);
     assert_close(seen.match.density_low_kgpm3, 1800, 0.0);
     assert_close(seen.match.noise_floor, 0.05, 0.0);
+    assert_true(seen.match.expires_ns == 77 && seen.match.restored == 1);
+    assert_close(seen.match.drift, 1.5, 0.0);
+    assert_int_equal(seen.match.samples, 2);
+    assert_close(seen.match.hint_J_per_kg, 12.5, 0.0);
+    assert_string_equal(seen.text[0], "a simple dig");
+    assert_string_equal(seen.text[1], "actual");
+    assert_string_equal(seen.text[2], DIG_ADVICE);
+    assert_close(seen.sample[0], 0.4, 0.0);
+    assert_close(seen.sample[1], 2100, 0.0);
 }
 
 static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state)
@@ -216,11 +258,15 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
 
     struct dig_output *const again = begin("outlook.lcm");
     outlook.prediction.valid       = false;
+    outlook.why_not                = DIG_WHY_NOT_ON_TABLE;
+    outlook.outside                = true;
     assert_int_equal(dig_output_outlook(again, set(), &outlook), DIG_OK);
     dig_output_destroy(again);
     seen = read_back("outlook.lcm");
     assert_int_equal(seen.prediction.valid, 0);
     assert_int_equal(seen.prediction.points, 0);
+    assert_string_equal(seen.text[0], "off the table");
+    assert_int_equal(seen.prediction.outside, 1);
     assert_string_equal(seen.trajectory[2], "");
 }
 
@@ -229,32 +275,77 @@ static void health_carries_every_counter(void **state)
     (void)state;
     struct dig_output *const output = begin("health.lcm");
     const struct dig_health  health = {
-         .state      = "running",
-         .input      = "can vcan0",
-         .note       = "trouble",
-         .rt         = { .realtime = true },
-         .tick_s     = 0.005,
-         .pulse      = { .ticks         = 1,
-                         .overruns      = 2,
-                         .missing       = 3,
-                         .worst_tick_us = 4.5,
-                         .drops = { .nan = 5, .not_available = 6, .out_of_range = 7, .frozen = 8 },
-                         .digs  = 9 },
-         .frames     = 10,
-         .malformed  = 11,
-         .reconnects = 12,
-         .lost       = 13,
-         .matches    = 14,
+         .state           = "running",
+         .input           = "can vcan0",
+         .note            = "trouble",
+         .rt              = { .realtime = true },
+         .tick_s          = 0.005,
+         .pulse           = { .ticks             = 1,
+                              .overruns          = 2,
+                              .missing           = 3,
+                              .worst_tick_us     = 4.5,
+                              .worst_tick_cpu_us = 3.5,
+                              .drops             = { .nan           = 5,
+                                                     .not_available = 6,
+                                                     .out_of_range  = 7,
+                                                     .frozen        = 8,
+                                                     .jump          = 15,
+                                                     .stuck         = 16,
+                                                     .repeated      = 17,
+                                                     .missed        = 18 },
+                              .digs              = 9 },
+         .frames          = 10,
+         .malformed       = 11,
+         .reconnects      = 12,
+         .lost            = 13,
+         .matches         = 14,
+         .checksum        = 19,
+         .errors          = 20,
+         .bus_offs        = 21,
+         .timeouts        = 22,
+         .unsent          = 23,
+         .reloads         = 24,
+         .reloads_refused = 25,
+         .latency         = { .count = { [10] = 99, [20] = 1 }, .samples = 100 },
+         .table           = "abc123",
     };
     assert_int_equal(dig_output_health(output, &health), DIG_OK);
     dig_output_destroy(output);
-    const digsight_health_t m = read_back("health.lcm").health;
+    const struct seen       seen = read_back("health.lcm");
+    const digsight_health_t m    = seen.health;
+    assert_true(m.dropped_jump == 15 && m.dropped_stuck == 16 && m.dropped_repeated == 17);
+    assert_true(m.missed == 18 && m.dropped_checksum == 19 && m.error_frames == 20);
+    assert_true(m.bus_offs == 21 && m.timeouts == 22 && m.unsent == 23);
+    assert_true(m.reloads == 24 && m.reloads_refused == 25);
+    assert_close(m.worst_tick_cpu_us, 3.5, 0.0);
+    assert_close(m.latency_p99_us, 16.0 * pow(2.0, 2.5), 1e-9);
+    assert_int_equal(seen.late, 100);
+    assert_string_equal(seen.text[0], "abc123");
+    assert_string_equal(seen.text[2], DIG_ADVICE);
     assert_true(m.realtime == 1 && m.memory_locked == 0);
     assert_true(m.ticks == 1 && m.overruns == 2 && m.missing == 3);
     assert_close(m.worst_tick_us, 4.5, 0.0);
     assert_true(m.dropped_nan == 5 && m.dropped_not_available == 6 && m.dropped_out_of_range == 7);
     assert_true(m.dropped_frozen == 8 && m.dropped_malformed == 11 && m.digs == 9);
     assert_true(m.frames == 10 && m.reconnects == 12 && m.lost == 13 && m.matches == 14);
+}
+
+static void latencies_are_counted_where_they_lie(void **state)
+{
+    (void)state;
+    struct dig_latency l = { 0 };
+    assert_close(dig_latency_quantile_us(&l, 0.99), 0.0, 0.0);
+    const int64_t took_us[] = { -5, 0, 16, 17, 100, 1000, 2000, 1000000000 };
+    for (size_t i = 0; i < 8; i++) {
+        struct dig_latency one = { 0 };
+        dig_latency_add(&one, took_us[i] * 1000);
+        dig_latency_add(&l, took_us[i] * 1000);
+        const double to_us = dig_latency_quantile_us(&one, 1.0);
+        assert_true(to_us >= (double)took_us[i]);
+        assert_true(i == 7 ? isinf(to_us) : to_us <= fmax(16.0, 1.19 * (double)took_us[i]));
+    }
+    assert_int_equal(l.samples, 8);
+    assert_true(dig_latency_quantile_us(&l, 0.5) < 20.0);
 }
 
 static void a_network_that_cannot_be_is_refused(void **state)
@@ -275,6 +366,7 @@ int main(void)
         cmocka_unit_test(a_match_names_gravel_interval_and_table),
         cmocka_unit_test(a_prediction_carries_its_points_and_an_invalid_one_none),
         cmocka_unit_test(health_carries_every_counter),
+        cmocka_unit_test(latencies_are_counted_where_they_lie),
         cmocka_unit_test(a_network_that_cannot_be_is_refused),
     };
     return cmocka_run_group_tests_name("output_lcm", tests, scratch_setup, scratch_teardown);

@@ -2,10 +2,13 @@
 //   daemon_log LOG.lcm
 //   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
-//   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT
+//   RESTORED DRIFT "WANTED"
+//   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT "REASON"
 //   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
 //   RECONNECTS
-//          DIGS MATCHES LOST TICKS OVERRUNS WORST_us INPUT NOTE
+//          DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
+//          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
+//          INPUT NOTE
 //   samples N DURATION_s MAX_GAP_s
 
 #include "files/lcm_log.h"
@@ -31,10 +34,11 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
 {
     (void)context;
     (void)time_us;
-    (void)printf("match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f\n", m->valid,
-                 m->outside, m->dig_count, name(m->trajectory), m->friction, m->friction_low,
-                 m->friction_high, m->rolling, m->rolling_low, m->rolling_high, m->density_kgpm3,
-                 m->density_low_kgpm3, m->density_high_kgpm3, m->distance);
+    (void)printf(
+        "match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f %d %.3f \"%s\"\n",
+        m->valid, m->outside, m->dig_count, name(m->trajectory), m->friction, m->friction_low,
+        m->friction_high, m->rolling, m->rolling_low, m->rolling_high, m->density_kgpm3,
+        m->density_low_kgpm3, m->density_high_kgpm3, m->distance, m->restored, m->drift, m->wanted);
 }
 
 static void prediction(void *const context, const int64_t time_us,
@@ -42,8 +46,9 @@ static void prediction(void *const context, const int64_t time_us,
 {
     (void)context;
     (void)time_us;
-    (void)printf("prediction %d %s %.5f %d %.6g %.6g\n", m->valid, name(m->trajectory),
-                 m->progress_now, m->points, m->peak_Nm, m->points > 0 ? m->moment_Nm[0] : 0.0);
+    (void)printf("prediction %d %s %.5f %d %.6g %.6g \"%s\"\n", m->valid, name(m->trajectory),
+                 m->progress_now, m->points, m->peak_Nm, m->points > 0 ? m->moment_Nm[0] : 0.0,
+                 m->reason);
 }
 
 static void health(void *const context, const int64_t time_us, const digsight_health_t *const m)
@@ -56,12 +61,20 @@ static void health(void *const context, const int64_t time_us, const digsight_he
         *c = *c == ' ' ? '_' : *c;
     }
     (void)printf("health %s %d %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64
-                 " %" PRId64 " %" PRId64 " %d %d %" PRId64 " %" PRId64 " %" PRId64
-                 " %.1f \"%s\" \"%s\"\n",
+                 " %" PRId64 " %" PRId64 " %d %d %" PRId64 " %" PRId64 " %" PRId64 " %.1f",
                  state, m->realtime, m->frames, m->dropped_malformed, m->dropped_nan,
                  m->dropped_not_available, m->dropped_out_of_range, m->dropped_frozen, m->missing,
                  m->reconnects, m->digs, m->matches, m->lost, m->ticks, m->overruns,
-                 m->worst_tick_us, m->input, m->note);
+                 m->worst_tick_us);
+    const int64_t more[] = { m->dropped_checksum, m->dropped_repeated, m->dropped_jump,
+                             m->dropped_stuck,    m->missed,           m->error_frames,
+                             m->bus_offs,         m->timeouts,         m->unsent,
+                             m->reloads,          m->reloads_refused };
+    for (size_t i = 0; i < sizeof more / sizeof more[0]; i++) {
+        (void)printf(" %" PRId64, more[i]);
+    }
+    (void)printf(" %.1f %.1f \"%s\" \"%s\"\n", m->worst_tick_cpu_us, m->latency_p99_us, m->input,
+                 m->note);
 }
 
 int main(const int argc, char *argv[])

@@ -1,0 +1,74 @@
+// Which gravel is known: from which dig, since when, until when, and whether the ground is still
+// that. It outlives the daemon in a file, which is an identity as `digloop identify --json` writes
+// it (files/identity_json.h); how old it is, the file's modification time says.
+
+#ifndef DIG_FIRMWARE_HOST_KNOWN_H
+#define DIG_FIRMWARE_HOST_KNOWN_H
+
+#include "core/error.h"
+#include "estimator/estimator.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define DIG_DRIFT_DIGS 2 // in a row that must differ before the ground counts as another
+
+struct dig_known_settings {
+    double expires_s; // after the dig it came from
+    double
+        drift_floors; // a dig farther than this many noise floors from what was predicted differs
+};
+
+/// Zeroed: nothing is known, and never was.
+struct dig_known {
+    bool              any;   // a gravel was known once
+    bool              valid; // and still is
+    bool              restored;
+    struct dig_match  match;
+    char              trajectory[DIG_NAME_SIZE]; // of the dig it came from
+    char              table[65];                 // scene hash
+    struct dig_gravel nearest;
+    int64_t           time_ns, expires_ns; // CLOCK_MONOTONIC
+    double            drift;               // of the last dig compared, in noise floors; NaN: none
+    int               differed;            // digs in a row that did
+    char              wanted[96];          // what is to be done, for people; "" nothing
+};
+
+/// What is known from a match of one dig of that trajectory.
+struct dig_known dig_known_of(const struct dig_curve_set *set, const struct dig_match *match,
+                              int trajectory, int64_t now_ns,
+                              const struct dig_known_settings *settings);
+
+/// Compares a dig that identifies nothing with what was expected of it. After DIG_DRIFT_DIGS in a
+/// row that differ, what is known is known no longer. True when anything changed that is worth
+/// telling. An observation of a trajectory without an expected curve changes nothing.
+bool dig_known_watch(struct dig_known *known, const struct dig_observation *dig,
+                     const struct dig_expected       *expected,
+                     const struct dig_known_settings *settings);
+
+/// True when it expired just now.
+bool dig_known_age(struct dig_known *known, int64_t now_ns);
+
+/// Writes all of it or nothing. DIG_EIO: it cannot be written (no room); the old file stands.
+DIG_MUST_CHECK enum dig_status dig_known_write(const char *path, const struct dig_known *known,
+                                               struct dig_error *error);
+
+/// DIG_EINVAL: not an identity, of another table (scene hash) or of a gravel the table does not
+/// have; DIG_ESTALE: older than settings->expires_s, or more than an hour younger than now (a wall
+/// clock that was set back: its age cannot be known); DIG_EIO: it cannot be read, as when there is
+/// none. Writes on success only.
+DIG_MUST_CHECK enum dig_status dig_known_read(const char *path, const struct dig_curve_set *set,
+                                              int64_t                          now_ns,
+                                              const struct dig_known_settings *settings,
+                                              struct dig_known *known, struct dig_error *error);
+
+/// The same gravel judged by another table: nearest entry anew. False when that table does not hold
+/// it; *known is untouched then.
+bool dig_known_move(struct dig_known *known, const struct dig_curve_set *set);
+
+/// The trajectory that moves a kilogram with the least energy among those that fill the bucket at
+/// least half as well as the best, or -1 when the table does not know what a bucket carries.
+int dig_known_hint(const struct dig_curve_set *set, const struct dig_forecast *forecast,
+                   double lambda, double *J_per_kg);
+
+#endif // DIG_FIRMWARE_HOST_KNOWN_H
