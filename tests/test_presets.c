@@ -1,0 +1,82 @@
+// The paper's models as scenes: config/scenes/paper_*.yaml against its Tables III, IV and VIII.
+
+#include "files/scene_yaml.h"
+#include "tests/testlib.h"
+
+#include <stdio.h>
+
+static struct dig_scene read_scene(const char *const path)
+{
+    struct dig_scene scene;
+    struct dig_error error = { "" };
+    if (dig_scene_read(path, &scene, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return scene;
+}
+
+static void check_material(const struct dig_scene *const scene, const double diameter_m,
+                           const double young_Pa, const double poisson, const double restitution)
+{
+    assert_close(scene->material.diameter_m, diameter_m, 1e-12);
+    assert_close(scene->material.young_Pa, young_Pa, 1e-3);
+    assert_close(scene->material.poisson, poisson, 1e-12);
+    assert_close(scene->material.restitution, restitution, 1e-12);
+    assert_close(scene->material.characteristic_velocity_mps, 2.0, 1e-12);
+    assert_int_equal(scene->laws.normal, DIG_NORMAL_HOOKE);
+    assert_close(scene->laws.cohesion_Jpm3, 0.0, 0.0);
+}
+
+static void the_basic_model_is_table_iii(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = read_scene("config/scenes/paper_basic.yaml");
+    check_material(&scene, 0.0075, 1e8, 0.3, 0.6);
+    assert_int_equal(scene.laws.rolling, DIG_ROLLING_NONE);
+    assert_close(scene.time_step_s, 1e-5, 1e-12);
+}
+
+static void the_rolling_model_is_table_iv(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = read_scene("config/scenes/paper_rolling.yaml");
+    check_material(&scene, 0.0075, 1.5e8, 0.2, 0.2);
+    assert_int_equal(scene.laws.rolling, DIG_ROLLING_EPSD2);
+}
+
+static void the_steel_balls_are_table_viii(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = read_scene("config/scenes/paper_steel.yaml");
+    check_material(&scene, 0.011, 2e9, 0.2, 0.2);
+    assert_int_equal(scene.laws.rolling, DIG_ROLLING_EPSD2);
+}
+
+// Same bucket, box and trajectories, so that the models can be compared with each other and with
+// the reference digs.
+static void all_are_dug_as_the_rig_is(void **state)
+{
+    (void)state;
+    const char *const      name[] = { "basic", "rolling", "steel" };
+    const struct dig_scene rig    = read_scene("config/scenes/rig.yaml");
+    for (size_t k = 0; k < 3; k++) {
+        char path[64];
+        (void)snprintf(path, sizeof path, "config/scenes/paper_%s.yaml", name[k]);
+        const struct dig_scene scene = read_scene(path);
+        assert_memory_equal(&scene.bucket, &rig.bucket, sizeof rig.bucket);
+        assert_memory_equal(&scene.box, &rig.box, sizeof rig.box);
+        assert_int_equal(scene.trajectories, rig.trajectories);
+        assert_memory_equal(scene.trajectory, rig.trajectory, sizeof rig.trajectory);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_basic_model_is_table_iii),
+        cmocka_unit_test(the_rolling_model_is_table_iv),
+        cmocka_unit_test(the_steel_balls_are_table_viii),
+        cmocka_unit_test(all_are_dug_as_the_rig_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
