@@ -5,27 +5,12 @@
 
 #include "estimator/effects/list.h"
 
-#include <math.h>
-
-enum {
-    COULOMB,
-    VISCOUS,
-    SHARE,
-    ARM_COULOMB,
-    ARM_VISCOUS,
-    ARM_SHARE,
-    BOOM_COULOMB,
-    BOOM_VISCOUS,
-    BOOM_SHARE,
-    STRIBECK,
-    STRIBECK_SPEED,
-    PARAMETERS
-};
+enum { COULOMB, VISCOUS, SHARE, STRIBECK, OF_A_DRIVE, STRIBECK_SPEED = 3 * OF_A_DRIVE, PARAMETERS };
 
 static void correct(const double value[], struct dig_correction *const correction)
 {
     static const int first[DIG_JOINTS] = {
-        [DIG_JOINT_BOOM] = BOOM_COULOMB, [DIG_JOINT_ARM] = ARM_COULOMB, [DIG_JOINT_BUCKET] = COULOMB
+        [DIG_JOINT_BUCKET] = 0, [DIG_JOINT_ARM] = OF_A_DRIVE, [DIG_JOINT_BOOM] = 2 * OF_A_DRIVE
     };
     for (int j = 0; j < DIG_JOINTS; j++) {
         const double *const of  = &value[first[j]];
@@ -33,7 +18,7 @@ static void correct(const double value[], struct dig_correction *const correctio
             .coulomb_N    = of[COULOMB],
             .viscous_Nspm = of[VISCOUS],
             .load_share   = of[SHARE],
-            .stribeck_N   = value[STRIBECK] * fabs(of[COULOMB]),
+            .stribeck_N   = of[STRIBECK],
             .stribeck_mps = value[STRIBECK_SPEED],
         };
     }
@@ -45,17 +30,19 @@ const struct dig_effect dig_effect_cylinder_friction = {
     .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
-        [COULOMB]        = { "coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
-        [VISCOUS]        = { "viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
-        [SHARE]          = { "load_share", 0.0, -0.5, 0.5, 0.05 },
-        [ARM_COULOMB]    = { "arm_coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
-        [ARM_VISCOUS]    = { "arm_viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
-        [ARM_SHARE]      = { "arm_load_share", 0.0, -0.5, 0.5, 0.05 },
-        [BOOM_COULOMB]   = { "boom_coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
-        [BOOM_VISCOUS]   = { "boom_viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
-        [BOOM_SHARE]     = { "boom_load_share", 0.0, -0.5, 0.5, 0.05 },
-        [STRIBECK]       = { "stribeck_share", 0.0, -5.0, 5.0, 0.5 },
-        [STRIBECK_SPEED] = { "stribeck_mps", 0.02, 0.001, 0.5, 0.02 },
+        { "coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
+        { "viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
+        { "load_share", 0.0, -0.5, 0.5, 0.05 },
+        { "stribeck_N", 0.0, -1e5, 1e5, 1000.0 },
+        { "arm_coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
+        { "arm_viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
+        { "arm_load_share", 0.0, -0.5, 0.5, 0.05 },
+        { "arm_stribeck_N", 0.0, -1e5, 1e5, 1000.0 },
+        { "boom_coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
+        { "boom_viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
+        { "boom_load_share", 0.0, -0.5, 0.5, 0.05 },
+        { "boom_stribeck_N", 0.0, -1e5, 1e5, 1000.0 },
+        { "stribeck_mps", 0.02, 0.001, 0.5, 0.02 },
     },
     .correct = correct,
 };

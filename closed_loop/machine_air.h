@@ -1,0 +1,65 @@
+// Free air of several machine recordings as equations: what is left of each joint's balance, in
+// newtons at its drive's rod, averaged over blocks of time. 0 but for noise when the machine is as
+// it is taken to be.
+//
+// Accelerations from angles are means over a kernel (1 - u^2)^2 of +-half_s; pressures and angles
+// are averaged over the same kernel first, so that inertia and drive are of one time.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_AIR_H
+#define DIG_CLOSED_LOOP_MACHINE_AIR_H
+
+#include "closed_loop/machine_dig.h"
+#include "core/machine.h"
+#include "core/sample.h"
+#include "estimator/correction.h"
+#include "estimator/rates.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// An instant of the air: readings averaged over the kernel, and rates. calm_Pa: the pressures
+/// drawn towards the segment's mean by as much of their variance as is noise. What a gain does is
+/// proportional to the pressure, and taken from a noisy one it would explain that noise.
+struct dig_air_point {
+    struct dig_sample sample;
+    struct dig_rates  rates;
+    double            calm_Pa[DIG_JOINTS * DIG_CHAMBERS];
+};
+
+/// One block of one joint.
+struct dig_air_row {
+    size_t         segment;
+    enum dig_joint joint;
+    size_t         first, points; // its points
+    double         sigma_N;       // 1 sigma of the sensors
+};
+
+/// The air before or after one dig.
+struct dig_air_segment {
+    size_t dig; // its place among those given
+    bool   after;
+    size_t first_row, rows;
+};
+
+/// Free with dig_air_finish().
+struct dig_air {
+    struct dig_machine      machine;
+    size_t                  points, rows, segments;
+    struct dig_air_point   *point;
+    struct dig_air_row     *row;
+    struct dig_air_segment *segment;
+};
+
+/// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive
+/// at its stop or a linkage at its toggle make no row of that joint. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_air_make(const struct dig_machine *machine, size_t digs,
+                                            const struct dig_machine_dig dig[], const bool used[],
+                                            struct dig_air *air);
+
+void dig_air_finish(struct dig_air *air);
+
+/// What is left of every row in its sigmas when the machine is corrected. correction[segment].
+void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[],
+                  double rest[]);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_AIR_H

@@ -1,0 +1,292 @@
+#include "closed_loop/machine_lines.h"
+
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A payload of one segment beside the common one: this share of the common one's scale.
+static const double own_share = 0.5;
+
+// Step of the differences, in scales.
+static const double step = 0.05;
+
+// Nothing was dug before the first dig.
+static bool is_carrying(const struct dig_air_segment *const segment)
+{
+    return segment->dig > 0 || segment->after;
+}
+
+static void list_columns(struct dig_lines *const lines)
+{
+    size_t n = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        const struct dig_effect *const effect = dig_effect_of((enum dig_effect_id)e);
+        for (size_t p = 0; p < effect->parameters; p++) {
+            lines->column[n++] =
+                (struct dig_lines_column){ effect->id, p, -1, effect->parameter[p].scale };
+        }
+    }
+    const double scale = own_share * dig_effect_of(DIG_EFFECT_PAYLOAD)->parameter[0].scale;
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        if (is_carrying(&lines->air->segment[s])) {
+            lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
+        }
+    }
+    lines->columns = n;
+}
+
+static size_t most_columns(const struct dig_air *const air)
+{
+    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments;
+}
+
+static void number_digs(struct dig_lines *const lines)
+{
+    lines->digs = 0;
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        const bool same = s > 0 && lines->air->segment[s].dig == lines->air->segment[s - 1].dig;
+        lines->digs += same ? 0 : 1;
+        lines->dig[s] = lines->digs - 1;
+    }
+}
+
+enum dig_status dig_lines_make(const struct dig_air *const air, struct dig_lines *const lines)
+{
+    assert(air != NULL && lines != NULL);
+    const size_t     most = most_columns(air);
+    struct dig_lines made = {
+        .air    = air,
+        .column = malloc(most * sizeof *made.column),
+        .at     = calloc(most, sizeof *made.at),
+        .dig    = malloc((air->segments + 1) * sizeof *made.dig),
+        .normal = calloc(air->segments + 1, sizeof *made.normal),
+    };
+    bool ok = made.column != NULL && made.at != NULL && made.dig != NULL && made.normal != NULL;
+    if (ok) {
+        list_columns(&made);
+        number_digs(&made);
+    }
+    for (size_t d = 0; ok && d < made.digs; d++) {
+        made.normal[d].slope_rest = malloc(made.columns * sizeof(double));
+        made.normal[d].slope2     = malloc(made.columns * made.columns * sizeof(double));
+        ok = made.normal[d].slope_rest != NULL && made.normal[d].slope2 != NULL;
+    }
+    if (!ok) {
+        dig_lines_finish(&made);
+        return DIG_ENOMEM;
+    }
+    *lines = made;
+    return DIG_OK;
+}
+
+void dig_lines_finish(struct dig_lines *const lines)
+{
+    if (lines == NULL) {
+        return;
+    }
+    for (size_t d = 0; d < lines->digs; d++) {
+        free(lines->normal[d].slope_rest);
+        free(lines->normal[d].slope2);
+    }
+    free(lines->column);
+    free(lines->at);
+    free(lines->dig);
+    free(lines->normal);
+    *lines = (struct dig_lines){ .columns = 0 };
+}
+
+bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
+{
+    const struct dig_lines_column *const c = &lines->column[column];
+    return c->effect == DIG_EFFECT_CYLINDER_FRICTION &&
+           c->parameter + 1 == dig_effect_of(c->effect)->parameters;
+}
+
+// The correction of every segment at these values.
+static void correct(const struct dig_lines *const lines, const double at[],
+                    struct dig_correction correction[])
+{
+    double value[DIG_MACHINE_EFFECTS][DIG_MODEL_PARAMETERS_MAX];
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        dig_effect_absent(dig_effect_of((enum dig_effect_id)e), value[e]);
+    }
+    for (size_t c = 0; c < lines->columns; c++) {
+        const struct dig_lines_column *const column = &lines->column[c];
+        if (column->segment < 0) {
+            value[column->effect][column->parameter] += column->scale * at[c];
+        }
+    }
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        correction[s] = (struct dig_correction){ .delay_s = 0.0 };
+        for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+            if (e != DIG_EFFECT_PAYLOAD || is_carrying(&lines->air->segment[s])) {
+                dig_effect_of((enum dig_effect_id)e)->correct(value[e], &correction[s]);
+            }
+        }
+    }
+    for (size_t c = 0; c < lines->columns; c++) {
+        if (lines->column[c].segment >= 0) {
+            correction[lines->column[c].segment].payload.mass_kg += lines->column[c].scale * at[c];
+        }
+    }
+}
+
+// The chamber whose gain a column is, or -1.
+static int gain_of(const struct dig_lines_column *const column)
+{
+    enum { OFFSETS = DIG_JOINTS * DIG_CHAMBERS };
+    return column->effect == DIG_EFFECT_PRESSURE_OFFSET && column->parameter >= OFFSETS
+               ? (int)column->parameter - OFFSETS
+               : -1;
+}
+
+// A gain takes a share of the calm pressure's force.
+static void fill_gain(const struct dig_lines *const lines, const int chamber, const double scale,
+                      double slope[])
+{
+    const struct dig_air *const      air      = lines->air;
+    const struct dig_cylinder *const cylinder = &air->machine.cylinder[chamber / DIG_CHAMBERS];
+    const double                     area_m2  = chamber % DIG_CHAMBERS == DIG_CHAMBER_HEAD
+                                                    ? -dig_cylinder_head_m2(cylinder)
+                                                    : dig_cylinder_rod_m2(cylinder);
+    for (size_t r = 0; r < air->rows; r++) {
+        const struct dig_air_row *const row = &air->row[r];
+        double                          Pa  = 0.0;
+        for (size_t p = row->first; p < row->first + row->points; p++) {
+            Pa += air->point[p].calm_Pa[chamber] / (double)row->points;
+        }
+        slope[r] = (int)row->joint == chamber / DIG_CHAMBERS
+                       ? scale * cylinder->count * area_m2 * Pa / row->sigma_N
+                       : 0.0;
+    }
+}
+
+// All slopes, by central differences; columns of one segment are cut out of the common payload's.
+static void fill_slopes(const struct dig_lines *const lines, const unsigned set, double *const at,
+                        struct dig_correction correction[], double *const less, double *const slope)
+{
+    const size_t rows    = lines->air->rows;
+    size_t       payload = 0;
+    for (size_t c = 0; c < lines->columns; c++) {
+        double *const                        mine   = &slope[c * rows];
+        const struct dig_lines_column *const column = &lines->column[c];
+        memset(mine, 0, rows * sizeof *mine);
+        if (((set >> column->effect) & 1U) == 0) {
+            continue;
+        }
+        if (column->segment >= 0) {
+            const struct dig_air_segment *const s = &lines->air->segment[column->segment];
+            for (size_t r = s->first_row; r < s->first_row + s->rows; r++) {
+                mine[r] = own_share * slope[payload * rows + r];
+            }
+            continue;
+        }
+        const int chamber = gain_of(column);
+        if (chamber >= 0) {
+            fill_gain(lines, chamber, column->scale, mine);
+            continue;
+        }
+        payload = column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 ? c : payload;
+
+        const double here = at[c];
+        at[c]             = here + step;
+        correct(lines, at, correction);
+        dig_air_rest(lines->air, correction, mine);
+        at[c] = here - step;
+        correct(lines, at, correction);
+        dig_air_rest(lines->air, correction, less);
+        at[c] = here;
+        for (size_t r = 0; r < rows; r++) {
+            mine[r] = (mine[r] - less[r]) / (2.0 * step);
+        }
+    }
+}
+
+static void sum_up(const struct dig_lines *const lines, const double rest[], const double slope[])
+{
+    const size_t n    = lines->columns;
+    const size_t rows = lines->air->rows;
+    for (size_t d = 0; d < lines->digs; d++) {
+        struct dig_lines_normal *const normal = &lines->normal[d];
+        normal->rows                          = 0;
+        normal->rest2                         = 0.0;
+        memset(normal->slope_rest, 0, n * sizeof(double));
+        memset(normal->slope2, 0, n * n * sizeof(double));
+    }
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        struct dig_lines_normal *const      normal  = &lines->normal[lines->dig[s]];
+        const struct dig_air_segment *const segment = &lines->air->segment[s];
+        const size_t                        from    = segment->first_row;
+        const size_t                        to      = from + segment->rows;
+        normal->rows += segment->rows;
+        for (size_t r = from; r < to; r++) {
+            normal->rest2 += rest[r] * rest[r];
+        }
+        for (size_t a = 0; a < n; a++) {
+            const double *const left = &slope[a * rows];
+            for (size_t r = from; r < to; r++) {
+                normal->slope_rest[a] += left[r] * rest[r];
+            }
+            for (size_t b = 0; b <= a; b++) {
+                const double *const right = &slope[b * rows];
+                double              sum   = 0.0;
+                for (size_t r = from; r < to; r++) {
+                    sum += left[r] * right[r];
+                }
+                normal->slope2[a * n + b] += sum;
+            }
+        }
+    }
+    for (size_t d = 0; d < lines->digs; d++) {
+        for (size_t a = 0; a < n; a++) {
+            for (size_t b = 0; b < a; b++) {
+                lines->normal[d].slope2[b * n + a] = lines->normal[d].slope2[a * n + b];
+            }
+        }
+    }
+}
+
+enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned set)
+{
+    assert(lines != NULL);
+    const size_t                 rows = lines->air->rows + 1;
+    struct dig_correction *const correction =
+        malloc((lines->air->segments + 1) * sizeof *correction);
+    double *const   rest   = malloc(2 * rows * sizeof *rest);
+    double *const   slope  = malloc(lines->columns * rows * sizeof *slope);
+    enum dig_status status = DIG_ENOMEM;
+    if (correction != NULL && rest != NULL && slope != NULL) {
+        fill_slopes(lines, set, lines->at, correction, rest + rows, slope);
+        correct(lines, lines->at, correction);
+        dig_air_rest(lines->air, correction, rest);
+        sum_up(lines, rest, slope);
+        status = DIG_OK;
+    }
+    free(correction);
+    free(rest);
+    free(slope);
+    return status;
+}
+
+double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
+{
+    assert(lines != NULL && at != NULL);
+    struct dig_correction *const correction =
+        malloc((lines->air->segments + 1) * sizeof *correction);
+    double *const rest  = malloc((lines->air->rows + 1) * sizeof *rest);
+    double        rest2 = INFINITY;
+    if (correction != NULL && rest != NULL) {
+        correct(lines, at, correction);
+        dig_air_rest(lines->air, correction, rest);
+        rest2 = 0.0;
+        for (size_t r = 0; r < lines->air->rows; r++) {
+            rest2 += rest[r] * rest[r];
+        }
+    }
+    free(correction);
+    free(rest);
+    return rest2;
+}

@@ -1,0 +1,316 @@
+// The search for what is missing of the machine: effects join one after the other, and after each
+// the equations are made linear again where it has led.
+
+#include "closed_loop/machine_fit.h"
+#include "closed_loop/machine_side.h"
+#include "closed_loop/machine_side_private.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BOOTSTRAPS = 200, REFINEMENTS = 4, ROUNDS = 4 };
+
+// Averaging over the kernel takes part of the noise of a block: what clean recordings leave of it.
+static const double clean_rest2 = 0.75;
+
+// Air that leaves more than this of a row's variance is not understood, if what it leaves is more
+// than this share of what there was to explain.
+static const double unclear_rest2 = 1.2;
+static const double unclear_share = 0.15;
+
+// Two sets of effects whose log evidence differs by less cannot be told apart.
+static const double tie = 5.0;
+
+// 5 % and 95 % of a normal distribution, in its sigmas.
+static const double ninety = 1.645;
+
+struct search {
+    struct dig_air   air;
+    struct dig_lines lines;
+    struct dig_fit   fit;
+    double          *at, *sigma;
+    unsigned         set;
+    double           least;      // log evidence that an effect must bring
+    double           rest2_none; // without any effect, not linear
+    double           rest2;      // with the set, not linear
+};
+
+static void search_finish(struct search *const s)
+{
+    dig_fit_finish(&s->fit);
+    dig_lines_finish(&s->lines);
+    dig_air_finish(&s->air);
+    free(s->at);
+    free(s->sigma);
+}
+
+static enum dig_status search_make(const struct dig_machine_side *const side,
+                                   struct search *const                 s)
+{
+    enum dig_status status =
+        dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
+    if (status == DIG_OK) {
+        status = dig_lines_make(&s->air, &s->lines);
+    }
+    if (status == DIG_OK) {
+        status = dig_fit_make(&s->lines, &s->fit);
+    }
+    if (status == DIG_OK) {
+        s->at    = calloc(s->lines.columns, sizeof(double));
+        s->sigma = calloc(s->lines.columns, sizeof(double));
+        status   = s->at != NULL && s->sigma != NULL ? DIG_OK : DIG_ENOMEM;
+    }
+    return status;
+}
+
+static void sum_all(struct search *const s)
+{
+    double weight[DIG_MEASURED_MAX];
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        weight[d] = 1.0;
+    }
+    dig_fit_sum(&s->fit, weight);
+}
+
+static double penalty(const struct search *const s, const double at[])
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        sum += at[c] * at[c];
+    }
+    return s->fit.s2 * sum;
+}
+
+// Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
+static enum dig_status refine(struct search *const s)
+{
+    const size_t n = s->lines.columns;
+    for (int i = 0; i < REFINEMENTS; i++) {
+        const enum dig_status status = dig_lines_update(&s->lines, s->set);
+        if (status != DIG_OK) {
+            return status;
+        }
+        const double s2 = s->fit.s2;
+        sum_all(s);
+        s->fit.s2                    = s2; // of all effects together, which these are not
+        struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+        dig_fit_solve(&s->fit, s->set, &answer);
+
+        const double now   = dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at);
+        double       share = 1.0;
+        double       moved = 0.0;
+        for (int halved = 0; halved < 6; halved++, share *= 0.5) {
+            for (size_t c = 0; c < n; c++) {
+                s->sigma[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
+            }
+            if (dig_lines_rest2(&s->lines, s->sigma) + penalty(s, s->sigma) <= now) {
+                for (size_t c = 0; c < n; c++) {
+                    moved          = fmax(moved, fabs(s->sigma[c] - s->lines.at[c]));
+                    s->lines.at[c] = s->sigma[c];
+                }
+                break;
+            }
+        }
+        if (moved < 0.02) {
+            break;
+        }
+    }
+    s->rest2                     = dig_lines_rest2(&s->lines, s->lines.at);
+    const enum dig_status status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    if (status == DIG_OK) {
+        sum_all(s);
+    }
+    return status;
+}
+
+// Effects join until none earns its place.
+static enum dig_status select_effects(struct search *const s)
+{
+    enum dig_status status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    if (status != DIG_OK) {
+        return status;
+    }
+    sum_all(s);
+    s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
+    s->rest2      = s->rest2_none;
+    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+        const unsigned before = s->set;
+        s->set                = dig_fit_select(&s->fit, s->least, s->set);
+        if (s->set == before) {
+            break;
+        }
+        status = refine(s);
+    }
+    return status;
+}
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+static uint64_t next(uint64_t *const state)
+{
+    *state += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t z = *state;
+    z          = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z          = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+
+// How often each effect is chosen when the digs are drawn anew.
+static void bootstrap(struct search *const s, uint64_t seed, double inclusion[DIG_MACHINE_EFFECTS])
+{
+    memset(inclusion, 0, DIG_MACHINE_EFFECTS * sizeof inclusion[0]);
+    for (int b = 0; b < BOOTSTRAPS; b++) {
+        double weight[DIG_MEASURED_MAX] = { 0.0 };
+        for (size_t d = 0; d < s->lines.digs; d++) {
+            weight[next(&seed) % s->lines.digs] += 1.0;
+        }
+        dig_fit_sum(&s->fit, weight);
+        const unsigned set = dig_fit_select(&s->fit, s->least, 0);
+        for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+            inclusion[e] += (double)((set >> e) & 1U) / BOOTSTRAPS;
+        }
+    }
+    sum_all(s);
+}
+
+static size_t write_parameters(const struct search *const s, const enum dig_effect_id id,
+                               struct dig_model_parameter parameter[])
+{
+    const struct dig_effect *const effect = dig_effect_of(id);
+    size_t                         n      = 0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect != id || column->segment >= 0) {
+            continue;
+        }
+        const struct dig_effect_parameter *const of = &effect->parameter[column->parameter];
+
+        const double                      value = of->absent + of->scale * s->at[c];
+        const double                      wide  = ninety * of->scale * s->sigma[c];
+        struct dig_model_parameter *const p     = &parameter[n++];
+        memcpy(p->name, of->name, strlen(of->name) + 1);
+        p->value = fmin(fmax(value, of->low), of->high);
+        p->low   = value - wide;
+        p->high  = value + wide;
+    }
+    return n;
+}
+
+// Every effect as it competed: by itself, or in the set found.
+static void write_candidates(struct search *const s, const double inclusion[],
+                             struct dig_machine_finding *const finding)
+{
+    finding->candidates = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
+        struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
+        memset(s->sigma, 0, s->lines.columns * sizeof(double));
+        dig_fit_solve(&s->fit, 1U << e, &answer);
+        *out = (struct dig_candidate){
+            .effect       = (enum dig_effect_id)e,
+            .log_evidence = answer.log_evidence,
+            .p_fit        = answer.rest2 > unclear_rest2 * s->fit.rows ? 0.0 : 1.0,
+            .inclusion    = inclusion[e],
+            .error        = (double)NAN,
+            .seen_in      = DIG_PART_AIR,
+        };
+        out->parameters = write_parameters(s, out->effect, out->parameter);
+    }
+    for (size_t i = 1; i < finding->candidates; i++) {
+        const struct dig_candidate moved = finding->candidate[i];
+        size_t                     to    = i;
+        for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
+            finding->candidate[to] = finding->candidate[to - 1];
+        }
+        finding->candidate[to] = moved;
+    }
+}
+
+static void write_effects(struct search *const s, const double inclusion[],
+                          struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+    memset(s->sigma, 0, s->lines.columns * sizeof(double));
+    dig_fit_solve(&s->fit, s->set, &answer);
+    memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    finding->effects = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0) {
+            continue;
+        }
+        size_t to = finding->effects++;
+        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
+            finding->effect[to] = finding->effect[to - 1];
+        }
+        finding->effect[to] = (struct dig_model_effect){
+            .effect      = (enum dig_effect_id)e,
+            .probability = inclusion[e],
+        };
+        finding->effect[to].parameters =
+            write_parameters(s, (enum dig_effect_id)e, finding->effect[to].parameter);
+    }
+}
+
+// Effects that would do in the place of one of the set.
+static void write_sets(const struct search *const s, struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer found = { .at = NULL };
+    dig_fit_solve(&s->fit, s->set, &found);
+    finding->sets = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
+            continue;
+        }
+        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
+        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
+            struct dig_fit_answer other = { .at = NULL };
+            if (((s->set >> f) & 1U) == 0) {
+                dig_fit_solve(&s->fit, (s->set & ~(1U << e)) | (1U << f), &other);
+                if (other.log_evidence > found.log_evidence - tie) {
+                    like.effect[like.effects++] = (enum dig_effect_id)f;
+                }
+            }
+        }
+        if (like.effects > 1) {
+            finding->set[finding->sets++] = like;
+        }
+    }
+}
+
+enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side,
+                                       const double false_alarm, const uint64_t seed,
+                                       struct dig_machine_finding *const finding)
+{
+    assert(side != NULL && finding != NULL && false_alarm > 0.0);
+    struct search   s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
+    enum dig_status status = search_make(side, &s);
+    if (status == DIG_OK && s.air.rows == 0) {
+        *finding = (struct dig_machine_finding){ .p_complete = 1.0, .residual_air = (double)NAN };
+        search_finish(&s);
+        return DIG_OK;
+    }
+    if (status == DIG_OK) {
+        status = select_effects(&s);
+    }
+    if (status == DIG_OK) {
+        const double rows   = (double)s.air.rows;
+        const double clean  = clean_rest2 * rows;
+        const bool   excess = s.rest2 > unclear_rest2 * rows &&
+                            s.rest2 - clean > unclear_share * (s.rest2_none - clean);
+        double inclusion[DIG_MACHINE_EFFECTS];
+
+        *finding              = (struct dig_machine_finding){ .unexplained = excess };
+        finding->residual_air = sqrt(s.rest2_none / rows);
+        finding->significant  = s.set != 0 || excess;
+        bootstrap(&s, seed, inclusion);
+        write_candidates(&s, inclusion, finding);
+        write_effects(&s, inclusion, finding);
+        write_sets(&s, finding);
+        finding->p_complete =
+            fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
+    }
+    search_finish(&s);
+    return status;
+}
