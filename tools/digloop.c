@@ -17,6 +17,9 @@ static enum dig_status run(const struct digloop_options *const options,
     if (strcmp(options->command, "predict") == 0) {
         return digloop_predict(options, set, error);
     }
+    if (strcmp(options->command, "design") == 0) {
+        return digloop_design(options, set, error);
+    }
     return digloop_trace(options, set, error);
 }
 

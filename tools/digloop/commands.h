@@ -4,11 +4,13 @@
 #define DIG_TOOLS_DIGLOOP_COMMANDS_H
 
 #include "core/curve.h"
+#include "core/effect_set.h"
 #include "core/error.h"
 
 #include <stdbool.h>
 
 #define DIGLOOP_RECORDINGS_MAX 64
+#define DIGLOOP_PATH_SIZE      1024
 
 struct digloop_options {
     const char *command, *table;
@@ -33,5 +35,17 @@ DIG_MUST_CHECK enum dig_status digloop_predict(const struct digloop_options *opt
 DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *options,
                                              const struct dig_curve_set   *set,
                                              struct dig_error             *error);
+DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_options *options,
+                                              const struct dig_curve_set   *set,
+                                              struct dig_error             *error);
+
+/// The table of effects asked for, or the one beside the table if there is one; path names it, ""
+/// when there is none: then it says so on standard error and leaves *effects. Free with
+/// dig_effect_set_destroy().
+DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_options *options,
+                                                    const struct dig_curve_set   *set,
+                                                    char                    path[DIGLOOP_PATH_SIZE],
+                                                    struct dig_effect_set **effects,
+                                                    struct dig_error       *error);
 
 #endif // DIG_TOOLS_DIGLOOP_COMMANDS_H

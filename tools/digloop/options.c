@@ -24,6 +24,9 @@ static const char help[] =
     "      compared with beds that hold them, by default those of TABLE_effects.sqlite. OUT or "
     "MODEL\n"
     "      \"-\": standard output\n"
+    "  digloop design TABLE.sqlite [--effects EFFECTS.sqlite] [--json]\n"
+    "      which simple dig of the table tells most about the gravel and tells effects apart, and\n"
+    "      whether digs simulated with the table's own scatter bear that out\n"
     "  digloop --help | --version\n"
     "\n"
     "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
@@ -68,7 +71,13 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL, "trace: expected TABLE.sqlite CAMPAIGN/");
     }
-    return dig_error_set(error, DIG_EINVAL, "%s: expected identify, predict or trace", o->command);
+    if (strcmp(o->command, "design") == 0) {
+        return o->recordings == 0 && !has_predict_options(o) && o->html == NULL && o->add == NULL
+                   ? DIG_OK
+                   : dig_error_set(error, DIG_EINVAL, "design: expected TABLE.sqlite");
+    }
+    return dig_error_set(error, DIG_EINVAL, "%s: expected identify, predict, trace or design",
+                         o->command);
 }
 
 // trace takes a file after --json, the other commands write to standard output.

@@ -12,28 +12,24 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define PATH_SIZE 1024
-
 // TABLE_effects.sqlite beside TABLE.sqlite.
-static void name_effects(const char *const table, char path[const PATH_SIZE])
+static void name_effects(const char *const table, char path[const DIGLOOP_PATH_SIZE])
 {
     const char *const dot = strrchr(table, '.');
     const int         stem =
         dot != NULL && strchr(dot, '/') == NULL ? (int)(dot - table) : (int)strlen(table);
-    (void)snprintf(path, PATH_SIZE, "%.*s_effects%s", stem, table, table + stem);
+    (void)snprintf(path, DIGLOOP_PATH_SIZE, "%.*s_effects%s", stem, table, table + stem);
 }
 
-// The table of effects asked for, or the one beside the table if there is one; *path names it, ""
-// when there is none.
-static enum dig_status load_effects(const struct digloop_options *const options,
-                                    const struct dig_curve_set *const   set,
-                                    char                                path[const PATH_SIZE],
-                                    struct dig_effect_set **const       effects,
-                                    struct dig_error *const             error)
+enum dig_status digloop_load_effects(const struct digloop_options *const options,
+                                     const struct dig_curve_set *const   set,
+                                     char                          path[const DIGLOOP_PATH_SIZE],
+                                     struct dig_effect_set **const effects,
+                                     struct dig_error *const       error)
 {
     struct stat found;
     if (options->effects != NULL) {
-        (void)snprintf(path, PATH_SIZE, "%s", options->effects);
+        (void)snprintf(path, DIGLOOP_PATH_SIZE, "%s", options->effects);
     } else {
         name_effects(options->table, path);
         if (stat(path, &found) != 0) {
@@ -94,13 +90,13 @@ static enum dig_status write_results(const struct digloop_options *const  option
 enum dig_status digloop_trace(const struct digloop_options *const options,
                               const struct dig_curve_set *const set, struct dig_error *const error)
 {
-    char                    path[PATH_SIZE];
+    char                    path[DIGLOOP_PATH_SIZE];
     struct dig_effect_set  *effects  = NULL;
     struct digloop_campaign campaign = { .digs = 0 };
     struct dig_trace       *trace    = calloc(1, sizeof *trace);
     enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = load_effects(options, set, path, &effects, error);
+        status = digloop_load_effects(options, set, path, &effects, error);
     }
     if (status == DIG_OK) {
         status = digloop_campaign_load(options->recording[0], set, &campaign, error);

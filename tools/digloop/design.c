@@ -1,0 +1,69 @@
+// digloop design: which simple dig of the table tells most.
+
+#include "closed_loop/design.h"
+
+#include "closed_loop/design_report.h"
+#include "tables/load_effects.h"
+#include "tools/digloop/commands.h"
+
+#include <stdlib.h>
+
+// What the effects add, where a table of them is given or lies beside the table.
+static enum dig_status make_soil(const struct digloop_options *const options,
+                                 const struct dig_curve_set *const   set,
+                                 const struct dig_surface *const     surface,
+                                 struct dig_soil **const soil, struct dig_error *const error)
+{
+    char                   path[DIGLOOP_PATH_SIZE];
+    struct dig_effect_set *effects = NULL;
+    enum dig_status        status  = digloop_load_effects(options, set, path, &effects, error);
+    if (status == DIG_OK) {
+        status = dig_soil_create(surface, effects, soil);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+        }
+    }
+    dig_effect_set_destroy(effects);
+    return status;
+}
+
+enum dig_status digloop_design(const struct digloop_options *const options,
+                               const struct dig_curve_set *const set, struct dig_error *const error)
+{
+    const struct dig_design_settings settings = dig_design_settings_default();
+    struct dig_surface *const        surface  = calloc(1, sizeof *surface);
+    struct dig_design *const         design   = calloc(1, sizeof *design);
+    struct dig_scatter              *scatter  = NULL;
+    struct dig_soil                 *soil     = NULL;
+    enum dig_status status = surface != NULL && design != NULL ? DIG_OK : DIG_ENOMEM;
+    if (status == DIG_OK) {
+        status = dig_surface_fit(set, surface);
+    }
+    if (status != DIG_OK) {
+        (void)dig_error_set(error, status, "%s: too few entries for a surface over the gravel",
+                            options->table);
+        goto done;
+    }
+    status = dig_scatter_measure(options->table, surface, &scatter, error);
+    if (status == DIG_OK) {
+        status = make_soil(options, set, surface, &soil, error);
+    }
+    if (status != DIG_OK) {
+        goto done;
+    }
+    status = dig_design_run(surface, scatter, soil, &settings, design);
+    if (status != DIG_OK) {
+        (void)dig_error_set(error, status, "%s: holds no simple trajectory, expected one or more",
+                            options->table);
+    } else if (options->json) {
+        dig_design_json(design, set, stdout);
+    } else {
+        dig_design_text(design, set, stdout);
+    }
+done:
+    dig_scatter_destroy(scatter);
+    free(soil);
+    free(design);
+    free(surface);
+    return status;
+}
