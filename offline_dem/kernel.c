@@ -1,6 +1,7 @@
 #include "offline_dem/kernel.h"
 
 #include "offline_dem/law_general.h"
+#include "offline_dem/period.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -200,8 +201,17 @@ BODY void scatter(const struct dig_contacts *const list, const struct dig_block 
     }
 }
 
+BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
+{
+    const double per_m = dig_period_inverse(period_m);
+#pragma omp simd simdlen(8)
+    for (size_t c = 0; c < count; c++) {
+        y_m[c] = dig_period_fold(y_m[c], period_m, per_m);
+    }
+}
+
 BODY void pairs_body(const bool general, const struct dig_law law, const double dt_s,
-                     const bool still, struct dig_contacts *const list,
+                     const double period_m, const bool still, struct dig_contacts *const list,
                      struct dig_grains *const grains)
 {
     struct dig_block block;
@@ -210,6 +220,9 @@ BODY void pairs_body(const bool general, const struct dig_law law, const double 
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
         gather(list, grains->motion, first, count, &block);
+        if (period_m > 0.0) {
+            fold(period_m, count, block.in[1]);
+        }
         double *memories[DIG_MEMORIES];
         for (int m = 0; m < DIG_MEMORIES; m++) {
             memories[m] = list->memory[m] + first;
@@ -290,14 +303,14 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
             block_body(false, *law, dt_s, count, memories, block);                                 \
         }                                                                                          \
     }                                                                                              \
-    attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
-                                         const bool still, struct dig_contacts *const list,        \
-                                         struct dig_grains *const grains)                          \
+    attribute static void pairs_##suffix(                                                          \
+        const struct dig_law *const law, const double dt_s, const double period_m,                 \
+        const bool still, struct dig_contacts *const list, struct dig_grains *const grains)        \
     {                                                                                              \
         if (law->general) {                                                                        \
-            pairs_body(true, *law, dt_s, still, list, grains);                                     \
+            pairs_body(true, *law, dt_s, period_m, still, list, grains);                           \
         } else {                                                                                   \
-            pairs_body(false, *law, dt_s, still, list, grains);                                    \
+            pairs_body(false, *law, dt_s, period_m, still, list, grains);                          \
         }                                                                                          \
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
@@ -327,26 +340,28 @@ void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, c
 }
 
 static void run_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const bool still, struct dig_contacts *const list,
+                      const double period_m, const bool still, struct dig_contacts *const list,
                       struct dig_grains *const grains)
 {
     switch (isa) {
-    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, still, list, grains); break;
-    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, still, list, grains); break;
-    case DIG_ISA_BASE: pairs_base(law, dt_s, still, list, grains); break;
+    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, period_m, still, list, grains); break;
+    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, period_m, still, list, grains); break;
+    case DIG_ISA_BASE: pairs_base(law, dt_s, period_m, still, list, grains); break;
     }
 }
 
 void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      struct dig_contacts *const list, struct dig_grains *const grains)
+                      const double period_y_m, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
 {
-    run_pairs(isa, law, dt_s, false, list, grains);
+    run_pairs(isa, law, dt_s, period_y_m, false, list, grains);
 }
 
 void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      struct dig_contacts *const list, struct dig_grains *const grains)
+                      const double period_y_m, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
 {
-    run_pairs(isa, law, dt_s, true, list, grains);
+    run_pairs(isa, law, dt_s, period_y_m, true, list, grains);
 }
 
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,

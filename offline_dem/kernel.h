@@ -30,12 +30,13 @@ struct dig_block {
 void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, size_t count,
                       double memory[DIG_MEMORIES][DIG_BLOCK], struct dig_block *block);
 
-/// Forces and torques of all contacts of a list of grain pairs, added to the loads.
-void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s,
+/// Forces and torques of all contacts of a list of grain pairs, added to the loads. With period_y_m
+/// > 0 grains meet their nearest images in y.
+void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
                       struct dig_contacts *list, struct dig_grains *grains);
 
 /// The same, but the contacts remember nothing of it: for grains that are held still.
-void dig_kernel_still(enum dig_isa isa, const struct dig_law *law, double dt_s,
+void dig_kernel_still(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
                       struct dig_contacts *list, struct dig_grains *grains);
 
 /// Kicks every grain (with `which`: those `count` grains only) over kick_s with its load and

@@ -1,6 +1,7 @@
 #include "offline_dem/lists.h"
 
 #include "offline_dem/bodies.h"
+#include "offline_dem/period.h"
 #include "offline_dem/pick.h"
 
 #include <math.h>
@@ -90,6 +91,16 @@ static void find_slots(const struct dig_neighbours *const near, const bool like,
     }
 }
 
+// Brings back what has left through a side that is one with the other.
+static void wrap(struct dig_world *const w)
+{
+    const double per_m = dig_period_inverse(w->period_y_m);
+    for (size_t i = 0; i < w->grains.n && w->period_y_m > 0.0; i++) {
+        double *const y_m = &w->grains.motion[i].x_m[1];
+        *y_m              = dig_period_fold(*y_m, w->period_y_m, per_m);
+    }
+}
+
 // Sorts the grains along cells and remakes the neighbour list.
 static enum dig_status relist(struct dig_world *const w)
 {
@@ -101,6 +112,7 @@ static enum dig_status relist(struct dig_world *const w)
     if (order == NULL || place == NULL || margin == NULL) {
         goto done;
     }
+    wrap(w);
     double radius_max_m = 0.0;
     for (size_t k = 0; k < w->grains.kinds; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.kind[k].radius_m);
@@ -126,7 +138,7 @@ static enum dig_status relist(struct dig_world *const w)
         margin[i] = SKIN_RADII * w->grains.kind[w->grains.of[i]].radius_m +
                     SKIN_STEPS * w->dt_s * speed(&w->grains.motion[i]);
     }
-    status = dig_neighbours_build(&w->grains, margin, &w->near_list);
+    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->near_list);
     if (status != DIG_OK) {
         goto done;
     }

@@ -137,20 +137,32 @@ static enum dig_status make_room(struct dig_neighbours *const list, const size_t
     return DIG_OK;
 }
 
-// The pairs of grain i, appended at *used.
-static enum dig_status search(const struct dig_grains *const grains, const double margin_m[],
-                              const struct grid *const g, const double radius_max_m,
-                              const uint32_t i, struct dig_neighbours *const list,
-                              size_t *const used)
+// What is looked for around one grain, or around its image beyond a side that is one with the
+// other.
+struct query {
+    const struct dig_grains *grains;
+    const double            *margin_m;
+    double                   radius_max_m;
+    double                   half_m; // of the period: farther images in y are not the nearest
+    uint32_t                 i;
+    double                   x_m[3];
+};
+
+// The pairs of the query's grain, appended at *used.
+static enum dig_status search(const struct query *const q, const struct grid *const g,
+                              struct dig_neighbours *const list, size_t *const used)
 {
-    const double *const x        = grains->motion[i].x_m;
-    const double        radius_m = grains->kind[grains->of[i]].radius_m;
-    const double        far_m    = radius_m + radius_max_m + 2.0 * margin_m[i];
-    const double        own_m    = radius_m + margin_m[i];
-    const uint32_t      clump    = grains->clump == NULL ? 0 : grains->clump[i];
-    size_t              count    = *used;
-    ptrdiff_t           low[3];
-    ptrdiff_t           high[3];
+    const struct dig_grains *const grains   = q->grains;
+    const double *const            margin_m = q->margin_m;
+    const double *const            x        = q->x_m;
+    const uint32_t                 i        = q->i;
+    const double                   radius_m = grains->kind[grains->of[i]].radius_m;
+    const double                   far_m    = radius_m + q->radius_max_m + 2.0 * margin_m[i];
+    const double                   own_m    = radius_m + margin_m[i];
+    const uint32_t                 clump    = grains->clump == NULL ? 0 : grains->clump[i];
+    size_t                         count    = *used;
+    ptrdiff_t                      low[3];
+    ptrdiff_t                      high[3];
     for (int a = 0; a < 3; a++) {
         low[a]  = clamp_cell(g, a, x[a] - far_m);
         high[a] = clamp_cell(g, a, x[a] + far_m);
@@ -177,8 +189,9 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
                     margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
                 const bool close   = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;
                 const bool apart   = clump == 0 || clump != grains->clump[j];
+                const bool nearest = d[1] >= -q->half_m && d[1] < q->half_m;
                 list->other[count] = j;
-                count += (size_t)(mine & close & apart);
+                count += (size_t)(mine & close & apart & nearest);
             }
         }
     }
@@ -186,8 +199,22 @@ static enum dig_status search(const struct dig_grains *const grains, const doubl
     return DIG_OK;
 }
 
-enum dig_status dig_neighbours_build(const struct dig_grains *const grains, const double margin_m[],
-                                     struct dig_neighbours *const list)
+// Around the grain, and where y repeats around its images.
+static enum dig_status search_images(struct query *const q, const struct grid *const g,
+                                     const double period_m, struct dig_neighbours *const list,
+                                     size_t *const used)
+{
+    memcpy(q->x_m, q->grains->motion[q->i].x_m, sizeof q->x_m);
+    enum dig_status status = search(q, g, list, used);
+    for (int side = -1; period_m > 0.0 && side <= 1 && status == DIG_OK; side += 2) {
+        q->x_m[1] = q->grains->motion[q->i].x_m[1] + side * period_m;
+        status    = search(q, g, list, used);
+    }
+    return status;
+}
+
+enum dig_status dig_neighbours_build(const struct dig_grains *const grains, const double period_y_m,
+                                     const double margin_m[], struct dig_neighbours *const list)
 {
     const size_t n = grains->n;
     if (list->n != n || list->start == NULL) {
@@ -220,10 +247,17 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         dig_neighbours_finish(list);
         return status;
     }
+    struct query q = {
+        .grains       = grains,
+        .margin_m     = margin_m,
+        .radius_max_m = radius_max_m,
+        .half_m       = period_y_m > 0.0 ? 0.5 * period_y_m : (double)INFINITY,
+    };
     size_t used = 0;
     for (size_t i = 0; i < n && status == DIG_OK; i++) {
         list->start[i] = (uint32_t)used;
-        status         = search(grains, margin_m, &g, radius_max_m, (uint32_t)i, list, &used);
+        q.i            = (uint32_t)i;
+        status         = search_images(&q, &g, period_y_m, list, &used);
     }
     list->start[n] = (uint32_t)used;
     free(g.start);

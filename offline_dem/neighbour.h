@@ -32,8 +32,8 @@ DIG_MUST_CHECK enum dig_status dig_neighbours_order(const struct dig_grains *gra
 /// function; its memory is used again. DIG_ENOMEM leaves an empty list. O(n) for beds of like
 /// grains.
 DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *grains,
-                                                    const double             margin_m[],
-                                                    struct dig_neighbours   *list);
+                                                    double period_y_m, const double margin_m[],
+                                                    struct dig_neighbours *list);
 
 void dig_neighbours_finish(struct dig_neighbours *list);
 

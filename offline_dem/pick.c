@@ -1,5 +1,7 @@
 #include "offline_dem/pick.h"
 
+#include "offline_dem/period.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,11 +69,13 @@ static size_t find_close(const struct dig_world *const w, const uint32_t i, uint
     const struct dig_neighbours *const near  = &w->near_list;
     const double *const                x     = g->motion[i].x_m;
     const double                       own_m = g->kind[g->of[i]].radius_m + w->at_m[i][3];
+    const double                       per_m = dig_period_inverse(w->period_y_m);
     size_t                             count = 0;
     for (uint32_t s = near->start[i]; s < near->start[i + 1]; s++) {
         const uint32_t      j       = near->other[s];
         const double *const y       = g->motion[j].x_m;
-        const double        d[3]    = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
+        const double        dy_m    = dig_period_fold(x[1] - y[1], w->period_y_m, per_m);
+        const double        d[3]    = { x[0] - y[0], dy_m, x[2] - y[2] };
         const double        reach_m = own_m + g->kind[g->of[j]].radius_m + w->at_m[j][3];
         close[count]                = s;
         count += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;

@@ -1,5 +1,6 @@
 #include "offline_dem/rest.h"
 
+#include "offline_dem/period.h"
 #include "offline_dem/world.h"
 
 #include <math.h>
@@ -54,9 +55,11 @@ static void list_awake(struct dig_rest *const rest)
 static double overlap(const struct dig_world *const w, const uint32_t i, const uint32_t j,
                       const double reach_m)
 {
-    const double *const x    = w->grains.motion[i].x_m;
-    const double *const y    = w->grains.motion[j].x_m;
-    const double        d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
+    const double *const x     = w->grains.motion[i].x_m;
+    const double *const y     = w->grains.motion[j].x_m;
+    const double        per_m = dig_period_inverse(w->period_y_m);
+    const double        d[3]  = { x[0] - y[0], dig_period_fold(x[1] - y[1], w->period_y_m, per_m),
+                                  x[2] - y[2] };
     return reach_m - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 

@@ -89,9 +89,11 @@ static void push_pairs(struct dig_world *const w, const bool held)
     for (size_t a = 0; a < w->grains.kinds; a++) {
         for (size_t b = a; b < w->grains.kinds; b++) {
             const size_t l = a * DIG_KINDS_MAX + b;
-            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, &w->pair[l], &w->grains);
+            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l],
+                             &w->grains);
             if (held) {
-                dig_kernel_still(w->isa, &w->pair_law[l], w->dt_s, &w->held_pair[l], &w->grains);
+                dig_kernel_still(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->held_pair[l],
+                                 &w->grains);
             }
         }
     }

@@ -50,7 +50,9 @@ struct dig_world {
     size_t          walls;
     struct dig_wall wall[DIG_WALLS_MAX];
     enum dig_isa    isa;
-    double freeze; // what a grain that is held still may be pushed, rest.h; 0: none is held
+    double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
+                       // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
+    double freeze;     // what a grain that is held still may be pushed, rest.h; 0: none is held
 
     // May be placed between steps; NULL: no tool.
     struct dig_tool *tool;

@@ -34,23 +34,29 @@ static struct scatter make_scatter(const uint64_t seed)
     return s;
 }
 
-static bool is_near(const struct scatter *const s, const size_t i, const size_t j)
+// The nearest of three images: y repeats after period_m, or not at all (0).
+static double apart_in_y(const double dy_m, const double period_m)
 {
-    const double *const a     = s->grains.motion[i].x_m;
-    const double *const b     = s->grains.motion[j].x_m;
-    const double        gap_m = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]) -
+    return fmin(fabs(dy_m), fmin(fabs(dy_m - period_m), fabs(dy_m + period_m)));
+}
+
+static bool is_near(const struct scatter *const s, const double period_m, const size_t i,
+                    const size_t j)
+{
+    const double *const a = s->grains.motion[i].x_m;
+    const double *const b = s->grains.motion[j].x_m;
+    const double gap_m = hypot(hypot(a[0] - b[0], apart_in_y(a[1] - b[1], period_m)), a[2] - b[2]) -
                          s->grains.kind[s->grains.of[i]].radius_m -
                          s->grains.kind[s->grains.of[j]].radius_m;
     return gap_m < s->margin_m[i] + s->margin_m[j];
 }
 
-static void every_near_pair_is_listed_once_and_no_other(void **state)
+static void expect_all_pairs(const double period_m)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 5; seed++) {
         struct scatter        s    = make_scatter(seed);
         struct dig_neighbours list = { 0 };
-        assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+        assert_int_equal(dig_neighbours_build(&s.grains, period_m, s.margin_m, &list), DIG_OK);
         unsigned char *const seen = calloc((size_t)GRAINS * GRAINS, 1);
         assert_non_null(seen);
         for (size_t i = 0; i < GRAINS; i++) {
@@ -63,7 +69,7 @@ static void every_near_pair_is_listed_once_and_no_other(void **state)
         for (size_t i = 0; i < GRAINS; i++) {
             assert_int_equal(seen[i * GRAINS + i], 0);
             for (size_t j = i + 1; j < GRAINS; j++) {
-                assert_int_equal(seen[i * GRAINS + j], is_near(&s, i, j));
+                assert_int_equal(seen[i * GRAINS + j], is_near(&s, period_m, i, j));
                 pairs += seen[i * GRAINS + j];
             }
         }
@@ -74,18 +80,31 @@ static void every_near_pair_is_listed_once_and_no_other(void **state)
     }
 }
 
+static void every_near_pair_is_listed_once_and_no_other(void **state)
+{
+    (void)state;
+    expect_all_pairs(0.0);
+}
+
+// The widest pairs reach over half the period: each is still listed once.
+static void every_near_pair_across_the_sides_is_listed_once(void **state)
+{
+    (void)state;
+    expect_all_pairs(0.061);
+}
+
 static void a_list_can_be_built_again_for_other_grains(void **state)
 {
     (void)state;
     struct dig_neighbours list = { 0 };
     struct scatter        s    = make_scatter(1);
-    assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, &list), DIG_OK);
     unsigned char drop[GRAINS] = { 0 };
     for (size_t i = 3; i < GRAINS; i++) {
         drop[i] = 1;
     }
     dig_grains_drop(&s.grains, drop);
-    assert_int_equal(dig_neighbours_build(&s.grains, s.margin_m, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, &list), DIG_OK);
     assert_int_equal(list.n, 3);
     assert_true(list.start[3] <= 3);
     dig_neighbours_finish(&list);
@@ -126,7 +145,7 @@ static void no_grains_make_an_empty_list(void **state)
     (void)state;
     struct dig_grains     none = { 0 };
     struct dig_neighbours list = { 0 };
-    assert_int_equal(dig_neighbours_build(&none, NULL, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&none, 0.0, NULL, &list), DIG_OK);
     assert_int_equal(list.start[0], 0);
     dig_neighbours_finish(&list);
     dig_neighbours_finish(&list);
@@ -156,6 +175,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_near_pair_is_listed_once_and_no_other),
+        cmocka_unit_test(every_near_pair_across_the_sides_is_listed_once),
         cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
         cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
         cmocka_unit_test(no_grains_make_an_empty_list),
