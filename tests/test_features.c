@@ -1,0 +1,72 @@
+#include "closed_loop/features.h"
+
+#include "tests/testlib.h"
+
+static void a_bin_is_the_mean_of_its_points(void **state)
+{
+    (void)state;
+    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve[c][k] = (c + 1) * k;
+        }
+    }
+    double feature[DIG_FEATURES];
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
+    size_t before = 0;
+    for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+        size_t from, to;
+        dig_feature_bin(b, &from, &to);
+        assert_int_equal(from, before); // no point twice, none left out
+        before = to;
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            assert_close(feature[c * DIG_FEATURE_BINS + b],
+                         ((double)c + 1.0) * 0.5 * (double)(from + to - 1), 1e-9);
+        }
+    }
+    assert_int_equal(before, DIG_CURVE_POINTS);
+}
+
+static void a_dig_that_stops_early_lacks_its_last_bins(void **state)
+{
+    (void)state;
+    const bool both[DIG_FORCE_CHANNELS] = { true, false, true };
+    bool       mask[DIG_FEATURES];
+    dig_features_mask(both, 0.0, 0.55, mask);
+    for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+        assert_int_equal(mask[b], b < 5);
+        assert_false(mask[DIG_FEATURE_BINS + b]); // a channel that was not measured
+        assert_int_equal(mask[2 * DIG_FEATURE_BINS + b], b < 5);
+    }
+}
+
+static void the_size_of_a_dig_is_its_rms(void **state)
+{
+    (void)state;
+    double feature[DIG_FEATURES];
+    bool   mask[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const double of[DIG_FORCE_CHANNELS] = { -2.0, 3.0, 4.0 };
+        feature[f]                          = of[f / DIG_FEATURE_BINS];
+        mask[f]                             = f % DIG_FEATURE_BINS < 3;
+    }
+    feature[DIG_FEATURE_BINS - 1] = 1e6; // masked
+    double size[DIG_FORCE_CHANNELS];
+    dig_features_amplitude(feature, mask, size);
+    assert_close(size[0], 2.0, 1e-12);
+    assert_close(size[1], 5.0, 1e-12); // of the resultant
+    assert_close(size[2], 5.0, 1e-12);
+    const double none[DIG_FEATURES] = { 0.0 };
+    dig_features_amplitude(none, NULL, size);
+    assert_true(size[0] > 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_bin_is_the_mean_of_its_points),
+        cmocka_unit_test(a_dig_that_stops_early_lacks_its_last_bins),
+        cmocka_unit_test(the_size_of_a_dig_is_its_rms),
+    };
+    return cmocka_run_group_tests_name("features", tests, NULL, NULL);
+}

@@ -1,0 +1,119 @@
+#include "closed_loop/scatter.h"
+
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+
+enum { ENTRIES = 80, PACKINGS = 4 };
+
+// Residuals about their entry's mean of digs whose features have sd 0.1 (first half of the bins) or
+// 0.2, neighbours correlated by a half, everything times sqrt(factor).
+static struct dig_scatter *pooled(const struct dig_surface *const surface, const double slope)
+{
+    uint64_t                     seed = 9;
+    struct dig_scatter_residual *r    = calloc((size_t)ENTRIES * PACKINGS, sizeof *r);
+    for (size_t e = 0; e < ENTRIES; e++) {
+        double       mean[DIG_FEATURES] = { 0.0 };
+        const double strength           = -1.0 + 2.0 * (double)e / (ENTRIES - 1);
+        for (size_t p = 0; p < PACKINGS; p++) {
+            struct dig_scatter_residual *const one = &r[e * PACKINGS + p];
+            double                             w   = model_normal(&seed);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                const double next = model_normal(&seed);
+                const double sd   = f % DIG_FEATURE_BINS < DIG_FEATURE_BINS / 2 ? 0.1 : 0.2;
+                one->value[f]     = sd * sqrt(1.0 + slope * strength) * (w + next) / sqrt(2.0);
+                w                 = next;
+                mean[f] += one->value[f] / PACKINGS;
+            }
+            one->entry    = e;
+            one->packings = PACKINGS;
+            one->strength = strength;
+        }
+        for (size_t p = 0; p < PACKINGS; p++) {
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                r[e * PACKINGS + p].value[f] -= mean[f];
+            }
+        }
+    }
+    struct dig_scatter *scatter = NULL;
+    assert_int_equal(dig_scatter_pool(surface, (size_t)ENTRIES * PACKINGS, r, &scatter), DIG_OK);
+    free(r);
+    return scatter;
+}
+
+static struct dig_surface *make_surface(struct dig_curve_set **const set)
+{
+    const struct made_options options = { .relative_sd = 0.15, .packings = 5 };
+    *set                              = made_table(&options);
+    struct dig_surface *surface       = malloc(sizeof *surface);
+    assert_int_equal(dig_surface_fit(*set, surface), DIG_OK);
+    return surface;
+}
+
+static void a_known_covariance_is_found(void **state)
+{
+    (void)state;
+    struct dig_curve_set *set;
+    struct dig_surface   *surface = make_surface(&set);
+    struct dig_scatter   *s       = pooled(surface, 0.0);
+    assert_close(s->freedom[0], ENTRIES * (PACKINGS - 1), 1e-9);
+    assert_close(s->widened[0], 1.05, 0.1);
+    for (size_t f = 0; f + 1 < DIG_FEATURES; f++) {
+        const double sd = f % DIG_FEATURE_BINS < DIG_FEATURE_BINS / 2 ? 0.1 : 0.2;
+        assert_close(sqrt(s->covariance[0][f][f]) / sd, 1.03, 0.2);
+        const double correlation = s->covariance[0][f][f + 1] /
+                                   sqrt(s->covariance[0][f][f] * s->covariance[0][f + 1][f + 1]);
+        assert_close(correlation, 0.45, 0.2); // a tenth of the half is taken off
+    }
+    assert_close(dig_scatter_factor(s, 0, 1.0), 1.0, 0.15);
+    dig_scatter_destroy(s);
+    free(surface);
+    made_table_destroy(set);
+}
+
+static void stronger_gravels_may_scatter_more(void **state)
+{
+    (void)state;
+    struct dig_curve_set *set;
+    struct dig_surface   *surface = make_surface(&set);
+    struct dig_scatter   *s       = pooled(surface, 0.6);
+    assert_close(dig_scatter_factor(s, 0, 1.0) / dig_scatter_factor(s, 0, 0.0), 1.6, 0.2);
+    assert_close(dig_scatter_factor(s, 0, -1.0) / dig_scatter_factor(s, 0, 0.0), 0.45, 0.15);
+    assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4); // never none
+    dig_scatter_destroy(s);
+    free(surface);
+    made_table_destroy(set);
+}
+
+// Without second packings the curves' own standard deviation is all there is.
+static void a_table_without_runs_uses_its_curves(void **state)
+{
+    (void)state;
+    struct dig_curve_set *set;
+    struct dig_surface   *surface = make_surface(&set);
+    struct dig_scatter   *s       = NULL;
+    assert_int_equal(dig_scatter_pool(surface, 0, NULL, &s), DIG_OK);
+    assert_int_equal(s->residuals[0], 0);
+    assert_close(s->freedom[0], 0.0, 0.0);
+    // The made table's is 0.15 of the curve at each point, so of the rms it is between.
+    double mean = 0.0;
+    for (size_t f = 0; f < DIG_FEATURE_BINS; f++) {
+        mean += s->covariance[0][f][f] / DIG_FEATURE_BINS;
+    }
+    assert_close(sqrt(mean), 0.15, 0.02);
+    dig_scatter_destroy(s);
+    free(surface);
+    made_table_destroy(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_known_covariance_is_found),
+        cmocka_unit_test(stronger_gravels_may_scatter_more),
+        cmocka_unit_test(a_table_without_runs_uses_its_curves),
+    };
+    return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);
+}
