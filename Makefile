@@ -184,6 +184,7 @@ bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig
 	$(Q)$(BUILD)/tests/blind/blind --table $(BLIND_TABLE) --bin $(BUILD)/bin --cache $(BUILD)/blind \
 	    --split judge -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
 
+$(BUILD)/tests/test_blind: $(filter-out %/blind.o,$(blind_objs))
 $(BUILD)/tests/blind/blind: $(blind_objs) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
