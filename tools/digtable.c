@@ -15,12 +15,12 @@ static const char help_text[] =
     "\n"
     "usage:\n"
     "  digtable dig SCENE.yaml --trajectory NAME --friction F --rolling R --density KGPM3\n"
-    "               [--young PA] [--seed 1] [--engine kernel] [--bed BED.csv] [--save-bed "
+    "               [--young PA] [--seed 1] [--engine kernel|ode] [--bed BED.csv] [--save-bed "
     "BED.csv]\n"
     "               [--vtk DIR] -o CURVE.csv\n"
     "      one dig; the curve is a force recording\n"
     "  digtable generate SCENE.yaml GRID.yaml -o TABLE.sqlite\n"
-    "               [-j N] [--packings N] [--time-limit S] [--shard I/N] [--engine kernel]\n"
+    "               [-j N] [--packings N] [--time-limit S] [--shard I/N] [--engine kernel|ode]\n"
     "      every dig of the grid, on all cores; what the table holds already is not computed "
     "again,\n"
     "      and Ctrl-C keeps all that is finished\n"
@@ -29,6 +29,8 @@ static const char help_text[] =
     "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
     "               [--trajectory NAME] [--channel My|Fx|Fz|carried] [--csv|--json]\n"
     "      one curve of the table\n"
+    "  digtable import CURVES.csv --map MAP.yaml -o TABLE.sqlite\n"
+    "      digs that something else measured or computed; the map says which column holds what\n"
     "  digtable merge OUT.sqlite IN.sqlite...\n"
     "      the runs of all tables, each once, in a new one, whose bytes do not depend on their "
     "order\n"
@@ -61,6 +63,7 @@ static const struct dig_command commands[] = {
     { "check", dig_cli_check, 1, 1, "TABLE.sqlite", " json complete " },
     { "show", dig_cli_show, 1, 2, "TABLE.sqlite",
       " friction rolling density trajectory channel csv json " },
+    { "import", dig_cli_import, 1, 1, "CURVES.csv", " map output " },
     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
     { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs effects output " },
 };

@@ -104,6 +104,22 @@ check "in any order and with repetitions the file is the same" cmp "$work/merged
 digtable generate $scene $grid -o "$work/merged.sqlite"
 check "generate finds nothing left to do in it" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
 
+# What another program wrote: here our own runs, as text.
+cut -d, -f1-6,10-14 "$work/whole_runs.csv" >"$work/curves.csv"
+digtable import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$work/imported.sqlite"
+check "import makes a table of a CSV" eval 'is $code 0 && grep -q "12 digs of" $work/err'
+digtable check "$work/imported.sqlite" --complete
+check "that is sound and complete" is "$code" 0
+digtable export "$work/imported.sqlite" --runs
+check "with the samples of the CSV" cmp <(cut -d, -f1-5,11-14 "$work/whole_runs.csv") <(cut -d, -f1-5,11-14 "$work/out")
+digtable import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$work/imported.sqlite"
+check "a dig is imported once" eval 'is $code 2 && grep -q "curves.csv:2: .* is there already" $work/err'
+
+# The reference engine, on a bed of its own and a dig of a few steps.
+sed -E "s/duration_s: [0-9.]+/duration_s: 0.011/" $scene >"$work/short.yaml"
+digtable dig "$work/short.yaml" "${dig[@]}" --seed 3 --engine ode -o "$work/ode.csv"
+check "--engine ode digs the same dig" eval 'is $code 0 && head -1 $work/ode.csv | grep -q "^t_s,pin_x_m"'
+
 # What SQLite's own tool sees, for those who look with it.
 check "sqlite3 finds the table intact" is "$(sqlite3 "$work/whole.sqlite" 'PRAGMA integrity_check')" ok
 check "and every run's origin" is "$(sqlite3 "$work/whole.sqlite" "SELECT count(*) FROM run WHERE engine = 'kernel' AND version GLOB '[0-9]*.[0-9]*.[0-9]*+[0-9a-f]*' AND grains > 0 AND wall_s > 0 AND made_utc LIKE '20__-__-__T__:__:__Z'")" 12

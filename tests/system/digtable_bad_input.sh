@@ -36,8 +36,12 @@ refused "a negative seed" "--seed -1: expected a whole number" dig $scene --seed
 refused "no workers" "--jobs 0: expected 1 to" generate $scene $grid -j 0
 refused "a shard of none" "--shard 4/3: expected I/N" generate $scene $grid --shard 4/3
 refused "a shard that is no fraction" "--shard 3: expected I/N" generate $scene $grid --shard 3
+refused "import without a map" "--map MAP.yaml missing" import x.csv -o "$out"
+refused "import of a map that is not there" "absent.yaml: No such file" import x.csv --map "$work/absent.yaml" -o "$out"
+printf 'friction,rolling,density_kgpm3,packing,t_s,My_Nm,Fx_N,Fz_N,carried_kg\n.5,.5,2500,0,0,1,1,1,1\n.5,.5,2500,0,.005,1,1,one,1\n' >"$work/curves.csv"
+refused "import of a CSV with a text" 'curves.csv:3: column Fz_N: "one", expected a finite number' import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$out"
 refused "merge without inputs" "expected OUT.sqlite IN.sqlite" merge "$out"
-refused "an engine that is not built in" "--engine ode: expected kernel" generate $scene $grid --engine ode -o "$out"
+refused "an engine that is not built in" "--engine edem: expected kernel or ode" generate $scene $grid --engine edem -o "$out"
 refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
 refused "a scene that is not there" "absent.yaml: No such file" dig "$work/absent.yaml" "${dig[@]}" -o "$out"
 refused "a grid that is not there" "absent.yaml: No such file" generate $scene "$work/absent.yaml" -o "$out"

@@ -21,6 +21,7 @@ enum option_id {
     OPTION_BED,
     OPTION_SAVE_BED,
     OPTION_VTK,
+    OPTION_MAP,
     OPTION_PACKINGS,
     OPTION_TIME_LIMIT,
     OPTION_SHARD,
@@ -43,6 +44,7 @@ static const struct option long_options[] = {
     { "bed", required_argument, NULL, OPTION_BED },
     { "save-bed", required_argument, NULL, OPTION_SAVE_BED },
     { "vtk", required_argument, NULL, OPTION_VTK },
+    { "map", required_argument, NULL, OPTION_MAP },
     { "packings", required_argument, NULL, OPTION_PACKINGS },
     { "time-limit", required_argument, NULL, OPTION_TIME_LIMIT },
     { "shard", required_argument, NULL, OPTION_SHARD },
@@ -170,11 +172,12 @@ static const char *take_option(const int option, const char *const value,
         ok = dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed);
         return ok ? NULL : "a whole number below 2^63";
     case OPTION_ENGINE:
-        return strcmp(value, "kernel") == 0 ? NULL
-                                            : "kernel (the all-ODE engine is not built in yet)";
+        a->ode = strcmp(value, "ode") == 0;
+        return a->ode || strcmp(value, "kernel") == 0 ? NULL : "kernel or ode";
     case OPTION_BED: a->bed = value; break;
     case OPTION_SAVE_BED: a->save_bed = value; break;
     case OPTION_VTK: a->vtk = value; break;
+    case OPTION_MAP: a->map = value; break;
     case OPTION_PACKINGS:
         ok = dig_cli_count(value, 1, 1000, &a->packings);
         return ok ? NULL : "1 to 1000";

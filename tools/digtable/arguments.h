@@ -17,13 +17,14 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 struct dig_arguments {
     const char      *positional[DIG_POSITIONALS_MAX];
     int              positionals;
-    const char      *output, *trajectory, *bed, *save_bed, *vtk;
+    const char      *output, *trajectory, *bed, *save_bed, *vtk, *map;
     double           gravel[DIG_AXES];        // NaN: not given
     double           young_Pa;                // NaN: the scene's
     unsigned long    seed, workers, packings; // 0 packings: the grid's
     unsigned long    shard, shards;           // from 0; 0 shards: all
     double           time_limit_s;
     enum dig_channel channel;
+    bool             ode; // the engine; false: the kernel
     bool             csv, json, runs, effects, complete;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;

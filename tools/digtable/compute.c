@@ -4,6 +4,7 @@
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig.h"
+#include "offline_dem/engine_ode.h"
 #include "offline_dem/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
@@ -39,6 +40,11 @@ static int watch_dig(void *const context, const double done_s, const double tota
     return *w->stop == 0;
 }
 
+static struct dig_engine engine_of(const struct dig_arguments *const a)
+{
+    return a->ode ? dig_engine_ode() : dig_engine_kernel();
+}
+
 static enum dig_status get_bed(const struct dig_arguments *const a,
                                const struct dig_scene *const     scene,
                                const struct dig_gravel *const gravel, struct dig_bed *const bed,
@@ -50,7 +56,7 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
     }
     struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "bed", a->stop };
     const struct dig_progress progress = { watch_dig, &watch };
-    const enum dig_status     status = dig_bed_pour(scene, gravel, a->seed, &progress, bed, error);
+    const enum dig_status status = engine_of(a).pour(scene, gravel, a->seed, &progress, bed, error);
     if (status == DIG_OK && watch.line.tty) {
         dig_progress_end(&watch.line, true);
     }
@@ -71,8 +77,8 @@ static enum dig_status dig_and_write(const struct dig_arguments *const a,
                                bed->radius_m, error);
     }
     if (status == DIG_OK) {
-        status = dig_dig_run(scene, gravel, bed, dig_scene_find(scene, a->trajectory), a->vtk,
-                             &progress, &recording, error);
+        status = engine_of(a).dig(scene, gravel, bed, dig_scene_find(scene, a->trajectory), a->vtk,
+                                  &progress, &recording, error);
     }
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);
@@ -173,12 +179,6 @@ static int tell_end(const struct dig_arguments *const a, const struct dig_sweep_
         return dig_cli_work_failed(status, error);
     }
     return *a->stop != 0 && s->digs_done < s->digs_total ? EXIT_WORK_FAILED : EXIT_DONE;
-}
-
-static struct dig_engine engine_of(const struct dig_arguments *const a)
-{
-    (void)a;
-    return dig_engine_kernel();
 }
 
 static int sweep(const struct dig_arguments *const a, const struct dig_scene *const scene,

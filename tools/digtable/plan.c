@@ -39,14 +39,15 @@ static size_t fill_plain(const struct dig_grid *const grid, const size_t product
     return n;
 }
 
-// Every plain point with every effect: effects outermost.
+// Every plain point with every effect: points outermost, so that a sweep cut short has the first of
+// them whole.
 static size_t fill_varied(const struct dig_grid *const grid, const size_t plain,
                           const struct dig_plan_point from[const], struct dig_plan_point to[const])
 {
     size_t n = 0;
-    for (size_t e = 0; e < grid->effects; e++) {
-        for (size_t m = 0; m < grid->effect[e].magnitudes; m++) {
-            for (size_t i = 0; i < plain; i++) {
+    for (size_t i = 0; i < plain; i++) {
+        for (size_t e = 0; e < grid->effects; e++) {
+            for (size_t m = 0; m < grid->effect[e].magnitudes; m++) {
                 const char *const name = dig_effect_name(grid->effect[e].effect);
                 to[n]                  = from[i];
                 memcpy(to[n].effect, name, strlen(name) + 1);

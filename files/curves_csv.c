@@ -1,0 +1,242 @@
+#include "files/curves_csv.h"
+
+#include "files/whole.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIELDS_MAX 256 // of a line
+
+struct reader {
+    const char                       *path;
+    const struct dig_curve_map       *map;
+    const struct dig_foreign_visitor *visitor;
+    struct dig_error                 *error;
+    size_t                            line;
+    size_t                            fields;             // in the header
+    size_t                            at[DIG_MAP_FIELDS]; // header field of each column
+    struct dig_foreign_dig            dig;                // under way
+    size_t                            room;               // its rows allocated
+};
+
+// One sample, and the dig it belongs to.
+struct sample {
+    struct dig_foreign_dig of; // without rows
+    struct dig_force_row   row;
+};
+
+// Cuts a line into fields without the blanks around them; how many there are.
+static size_t split(char *rest, char *field[const FIELDS_MAX])
+{
+    size_t n = 0;
+    while (rest != NULL && n < FIELDS_MAX) {
+        char *const comma = strchr(rest, ',');
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        field[n] = rest + strspn(rest, " \t");
+        for (size_t length = strlen(field[n]);
+             length > 0 && strchr(" \t\r", field[n][length - 1]) != NULL; length--) {
+            field[n][length - 1] = '\0';
+        }
+        n++;
+        rest = comma != NULL ? comma + 1 : NULL;
+    }
+    return n;
+}
+
+static enum dig_status read_header(struct reader *const r, char *const line)
+{
+    char *field[FIELDS_MAX];
+    r->fields = split(line, field);
+    for (int f = 0; f < DIG_MAP_FIELDS; f++) {
+        const char *const name = r->map->field[f].column;
+        r->at[f]               = 0;
+        while (name[0] != '\0' && r->at[f] < r->fields && strcmp(field[r->at[f]], name) != 0) {
+            r->at[f]++;
+        }
+        if (r->at[f] >= r->fields) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%zu: column %s: missing, expected it for %s as the map says",
+                                 r->path, r->line, name, dig_map_name((enum dig_map_field)f));
+        }
+    }
+    return DIG_OK;
+}
+
+static const char *text_of(const struct reader *const r, char *const field[const],
+                           const enum dig_map_field f)
+{
+    const struct dig_map_column *const c = &r->map->field[f];
+    return c->column[0] != '\0' ? field[r->at[f]] : c->value;
+}
+
+static enum dig_status refuse_field(const struct reader *const r, const enum dig_map_field f,
+                                    const char *const found, const char *const expected)
+{
+    const char *const name = r->map->field[f].column;
+    return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: column %s: \"%.40s\", expected %s", r->path,
+                         r->line, name[0] != '\0' ? name : dig_map_name(f), found, expected);
+}
+
+// Carried mass that is not there is not known; packing, 0.
+static enum dig_status number_of(const struct reader *const r, char *const field[const],
+                                 const enum dig_map_field f, double *const value)
+{
+    const char *const text = text_of(r, field, f);
+    if (text[0] == '\0' && f >= DIG_MAP_NEEDED) {
+        *value = f == DIG_MAP_CARRIED_kg ? (double)NAN : 0.0;
+        return DIG_OK;
+    }
+    char        *end    = NULL;
+    const double number = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(number)) {
+        return refuse_field(r, f, text, "a finite number");
+    }
+    *value = number * r->map->field[f].factor;
+    return DIG_OK;
+}
+
+static enum dig_status read_sample(const struct reader *const r, char *const line,
+                                   struct sample *const sample)
+{
+    char *field[FIELDS_MAX];
+    if (split(line, field) != r->fields) {
+        return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: expected %zu fields as in the header",
+                             r->path, r->line, r->fields);
+    }
+    double          number[DIG_MAP_FIELDS] = { 0.0 };
+    enum dig_status status                 = DIG_OK;
+    for (int f = 0; status == DIG_OK && f < DIG_MAP_FIELDS; f++) {
+        if (f != DIG_MAP_TRAJECTORY) {
+            status = number_of(r, field, (enum dig_map_field)f, &number[f]);
+        }
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    const char *const name    = text_of(r, field, DIG_MAP_TRAJECTORY);
+    const double      packing = number[DIG_MAP_PACKING];
+    if (name[0] == '\0' || strlen(name) >= DIG_NAME_SIZE) {
+        return refuse_field(r, DIG_MAP_TRAJECTORY, name, "a name of at most 31 characters");
+    }
+    if (!(packing >= 0.0 && packing <= 1e6) || packing > floor(packing)) {
+        return refuse_field(r, DIG_MAP_PACKING, text_of(r, field, DIG_MAP_PACKING),
+                            "a whole number from 0");
+    }
+    *sample = (struct sample){
+        .of  = { .gravel  = { { number[DIG_MAP_FRICTION], number[DIG_MAP_ROLLING],
+                                number[DIG_MAP_DENSITY_kgpm3] } },
+                 .packing = (size_t)packing,
+                 .line    = r->line },
+        .row = { .t_s        = number[DIG_MAP_T_s],
+                 .Fx_N       = number[DIG_MAP_FX_N],
+                 .Fz_N       = number[DIG_MAP_FZ_N],
+                 .My_Nm      = number[DIG_MAP_MY_Nm],
+                 .carried_kg = number[DIG_MAP_CARRIED_kg] },
+    };
+    memcpy(sample->of.trajectory, name, strlen(name) + 1);
+    return DIG_OK;
+}
+
+static bool is_same_dig(const struct dig_foreign_dig *const a,
+                        const struct dig_foreign_dig *const b)
+{
+    return memcmp(a->gravel.value, b->gravel.value, sizeof a->gravel.value) == 0 &&
+           a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0;
+}
+
+static enum dig_status end_dig(struct reader *const r)
+{
+    if (r->dig.recording.rows == 0) {
+        return DIG_OK;
+    }
+    const enum dig_status status = r->visitor->visit(r->visitor->context, &r->dig, r->error);
+    r->dig.recording.rows        = 0;
+    return status;
+}
+
+static enum dig_status take_sample(struct reader *const r, const struct sample *const sample)
+{
+    struct dig_recording *const recording = &r->dig.recording;
+    if (recording->rows > 0 && !is_same_dig(&r->dig, &sample->of)) {
+        const enum dig_status status = end_dig(r);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    if (recording->rows == 0) {
+        struct dig_force_row *const kept = recording->row;
+        r->dig                           = sample->of;
+        r->dig.recording                 = (struct dig_recording){ .row = kept };
+    }
+    if (recording->rows == r->room) {
+        const size_t                room = r->room * 2 + 1024;
+        struct dig_force_row *const more = realloc(recording->row, room * sizeof *more);
+        if (more == NULL) {
+            return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
+        }
+        recording->row = more;
+        r->room        = room;
+    }
+    recording->row[recording->rows++] = sample->row;
+    return DIG_OK;
+}
+
+// The header, every line, and the last dig.
+static enum dig_status read_lines(struct reader *const r, char *text)
+{
+    enum dig_status status  = DIG_OK;
+    bool            started = false;
+    while (status == DIG_OK && text != NULL && *text != '\0') {
+        char *const line = text;
+        char *const end  = strchr(text, '\n');
+        text             = end != NULL ? end + 1 : NULL;
+        if (end != NULL) {
+            *end = '\0';
+        }
+        r->line++;
+        const char first = line[strspn(line, " \t\r")];
+        if (first == '#' || first == '\0') {
+            continue;
+        }
+        if (!started) {
+            status  = read_header(r, line);
+            started = true;
+            continue;
+        }
+        struct sample sample;
+        status = read_sample(r, line, &sample);
+        if (status == DIG_OK) {
+            status = take_sample(r, &sample);
+        }
+    }
+    if (status == DIG_OK && r->dig.recording.rows == 0) {
+        return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: no samples, expected at least one dig",
+                             r->path, r->line > 0 ? r->line : 1);
+    }
+    return status == DIG_OK ? end_dig(r) : status;
+}
+
+enum dig_status dig_curves_read(const char *const path, const struct dig_curve_map *const map,
+                                const struct dig_foreign_visitor *const visitor,
+                                struct dig_error *const                 error)
+{
+    assert(path != NULL && map != NULL && visitor != NULL);
+    char           *text   = NULL;
+    size_t          size   = 0;
+    enum dig_status status = dig_file_read(path, &text, &size, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_c_locale locale = dig_c_locale_enter();
+    struct reader       r      = { .path = path, .map = map, .visitor = visitor, .error = error };
+    status                     = read_lines(&r, text);
+    dig_recording_finish(&r.dig.recording);
+    dig_c_locale_leave(&locale);
+    free(text);
+    return status;
+}

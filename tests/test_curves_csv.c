@@ -1,0 +1,148 @@
+// Tests for files/curves_csv.c and curve_map_yaml.c
+
+#include "files/curves_csv.h"
+
+#include "tests/scratch.h"
+
+struct seen {
+    size_t                 digs;
+    struct dig_foreign_dig dig[4];
+    struct dig_force_row   first[4], last[4];
+};
+
+static enum dig_status see(void *const context, const struct dig_foreign_dig *const dig,
+                           struct dig_error *const error)
+{
+    (void)error;
+    struct seen *const s = context;
+    assert_true(s->digs < 4);
+    s->dig[s->digs]   = *dig;
+    s->first[s->digs] = dig->recording.row[0];
+    s->last[s->digs]  = dig->recording.row[dig->recording.rows - 1];
+    s->digs++;
+    return DIG_OK;
+}
+
+#define HEAD                                                                                       \
+    "scene: rig.yaml\nengine: sensor\nversion: '3'\ncolumns:\n"                                    \
+    "  friction: {column: mu}\n  rolling: {value: .25}\n  density_kgpm3: {column: rho, factor: "   \
+    "1000}\n  trajectory: {column: dig}\n  t_s: {column: ms, factor: .001}\n  Fx_N: {column: X}\n" \
+    "  Fz_N: {column: Z}\n"
+
+static struct dig_curve_map map_of(const char *const text)
+{
+    struct dig_curve_map map;
+    struct dig_error     error = { "" };
+    if (dig_curve_map_read(scratch_write("map.yaml", text), &map, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return map;
+}
+
+static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    struct dig_curve_map map;
+    assert_int_equal(dig_curve_map_read("tests/data/formats/curve_map.yaml", &map, NULL), DIG_OK);
+    assert_string_equal(map.scene, "tests/data/formats/scene.yaml");
+    assert_string_equal(map.engine, "kernel");
+    assert_string_equal(map.version, "imported");
+    assert_string_equal(map.field[DIG_MAP_TRAJECTORY].value, "scrape");
+    assert_string_equal(map.field[DIG_MAP_CARRIED_kg].column, "carried_kg");
+    assert_close(map.field[DIG_MAP_FX_N].factor, 1.0, 0.0);
+}
+
+static void columns_are_found_scaled_and_cut_into_digs(void **state)
+{
+    (void)state;
+    const struct dig_curve_map map = map_of(HEAD "  My_Nm: {column: torque, factor: -1}\n");
+    const char *const          csv =
+        scratch_write("curves.csv", "# from a rig\nnotes,dig,mu,rho,ms,torque,X,Z\r\n"
+                                    "a,pull,.3,2.5,0,-1,10,-20\n"
+                                    "b,pull,.3,2.5,5,-2,11,-21\n\n"
+                                    "c, push ,.3,2.5,0,-3,12,-22\n"
+                                    "d,push,.5,2.5,0,-4,13,-23\n");
+    struct seen                      seen    = { .digs = 0 };
+    const struct dig_foreign_visitor visitor = { see, &seen };
+    struct dig_error                 error   = { "" };
+    if (dig_curves_read(csv, &map, &visitor, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(seen.digs, 3);
+    assert_int_equal(seen.dig[0].recording.rows, 2);
+    assert_int_equal(seen.dig[1].recording.rows, 1);
+    assert_string_equal(seen.dig[0].trajectory, "pull");
+    assert_string_equal(seen.dig[1].trajectory, "push");
+    assert_int_equal(seen.dig[1].line, 6);
+    assert_close(seen.dig[2].gravel.value[DIG_AXIS_FRICTION], .5, 0.0);
+    assert_close(seen.dig[0].gravel.value[DIG_AXIS_ROLLING], .25, 0.0);
+    assert_close(seen.dig[0].gravel.value[DIG_AXIS_DENSITY_kgpm3], 2500.0, 0.0);
+    assert_int_equal(seen.dig[0].packing, 0);
+    assert_close(seen.last[0].t_s, 0.005, 1e-15);
+    assert_close(seen.last[0].My_Nm, 2.0, 0.0);
+    assert_close(seen.first[1].Fx_N, 12.0, 0.0);
+    assert_close(seen.first[2].Fz_N, -23.0, 0.0);
+    assert_true(isnan(seen.first[0].carried_kg));
+}
+
+static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
+{
+    (void)state;
+    const struct dig_curve_map map =
+        map_of(HEAD "  My_Nm: {column: torque}\n  packing: {column: rep}\n");
+    static const char *const bad[][2] = {
+        { "dig,mu,rho,ms,X,Z,rep\n", ":1: column torque: missing, expected it for My_Nm" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,1,1\n",
+          ":2: expected 8 fields as in the header" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,nan,1,1,0\n",
+          ":2: column torque: \"nan\", expected a finite number" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,,0,1,1,1,0\n",
+          ":2: column rho: \"\", expected a finite number" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,1,1,1,.5\n",
+          ":2: column rep: \".5\", expected a whole number from 0" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\n,.3,2.5,0,1,1,1,0\n",
+          ":2: column dig: \"\", expected a name" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\n", ":1: no samples, expected at least one dig" },
+        { "", ":1: no samples" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct seen                      seen    = { .digs = 0 };
+        const struct dig_foreign_visitor visitor = { see, &seen };
+        struct dig_error                 error   = { "" };
+        assert_int_equal(
+            dig_curves_read(scratch_write("bad.csv", bad[i][0]), &map, &visitor, &error),
+            DIG_EINVAL);
+        assert_contains(error.text, bad[i][1]);
+        assert_int_equal(seen.digs, 0);
+    }
+}
+
+static void what_is_no_map_is_refused_by_its_key(void **state)
+{
+    (void)state;
+    static const char *const bad[][2] = {
+        { HEAD, "columns.My_Nm: missing" },
+        { HEAD "  My_Nm: {factor: 2}\n",
+          ":12: columns.My_Nm: expected either a column or a value" },
+        { HEAD "  My_Nm: {column: a, value: 3}\n", "columns.My_Nm: expected either a column or" },
+        { HEAD "  My_Nm: {column: a}\n  Mz_Nm: {column: b}\n", "columns.Mz_Nm: unknown key" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct dig_curve_map map;
+        struct dig_error     error = { "" };
+        assert_int_equal(dig_curve_map_read(scratch_write("map.yaml", bad[i][0]), &map, &error),
+                         DIG_EINVAL);
+        assert_contains(error.text, bad[i][1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(columns_are_found_scaled_and_cut_into_digs),
+        cmocka_unit_test(what_does_not_fit_the_map_is_refused_by_its_line),
+        cmocka_unit_test(what_is_no_map_is_refused_by_its_key),
+    };
+    return cmocka_run_group_tests_name("curves_csv", tests, scratch_setup, scratch_teardown);
+}

@@ -1,0 +1,95 @@
+// digtable import: digs that something else measured or computed, into a table of ours.
+
+#include "files/curves_csv.h"
+#include "files/scene_yaml.h"
+#include "tables/store.h"
+#include "tools/digtable/commands.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+struct import {
+    const char                 *path;
+    const struct dig_scene     *scene;
+    const struct dig_curve_map *map;
+    struct dig_store           *store;
+    size_t                      digs;
+};
+
+// why may be the text of the very error.
+static enum dig_status refuse(const struct import *const import, const size_t line,
+                              const enum dig_status status, const char *const why,
+                              struct dig_error *const error)
+{
+    char text[400];
+    (void)snprintf(text, sizeof text, "%.399s", why);
+    return dig_error_set(error, status, "%s:%zu: %s", import->path, line, text);
+}
+
+static enum dig_status store_dig(void *const context, const struct dig_foreign_dig *const dig,
+                                 struct dig_error *const error)
+{
+    struct import *const               import = context;
+    const struct dig_trajectory *const t      = dig_scene_find(import->scene, dig->trajectory);
+    if (t == NULL) {
+        char why[128];
+        (void)snprintf(why, sizeof why, "trajectory \"%s\", expected one of the scene's",
+                       dig->trajectory);
+        return refuse(import, dig->line, DIG_EINVAL, why, error);
+    }
+    struct dig_run_origin origin = {
+        .gravel     = dig->gravel,
+        .packing    = dig->packing,
+        .trajectory = (size_t)(t - import->scene->trajectory),
+    };
+    (void)snprintf(origin.engine, sizeof origin.engine, "%.39s", import->map->engine);
+    (void)snprintf(origin.version, sizeof origin.version, "%.39s", import->map->version);
+    const time_t now = time(NULL);
+    struct tm    utc;
+    if (gmtime_r(&now, &utc) != NULL) {
+        (void)strftime(origin.made_utc, sizeof origin.made_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    }
+    const enum dig_status status = dig_store_put(import->store, &origin, &dig->recording, error);
+    if (status != DIG_OK) {
+        return refuse(import, dig->line, status, error->text, error);
+    }
+    import->digs++;
+    return DIG_OK;
+}
+
+int dig_cli_import(const struct dig_arguments *const a)
+{
+    if (a->output == NULL || a->map == NULL) {
+        return dig_cli_bad_usage("import: %s missing",
+                                 a->map == NULL ? "--map MAP.yaml" : "-o TABLE.sqlite");
+    }
+    struct dig_error     error = { "" };
+    struct dig_scene     scene;
+    struct dig_curve_map map;
+    enum dig_status      status = dig_curve_map_read(a->map, &map, &error);
+    if (status == DIG_OK) {
+        status = dig_scene_read(map.scene, &scene, &error);
+    }
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    struct import import = { .path = a->positional[0], .scene = &scene, .map = &map };
+    const bool    is_new = access(a->output, F_OK) != 0;
+    status               = dig_store_create(a->output, &scene, &import.store, &error);
+    if (status != DIG_OK) {
+        return dig_cli_work_failed(status, &error);
+    }
+    const struct dig_foreign_visitor visitor = { store_dig, &import };
+    status = dig_curves_read(a->positional[0], &map, &visitor, &error);
+    dig_store_close(import.store);
+    if (status != DIG_OK) {
+        if (is_new) {
+            (void)unlink(a->output);
+        }
+        return dig_cli_work_failed(status, &error);
+    }
+    (void)fprintf(stderr, "%s: %zu digs of %s\n", a->output, import.digs, a->positional[0]);
+    return EXIT_DONE;
+}
