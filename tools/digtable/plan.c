@@ -39,19 +39,29 @@ static size_t fill_plain(const struct dig_grid *const grid, const size_t product
     return n;
 }
 
-// Every plain point with every effect: points outermost, so that a sweep cut short has the first of
-// them whole.
+static struct dig_plan_point vary(const struct dig_plan_point *const  plain,
+                                  const struct dig_grid_effect *const effect, const size_t m)
+{
+    struct dig_plan_point varied = *plain;
+    const char *const     name   = dig_effect_name(effect->effect);
+    memcpy(varied.effect, name, strlen(name) + 1);
+    varied.magnitude = effect->magnitude[m];
+    return varied;
+}
+
+// Every plain point with every effect. A sweep cut short has the first point, and of every effect
+// the magnitude that stands first.
 static size_t fill_varied(const struct dig_grid *const grid, const size_t plain,
-                          const struct dig_plan_point from[const], struct dig_plan_point to[const])
+                          const struct dig_plan_point from[const],
+                          struct dig_plan_point       to[const])
 {
     size_t n = 0;
     for (size_t i = 0; i < plain; i++) {
-        for (size_t e = 0; e < grid->effects; e++) {
-            for (size_t m = 0; m < grid->effect[e].magnitudes; m++) {
-                const char *const name = dig_effect_name(grid->effect[e].effect);
-                to[n]                  = from[i];
-                memcpy(to[n].effect, name, strlen(name) + 1);
-                to[n++].magnitude = grid->effect[e].magnitude[m];
+        for (size_t m = 0; m < DIG_MAGNITUDES_MAX; m++) {
+            for (size_t e = 0; e < grid->effects; e++) {
+                if (m < grid->effect[e].magnitudes) {
+                    to[n++] = vary(&from[i], &grid->effect[e], m);
+                }
             }
         }
     }
