@@ -145,8 +145,13 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
 static bool is_same_dig(const struct dig_foreign_dig *const a,
                         const struct dig_foreign_dig *const b)
 {
-    return memcmp(a->gravel.value, b->gravel.value, sizeof a->gravel.value) == 0 &&
-           a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0;
+    bool same = a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0;
+    for (int i = 0; i < DIG_AXES; i++) {
+        const double u = a->gravel.value[i];
+        const double v = b->gravel.value[i];
+        same           = same && !(u < v) && !(u > v);
+    }
+    return same;
 }
 
 static enum dig_status end_dig(struct reader *const r)

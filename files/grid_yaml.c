@@ -149,7 +149,11 @@ static enum dig_status check_packings(const char *const path, const char *const 
 
 static bool same_gravel(const struct dig_gravel *const a, const struct dig_gravel *const b)
 {
-    return !memcmp(a->value, b->value, sizeof a->value);
+    size_t equal = 0;
+    for (int i = 0; i < DIG_AXES; i++) {
+        equal += !(a->value[i] < b->value[i]) && !(a->value[i] > b->value[i]) ? 1 : 0;
+    }
+    return equal == DIG_AXES;
 }
 
 static enum dig_status check_point(const char *const path, const struct dig_grid *const grid,

@@ -156,7 +156,8 @@ static enum dig_status check_all(struct dig_store *const        store,
     if (status == DIG_OK && scratch == NULL) {
         status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     }
-    for (size_t i = 0; status == DIG_OK && i < all.grounds * all.trajectories; i++) {
+    for (size_t i = 0; status == DIG_OK && scratch != NULL && i < all.grounds * all.trajectories;
+         i++) {
         status =
             check_entry(store, &all, i / all.trajectories, i % all.trajectories, scratch, error);
     }

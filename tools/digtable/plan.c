@@ -15,7 +15,11 @@ static struct dig_gravel gravel_at(const struct dig_grid *const grid, size_t ind
 
 static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
 {
-    return memcmp(a->value, b->value, sizeof a->value) == 0;
+    size_t equal = 0;
+    for (int i = 0; i < DIG_AXES; i++) {
+        equal += !(a->value[i] < b->value[i]) && !(a->value[i] > b->value[i]) ? 1 : 0;
+    }
+    return equal == DIG_AXES;
 }
 
 // The plain points: the axes' product, then what stands beside it.
@@ -52,8 +56,7 @@ static struct dig_plan_point vary(const struct dig_plan_point *const  plain,
 // Every plain point with every effect. A sweep cut short has the first point, and of every effect
 // the magnitude that stands first.
 static size_t fill_varied(const struct dig_grid *const grid, const size_t plain,
-                          const struct dig_plan_point from[const],
-                          struct dig_plan_point       to[const])
+                          const struct dig_plan_point from[const], struct dig_plan_point to[const])
 {
     size_t n = 0;
     for (size_t i = 0; i < plain; i++) {
