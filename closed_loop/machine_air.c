@@ -10,9 +10,10 @@
 // The kernel's half is the rates'.
 static const double half_s = 0.12;
 
-// Points are so far apart, and this many make a block.
+// Points are so far apart, and this many make a block; so many more stand beside the air, where a
+// delay may look for angles; the kernel reaches over so many.
 static const double step_s = 0.025;
-enum { POINTS_IN_BLOCK = 8 };
+enum { POINTS_IN_BLOCK = 8, POINTS_BESIDE = 20, KERNEL = 4 };
 
 // Kernel means of the readings around one time. Returns the share of one sample's variance that is
 // left in them.
@@ -162,6 +163,15 @@ static const struct dig_rates *rates_at(const struct dig_machine_dig *const dig,
     return &dig->rates[i];
 }
 
+static void add_point(struct dig_air *const air, const struct dig_machine_dig *const dig,
+                      const double time_s, size_t *const near, double *const left)
+{
+    struct dig_air_point *const point = &air->point[air->points++];
+    *point                            = (struct dig_air_point){ .sample = dig->sample[*near] };
+    *left                             = average(dig, time_s, near, &point->sample);
+    point->rates                      = *rates_at(dig, time_s, *near);
+}
+
 static void add_segment(struct dig_air *const air, const struct dig_machine_dig *const dig,
                         const size_t which, const bool after)
 {
@@ -171,26 +181,36 @@ static void add_segment(struct dig_air *const air, const struct dig_machine_dig 
         return;
     }
     const struct scatter scatter = scatter_of(&air->machine, dig);
+    const double         begin_s = dig->time_s[from] + half_s;
+    const double         end_s   = dig->time_s[to - 1] - half_s;
+    const double         last_s  = dig->time_s[dig->samples - 1];
     const double         rate_Hz = (double)(to - from) / (dig->time_s[to - 1] - dig->time_s[from]);
 
-    const size_t segment  = air->segments++;
-    air->segment[segment] = (struct dig_air_segment){ which, after, air->rows, 0 };
-
-    size_t       near    = from;
-    double       left    = 1.0;
-    const size_t first   = air->points;
-    const double begin_s = dig->time_s[from] + half_s;
-    const double end_s   = dig->time_s[to - 1] - half_s;
-    for (size_t k = 0; begin_s + step_s * (double)k <= end_s; k++) {
-        const double          time_s = begin_s + step_s * (double)k;
-        struct dig_air_point *point  = &air->point[air->points++];
-        *point                       = (struct dig_air_point){ .sample = dig->sample[from] };
-        left                         = average(dig, time_s, &near, &point->sample);
-        point->rates                 = *rates_at(dig, time_s, near);
+    // Points from beside the air to beside it, as far as there is a recording.
+    const long   before = lround(floor(fmin(POINTS_BESIDE, begin_s / step_s)));
+    const size_t first  = air->points;
+    size_t       core   = 0;
+    size_t       near   = 0;
+    double       left   = 1.0;
+    for (long k = -before;; k++) {
+        const double time_s = begin_s + step_s * (double)k;
+        if (time_s > fmin(end_s + POINTS_BESIDE * step_s, last_s)) {
+            break;
+        }
+        core += k >= 0 && time_s <= end_s ? 1 : 0;
+        add_point(air, dig, time_s, &near, &left);
     }
-    calm(&air->point[first], air->points - first, &scatter, left);
-    for (size_t p = first; p + POINTS_IN_BLOCK <= air->points; p += POINTS_IN_BLOCK) {
-        add_rows(air, p, POINTS_IN_BLOCK, segment, scatter.N, fmax(rate_Hz * step_s, 1e-3));
+    const size_t begin = first + (size_t)before;
+    calm(&air->point[begin], core, &scatter, left);
+
+    const size_t segment  = air->segments++;
+    air->segment[segment] = (struct dig_air_segment){ .dig         = which,
+                                                      .after       = after,
+                                                      .first_point = first,
+                                                      .points      = air->points - first,
+                                                      .first_row   = air->rows };
+    for (size_t p = 0; p + POINTS_IN_BLOCK <= core; p += POINTS_IN_BLOCK) {
+        add_rows(air, begin + p, POINTS_IN_BLOCK, segment, scatter.N, fmax(rate_Hz * step_s, 1e-3));
     }
     air->segment[segment].rows = air->rows - air->segment[segment].first_row;
 }
@@ -202,15 +222,16 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
     assert(machine != NULL && air != NULL);
     size_t points = 1;
     for (size_t d = 0; d < digs; d++) {
-        points += 4 + (size_t)(dig[d].time_s[dig[d].samples - 1] / step_s);
+        points += 4 * POINTS_BESIDE + (size_t)(dig[d].time_s[dig[d].samples - 1] / step_s);
     }
     struct dig_air made = {
         .machine = *machine,
         .point   = malloc(points * sizeof *made.point),
         .row     = malloc(DIG_JOINTS * points * sizeof *made.row),
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
+        .scratch = malloc((size_t)(2 * DIG_JOINTS) * points * sizeof *made.scratch),
     };
-    if (made.point == NULL || made.row == NULL || made.segment == NULL) {
+    if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL) {
         dig_air_finish(&made);
         return DIG_ENOMEM;
     }
@@ -230,54 +251,107 @@ void dig_air_finish(struct dig_air *const air)
         free(air->point);
         free(air->row);
         free(air->segment);
+        free(air->scratch);
         *air = (struct dig_air){ .points = 0 };
     }
 }
 
-// What is left of all three joints at one point, N at the rods.
+// A point with the angles and rates that the machine had delay_s before.
+static struct dig_air_point delayed(const struct dig_air_point point[], const size_t points,
+                                    const size_t at, const double delay_s)
+{
+    const double back = fmin(fmax((double)at - delay_s / step_s, 0.0), (double)(points - 1));
+    const size_t low  = (size_t)back;
+    const size_t high = low + 1 < points ? low + 1 : low;
+    const double f    = back - (double)low;
+    struct dig_air_point        out = point[at];
+    const struct dig_air_point *a   = &point[low];
+    const struct dig_air_point *b   = &point[high];
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const size_t q = (size_t)DIG_SIGNAL_BOOM_rad + j;
+
+        out.sample.value[q] = (1.0 - f) * a->sample.value[q] + f * b->sample.value[q];
+        out.rates.velocity_radps[j] =
+            (1.0 - f) * a->rates.velocity_radps[j] + f * b->rates.velocity_radps[j];
+        out.rates.acceleration_radps2[j] =
+            (1.0 - f) * a->rates.acceleration_radps2[j] + f * b->rates.acceleration_radps2[j];
+    }
+    return out;
+}
+
+// What is left of the joints at one point, N at the rods, and what friction takes of it.
 static void rest_at(const struct dig_machine *const    corrected,
                     const struct dig_correction *const correction,
-                    const struct dig_air_point *const point, double rest_N[DIG_JOINTS])
+                    struct dig_air_point *const point, const bool calm, double rest_N[DIG_JOINTS],
+                    double loss_N[DIG_JOINTS])
 {
-    struct dig_readings readings;
-    if (dig_readings_take(corrected, correction, &point->sample, &point->rates, &readings) !=
-        DIG_OK) {
-        for (int j = 0; j < DIG_JOINTS; j++) {
-            rest_N[j] = 0.0;
-        }
-        return;
-    }
-    const struct dig_front   front   = dig_front_place(corrected, readings.joint_rad);
-    const struct dig_balance balance = dig_balance_solve(corrected, &readings, &front);
+    struct dig_correction rigid = *correction;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        rest_N[j] =
-            balance.lever_ok[j] ? balance.rest_Nm[j] / balance.lever[j].arm_m : balance.rest_Nm[j];
+        rigid.friction[j] = (struct dig_friction){ .coulomb_N = 0.0 };
+    }
+    for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
+        point->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = point->calm_Pa[c];
+    }
+    struct dig_readings readings;
+    const bool          read =
+        dig_readings_take(corrected, &rigid, &point->sample, &point->rates, &readings) == DIG_OK;
+    const struct dig_front   front   = read ? dig_front_place(corrected, readings.joint_rad)
+                                            : (struct dig_front){ .attitude_rad = { 0.0 } };
+    const struct dig_balance balance = read ? dig_balance_solve(corrected, &readings, &front)
+                                            : (struct dig_balance){ .moment_ok = false };
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        rest_N[j] = 0.0;
+        loss_N[j] = 0.0;
+        if (balance.lever_ok[j]) {
+            const double arm_m = balance.lever[j].arm_m;
+            rest_N[j]          = balance.rest_Nm[j] / arm_m;
+            loss_N[j] = dig_friction_loss_N(&correction->friction[j], readings.push[j].push_N,
+                                            arm_m * point->rates.velocity_radps[j]);
+        }
     }
 }
 
+// Friction turns about at once where a motion does; averaged over the kernel as all else is.
+static double loss_at(const double (*const loss_N)[DIG_JOINTS], const size_t points,
+                      const size_t at, const size_t joint)
+{
+    double sum    = 0.0;
+    double weight = 0.0;
+    for (int k = -KERNEL; k <= KERNEL; k++) {
+        const double u = (double)k * step_s / half_s;
+        const double w = (1.0 - u * u) * (1.0 - u * u);
+        const size_t i = at + (size_t)KERNEL + (size_t)(k + KERNEL);
+        if (i >= 2 * (size_t)KERNEL && i - 2 * (size_t)KERNEL < points) {
+            sum += w * loss_N[i - 2 * (size_t)KERNEL][joint];
+            weight += w;
+        }
+    }
+    return sum / weight;
+}
+
 void dig_air_rest(const struct dig_air *const air, const struct dig_correction correction[],
-                  double rest[])
+                  const bool calm, double rest[])
 {
     assert(air != NULL && correction != NULL && rest != NULL);
-    size_t at = 0;
+    double(*const rest_N)[DIG_JOINTS] = (double(*)[DIG_JOINTS])(void *)air->scratch;
     for (size_t s = 0; s < air->segments; s++) {
+        const struct dig_air_segment *const segment = &air->segment[s];
+        const struct dig_air_point *const   point   = &air->point[segment->first_point];
+        double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
         const struct dig_machine corrected = dig_correction_machine(&air->machine, &correction[s]);
-        const size_t             end       = air->segment[s].first_row + air->segment[s].rows;
-        while (at < end) {
-            // The rows of one block stand together and share its points.
-            const size_t first             = air->row[at].first;
-            const size_t points            = air->row[at].points;
-            double       sum_N[DIG_JOINTS] = { 0.0 };
-            for (size_t p = 0; p < points; p++) {
-                double rest_N[DIG_JOINTS];
-                rest_at(&corrected, &correction[s], &air->point[first + p], rest_N);
-                for (int j = 0; j < DIG_JOINTS; j++) {
-                    sum_N[j] += rest_N[j] / (double)points;
-                }
+        for (size_t p = 0; p < segment->points; p++) {
+            struct dig_air_point at = delayed(point, segment->points, p, correction[s].delay_s);
+            rest_at(&corrected, &correction[s], &at, calm, rest_N[p], loss_N[p]);
+        }
+        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
+            const struct dig_air_row *const row   = &air->row[r];
+            const size_t                    first = row->first - segment->first_point;
+            double                          sum_N = 0.0;
+            for (size_t p = first; p < first + row->points; p++) {
+                sum_N += rest_N[p][row->joint] - loss_at((const double(*)[DIG_JOINTS])loss_N,
+                                                         segment->points, p, row->joint);
             }
-            for (; at < end && air->row[at].first == first; at++) {
-                rest[at] = sum_N[air->row[at].joint] / air->row[at].sigma_N;
-            }
+            rest[r] = sum_N / (double)row->points / row->sigma_N;
         }
     }
 }

@@ -18,8 +18,9 @@
 #include <stddef.h>
 
 /// An instant of the air: readings averaged over the kernel, and rates. calm_Pa: the pressures
-/// drawn towards the segment's mean by as much of their variance as is noise. What a gain does is
-/// proportional to the pressure, and taken from a noisy one it would explain that noise.
+/// drawn towards the segment's mean by as much of their variance as is noise. What a gain or a
+/// lever does is proportional to the pressure, and taken from a noisy one it would explain that
+/// noise.
 struct dig_air_point {
     struct dig_sample sample;
     struct dig_rates  rates;
@@ -38,6 +39,7 @@ struct dig_air_row {
 struct dig_air_segment {
     size_t dig; // its place among those given
     bool   after;
+    size_t first_point, points; // those beside the air tell angles alone
     size_t first_row, rows;
 };
 
@@ -48,6 +50,7 @@ struct dig_air {
     struct dig_air_point   *point;
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
+    double                 *scratch; // [6 * points]
 };
 
 /// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive
@@ -59,7 +62,8 @@ DIG_MUST_CHECK enum dig_status dig_air_make(const struct dig_machine *machine, s
 void dig_air_finish(struct dig_air *air);
 
 /// What is left of every row in its sigmas when the machine is corrected. correction[segment].
-void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[],
+/// calm: of the calm pressures, as slopes are to be taken. Uses air's scratch.
+void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_AIR_H

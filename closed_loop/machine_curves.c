@@ -42,6 +42,34 @@ static double value_of(const struct reading *const reading, const enum dig_chann
                                         : (channel == DIG_CHANNEL_FX_N ? w->Fx_N : w->Fz_N);
 }
 
+// The sample with the angles and rates of delay_s before, straight between the samples there.
+static void put_back(const struct dig_machine_dig *const dig, const size_t at, const double delay_s,
+                     struct dig_sample *const sample, struct dig_rates *const rates)
+{
+    const double time_s = dig->time_s[at] - delay_s;
+    size_t       i      = at;
+    while (i > 0 && dig->time_s[i] > time_s) {
+        i--;
+    }
+    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
+        i++;
+    }
+    const double f =
+        fmin(fmax((time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]), 0.0), 1.0);
+    const struct dig_rates *const a = &dig->rates[i];
+    const struct dig_rates *const b = &dig->rates[i + 1];
+
+    *sample = dig->sample[at];
+    *rates  = *a;
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const size_t q   = (size_t)DIG_SIGNAL_BOOM_rad + j;
+        sample->value[q] = (1.0 - f) * dig->sample[i].value[q] + f * dig->sample[i + 1].value[q];
+        rates->velocity_radps[j] = (1.0 - f) * a->velocity_radps[j] + f * b->velocity_radps[j];
+        rates->acceleration_radps2[j] =
+            (1.0 - f) * a->acceleration_radps2[j] + f * b->acceleration_radps2[j];
+    }
+}
+
 static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const double tooth_m,
@@ -49,10 +77,15 @@ static void solve_all(const struct dig_machine *const     machine,
 {
     const struct dig_machine corrected = dig_correction_machine(machine, correction);
     for (size_t i = from; i < to; i++) {
-        struct reading   r = { .solved = false };
-        struct dig_front front;
-        r.solved = dig_wrench_correct(&corrected, correction, &dig->sample[i], &dig->rates[i],
-                                      &r.wrench, &front) == DIG_OK;
+        struct reading    r = { .solved = false };
+        struct dig_front  front;
+        struct dig_sample sample = dig->sample[i];
+        struct dig_rates  rates  = dig->rates[i];
+        if (fabs(correction->delay_s) > 0.0) {
+            put_back(dig, i, correction->delay_s, &sample, &rates);
+        }
+        r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates, &r.wrench, &front) ==
+                   DIG_OK;
         if (r.solved) {
             const double phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
             r.pose               = (struct dig_path_point){

@@ -10,6 +10,13 @@
 // A payload of one segment beside the common one: this share of the common one's scale.
 static const double own_share = 0.5;
 
+// Of what is explained in a row so much may be wrong: an effect has never quite the form of its
+// formula, and where it is strong that is more than the sensors' noise.
+static const double form_share = 0.08;
+
+// And where it comes or goes at once, as friction does when a rod turns about, so much of the step.
+static const double step_share = 0.35;
+
 // Step of the differences, in scales.
 static const double step = 0.05;
 
@@ -63,8 +70,13 @@ enum dig_status dig_lines_make(const struct dig_air *const air, struct dig_lines
         .at     = calloc(most, sizeof *made.at),
         .dig    = malloc((air->segments + 1) * sizeof *made.dig),
         .normal = calloc(air->segments + 1, sizeof *made.normal),
+        .trust  = malloc((air->rows + 1) * sizeof *made.trust),
     };
-    bool ok = made.column != NULL && made.at != NULL && made.dig != NULL && made.normal != NULL;
+    bool ok = made.column != NULL && made.at != NULL && made.dig != NULL && made.normal != NULL &&
+              made.trust != NULL;
+    for (size_t r = 0; ok && r < air->rows; r++) {
+        made.trust[r] = 1.0;
+    }
     if (ok) {
         list_columns(&made);
         number_digs(&made);
@@ -95,6 +107,7 @@ void dig_lines_finish(struct dig_lines *const lines)
     free(lines->at);
     free(lines->dig);
     free(lines->normal);
+    free(lines->trust);
     *lines = (struct dig_lines){ .columns = 0 };
 }
 
@@ -134,36 +147,6 @@ static void correct(const struct dig_lines *const lines, const double at[],
     }
 }
 
-// The chamber whose gain a column is, or -1.
-static int gain_of(const struct dig_lines_column *const column)
-{
-    enum { OFFSETS = DIG_JOINTS * DIG_CHAMBERS };
-    return column->effect == DIG_EFFECT_PRESSURE_OFFSET && column->parameter >= OFFSETS
-               ? (int)column->parameter - OFFSETS
-               : -1;
-}
-
-// A gain takes a share of the calm pressure's force.
-static void fill_gain(const struct dig_lines *const lines, const int chamber, const double scale,
-                      double slope[])
-{
-    const struct dig_air *const      air      = lines->air;
-    const struct dig_cylinder *const cylinder = &air->machine.cylinder[chamber / DIG_CHAMBERS];
-    const double                     area_m2  = chamber % DIG_CHAMBERS == DIG_CHAMBER_HEAD
-                                                    ? -dig_cylinder_head_m2(cylinder)
-                                                    : dig_cylinder_rod_m2(cylinder);
-    for (size_t r = 0; r < air->rows; r++) {
-        const struct dig_air_row *const row = &air->row[r];
-        double                          Pa  = 0.0;
-        for (size_t p = row->first; p < row->first + row->points; p++) {
-            Pa += air->point[p].calm_Pa[chamber] / (double)row->points;
-        }
-        slope[r] = (int)row->joint == chamber / DIG_CHAMBERS
-                       ? scale * cylinder->count * area_m2 * Pa / row->sigma_N
-                       : 0.0;
-    }
-}
-
 // All slopes, by central differences; columns of one segment are cut out of the common payload's.
 static void fill_slopes(const struct dig_lines *const lines, const unsigned set, double *const at,
                         struct dig_correction correction[], double *const less, double *const slope)
@@ -184,20 +167,15 @@ static void fill_slopes(const struct dig_lines *const lines, const unsigned set,
             }
             continue;
         }
-        const int chamber = gain_of(column);
-        if (chamber >= 0) {
-            fill_gain(lines, chamber, column->scale, mine);
-            continue;
-        }
         payload = column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 ? c : payload;
 
         const double here = at[c];
         at[c]             = here + step;
         correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, mine);
+        dig_air_rest(lines->air, correction, true, mine);
         at[c] = here - step;
         correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, less);
+        dig_air_rest(lines->air, correction, true, less);
         at[c] = here;
         for (size_t r = 0; r < rows; r++) {
             mine[r] = (mine[r] - less[r]) / (2.0 * step);
@@ -205,8 +183,15 @@ static void fill_slopes(const struct dig_lines *const lines, const unsigned set,
     }
 }
 
-static void sum_up(const struct dig_lines *const lines, const double rest[], const double slope[])
+static void sum_up(const struct dig_lines *const lines, double rest[], double slope[])
 {
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        rest[r] *= lines->trust[r];
+        for (size_t c = 0; c < lines->columns; c++) {
+            slope[c * lines->air->rows + r] *= lines->trust[r];
+        }
+    }
+
     const size_t n    = lines->columns;
     const size_t rows = lines->air->rows;
     for (size_t d = 0; d < lines->digs; d++) {
@@ -261,7 +246,7 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     if (correction != NULL && rest != NULL && slope != NULL) {
         fill_slopes(lines, set, lines->at, correction, rest + rows, slope);
         correct(lines, lines->at, correction);
-        dig_air_rest(lines->air, correction, rest);
+        dig_air_rest(lines->air, correction, false, rest);
         sum_up(lines, rest, slope);
         status = DIG_OK;
     }
@@ -280,13 +265,87 @@ double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
     double        rest2 = INFINITY;
     if (correction != NULL && rest != NULL) {
         correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, rest);
+        dig_air_rest(lines->air, correction, false, rest);
         rest2 = 0.0;
         for (size_t r = 0; r < lines->air->rows; r++) {
-            rest2 += rest[r] * rest[r];
+            rest2 += pow(lines->trust[r] * rest[r], 2.0);
         }
     }
     free(correction);
     free(rest);
     return rest2;
+}
+
+// What may be wrong with the form of what is explained of a row, in its sigmas: rows of a joint
+// follow each other every DIG_JOINTS rows at most.
+static double form_of(const struct dig_air *const air, const double explained[], const size_t r)
+{
+    const double here = fabs(explained[r]);
+    double       most = here;
+    for (size_t back = 1; back <= DIG_JOINTS; back++) {
+        if (back <= r && air->row[r - back].joint == air->row[r].joint &&
+            air->row[r - back].segment == air->row[r].segment) {
+            most = fmax(most, fabs(explained[r - back]));
+        }
+        if (r + back < air->rows && air->row[r + back].joint == air->row[r].joint &&
+            air->row[r + back].segment == air->row[r].segment) {
+            most = fmax(most, fabs(explained[r + back]));
+        }
+    }
+    return form_share * here + step_share * (most - here);
+}
+
+// Chi-squared of sums over one segment and joint each: what is slow shows here best. explained:
+// what the values took of each row.
+static double slow_rest2(const struct dig_lines *const lines, const double rest[],
+                         const double explained[])
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        const struct dig_air_segment *const segment = &lines->air->segment[s];
+
+        double of[DIG_JOINTS]    = { 0.0 };
+        double form[DIG_JOINTS]  = { 0.0 };
+        double count[DIG_JOINTS] = { 0.0 };
+        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
+            const enum dig_joint j = lines->air->row[r].joint;
+            of[j] += rest[r];
+            form[j] += form_of(lines->air, explained, r);
+            count[j] += 1.0;
+        }
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            sum += count[j] > 0.0 ? of[j] * of[j] / (count[j] + form[j] * form[j]) : 0.0;
+        }
+    }
+    return sum;
+}
+
+enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slow)
+{
+    assert(lines != NULL && slow != NULL);
+    const size_t                 rows = lines->air->rows + 1;
+    struct dig_correction *const correction =
+        malloc((lines->air->segments + 1) * sizeof *correction);
+    double *const none = calloc(lines->columns, sizeof *none);
+    double *const rest = malloc(2 * rows * sizeof *rest);
+    if (correction == NULL || none == NULL || rest == NULL) {
+        free(correction);
+        free(none);
+        free(rest);
+        return DIG_ENOMEM;
+    }
+    double *const explained = rest + rows;
+    correct(lines, none, correction);
+    dig_air_rest(lines->air, correction, false, explained);
+    correct(lines, lines->at, correction);
+    dig_air_rest(lines->air, correction, false, rest);
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        explained[r] -= rest[r];
+        lines->trust[r] = 1.0 / hypot(1.0, form_of(lines->air, explained, r));
+    }
+    *slow = slow_rest2(lines, rest, explained);
+    free(correction);
+    free(none);
+    free(rest);
+    return DIG_OK;
 }

@@ -41,6 +41,7 @@ struct dig_lines {
     size_t                   digs;   // those of the air, in its order
     size_t                  *dig;    // [segments] which of them a segment is of
     struct dig_lines_normal *normal; // [digs]
+    double                  *trust;  // [rows] what each row's rest and slopes are multiplied by
 };
 
 /// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
@@ -52,6 +53,11 @@ void dig_lines_finish(struct dig_lines *lines);
 /// count as without effect. Two evaluations of the air a column: some tenths of a second for all.
 /// DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_update(struct dig_lines *lines, unsigned set);
+
+/// Trusts every row as far as the form of what is explained of it where the lines stand can be
+/// trusted, and tells how much is left in the means of segments: chi-squared, one degree of freedom
+/// for every segment and joint. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_judge(struct dig_lines *lines, double *slow);
 
 /// The sum of rest^2 at other values, not linear. INFINITY when there is no memory.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);

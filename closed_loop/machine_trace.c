@@ -13,13 +13,11 @@
 
 enum { BOOTSTRAPS = 200, REFINEMENTS = 4, ROUNDS = 4 };
 
-// Averaging over the kernel takes part of the noise of a block: what clean recordings leave of it.
-static const double clean_rest2 = 0.75;
-
-// Air that leaves more than this of a row's variance is not understood, if what it leaves is more
-// than this share of what there was to explain.
+// Air that leaves more than this of a row's variance is not understood.
 static const double unclear_rest2 = 1.2;
-static const double unclear_share = 0.15;
+
+// Nor is air whose means over segments leave this much more than chi-squared should, in its sigmas.
+static const double unclear_sigmas = 5.0;
 
 // Two sets of effects whose log evidence differs by less cannot be told apart.
 static const double tie = 5.0;
@@ -35,7 +33,8 @@ struct search {
     unsigned         set;
     double           least;      // log evidence that an effect must bring
     double           rest2_none; // without any effect, not linear
-    double           rest2;      // with the set, not linear
+    double           rest2;      // with the set, not linear, rows as far as they are trusted
+    double           slow;       // of it, in the means of segments: chi-squared
 };
 
 static void search_finish(struct search *const s)
@@ -118,8 +117,11 @@ static enum dig_status refine(struct search *const s)
             break;
         }
     }
-    s->rest2                     = dig_lines_rest2(&s->lines, s->lines.at);
-    const enum dig_status status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    enum dig_status status = dig_lines_judge(&s->lines, &s->slow);
+    if (status == DIG_OK) {
+        s->rest2 = dig_lines_rest2(&s->lines, s->lines.at);
+        status   = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    }
     if (status == DIG_OK) {
         sum_all(s);
     }
@@ -129,7 +131,10 @@ static enum dig_status refine(struct search *const s)
 // Effects join until none earns its place.
 static enum dig_status select_effects(struct search *const s)
 {
-    enum dig_status status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    enum dig_status status = dig_lines_judge(&s->lines, &s->slow);
+    if (status == DIG_OK) {
+        status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    }
     if (status != DIG_OK) {
         return status;
     }
@@ -295,19 +300,21 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
         status = select_effects(&s);
     }
     if (status == DIG_OK) {
-        const double rows   = (double)s.air.rows;
-        const double clean  = clean_rest2 * rows;
-        const bool   excess = s.rest2 > unclear_rest2 * rows &&
-                            s.rest2 - clean > unclear_share * (s.rest2_none - clean);
+        const double rows  = (double)s.air.rows;
+        const double means = (double)(DIG_JOINTS * s.air.segments);
+        const bool   unclear =
+            s.rest2 > unclear_rest2 * rows || s.slow > means + unclear_sigmas * sqrt(2.0 * means);
         double inclusion[DIG_MACHINE_EFFECTS];
 
-        *finding              = (struct dig_machine_finding){ .unexplained = excess };
+        *finding              = (struct dig_machine_finding){ .unexplained = unclear };
         finding->residual_air = sqrt(s.rest2_none / rows);
-        finding->significant  = s.set != 0 || excess;
+        finding->significant  = s.set != 0 || unclear;
         bootstrap(&s, seed, inclusion);
         write_candidates(&s, inclusion, finding);
-        write_effects(&s, inclusion, finding);
-        write_sets(&s, finding);
+        if (!unclear) {
+            write_effects(&s, inclusion, finding);
+            write_sets(&s, finding);
+        }
         finding->p_complete =
             fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
     }

@@ -22,16 +22,6 @@ static double truth_Pa(const struct dig_correction *const correction, const int 
                                     (1.0 + correction->gain[joint][chamber]);
 }
 
-// The angles at the time of the pressures: the rates carry them back.
-static void put_back(const struct dig_rates *const rates, const double delay_s,
-                     double joint_rad[DIG_JOINTS])
-{
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        joint_rad[j] -=
-            delay_s * (rates->velocity_radps[j] - 0.5 * delay_s * rates->acceleration_radps2[j]);
-    }
-}
-
 enum dig_status dig_readings_take(const struct dig_machine *const    machine,
                                   const struct dig_correction *const correction,
                                   const struct dig_sample *const     sample,
@@ -66,9 +56,6 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
                                          machine->pressure_step_Pa, &r.push[j]);
     }
     if (status == DIG_OK) {
-        if (correction != NULL) {
-            put_back(rates, correction->delay_s, r.joint_rad);
-        }
         *readings = r;
     }
     return status;
