@@ -141,6 +141,20 @@ static double samples_within(const struct dig_window *const window, const struct
     return fmax((to_s - from_s) * per_s, 1.0);
 }
 
+// Where samples are missing for longer than is smoothed over, no one knows what the moment was.
+static bool has_hole(const struct dig_window *const window, const struct range range,
+                     const double half_s)
+{
+    const double longest_s = fmax(half_s, 0.02);
+    for (size_t i = range.first + 1; i < range.end; i++) {
+        const double step_s = window->time_s[i] - window->time_s[i - 1];
+        if (step_s > longest_s * (double)window->stride) {
+            return true;
+        }
+    }
+    return false;
+}
+
 enum dig_status dig_window_observe(struct dig_window *const      window,
                                    const struct dig_route *const route,
                                    const struct dig_track *const track, const double limit_m,
@@ -150,7 +164,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
 
     settle(window);
     const struct range range = follow(window, route, track, limit_m);
-    if (range.end < range.first + 3) {
+    if (range.end < range.first + 3 || has_hole(window, range, half_s)) {
         return DIG_ENOMATCH;
     }
     const size_t n = range.end - range.first;

@@ -496,7 +496,7 @@ static enum dig_status read_map(const struct work *const work, const struct map_
     map->function       = text->function == 3 ? 3 : 4;
     map->low_word_first = text->low_word_first;
     map->j1939          = text->j1939;
-    map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 1.0;
+    map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
     map->coherent_s     = text->coherent_ms > 0.0 ? text->coherent_ms * 1e-3 : 6e-3;
 
     enum dig_status status = DIG_OK;

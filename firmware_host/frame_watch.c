@@ -33,10 +33,13 @@ static void follow_cycle(struct dig_frame_watch *const watch, const double cycle
     const double expected_ns = (double)watch->due_ns + (double)late * cycle_ns;
     const double off_ns      = (double)time_ns - expected_ns;
     watch->due_ns            = llround(expected_ns + cycle_ns + follow_share * off_ns);
-    if (++watch->frames >= DIG_WATCH_FRAMES) {
+    watch->total++;
+    watch->frames = late < 0 && watch->owed > 0 ? 0 : watch->frames + 1;
+    if (watch->frames >= DIG_WATCH_FRAMES || watch->total >= DIG_WATCH_LONGEST) {
         watch->missed += watch->owed > 0 ? watch->owed : 0;
         watch->owed   = 0;
         watch->frames = 0;
+        watch->total  = 0;
     }
 }
 

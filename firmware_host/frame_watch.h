@@ -3,7 +3,8 @@
 // A message with a counter of its own is followed by it. Another that comes in a fixed cycle is
 // followed by the clock: a phase-locked expectation of the next stamp, so that jitter below half a
 // cycle means nothing; a burst after a pause pays back what the pause owed, as the frames were only
-// late. What is still owed after DIG_WATCH_FRAMES frames was missed.
+// late. What is still owed after DIG_WATCH_FRAMES frames that pay nothing back, or DIG_WATCH_LONGEST in
+// any case, was missed.
 
 #ifndef DIG_FIRMWARE_HOST_FRAME_WATCH_H
 #define DIG_FIRMWARE_HOST_FRAME_WATCH_H
@@ -11,7 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define DIG_WATCH_FRAMES 20
+#define DIG_WATCH_FRAMES  20
+#define DIG_WATCH_LONGEST 2000
 
 struct dig_frame_settings {
     double   delay_s;     // how old a value is when its frame is stamped, machine time
@@ -25,7 +27,7 @@ struct dig_frame_watch {
     uint64_t counter;
     int64_t  due_ns; // machine time
     int64_t  owed;
-    unsigned frames; // since what is owed was settled
+    unsigned frames, total; // that paid nothing back in a row; since what is owed was settled
     int64_t  missed, repeated;
 };
 

@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 #define DIG_STUCK_rad 0.1 // of gravity's moment on boom and arm that is several steps of pressure
-#define DIG_STUCK_Pa  2e6 // what no standing engine's ripple makes
+#define DIG_STUCK_Pa  1e6 // what no standing engine's ripple makes
 
 /// Zeroed: nothing seen yet.
 struct dig_stuck {

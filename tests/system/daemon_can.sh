@@ -4,7 +4,7 @@
 . tests/system/daemon_lib.bash
 
 if [ "${1-}" != inside ]; then
-    digs
+    make_digs
     DIG_DATA=$work tools/vcan/with-vcan -t 200 "$0" inside
     status=$?
     if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then

@@ -2,7 +2,7 @@
 # What goes wrong on a bus is dropped, counted, published, and gone when it is over.
 . tests/system/daemon_lib.bash
 
-digs
+make_digs
 config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: 4"
 log tcp

@@ -98,7 +98,7 @@ read_log() { # NAME: ends the recording and prints it into $work/NAME.txt
     "$helpers/daemon_log" "$work/$1.lcm" >"$work/$1.txt" 2>"$work/$1.err"
 }
 
-digs() { # makes the table and the digs, whose truth is friction 0.5, rolling 0.4, density 2200
+make_digs() { # makes the table and the digs, whose truth is friction 0.5, rolling 0.4, density 2200
     "$helpers/daemon_data" "$scene" "$work" >"$work/data.log" 2>&1
 }
 
@@ -113,6 +113,48 @@ within() { # VALUE LOW HIGH
 identified() { # FILE: the last match is near the truth
     within "$(last match "$1" 6)" 0.38 0.62 && within "$(last match "$1" 9)" 0.30 0.50 &&
         within "$(last match "$1" 12)" 1750 2500 && [ "$(last match "$1" 3)" = 0 ]
+}
+
+series() { # N: $digs is the simple dig N times; their truth goes to $work/truth.csv, the contacts to $contacts
+    local i
+    digs=()
+    for ((i = 0; i < $1; i++)); do digs+=("$work/simpleA.csv"); done
+    "$BIN/digrig" record "${digs[@]}" --machine "$machine" -o "$work/series.csv" --truth "$work/truth.csv" 2>"$work/series.err"
+    mapfile -t contacts < <(awk -F, 'NR > 1 { if ($7 != 0 && before == 0) print $1; before = $7 }' "$work/truth.csv")
+}
+
+fault() { # KIND DIG: --fault's value for all of that dig, counted from 1
+    awk -v kind="$1" -v contact="${contacts[$2 - 1]}" 'BEGIN { printf "%s@%.2f:12", kind, contact - 2 }'
+}
+
+serve_series() { # NAME OPTION…: serves it at $speed times real time; the rig's counts go to $work/NAME.json
+    "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --json "${@:2}" \
+        >"$work/$1.json" 2>"$work/$1.rig.err"
+    rig_json=$work/$1.json
+    sleep 0.5
+}
+
+rig() { # KEY: a number of the rig's counts
+    sed -E "s/.*\"$1\": ([0-9]+).*/\1/" "$rig_json"
+}
+
+# Judges $work/NAME.lcm into $work/NAME.judged. In dig BLIND the angles stand still: nothing can tell at
+# once; it has to be told before two seconds of wrong estimates are published.
+judge() { # NAME [BLIND]
+    "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 >"$work/$1.judged" 2>"$work/$1.err"
+    sed 's/^/      /' "$work/$1.judged"
+    judged=$work/$1.judged
+    check "$1: estimates are published" within "$(judged all 2)" 100 1e9
+    local blind=0
+    [ -z "${2-}" ] || blind=$("$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 \
+        "$(awk -v c="${contacts[$2 - 1]}" 'BEGIN { print c - 2 }')" 12 | awk '$1 == "within" { print $2 }')
+    check "$1: no wrong estimate is published as good" [ "$(judged all 3)" = "$blind" ]
+    check "$1: but for two seconds at most while angles stand" within "$blind" 0 200
+    check "$1: nor a wrong match or prediction" [ "$(judged all 6) $(judged all 8)" = "0 0" ]
+}
+
+judged() { # KIND FIELD [DIG]: a field of the line "all", or of a dig's
+    awk -v kind="$1" -v field="$2" -v dig="${3-}" '$1 == kind && (dig == "" || $2 == dig) { print $field }' "$judged"
 }
 
 # Fields of a health line, for last().

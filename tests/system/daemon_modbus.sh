@@ -2,7 +2,7 @@
 # The rig's Modbus TCP server and the daemon: a bus that comes late, a dig, a bus that goes away.
 . tests/system/daemon_lib.bash
 
-digs
+make_digs
 config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: 4"
 log tcp

@@ -2,7 +2,7 @@
 # Every defect of a file: exit status 2, with file, line, key and what was expected.
 . tests/system/daemon_lib.bash
 
-digs
+make_digs
 printf 't_s,boom_rad,arm_rad,bucket_rad,boom_head_Pa,boom_rod_Pa,arm_head_Pa,arm_rod_Pa,bucket_head_Pa,bucket_rod_Pa\n0,0,-1,0,1e6,1e6,1e6,1e6,1e6,1e6\n0.01,0,-1,0,1e6,1e6,1e6,1e6,1e6,1e6\n' >"$work/run.csv"
 config good "{kind: replay, replay: {file: run.csv}}"
 cp config/can/zx200.dbc config/signals/*.yaml "$work"

@@ -2,7 +2,7 @@
 # A recording through the daemon onto LCM, and the log of that through the daemon again.
 . tests/system/daemon_lib.bash
 
-digs
+make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
 config again "{kind: replay, replay: {file: csv.lcm, speed: 5}}"

@@ -2,7 +2,7 @@
 # Modbus RTU over a pair of pseudo terminals.
 . tests/system/daemon_lib.bash
 
-digs
+make_digs
 sed 's/^function: 4/function: 3/' config/signals/modbus_default.yaml >"$work/holding.yaml"
 config rtu "{kind: modbus-rtu, modbus: {device: $work/controller, baud: 115200, parity: none, poll_Hz: 200, map: holding.yaml}}" \
     "time_scale: 4"

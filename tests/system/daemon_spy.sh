@@ -3,7 +3,7 @@
 . tests/system/daemon_lib.bash
 
 jar=$BIN/../digsight_types.jar lcm_jar=/usr/share/java/lcm.jar
-digs
+make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config run "{kind: replay, replay: {file: run.csv, speed: 10}}"
 log run

@@ -31,6 +31,22 @@ bool dig_rig_board_read(struct dig_rig_board *const board, uint16_t registers[DI
     return silent;
 }
 
+void dig_rig_board_behave(struct dig_rig_board *const        board,
+                          const struct dig_rig_manner *const manner)
+{
+    (void)pthread_mutex_lock(&board->lock);
+    board->manner = *manner;
+    (void)pthread_mutex_unlock(&board->lock);
+}
+
+struct dig_rig_manner dig_rig_board_manner(struct dig_rig_board *const board)
+{
+    (void)pthread_mutex_lock(&board->lock);
+    const struct dig_rig_manner manner = board->manner;
+    (void)pthread_mutex_unlock(&board->lock);
+    return manner;
+}
+
 void dig_rig_board_stop(struct dig_rig_board *const board)
 {
     (void)pthread_mutex_lock(&board->lock);

@@ -9,11 +9,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/// How the servers treat requests, beyond silence.
+struct dig_rig_manner {
+    double drop, exception, corrupt; // shares of requests
+    double slow_s;                   // real time before each answer
+};
+
 struct dig_rig_board {
-    pthread_mutex_t lock;
-    uint16_t        registers[DIG_RIG_REGISTERS];
-    bool            silent; // the servers take requests and answer none
-    bool            stop;   // the servers' threads are to end
+    pthread_mutex_t       lock;
+    uint16_t              registers[DIG_RIG_REGISTERS];
+    bool                  silent; // the servers take requests and answer none
+    bool                  stop;   // the servers' threads are to end
+    struct dig_rig_manner manner;
 };
 
 /// False when the mutex cannot be made.
@@ -25,6 +32,10 @@ void dig_rig_board_write(struct dig_rig_board *board, const uint16_t registers[D
 
 /// Copies the registers out; returns silent.
 bool dig_rig_board_read(struct dig_rig_board *board, uint16_t registers[DIG_RIG_REGISTERS]);
+
+/// From the next request on.
+void dig_rig_board_behave(struct dig_rig_board *board, const struct dig_rig_manner *manner);
+struct dig_rig_manner dig_rig_board_manner(struct dig_rig_board *board);
 
 void dig_rig_board_stop(struct dig_rig_board *board);
 bool dig_rig_board_is_stopped(struct dig_rig_board *board);

@@ -8,7 +8,11 @@
 enum dig_status dig_rig_buses_open(const struct dig_rig_options *const options,
                                    struct dig_rig_buses *const buses, struct dig_error *const error)
 {
-    *buses = (struct dig_rig_buses){ .can = -1 };
+    *buses = (struct dig_rig_buses){ .can    = -1,
+                                     .sealed = options->can_sealed,
+                                     .wire   = { .random = options->seed },
+                                     .faults = options->faults,
+                                     .fault  = options->fault };
     if (!dig_rig_board_init(&buses->board)) {
         return dig_error_set(error, DIG_ENOMEM, "no mutex");
     }
@@ -40,13 +44,21 @@ enum dig_status dig_rig_buses_open(const struct dig_rig_options *const options,
     return status;
 }
 
-static void send_frame(struct dig_rig_buses *const buses, const struct dig_rig_can_frame frame)
+static void send(void *const context, const struct dig_rig_can_frame *const frame)
 {
-    if (dig_rig_can_send(buses->can, &frame) == DIG_OK) {
+    struct dig_rig_buses *const buses = context;
+    if (dig_rig_can_send(buses->can, frame) == DIG_OK) {
         buses->frames_sent++;
     } else {
         buses->frames_lost++;
     }
+}
+
+static void put_frame(struct dig_rig_buses *const buses, const int64_t tick,
+                      const struct dig_rig_can_frame frame)
+{
+    dig_rig_wire_put(&buses->wire, buses->faults, buses->fault, (double)tick / DIG_RIG_TICK_Hz,
+                     &frame, send, buses);
 }
 
 // Each frame at the period its layout gives it, in ticks of 5 ms.
@@ -54,16 +66,35 @@ static void send_frames(struct dig_rig_buses *const buses, const int64_t tick,
                         const struct dig_sample *const sample, const bool moving)
 {
     if (tick % 2 == 0) {
-        send_frame(buses, dig_rig_can_angles(sample));
-        send_frame(buses, dig_rig_can_pressures(sample));
+        struct dig_rig_can_frame angles    = dig_rig_can_angles(sample);
+        struct dig_rig_can_frame pressures = dig_rig_can_pressures(sample);
+        buses->can_counter                 = (uint8_t)(buses->can_counter + (moving ? 1U : 0U));
+        if (buses->sealed) {
+            dig_rig_can_seal(&angles, buses->can_counter);
+            dig_rig_can_seal(&pressures, buses->can_counter);
+        }
+        put_frame(buses, tick, angles);
+        put_frame(buses, tick, pressures);
     }
     if (tick % 4 == 0) {
-        send_frame(buses, dig_rig_can_tilt(sample));
+        put_frame(buses, tick, dig_rig_can_tilt(sample));
     }
     if (tick % 10 == 0) {
         buses->can_alive = (uint8_t)(buses->can_alive + (moving ? 1U : 0U));
-        send_frame(buses, dig_rig_can_state(sample, buses->can_alive));
+        put_frame(buses, tick, dig_rig_can_state(sample, buses->can_alive));
     }
+}
+
+// How the Modbus servers behave at time_s.
+static struct dig_rig_manner manner_at(const struct dig_rig_buses *const buses, const double time_s)
+{
+    const size_t n = buses->faults;
+    return (struct dig_rig_manner){
+        .drop      = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_DROP, time_s),
+        .exception = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_EXCEPTION, time_s),
+        .corrupt   = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_CORRUPT, time_s),
+        .slow_s    = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_SLOW, time_s),
+    };
 }
 
 void dig_rig_buses_tell(struct dig_rig_buses *const buses, const int64_t tick,
@@ -73,6 +104,8 @@ void dig_rig_buses_tell(struct dig_rig_buses *const buses, const int64_t tick,
     buses->modbus_alive = (uint16_t)(buses->modbus_alive + (moving ? 1U : 0U));
     dig_rig_modbus_encode(sample, buses->modbus_alive, registers);
     dig_rig_board_write(&buses->board, registers, silent);
+    const struct dig_rig_manner manner = manner_at(buses, (double)tick / DIG_RIG_TICK_Hz);
+    dig_rig_board_behave(&buses->board, &manner);
     if (buses->can >= 0 && !silent) {
         send_frames(buses, tick, sample, moving);
     }

@@ -9,6 +9,7 @@
 #include "tools/rig/board.h"
 #include "tools/rig/options.h"
 #include "tools/rig/serve_modbus.h"
+#include "tools/rig/wire.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,13 +18,17 @@
     200 // of machine time: the Modbus map's rate; CAN frames go every second tick
 
 struct dig_rig_buses {
-    int                     can; // -1: none
-    uint64_t                frames_sent, frames_lost;
-    uint8_t                 can_alive;
-    uint16_t                modbus_alive;
-    struct dig_rig_board    board;
-    struct dig_rig_modbus  *tcp, *rtu; // NULL: none
-    struct dig_rig_requests requests;  // filled by the close
+    int                         can; // -1: none
+    uint64_t                    frames_sent, frames_lost;
+    uint8_t                     can_alive, can_counter;
+    bool                        sealed; // frames carry a counter and a checksum
+    struct dig_rig_wire         wire;
+    size_t                      faults;
+    const struct dig_rig_fault *fault; // of the options, which outlive this
+    uint16_t                    modbus_alive;
+    struct dig_rig_board        board;
+    struct dig_rig_modbus      *tcp, *rtu; // NULL: none
+    struct dig_rig_requests     requests;  // filled by the close
 };
 
 /// Opens what the options ask for and says so on stderr. Nothing stays open on failure.

@@ -64,3 +64,26 @@ struct dig_rig_can_frame dig_rig_can_state(const struct dig_sample *const sample
     frame.data[7] = alive;
     return frame;
 }
+
+// Long division of the message, followed by eight zero bits, by x^8 + x^4 + x^3 + x^2 + 1; its
+// first byte inverted and the remainder inverted, as SAE J1850 has it.
+static uint8_t remainder_of(const uint8_t data[7])
+{
+    uint8_t padded[8] = { 0 };
+    memcpy(padded, data, 7);
+    padded[0]       = (uint8_t)~padded[0];
+    unsigned window = padded[0];
+    for (unsigned bit = 8; bit < 64; bit++) {
+        const unsigned next  = (padded[bit / 8] >> (7 - bit % 8)) & 1U;
+        const bool     carry = (window & 0x80U) != 0;
+        window               = ((window << 1) | next) & 0xFFU;
+        window ^= carry ? 0x1DU : 0U;
+    }
+    return (uint8_t)~window;
+}
+
+void dig_rig_can_seal(struct dig_rig_can_frame *const frame, const uint8_t counter)
+{
+    frame->data[6] = (uint8_t)(0xF0U | (counter & 0x0FU));
+    frame->data[7] = remainder_of(frame->data);
+}

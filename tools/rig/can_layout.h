@@ -32,4 +32,8 @@ struct dig_rig_can_frame dig_rig_can_angles(const struct dig_sample *sample);
 struct dig_rig_can_frame dig_rig_can_tilt(const struct dig_sample *sample);
 struct dig_rig_can_frame dig_rig_can_state(const struct dig_sample *sample, uint8_t alive);
 
+/// Puts a counter (0 … 15, upper half ones) into byte 6 and a checksum into byte 7, where the
+/// layout's swing would be: CRC-8 SAE J1850 over bytes 0 to 6. For pressures and angles.
+void dig_rig_can_seal(struct dig_rig_can_frame *frame, uint8_t counter);
+
 #endif // DIG_TOOLS_RIG_CAN_LAYOUT_H

@@ -33,12 +33,16 @@ static const char help_text[] =
     "serve, one or more buses:\n"
     "  --can IFACE               CAN frames in the ZX200 layout\n"
     "  --modbus-tcp HOST:PORT    Modbus TCP server (port 0: any free one, told on stderr)\n"
+    "  --can-sealed              pressures and angles carry a counter and a checksum\n"
     "  --modbus-rtu DEV[:BAUD]   Modbus RTU slave 1 (default 115200 baud, 8N1)\n"
     "  --speed F                 times real time (default 1)\n"
     "  --start-delay S           stand still so many seconds first, with the bus alive\n"
     "  --loop                    start again at the end, until SIGTERM\n"
-    "  --fault KIND@T[:DURATION] not-available, nan, frozen, missing or out-of-range at T seconds\n"
-    "                            of machine time (may be given again)\n"
+    "  --fault KIND[=N]@T[:DURATION]  what goes wrong at T seconds of machine time (may be given\n"
+    "                            again): not-available, nan, frozen, missing, out-of-range,\n"
+    "                            stuck-pressures, stuck-angles; drop, duplicate, reorder, "
+    "corrupt,\n"
+    "                            exception for a share N; delay, slow by N seconds\n"
     "  --json                    what was sent and asked for, as JSON on stdout at the end\n"
     "\n"
     "examples:\n"
@@ -73,6 +77,7 @@ enum {
     OPT_NO_QUANTISATION,
     OPT_EXACT,
     OPT_CAN,
+    OPT_SEALED,
     OPT_TCP,
     OPT_RTU,
     OPT_SPEED,
@@ -99,6 +104,7 @@ static const struct option long_options[] = {
     { "no-quantisation", no_argument, NULL, OPT_NO_QUANTISATION },
     { "exact", no_argument, NULL, OPT_EXACT },
     { "can", required_argument, NULL, OPT_CAN },
+    { "can-sealed", no_argument, NULL, OPT_SEALED },
     { "modbus-tcp", required_argument, NULL, OPT_TCP },
     { "modbus-rtu", required_argument, NULL, OPT_RTU },
     { "speed", required_argument, NULL, OPT_SPEED },
@@ -166,6 +172,7 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
     case OPT_MACHINE: options->machine = optarg; break;
     case OPT_SCENE: options->scene = optarg; break;
     case OPT_TRUTH: options->truth = optarg; break;
+    case OPT_SEALED: options->can_sealed = true; break;
     case OPT_CAN: options->can = optarg; break;
     case OPT_TCP: options->tcp = optarg; break;
     case OPT_RTU: options->rtu = optarg; break;

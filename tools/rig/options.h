@@ -37,8 +37,9 @@ struct dig_rig_options {
     const char *truth; // NULL: none
     // serve; NULL: not on that bus
     const char          *can;
-    const char          *tcp; // HOST:PORT
-    const char          *rtu; // DEVICE[:BAUD]
+    bool                 can_sealed; // frames carry a counter and a checksum
+    const char          *tcp;        // HOST:PORT
+    const char          *rtu;        // DEVICE[:BAUD]
     double               speed;
     bool                 loop;
     bool                 json;

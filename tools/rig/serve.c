@@ -93,8 +93,14 @@ static void report(const struct dig_rig_buses *const buses, const int64_t ticks,
     print_counts("modbus_served", requests->served);
     printf(", ");
     print_counts("modbus_refused", requests->refused);
-    printf(", \"modbus_unanswered\": %llu, \"modbus_clients\": %llu}\n",
+    printf(", \"modbus_unanswered\": %llu, \"modbus_clients\": %llu, ",
            (unsigned long long)requests->unanswered, (unsigned long long)requests->clients);
+    printf("\"modbus_excepted\": %llu, \"modbus_damaged\": %llu, ",
+           (unsigned long long)requests->excepted, (unsigned long long)requests->damaged);
+    printf("\"can_dropped\": %llu, \"can_doubled\": %llu, \"can_overtaken\": %llu, "
+           "\"can_damaged\": %llu}\n",
+           (unsigned long long)buses->wire.dropped, (unsigned long long)buses->wire.doubled,
+           (unsigned long long)buses->wire.overtaken, (unsigned long long)buses->wire.damaged);
     (void)fflush(stdout);
 }
 
@@ -118,9 +124,11 @@ static void play(struct player *const player, struct dig_rig_buses *const buses,
     const bool silent =
         dig_rig_fault_is_on(options->faults, options->fault, DIG_RIG_FAULT_MISSING, time_s);
     if (!frozen) {
-        player->last = dig_rig_sense(player->machine, &player->track->row[row],
-                                     llround(1e9 * time_s), options->noise ? &player->noise : NULL);
+        const struct dig_sample before = player->last;
+        player->last                   = dig_rig_sense(player->machine, &player->track->row[row],
+                                                       llround(1e9 * time_s), options->noise ? &player->noise : NULL);
         dig_rig_fault_spoil(options->faults, options->fault, time_s, &player->last);
+        dig_rig_fault_hold(options->faults, options->fault, time_s, &before, &player->last);
     }
     dig_rig_buses_tell(buses, tick, &player->last, !frozen, silent);
 }

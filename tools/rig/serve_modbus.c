@@ -1,5 +1,7 @@
 #include "tools/rig/serve_modbus.h"
 
+#include "tools/rig/wire.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -28,6 +30,7 @@ struct dig_rig_modbus {
     int                     clients;
     int                     client[CLIENTS_MAX];
     struct dig_rig_requests requests;
+    uint64_t                random; // for faults
     pthread_t               thread;
 };
 
@@ -73,6 +76,33 @@ static struct dig_rig_modbus *create(struct dig_rig_board *const board, modbus_t
     return server;
 }
 
+// What a fault makes of a request: true when it is not to be answered as it should.
+static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[])
+{
+    const struct dig_rig_manner manner = dig_rig_board_manner(server->board);
+    if (manner.slow_s > 0.0) {
+        (void)poll(NULL, 0, (int)(1e3 * manner.slow_s));
+    }
+    if (manner.drop > 0.0 && dig_rig_wire_random(&server->random) < manner.drop) {
+        server->requests.unanswered++;
+        return true;
+    }
+    if (manner.exception > 0.0 && dig_rig_wire_random(&server->random) < manner.exception) {
+        server->requests.excepted++;
+        (void)modbus_reply_exception(server->context, request,
+                                     MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
+        return true;
+    }
+    // On a serial line: what a disturbed one would bring.
+    if (manner.corrupt > 0.0 && server->listening < 0 &&
+        dig_rig_wire_random(&server->random) < manner.corrupt) {
+        static const uint8_t rubbish[] = { 0x01, 0x04, 0x55 };
+        server->requests.damaged++;
+        (void)write(modbus_get_socket(server->context), rubbish, sizeof rubbish);
+    }
+    return false;
+}
+
 // One request: data for a read, exception 1 for anything else. False: the connection is to end.
 static bool answer(struct dig_rig_modbus *const server, const uint8_t request[], const int length)
 {
@@ -82,6 +112,9 @@ static bool answer(struct dig_rig_modbus *const server, const uint8_t request[],
 
     if (dig_rig_board_read(server->board, server->map->tab_registers)) {
         server->requests.unanswered++;
+        return true;
+    }
+    if (misbehave(server, request)) {
         return true;
     }
     if (function != MODBUS_FC_READ_HOLDING_REGISTERS &&
@@ -307,6 +340,8 @@ void dig_rig_modbus_join(struct dig_rig_modbus *const   server,
         requests->refused[f] += server->requests.refused[f];
     }
     requests->unanswered += server->requests.unanswered;
+    requests->excepted += server->requests.excepted;
+    requests->damaged += server->requests.damaged;
     requests->clients += server->requests.clients;
     destroy(server);
 }

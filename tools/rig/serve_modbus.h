@@ -20,7 +20,8 @@ struct dig_rig_requests {
     uint64_t served[256];
     uint64_t refused[256];
     uint64_t unanswered;
-    uint64_t clients; // connections accepted; on RTU times the line was opened
+    uint64_t excepted, damaged; // answered so because a fault asked for it
+    uint64_t clients;           // connections accepted; on RTU times the line was opened
 };
 
 /// Opens address (HOST:PORT, port 0 for any free one; or DEVICE[:BAUD], 8N1, default 115200) and

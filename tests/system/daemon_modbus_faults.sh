@@ -1,0 +1,82 @@
+#!/bin/bash
+# What goes wrong on Modbus while a machine digs, a table that changes under the daemon, a disk without
+# room: nothing wrong is published as good, every loss is counted, the next dig identifies the gravel.
+. tests/system/daemon_lib.bash
+
+make_digs
+speed=4
+series 6
+config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
+    "time_scale: $speed
+match: {state: full/match.json}"
+mkdir "$work/full" # where nothing can be written: a disk without room, as far as the daemon can tell
+mkdir "$work/full/match.json.part"
+
+log tcp
+start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
+# The table it runs on: cut off, asked for, refused; put back, asked for, taken; removed.
+(
+    sleep 3
+    cp "$work/table.sqlite" "$work/good.sqlite"
+    truncate -s 50000 "$work/table.sqlite"
+    sleep 2
+    kill -HUP "$daemon"
+    sleep 2
+    cp "$work/good.sqlite" "$work/table.sqlite"
+    kill -HUP "$daemon"
+    sleep 12
+    rm "$work/table.sqlite"
+) &
+tables=$!
+# Digs: lost answers, exceptions, answers 30 ms late, a server that goes away in the middle, nothing.
+serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
+    --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[3]}" 'BEGIN { print c + 3 }'):4"
+wait "$tables"
+stop "$daemon"
+check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
+read_log tcp
+f=$work/tcp.txt
+judge tcp
+digs_told=$(last health "$f" $h_digs)
+check "the digs after the faults identify the gravel" \
+    [ "$(judged dig 6 "$digs_told")$(judged dig 6 $((digs_told - 1)))" = 11 ]
+check "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
+check "exceptions are counted" [ "$(last health "$f" $h_malformed)" = "$(rig modbus_excepted)" ]
+check "a table that is cut off is refused, and said" \
+    eval '[ "$(last health "$f" $h_reloads_refused)" = 1 ] && grep -q "reload refused, the table before stays: .*table.sqlite" "$work/tcp.log"'
+check "a good one is taken without a gap" \
+    eval '[ "$(last health "$f" $h_reloads)" = 1 ] && grep -q "table exchanged: scene rig" "$work/tcp.log"'
+check "a match that cannot be kept is said, and stands" grep -q "full/match.json" "$work/tcp.log"
+check "nothing was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
+
+# The server is killed in a dig and comes back; what is known survives the daemon.
+cp "$work/good.sqlite" "$work/table.sqlite"
+sed -i 's|full/match.json|match.json|' "$work/tcp.yaml"
+series 2
+log gone
+start "$work/gone.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+start "$work/rig1.err" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --modbus-tcp "127.0.0.1:$port"
+first=$started
+sleep "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print (c + 4) / speed }')"
+stop "$first" KILL
+check "a server that went away is said" wait_for 5 grep -q "127.0.0.1:$port: " "$work/gone.log"
+serve_series gone --modbus-tcp "127.0.0.1:$port"
+stop "$daemon"
+read_log gone
+f=$work/gone.txt
+check "the server is found again" within "$(last health "$f" $h_reconnects)" 1 100
+check "the gravel is identified after that" identified "$f"
+
+start "$work/again.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+check "what was known is known again after a restart" wait_for 5 grep -q "from before, dig" "$work/again.log"
+stop "$daemon"
+touch -d "13 hours ago" "$work/match.json"
+start "$work/old.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+check "unless it is too old" wait_for 5 grep -q "match.json: 13.0 h old, expected at most 12.0 h" "$work/old.log"
+stop "$daemon"
+finish
