@@ -8,6 +8,16 @@
 
 #define HELD 0x80000000U // marks a place in a list of held contacts
 
+// The kernel works in fours: beyond the last contact, where grains may stand that are gone by now,
+// it is to find a grain that exists.
+static void pad(struct dig_contacts *const list)
+{
+    for (size_t c = list->n; c % 4 != 0; c++) {
+        list->i[c] = 0;
+        list->j[c] = 0;
+    }
+}
+
 // Puts the fresh lists in the place of the old, or gives them up. The others are filled next time.
 static void adopt(const enum dig_status status, const size_t lists, struct dig_contacts old[],
                   struct dig_contacts fresh[])
@@ -17,6 +27,7 @@ static void adopt(const enum dig_status status, const size_t lists, struct dig_c
             const struct dig_contacts before = old[l];
             old[l]                           = fresh[l];
             fresh[l]                         = before;
+            pad(&old[l]);
         }
         fresh[l].n = 0;
     }
