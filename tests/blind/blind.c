@@ -28,7 +28,8 @@ static const char help[] =
     "  --split dev|judge seeds to develop with, or to judge with (dev)\n"
     "  -n N              campaigns without an effect (100); those with one follow from it\n"
     "  -j N              at a time (1)\n"
-    "  --only NAME       only campaigns with this effect; \"none\": without any\n"
+    "  --only NAME       only campaigns with this effect, or of this kind: none, single, pair,\n"
+    "                    outside\n"
     "  --keep DIR        leave every campaign, its trace and its truth there (dev only)\n"
     "  --make            make the campaigns, trace none (with --keep)\n"
     "  --json FILE       everything, for programs\n"
@@ -153,8 +154,9 @@ static void want(struct plan *const plan, const enum blind_kind kind, const int 
     if (b != NULL) {
         order.effect[order.effects++] = *b;
     }
-    const bool none = a == NULL && plan->only != NULL && strcmp(plan->only, "none") == 0;
-    const bool this = plan->only == NULL || none ||
+    static const char *const name[BLIND_KINDS] = { "none", "single", "pair", "outside" };
+
+    const bool this = plan->only == NULL || strcmp(plan->only, name[kind]) == 0 ||
                       (a != NULL && strcmp(plan->only, a->name) == 0) ||
                       (b != NULL && strcmp(plan->only, b->name) == 0);
     if (this && plan->orders < plan->most) {

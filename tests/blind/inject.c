@@ -21,13 +21,13 @@ const char *blind_machine_effect_name(const enum blind_machine_effect effect)
 
 // The first parameter of each effect at its three strengths.
 static const double size_of[BLIND_MACHINE_EFFECTS][BLIND_STRENGTHS] = {
-    [BLIND_CYLINDER_FRICTION] = { 60.0, 600.0, 8000.0 },    // N of dry friction, bucket drive
+    [BLIND_CYLINDER_FRICTION] = { 100.0, 800.0, 4000.0 },   // N of dry friction, bucket drive
     [BLIND_PRESSURE_OFFSET]   = { 6.0e3, 6.0e4, 5.0e5 },    // Pa
     [BLIND_BUCKET_WEIGHT]     = { 1.5, 15.0, 120.0 },       // kg
-    [BLIND_BUCKET_INERTIA]    = { 100.0, 500.0, 2500.0 },   // kg m2
+    [BLIND_BUCKET_INERTIA]    = { 80.0, 250.0, 800.0 },     // kg m2
     [BLIND_PAYLOAD]           = { 2.0, 15.0, 120.0 },       // kg
     [BLIND_LINKAGE_GEOMETRY]  = { 0.015, 0.05, 0.12 },      // share of a length
-    [BLIND_SENSOR_DELAY]      = { 0.012, 0.05, 0.2 },       // s
+    [BLIND_SENSOR_DELAY]      = { 0.015, 0.05, 0.15 },      // s
     [BLIND_SWING_RIPPLE]      = { 6.0e3, 6.0e4, 6.0e5 },    // Pa
     [BLIND_SENSOR_DRIFT]      = { 50.0, 500.0, 5000.0 },    // Pa/s
     [BLIND_THERMAL_GAIN]      = { 1.0e-4, 1.0e-3, 1.0e-2 }, // 1/K

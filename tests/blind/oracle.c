@@ -22,6 +22,7 @@ struct point {
 struct blind_oracle {
     const struct dig_curve_set  *set;
     const struct dig_trajectory *trajectory[BLIND_PATHS];
+    size_t                       index[BLIND_PATHS];  // of the trajectory in the set
     struct blind_curve           weight[BLIND_PATHS]; // seconds of rig time a point stands for
     struct point                *point;               // [FINE]
 };
@@ -70,7 +71,6 @@ enum dig_status blind_oracle_create(const struct dig_curve_set *const set,
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     o->set = set;
-    size_t trajectory[BLIND_PATHS];
     for (int p = 0; p < BLIND_PATHS; p++) {
         size_t t = 0;
         while (t < set->trajectories &&
@@ -82,7 +82,7 @@ enum dig_status blind_oracle_create(const struct dig_curve_set *const set,
             return dig_error_set(error, DIG_EINVAL, "the table has no trajectory %s",
                                  blind_path_name((enum blind_path)p));
         }
-        trajectory[p]    = t;
+        o->index[p]      = t;
         o->trajectory[p] = &set->trajectory[t];
         fill_weight(o, p);
     }
@@ -94,7 +94,7 @@ enum dig_status blind_oracle_create(const struct dig_curve_set *const set,
         for (int a = 0; a < DIG_AXES; a++) {
             gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, at[a] / steps[a]);
         }
-        o->point[i].there = fill(set, &gravel, trajectory, &o->point[i]);
+        o->point[i].there = fill(set, &gravel, o->index, &o->point[i]);
     }
     *oracle = o;
     return DIG_OK;
@@ -192,9 +192,14 @@ static enum dig_status difference(const struct blind_oracle *const   o,
                                   const struct means *const without, struct means *const d,
                                   double *const noise)
 {
-    const bool in_pool = c->order.effect[e].how == BLIND_BY_POOL && c->plain != NULL;
-    *noise             = 0.0;
-    *d                 = *alone;
+    const bool   in_pool = c->order.effect[e].how == BLIND_BY_POOL;
+    struct point table;
+    // Without plain beds of this gravel the table's own means stand for them.
+    if (in_pool && c->plain == NULL && !fill(o->set, &c->group->gravel, o->index, &table)) {
+        return DIG_ENOMATCH;
+    }
+    *noise = 0.0;
+    *d     = *alone;
     for (int p = 0; p < BLIND_PATHS; p++) {
         struct blind_curve there = without->y[p];
         struct blind_curve plain = without->y[p];
@@ -203,8 +208,10 @@ static enum dig_status difference(const struct blind_oracle *const   o,
         if (in_pool) {
             const enum blind_path path   = (enum blind_path)p;
             enum dig_status       status = group_mean(o, c->group, path, -1, &there, &a);
-            if (status == DIG_OK) {
+            if (status == DIG_OK && c->plain != NULL) {
                 status = group_mean(o, c->plain, path, -1, &plain, &b);
+            } else if (status == DIG_OK) {
+                plain = table.mean[p];
             }
             if (status != DIG_OK) {
                 return status;
