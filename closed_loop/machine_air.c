@@ -15,22 +15,19 @@ static const double half_s = 0.12;
 static const double step_s = 0.025;
 enum { POINTS_IN_BLOCK = 8, POINTS_BESIDE = 20, KERNEL = 4 };
 
-// Kernel means of the readings around one time. Returns the share of one sample's variance that is
-// left in them.
-static double average(const struct dig_machine_dig *const dig, const double time_s,
-                      size_t *const from, struct dig_sample *const out)
+// Kernel means of the readings around one time.
+static void average(const struct dig_machine_dig *const dig, const double time_s,
+                    size_t *const from, struct dig_sample *const out)
 {
     while (*from + 1 < dig->samples && dig->time_s[*from] < time_s - half_s) {
         ++*from;
     }
     double sum[DIG_SIGNALS_NEEDED] = { 0.0 };
     double weight                  = 0.0;
-    double weight2                 = 0.0;
     for (size_t i = *from; i < dig->samples && dig->time_s[i] < time_s + half_s; i++) {
         const double u = (dig->time_s[i] - time_s) / half_s;
         const double w = (1.0 - u * u) * (1.0 - u * u);
         weight += w;
-        weight2 += w * w;
         for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
             sum[s] += w * dig->sample[i].value[s];
         }
@@ -38,7 +35,6 @@ static double average(const struct dig_machine_dig *const dig, const double time
     for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
         out->value[s] = sum[s] / weight;
     }
-    return weight2 / (weight * weight);
 }
 
 // What one reading of a chamber scatters by, from how samples differ from the mean of both beside
@@ -81,24 +77,13 @@ static struct scatter scatter_of(const struct dig_machine *const     machine,
     return s;
 }
 
-// Fills calm_Pa of the points of a segment. left: of a sample's variance, in a point.
-static void calm(struct dig_air_point point[], const size_t points, const struct scatter *const s,
-                 const double left)
+static void fill_means(struct dig_air_segment *const segment, const struct dig_air_point point[],
+                       const size_t points)
 {
-    for (size_t c = 0; c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
-        const size_t signal   = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c;
-        double       mean     = 0.0;
-        double       variance = 0.0;
-        for (size_t p = 0; p < points; p++) {
-            mean += point[p].sample.value[signal] / (double)points;
-        }
-        for (size_t p = 0; p < points; p++) {
-            variance += pow(point[p].sample.value[signal] - mean, 2.0) / (double)points;
-        }
-        const double noise = left * s->Pa[c] * s->Pa[c];
-        const double kept  = variance > noise ? 1.0 - noise / variance : 0.0;
-        for (size_t p = 0; p < points; p++) {
-            point[p].calm_Pa[c] = mean + kept * (point[p].sample.value[signal] - mean);
+    for (size_t p = 0; p < points; p++) {
+        for (size_t c = 0; c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
+            segment->mean_Pa[c] +=
+                point[p].sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] / (double)points;
         }
     }
 }
@@ -164,12 +149,12 @@ static const struct dig_rates *rates_at(const struct dig_machine_dig *const dig,
 }
 
 static void add_point(struct dig_air *const air, const struct dig_machine_dig *const dig,
-                      const double time_s, size_t *const near, double *const left)
+                      const double time_s, size_t *const near)
 {
     struct dig_air_point *const point = &air->point[air->points++];
     *point                            = (struct dig_air_point){ .sample = dig->sample[*near] };
-    *left                             = average(dig, time_s, near, &point->sample);
-    point->rates                      = *rates_at(dig, time_s, *near);
+    average(dig, time_s, near, &point->sample);
+    point->rates = *rates_at(dig, time_s, *near);
 }
 
 static void add_segment(struct dig_air *const air, const struct dig_machine_dig *const dig,
@@ -191,24 +176,22 @@ static void add_segment(struct dig_air *const air, const struct dig_machine_dig 
     const size_t first  = air->points;
     size_t       core   = 0;
     size_t       near   = 0;
-    double       left   = 1.0;
     for (long k = -before;; k++) {
         const double time_s = begin_s + step_s * (double)k;
         if (time_s > fmin(end_s + POINTS_BESIDE * step_s, last_s)) {
             break;
         }
         core += k >= 0 && time_s <= end_s ? 1 : 0;
-        add_point(air, dig, time_s, &near, &left);
+        add_point(air, dig, time_s, &near);
     }
-    const size_t begin = first + (size_t)before;
-    calm(&air->point[begin], core, &scatter, left);
-
+    const size_t begin    = first + (size_t)before;
     const size_t segment  = air->segments++;
     air->segment[segment] = (struct dig_air_segment){ .dig         = which,
                                                       .after       = after,
                                                       .first_point = first,
                                                       .points      = air->points - first,
                                                       .first_row   = air->rows };
+    fill_means(&air->segment[segment], &air->point[begin], core);
     for (size_t p = 0; p + POINTS_IN_BLOCK <= core; p += POINTS_IN_BLOCK) {
         add_rows(air, begin + p, POINTS_IN_BLOCK, segment, scatter.N, fmax(rate_Hz * step_s, 1e-3));
     }
@@ -329,27 +312,71 @@ static double loss_at(const double (*const loss_N)[DIG_JOINTS], const size_t poi
     return sum / weight;
 }
 
+// Both of every point of a segment into the scratch: rests, then losses.
+static void rest_of(const struct dig_air *const air, const size_t s,
+                    const struct dig_correction *const correction, const bool calm)
+{
+    double(*const rest_N)[DIG_JOINTS]           = (double(*)[DIG_JOINTS])(void *)air->scratch;
+    const struct dig_air_segment *const segment = &air->segment[s];
+    const struct dig_air_point *const   point   = &air->point[segment->first_point];
+    double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
+    const struct dig_machine corrected          = dig_correction_machine(&air->machine, correction);
+    for (size_t p = 0; p < segment->points; p++) {
+        struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
+        rest_at(&corrected, correction, &at, calm, rest_N[p], loss_N[p]);
+    }
+}
+
+static double rest_of_point_N(const struct dig_air *const air, const size_t s, const size_t point,
+                              const size_t joint)
+{
+    const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
+    const size_t points                     = air->segment[s].points;
+    return rest_N[point][joint] - loss_at(rest_N + points, points, point, joint);
+}
+
+void dig_air_calm(struct dig_air *const air, const struct dig_correction correction[])
+{
+    assert(air != NULL && correction != NULL);
+    for (size_t s = 0; s < air->segments; s++) {
+        const struct dig_air_segment *const segment = &air->segment[s];
+        struct dig_air_point *const         point   = &air->point[segment->first_point];
+        for (size_t p = 0; p < segment->points; p++) {
+            for (size_t c = 0; c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
+                const bool returns  = segment->mean_Pa[c] < segment->mean_Pa[c ^ 1U];
+                point[p].calm_Pa[c] = returns ? segment->mean_Pa[c]
+                                              : point[p].sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + c];
+            }
+        }
+        rest_of(air, s, &correction[s], true);
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            const struct dig_cylinder *const cylinder = &air->machine.cylinder[j];
+
+            const double *const mean_Pa = &segment->mean_Pa[DIG_CHAMBERS * j];
+            const bool          head    = !(mean_Pa[DIG_CHAMBER_HEAD] < mean_Pa[DIG_CHAMBER_ROD]);
+            const size_t        c = DIG_CHAMBERS * j + (head ? DIG_CHAMBER_HEAD : DIG_CHAMBER_ROD);
+            const double        m2 =
+                head ? dig_cylinder_head_m2(cylinder) : -dig_cylinder_rod_m2(cylinder);
+            for (size_t p = 0; p < segment->points; p++) {
+                point[p].calm_Pa[c] -= rest_of_point_N(air, s, p, j) / (cylinder->count * m2);
+            }
+        }
+    }
+}
+
 void dig_air_rest(const struct dig_air *const air, const struct dig_correction correction[],
                   const bool calm, double rest[])
 {
     assert(air != NULL && correction != NULL && rest != NULL);
-    double(*const rest_N)[DIG_JOINTS] = (double(*)[DIG_JOINTS])(void *)air->scratch;
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
-        const struct dig_air_point *const   point   = &air->point[segment->first_point];
-        double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
-        const struct dig_machine corrected = dig_correction_machine(&air->machine, &correction[s]);
-        for (size_t p = 0; p < segment->points; p++) {
-            struct dig_air_point at = delayed(point, segment->points, p, correction[s].delay_s);
-            rest_at(&corrected, &correction[s], &at, calm, rest_N[p], loss_N[p]);
-        }
+        rest_of(air, s, &correction[s], calm);
         for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
             const struct dig_air_row *const row   = &air->row[r];
             const size_t                    first = row->first - segment->first_point;
             double                          sum_N = 0.0;
             for (size_t p = first; p < first + row->points; p++) {
-                sum_N += rest_N[p][row->joint] - loss_at((const double(*)[DIG_JOINTS])loss_N,
-                                                         segment->points, p, row->joint);
+                sum_N += rest_of_point_N(air, s, p, row->joint);
             }
             rest[r] = sum_N / (double)row->points / row->sigma_N;
         }

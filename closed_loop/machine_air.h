@@ -17,10 +17,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// An instant of the air: readings averaged over the kernel, and rates. calm_Pa: the pressures
-/// drawn towards the segment's mean by as much of their variance as is noise. What a gain or a
-/// lever does is proportional to the pressure, and taken from a noisy one it would explain that
-/// noise.
+/// An instant of the air: readings averaged over the kernel, and rates. calm_Pa: what the chambers
+/// would read without noise, see dig_air_calm().
 struct dig_air_point {
     struct dig_sample sample;
     struct dig_rates  rates;
@@ -41,6 +39,7 @@ struct dig_air_segment {
     bool   after;
     size_t first_point, points; // those beside the air tell angles alone
     size_t first_row, rows;
+    double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
 };
 
 /// Free with dig_air_finish().
@@ -60,6 +59,11 @@ DIG_MUST_CHECK enum dig_status dig_air_make(const struct dig_machine *machine, s
                                             struct dig_air *air);
 
 void dig_air_finish(struct dig_air *air);
+
+/// Calms the pressures: the chamber of a drive that reads less counts as its return side and reads
+/// its mean, the other what makes the corrected balance nothing. What a gain or a lever does is
+/// proportional to the pressure; taken from a noisy one it would explain that noise.
+void dig_air_calm(struct dig_air *air, const struct dig_correction correction[]);
 
 /// What is left of every row in its sigmas when the machine is corrected. correction[segment].
 /// calm: of the calm pressures, as slopes are to be taken. Uses air's scratch.

@@ -60,7 +60,7 @@ static void number_digs(struct dig_lines *const lines)
     }
 }
 
-enum dig_status dig_lines_make(const struct dig_air *const air, struct dig_lines *const lines)
+enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *const lines)
 {
     assert(air != NULL && lines != NULL);
     const size_t     most = most_columns(air);
@@ -244,6 +244,8 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     double *const   slope  = malloc(lines->columns * rows * sizeof *slope);
     enum dig_status status = DIG_ENOMEM;
     if (correction != NULL && rest != NULL && slope != NULL) {
+        correct(lines, lines->at, correction);
+        dig_air_calm(lines->air, correction);
         fill_slopes(lines, set, lines->at, correction, rest + rows, slope);
         correct(lines, lines->at, correction);
         dig_air_rest(lines->air, correction, false, rest);

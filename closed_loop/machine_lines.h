@@ -34,7 +34,7 @@ struct dig_lines_normal {
 
 /// Free with dig_lines_finish().
 struct dig_lines {
-    const struct dig_air    *air;
+    struct dig_air          *air;
     size_t                   columns;
     struct dig_lines_column *column;
     double                  *at;     // [columns], in scales from absent
@@ -45,7 +45,7 @@ struct dig_lines {
 };
 
 /// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lines_make(const struct dig_air *air, struct dig_lines *lines);
+DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);
 
 void dig_lines_finish(struct dig_lines *lines);
 
