@@ -1,0 +1,165 @@
+#include "closed_loop/search.h"
+
+#include "tests/made_campaign.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 6, DRAWS = 60 };
+
+static struct made_world world;
+static struct dig_soil  *soil;
+
+static int make(void **state)
+{
+    (void)state;
+    world = made_world(5);
+    return dig_soil_create(world.surface, world.effects, &soil);
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    made_world_finish(&world);
+    return 0;
+}
+
+// Three simple and three real digs of a gravel with these effects, searched.
+static struct dig_search search(const struct dig_gravel *const gravel, const size_t effects,
+                                const enum dig_effect_id effect[], const double magnitude[],
+                                uint64_t seed)
+{
+    static struct dig_measured measured[DIGS];
+    static struct dig_batch    batch;
+    static struct dig_search   found;
+    bool                       take[DIGS];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, effect,
+                               magnitude, &seed);
+        measured[i].order = i;
+        take[i]           = true;
+    }
+    double place[DIG_AXES];
+    dig_surface_place(world.surface, gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    assert_int_equal(dig_search_run(&batch, soil, 0.01, DRAWS, seed, &found), DIG_OK);
+    return found;
+}
+
+static bool in_a_set(const struct dig_search *const s, const enum dig_effect_id effect)
+{
+    for (size_t i = 0; i < s->sets; i++) {
+        for (size_t e = 0; e < s->set[i].effects; e++) {
+            if (s->set[i].effect[e] == effect) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Twenty campaigns without an effect: two false alarms at one in a hundred come once in sixty.
+static void nothing_is_found_where_nothing_is(void **state)
+{
+    (void)state;
+    uint64_t seed   = 21;
+    int      alarms = 0;
+    for (int i = 0; i < 20; i++) {
+        const struct dig_gravel gravel = { { 0.32 + 0.56 * model_uniform(&seed),
+                                             0.15 + 0.8 * model_uniform(&seed),
+                                             1600 + 2200 * model_uniform(&seed) } };
+        const struct dig_search s      = search(&gravel, 0, NULL, NULL, seed);
+        alarms += s.significant ? 1 : 0;
+    }
+    assert_true(alarms <= 1);
+}
+
+static void an_effect_is_named_and_measured(void **state)
+{
+    (void)state;
+    static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION,
+                                                 DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_LAYERING };
+    const struct dig_gravel         gravel   = { { 0.6, 0.55, 2500 } };
+    for (size_t i = 0; i < sizeof effect / sizeof effect[0]; i++) {
+        const double            magnitude = 0.5;
+        const struct dig_search s         = search(&gravel, 1, &effect[i], &magnitude, 100 + i);
+        assert_true(s.significant);
+        assert_false(s.unlisted);
+        assert_int_equal(s.chosen.hypothesis.effects, 1);
+        assert_true(s.chosen.hypothesis.effect[0] == effect[i] || in_a_set(&s, effect[i]));
+        assert_true(s.probability[0] > 0.5 || s.sets > 0);
+        if (s.chosen.hypothesis.effect[0] == effect[i]) {
+            assert_close(dig_soil_magnitude(soil, effect[i], s.chosen.number[DIG_AXES]), 0.5, 0.2);
+        }
+    }
+}
+
+static void two_effects_at_once_are_both_named(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id effect[2] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION };
+    const double             both[2]   = { 0.6, 0.7 };
+    const struct dig_search  s         = search(&gravel, 2, effect, both, 7);
+    int                      found     = 0;
+    for (size_t e = 0; e < s.chosen.hypothesis.effects; e++) {
+        found +=
+            s.chosen.hypothesis.effect[e] == effect[0] || s.chosen.hypothesis.effect[e] == effect[1]
+                ? 1
+                : 0;
+    }
+    assert_int_equal(s.chosen.hypothesis.effects, 2);
+    assert_int_equal(found, 2);
+}
+
+static void what_has_no_name_gets_none(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id dip       = DIG_EFFECT_UNLISTED;
+    const double             magnitude = 0.8;
+    const struct dig_search  s         = search(&gravel, 1, &dip, &magnitude, 8);
+    assert_true(s.significant);
+    assert_true(s.unlisted);
+    assert_int_equal(s.chosen.hypothesis.effects, 0);
+    assert_true(s.without_name.functions > 0);
+}
+
+static void a_gravel_beyond_the_grid_is_no_effect(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.25, 0.05, 1200 } };
+    const struct dig_search s      = search(&gravel, 0, NULL, NULL, 9);
+    assert_true(!s.significant || s.outside);
+    assert_int_equal(s.chosen.hypothesis.effects, 0);
+    assert_false(s.unlisted);
+}
+
+static void the_same_seed_gives_the_same_answer(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id effect    = DIG_EFFECT_LAYERING;
+    const double             magnitude = 0.3;
+    const struct dig_search  a         = search(&gravel, 1, &effect, &magnitude, 10);
+    const struct dig_search  b         = search(&gravel, 1, &effect, &magnitude, 10);
+    assert_close(a.p_complete, b.p_complete, 0.0);
+    assert_memory_equal(a.chosen.number, b.chosen.number, sizeof a.chosen.number);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_found_where_nothing_is),
+        cmocka_unit_test(an_effect_is_named_and_measured),
+        cmocka_unit_test(two_effects_at_once_are_both_named),
+        cmocka_unit_test(what_has_no_name_gets_none),
+        cmocka_unit_test(a_gravel_beyond_the_grid_is_no_effect),
+        cmocka_unit_test(the_same_seed_gives_the_same_answer),
+    };
+    return cmocka_run_group_tests_name("search", tests, make, clean);
+}
