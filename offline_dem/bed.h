@@ -4,11 +4,17 @@
 #ifndef DIG_OFFLINE_DEM_BED_H
 #define DIG_OFFLINE_DEM_BED_H
 
+#include "core/scene.h"
 #include "core/status.h"
 #include "offline_dem/grains.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/// Where a movable rock has come to lie: body to world, real part first.
+struct dig_rock_pose {
+    double x_m[3], q[4];
+};
 
 /// Owned by the caller, freed with dig_bed_finish().
 struct dig_bed {
@@ -17,6 +23,8 @@ struct dig_bed {
     uint8_t  *material;                   // [grains] as in core/scene.h; NULL: all gravel
     uint32_t *clump; // [grains] from 1, the spheres of one clump in a row and in the shape's order;
                      // NULL: grains are spheres
+    size_t               rocks; // 0: the scene's obstacles are where the scene has them
+    struct dig_rock_pose rock[DIG_OBSTACLES_MAX];
 };
 
 /// Room for this many grains, all zero. DIG_ENOMEM leaves *bed as it was.

@@ -1,5 +1,6 @@
 #include "offline_dem/bodies.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,6 +56,7 @@ enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
     *made = (struct dig_bodies){
         .shape = *shape, .clumps = clumps, .clump = clump, .obstacles = dig_obstacles_make(scene)
     };
+    dig_obstacles_place(&made->obstacles, bed);
     for (size_t b = 0; b < clumps; b++) {
         const size_t first = b * shape->spheres;
         place_clump(shape, bed, first, body_kg[first], fall_mps, &clump[b]);
@@ -153,9 +155,35 @@ void dig_bodies_push(struct dig_world *const world)
     }
 }
 
+void dig_bodies_let_move(struct dig_bodies *const bodies, struct dig_ode_scene *const ode,
+                         const struct dig_law_material *const material)
+{
+    struct dig_obstacles *const o = &bodies->obstacles;
+    for (size_t i = 0; i < o->rocks; i++) {
+        const struct dig_rock *const rock = &o->rock[i];
+        if (!rock->movable) {
+            continue;
+        }
+        const double *const h = rock->half_m;
+        const double        least_m =
+            rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
+        const struct dig_law law = dig_law_wall(material, least_m, rock->body.mass_kg);
+        bodies->touch[i] =
+            (struct dig_rock_touch){ law.normal_Npm, law.damping_Nspm, law.friction };
+        bodies->ode = ode;
+    }
+    if (bodies->ode != NULL) {
+        dig_ode_rocks_put(ode, o->rocks, o->rock);
+    }
+}
+
 void dig_bodies_advance(struct dig_world *const world)
 {
-    (void)world;
+    struct dig_bodies *const bodies = world->bodies;
+    if (bodies->ode != NULL) {
+        dig_ode_rocks_step(bodies->ode, world->tool, bodies->touch, world->dt_s,
+                           bodies->obstacles.rock, &world->on_tool);
+    }
 }
 
 void dig_bodies_move(struct dig_bodies *const bodies, const uint32_t place[])

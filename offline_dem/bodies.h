@@ -9,6 +9,7 @@
 #include "offline_dem/bed.h"
 #include "offline_dem/clump.h"
 #include "offline_dem/obstacles.h"
+#include "offline_dem/ode_rocks.h"
 #include "offline_dem/rigid.h"
 #include "offline_dem/world.h"
 
@@ -27,10 +28,12 @@ struct dig_bodies {
     size_t                 clumps;
     struct dig_clump_body *clump; // [clumps]
     struct dig_obstacles   obstacles;
+    struct dig_ode_scene  *ode; // moves the rocks; NULL: all are fixed
+    struct dig_rock_touch  touch[DIG_OBSTACLES_MAX];
 };
 
 /// Bodies for a bed whose grain i stands at place i of the world's grains, each clump falling at
-/// fall_mps; kg[grain] is the mass of the clump it belongs to. Numbers the grains of clumps
+/// fall_mps; body_kg[grain] is the mass of the clump it belongs to. Numbers the grains of clumps
 /// (grains->clump is allocated). *bodies is NULL where there are none. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
@@ -48,7 +51,12 @@ DIG_MUST_CHECK enum dig_status dig_bodies_pick(struct dig_world *world);
 /// moves them to where the clump has gone.
 void dig_bodies_push(struct dig_world *world);
 
-/// After the grains have moved.
+/// Rocks that are not fixed are moved by this ODE scene from now on, which must outlive the bodies;
+/// they touch walls, bucket and each other by this material's law.
+void dig_bodies_let_move(struct dig_bodies *bodies, struct dig_ode_scene *ode,
+                         const struct dig_law_material *material);
+
+/// After the grains have moved: the rocks do.
 void dig_bodies_advance(struct dig_world *world);
 
 /// Grains change places: place[old index] is the new one, UINT32_MAX: gone. NULL bodies: nothing.

@@ -39,6 +39,23 @@ struct dig_obstacles dig_obstacles_make(const struct dig_scene *const scene)
     return made;
 }
 
+void dig_obstacles_place(struct dig_obstacles *const obstacles, const struct dig_bed *const bed)
+{
+    for (size_t i = 0; i < obstacles->rocks && i < bed->rocks; i++) {
+        memcpy(obstacles->rock[i].body.x_m, bed->rock[i].x_m, sizeof bed->rock[i].x_m);
+        memcpy(obstacles->rock[i].body.q, bed->rock[i].q, sizeof bed->rock[i].q);
+    }
+}
+
+void dig_obstacles_tell(const struct dig_obstacles *const obstacles, struct dig_bed *const bed)
+{
+    bed->rocks = obstacles->rocks;
+    for (size_t i = 0; i < obstacles->rocks; i++) {
+        memcpy(bed->rock[i].x_m, obstacles->rock[i].body.x_m, sizeof bed->rock[i].x_m);
+        memcpy(bed->rock[i].q, obstacles->rock[i].body.q, sizeof bed->rock[i].q);
+    }
+}
+
 // The face of a box that a point inside it is closest to.
 static double nearest_face(const double half_m[3], const double p[3], double closest_m[3])
 {

@@ -1,28 +1,9 @@
 #include "offline_dem/ode_scene.h"
 
+#include "offline_dem/ode_scene_private.h"
+
 #include <math.h>
-#include <ode/ode.h>
 #include <stdlib.h>
-
-#define WALLS 5
-
-// Triangles of the profile's plates (two each) and of both sides (a fan each).
-#define VERTICES_MAX  (2 * DIG_PROFILE_MAX)
-#define TRIANGLES_MAX (2 * DIG_PROFILE_MAX + 2 * DIG_PROFILE_MAX)
-
-struct dig_ode_scene {
-    dWorldID       world;
-    dSpaceID       walls; // planes have no bounds: apart, so that nothing else pays for them
-    dGeomID        wall[WALLS];
-    dBodyID        bucket;
-    dGeomID        shell;
-    dGeomID        sphere; // moved to wherever a collision is asked for
-    dTriMeshDataID mesh;
-    // ODE keeps pointers to these.
-    double       vertex[VERTICES_MAX][3];
-    dTriIndex    triangle[TRIANGLES_MAX][3];
-    unsigned int vertices, triangles;
-};
 
 static void add_triangle(struct dig_ode_scene *const ode, const size_t a, const size_t b,
                          const size_t c)
@@ -84,7 +65,9 @@ struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *const scene)
     ode->bucket = dBodyCreate(ode->world);
     dBodySetKinematic(ode->bucket);
     dGeomSetBody(ode->shell, ode->bucket);
-    ode->sphere = dCreateSphere(NULL, 1.0);
+    ode->sphere   = dCreateSphere(NULL, 1.0);
+    ode->rocks    = dSimpleSpaceCreate(NULL);
+    ode->touching = dJointGroupCreate(0);
     return ode;
 }
 
@@ -97,6 +80,8 @@ void dig_ode_scene_destroy(struct dig_ode_scene *const ode)
     dGeomDestroy(ode->shell);
     dGeomTriMeshDataDestroy(ode->mesh);
     dSpaceDestroy(ode->walls);
+    dJointGroupDestroy(ode->touching);
+    dSpaceDestroy(ode->rocks);
     dWorldDestroy(ode->world);
     dCloseODE();
     free(ode);
@@ -126,12 +111,12 @@ void dig_ode_scene_read(const struct dig_ode_scene *const ode, struct dig_tool *
 
 size_t dig_ode_scene_walls(const struct dig_ode_scene *const ode, struct dig_wall wall[])
 {
-    for (size_t k = 0; k < WALLS; k++) {
+    for (size_t k = 0; k < DIG_ODE_WALLS; k++) {
         dVector4 plane;
         dGeomPlaneGetParams(ode->wall[k], plane);
         wall[k] = (struct dig_wall){ { plane[0], plane[1], plane[2] }, plane[3] };
     }
-    return WALLS;
+    return DIG_ODE_WALLS;
 }
 
 size_t dig_ode_scene_collide(struct dig_ode_scene *const ode, const double centre_m[3],

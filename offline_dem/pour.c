@@ -1,3 +1,4 @@
+#include "offline_dem/bodies.h"
 #include "offline_dem/dig.h"
 #include "offline_dem/level.h"
 #include "offline_dem/packing.h"
@@ -85,18 +86,28 @@ static void assign_layers(const struct dig_scene *const scene, struct dig_bed *c
 
 // One pouring under way.
 struct pour {
-    const struct dig_scene     *scene;
-    const struct dig_gravel    *gravel;
-    const struct dig_ode_scene *ode;
-    struct dig_kinds            kinds;
-    struct dig_world            world;
+    const struct dig_scene  *scene;
+    const struct dig_gravel *gravel;
+    struct dig_ode_scene    *ode;
+    struct dig_kinds         kinds;
+    struct dig_world         world;
 };
+
+static enum dig_status take(const struct pour *const p, const size_t material[],
+                            struct dig_bed *const bed)
+{
+    const enum dig_status status = dig_bed_take(&p->world.grains, material, bed);
+    if (status == DIG_OK && p->world.bodies != NULL) {
+        dig_obstacles_tell(&p->world.bodies->obstacles, bed);
+    }
+    return status;
+}
 
 // Makes the world anew with the layers' materials. The contacts begin again, as they do in a dig.
 static enum dig_status lay(struct pour *const p, struct dig_error *const error)
 {
     struct dig_bed        bed    = { 0 };
-    const enum dig_status status = dig_bed_take(&p->world.grains, p->kinds.material, &bed);
+    const enum dig_status status = take(p, p->kinds.material, &bed);
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
     }
@@ -164,7 +175,7 @@ enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
     }
     if (status == DIG_OK) {
         const size_t *const material = scene->bed.layers > 0 ? p.kinds.material : NULL;
-        status                       = dig_bed_take(&p.world.grains, material, bed);
+        status                       = take(&p, material, bed);
         status                       = status == DIG_OK ? status : dig_setup_explain(status, error);
     }
     dig_setup_finish(&p.world);

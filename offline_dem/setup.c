@@ -69,12 +69,11 @@ static enum dig_status make_grains(const struct dig_scene *const       scene,
     return status;
 }
 
-enum dig_status dig_setup_world(const struct dig_scene *const     scene,
-                                const struct dig_gravel *const    gravel,
-                                const struct dig_ode_scene *const ode,
-                                const struct dig_bed *const bed, const double fall_mps,
-                                struct dig_kinds *const kinds, struct dig_world *const world,
-                                struct dig_error *const error)
+enum dig_status dig_setup_world(const struct dig_scene *const  scene,
+                                const struct dig_gravel *const gravel,
+                                struct dig_ode_scene *const ode, const struct dig_bed *const bed,
+                                const double fall_mps, struct dig_kinds *const kinds,
+                                struct dig_world *const world, struct dig_error *const error)
 {
     struct dig_clump_shape shape  = { 0 };
     struct dig_kinds       found  = { 0 };
@@ -111,6 +110,11 @@ enum dig_status dig_setup_world(const struct dig_scene *const     scene,
     made.walls = dig_ode_scene_walls(ode, made.wall);
     dig_world_init(&made, &grains);
     dig_kinds_set_laws(scene, gravel, &found, &made);
+    if (bodies != NULL) {
+        const struct dig_law_material walls =
+            dig_kinds_between(scene, gravel, 0, DIG_MATERIAL_WALLS);
+        dig_bodies_let_move(bodies, ode, &walls);
+    }
     *kinds = found;
     *world = made;
     return DIG_OK;

@@ -17,11 +17,13 @@ DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
 
 /// A world of this bed with the walls of the ODE scene, without a tool, all of it falling at
 /// fall_mps. *kinds says what its grains are made of. DIG_EINVAL for a bed that cannot be (*error
-/// says which grain), DIG_ENOMEM; then *world is untouched.
-DIG_MUST_CHECK enum dig_status
-dig_setup_world(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                const struct dig_ode_scene *ode, const struct dig_bed *bed, double fall_mps,
-                struct dig_kinds *kinds, struct dig_world *world, struct dig_error *error);
+/// says which grain), DIG_ENOMEM; then *world is untouched. The ODE scene moves the rocks and must
+/// outlive the world.
+DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
+                                               const struct dig_gravel *gravel,
+                                               struct dig_ode_scene *ode, const struct dig_bed *bed,
+                                               double fall_mps, struct dig_kinds *kinds,
+                                               struct dig_world *world, struct dig_error *error);
 
 /// The world and its bodies.
 void dig_setup_finish(struct dig_world *world);
