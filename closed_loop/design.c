@@ -27,7 +27,7 @@ static size_t make_places(const struct dig_surface *const surface, double place[
             const bool has = surface->set->axis_count[a] > 1;
             is_new         = is_new && (has || at[a] == 0);
             place[n][a] =
-                has ? 2.0 * ((double)at[a] + 0.5) / DIG_DESIGN_PLACES_PER_AXIS - 1.0 : 0.0;
+                has ? 2.0 * ((double)at[a] + 0.5) / (double)DIG_DESIGN_PLACES_PER_AXIS - 1.0 : 0.0;
         }
         n += is_new ? 1 : 0;
     }
@@ -44,7 +44,8 @@ static enum dig_status weigh_gravel(const struct dig_surface *const surface,
     double left[DIG_AXES][DIG_DESIGN_PLACES_MAX];
     for (size_t i = 0; i < places; i++) {
         struct dig_design_view v;
-        enum dig_status status = dig_design_look(surface, scatter, t, place[i], DIG_FEATURES, &v);
+        enum dig_status        status =
+            dig_design_look(surface, scatter, t, place[i], DIG_DESIGN_WRENCH, &v);
         if (status == DIG_OK) {
             dig->bits_wrench += dig_design_bits(v.normal) / (double)places;
             status = dig_design_look(surface, scatter, t, place[i], DIG_FEATURE_BINS, &v);
@@ -76,7 +77,7 @@ static void find_partners(struct dig_design *const design, const size_t places,
             double bits = 0.0;
             for (size_t i = 0; i < places; i++) {
                 double both[DIG_AXES * DIG_AXES];
-                for (size_t k = 0; k < DIG_AXES * DIG_AXES; k++) {
+                for (size_t k = 0; k < DIG_DESIGN_SQUARE; k++) {
                     both[k] = normal[t][i][k] + normal[u][i][k];
                 }
                 bits += dig_design_bits(both) / (double)places;

@@ -115,7 +115,7 @@ enum dig_status dig_design_effects(const struct dig_surface *const surface,
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < places && status == DIG_OK; i++) {
         struct dig_design_view v;
-        status = dig_design_look(surface, scatter, t, place[i], DIG_FEATURES, &v);
+        status = dig_design_look(surface, scatter, t, place[i], DIG_DESIGN_WRENCH, &v);
         if (status == DIG_OK) {
             weigh_place(surface, soil, t, place[i], i, &v, dig, s);
         }

@@ -22,7 +22,7 @@ void dig_design_covariance(const struct dig_surface *const surface,
                            const struct dig_scatter *const scatter, const size_t trajectory,
                            const double place[DIG_AXES], const size_t n, double covariance[])
 {
-    assert(surface != NULL && scatter != NULL && n <= DIG_FEATURES);
+    assert(surface != NULL && scatter != NULL && n <= (size_t)DIG_FEATURES);
     double feature[DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS];
     dig_surface_features(surface, trajectory, place, feature, amplitude);
@@ -51,14 +51,14 @@ static enum dig_status fill_nodes(const struct dig_surface *const surface,
                                   struct node node[])
 {
     for (size_t i = 0; i < GRID; i++) {
-        const double at[DIG_AXES]    = { (double)(i / (STEPS_ROLLING * STEPS_DENSITY)),
-                                         (double)(i / STEPS_DENSITY % STEPS_ROLLING),
-                                         (double)(i % STEPS_DENSITY) };
+        const size_t rest            = i / STEPS_DENSITY;
+        const size_t at[DIG_AXES]    = { rest / STEPS_ROLLING, rest % STEPS_ROLLING,
+                                         i % STEPS_DENSITY };
         const double steps[DIG_AXES] = { STEPS_FRICTION, STEPS_ROLLING, STEPS_DENSITY };
         double       feature[DIG_FEATURES];
         double       amplitude[DIG_FORCE_CHANNELS];
         for (int a = 0; a < DIG_AXES; a++) {
-            node[i].place[a] = 2.0 * (at[a] + 0.5) / steps[a] - 1.0;
+            node[i].place[a] = 2.0 * ((double)at[a] + 0.5) / steps[a] - 1.0;
         }
         dig_surface_features(surface, t, node[i].place, feature, amplitude);
         memcpy(node[i].mean, feature, sizeof node[i].mean);

@@ -49,7 +49,7 @@ enum dig_status dig_design_look(const struct dig_surface *const surface,
 double dig_design_bits(const double normal[DIG_AXES * DIG_AXES])
 {
     double m[DIG_AXES * DIG_AXES];
-    for (size_t i = 0; i < DIG_AXES * DIG_AXES; i++) {
+    for (size_t i = 0; i < DIG_DESIGN_SQUARE; i++) {
         m[i] = normal[i] / DIG_DESIGN_PRIOR + (i % (DIG_AXES + 1) == 0 ? 1.0 : 0.0);
     }
     return dig_cholesky(DIG_AXES, m) == DIG_OK ? 0.5 * dig_lower_log_det(DIG_AXES, m) / log(2.0)

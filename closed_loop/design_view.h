@@ -6,7 +6,9 @@
 
 #include "closed_loop/design.h"
 
-#define DIG_DESIGN_PLACES_PER_AXIS 4
+#define DIG_DESIGN_PLACES_PER_AXIS ((size_t)4)
+#define DIG_DESIGN_SQUARE          ((size_t)DIG_AXES * DIG_AXES)
+#define DIG_DESIGN_WRENCH          ((size_t)DIG_FEATURES)
 #define DIG_DESIGN_PLACES_MAX      64
 #define DIG_DESIGN_PRIOR           3.0 // 1 / variance of a place of which nothing is known
 
