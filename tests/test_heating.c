@@ -1,0 +1,123 @@
+// The watch over the time step, on a small poured bed that lies still when it may.
+
+#include "tests/dem_fixture.h"
+
+#include "offline_dem/dig.h"
+#include "offline_dem/heating.h"
+
+#define WATCH_s  0.06
+#define SETTLE_s 0.3
+
+static struct dig_bed poured;
+
+static int pour(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = {
+        .name         = "small",
+        .bucket       = { .points  = 5,
+                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
+                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
+                          .width_m = 0.028 },
+        .box          = { 0.0, 0.06, -0.0225, 0.0225, 0.0, 0.03 },
+        .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
+        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
+        .gravity_mps2 = GRAVITY,
+        .time_step_s  = STEP_s,
+        .output_s     = 0.005,
+        .trajectories = 1,
+        .trajectory   = { { .name      = "scratch",
+                            .start_x_m = 0.03,
+                            .start_z_m = 0.06,
+                            .phases    = 1,
+                            .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
+    };
+    const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+    return dig_bed_pour(&scene, &gravel, 3, NULL, &poured, NULL);
+}
+
+static int empty(void **state)
+{
+    (void)state;
+    dig_bed_finish(&poured);
+    return 0;
+}
+
+// The bed in its box, moving downwards.
+static struct dig_world make_bed(const double fall_mps)
+{
+    double *const at = calloc(3 * poured.grains, sizeof *at);
+    assert_non_null(at);
+    double(*const x)[3] = (double(*)[3])at;
+    for (size_t i = 0; i < poured.grains; i++) {
+        x[i][0] = poured.x_m[i];
+        x[i][1] = poured.y_m[i];
+        x[i][2] = poured.z_m[i];
+    }
+    struct dig_world world =
+        dem_world(poured.grains, (const double(*)[3])x, dem_material(0.5, 0.5));
+    free(at);
+    world.gravity_mps2[2] = -GRAVITY;
+    dem_add_wall(&world, 1.0, 0.0, 0.0, 0.0);
+    dem_add_wall(&world, -1.0, 0.0, 0.0, -0.06);
+    dem_add_wall(&world, 0.0, 1.0, 0.0, -0.0225);
+    dem_add_wall(&world, 0.0, -1.0, 0.0, -0.0225);
+    dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
+    for (size_t i = 0; i < world.grains.n; i++) {
+        world.grains.motion[i].v_mps[2] = -fall_mps;
+    }
+    return world;
+}
+
+static bool heats(const double step_s, const double fall_mps, const double watch_s)
+{
+    struct dig_world world = make_bed(fall_mps);
+    world.dt_s             = step_s;
+    bool found             = false;
+    assert_int_equal(dig_heating_watch(&world, (size_t)(watch_s / step_s), &found), DIG_OK);
+    dig_world_finish(&world);
+    return found;
+}
+
+static void a_safe_step_leaves_a_resting_bed_alone(void **state)
+{
+    (void)state;
+    assert_false(heats(3e-5, 0.0, WATCH_s));
+    assert_false(heats(STEP_s, 0.0, WATCH_s));
+}
+
+static void a_step_that_heats_is_noticed(void **state)
+{
+    (void)state;
+    assert_true(heats(1e-4, 0.0, WATCH_s));
+    assert_true(heats(1.2e-4, 0.0, WATCH_s));
+}
+
+// It moves at first, but comes to rest.
+static void a_bed_that_comes_to_rest_does_not_count(void **state)
+{
+    (void)state;
+    assert_false(heats(STEP_s, 0.3, SETTLE_s));
+}
+
+static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
+{
+    (void)state;
+    struct dig_world world = make_bed(0.0);
+    world.dt_s             = 5e-3;
+    bool found             = false;
+    assert_int_equal(dig_heating_watch(&world, 3000, &found), DIG_EINVAL);
+    assert_false(found);
+    dig_world_finish(&world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_safe_step_leaves_a_resting_bed_alone),
+        cmocka_unit_test(a_step_that_heats_is_noticed),
+        cmocka_unit_test(a_bed_that_comes_to_rest_does_not_count),
+        cmocka_unit_test(a_step_that_explodes_is_an_error_and_writes_nothing),
+    };
+    return cmocka_run_group_tests(tests, pour, empty);
+}
