@@ -5,9 +5,9 @@
 //
 //   cov(one dig) = factor(strength) amplitude^2 S,   strength = log(amplitude of My / density)
 //
-// S is pooled over all packings of all entries, drawn a little towards its diagonal, widened by
-// what digs that took no part in it exceed it, and given a floor of DIG_SCATTER_FLOOR of the
-// amplitude: no DEM knows the curves better than that.
+// S is pooled over all packings of all entries, drawn a little towards correlations that depend on
+// the distance along the dig alone, widened by what digs that took no part in it exceed it, and
+// given a floor of DIG_SCATTER_FLOOR of the amplitude: no DEM knows the curves better than that.
 
 #ifndef DIG_CLOSED_LOOP_SCATTER_H
 #define DIG_CLOSED_LOOP_SCATTER_H
