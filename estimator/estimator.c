@@ -1,6 +1,7 @@
 #include "estimator/estimator.h"
 
 #include "core/units.h"
+#include "estimator/cylinder.h"
 #include "estimator/estimator_state.h"
 #include "estimator/linkage.h"
 #include "estimator/wrench.h"
@@ -14,6 +15,9 @@ static const double tie_share = 0.125;
 
 // A dig shorter than this share of its trajectory is not worth matching.
 static const double least_progress = 0.2;
+
+// Rates of the joints come from the angles of so long.
+static const double rates_window_s = 0.25;
 
 // Filters step over longer gaps as if they were this long.
 static const double longest_step_s = 0.1;
@@ -313,6 +317,55 @@ static void follow_dig(struct dig_estimator *const e, const double time_s, const
     }
 }
 
+enum dig_status dig_estimator_correct(struct dig_estimator *const        estimator,
+                                      const struct dig_correction *const correction)
+{
+    assert(estimator != NULL);
+    if (correction == NULL) {
+        estimator->corrects = false;
+        return DIG_OK;
+    }
+    const enum dig_status status = dig_correction_check(estimator->machine, correction);
+    if (status != DIG_OK) {
+        return status;
+    }
+    estimator->corrects   = true;
+    estimator->correction = *correction;
+    estimator->corrected  = dig_correction_machine(estimator->machine, correction);
+    estimator->rates      = (struct dig_rates_filter){ .window_s = rates_window_s };
+    return DIG_OK;
+}
+
+// The wrench of the machine as it is taken to be. With a delay the parabola of the last angles is
+// read off where they were when the pressures were.
+static enum dig_status solve(struct dig_estimator *const e, const struct dig_sample *const sample,
+                             struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    if (!e->corrects) {
+        return dig_wrench_solve(e->machine, sample, wrench, front);
+    }
+    if (!dig_sample_is_complete(sample)) {
+        return DIG_ESTALE;
+    }
+    struct dig_sample   at = *sample;
+    struct dig_rates    rates;
+    const double *const now_rad = &sample->value[DIG_SIGNAL_BOOM_rad];
+    if (!isfinite(now_rad[0]) || !isfinite(now_rad[1]) || !isfinite(now_rad[2])) {
+        return DIG_EINVAL;
+    }
+    rates =
+        dig_rates_step(&e->rates, sample->time_ns, now_rad,
+                       dig_reading_sigma(e->machine->angle_step_rad, e->machine->angle_sigma_rad));
+    const double delay_s = e->correction.delay_s;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        const double back_rad =
+            delay_s * (rates.velocity_radps[j] - 0.5 * delay_s * rates.acceleration_radps2[j]);
+        at.value[DIG_SIGNAL_BOOM_rad + j] -= back_rad;
+        rates.velocity_radps[j] -= delay_s * rates.acceleration_radps2[j];
+    }
+    return dig_wrench_correct(&e->corrected, &e->correction, &at, &rates, wrench, front);
+}
+
 enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
                                    const struct dig_sample *const sample,
                                    struct dig_estimate *const     estimate)
@@ -324,7 +377,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     }
     struct dig_wrench     wrench;
     struct dig_front      front;
-    const enum dig_status status = dig_wrench_solve(e->machine, sample, &wrench, &front);
+    const enum dig_status status = solve(e, sample, &wrench, &front);
     if (status != DIG_OK) {
         return status;
     }

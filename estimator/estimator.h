@@ -128,6 +128,16 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
                                                   const struct dig_curve_set          *set,
                                                   const struct dig_estimator_settings *settings);
 
+struct dig_correction; // estimator/correction.h
+
+/// From now on the machine is taken as corrected, and its links' inertia is taken off with rates
+/// from the angles of the last quarter second. The machine's geometry, weights and inertias are the
+/// corrected ones; a delay puts the pose back to the time of the pressures. NULL: as its file says,
+/// without inertia. DIG_EINVAL, DIG_EUNREACHABLE as dig_correction_check(); then nothing changes.
+/// Between ticks; about a millisecond.
+DIG_MUST_CHECK enum dig_status dig_estimator_correct(struct dig_estimator        *estimator,
+                                                     const struct dig_correction *correction);
+
 /// One tick. DIG_ESTALE: an incomplete sample or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
 /// for the tick in which a dig ends while nothing is lent (one to two milliseconds: alignment,

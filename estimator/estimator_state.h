@@ -3,9 +3,11 @@
 #ifndef DIG_ESTIMATOR_ESTIMATOR_STATE_H
 #define DIG_ESTIMATOR_ESTIMATOR_STATE_H
 
+#include "estimator/correction.h"
 #include "estimator/estimator.h"
 #include "estimator/path.h"
 #include "estimator/phase.h"
+#include "estimator/rates.h"
 #include "estimator/route.h"
 #include "estimator/track.h"
 #include "estimator/window.h"
@@ -24,6 +26,12 @@ struct dig_estimator {
     struct dig_estimator_settings settings;
     double                        lambda;
     struct dig_route              route[DIG_TRAJECTORY_MAX];
+    bool                          corrects;
+    struct dig_correction         correction;
+    struct dig_machine            corrected; // the machine with it
+
+    // of the last quarter second, while it corrects
+    struct dig_rates_filter rates;
 
     // of the sample before
     bool    started;

@@ -355,6 +355,9 @@ static enum dig_status take_top(const struct work *const            work,
     status = status == DIG_OK ? take_path(work, "table", text->table, &config->table) : status;
     status =
         status == DIG_OK ? take_path(work, "machine", text->machine, &config->machine) : status;
+    if (status == DIG_OK && text->model != NULL) {
+        status = take_path(work, "model", text->model, &config->model);
+    }
 
     config->tick_s           = 1.0 / tick_Hz;
     config->estimator.tick_s = config->tick_s;

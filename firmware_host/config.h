@@ -27,6 +27,7 @@ struct dig_path {
 
 struct dig_config {
     struct dig_path table, machine;
+    struct dig_path model;     // what the closed loop found; "": none
     char            scene[65]; // the scene the table must be of: its name or its hash; "": any
 
     enum dig_input_kind       kind;

@@ -98,6 +98,7 @@ static const cyaml_schema_field_t config_fields[] = {
     TEXT(config_text, table, POINTER),
     TEXT(config_text, machine, POINTER),
     TEXT(config_text, scene, OPTIONAL),
+    TEXT(config_text, model, OPTIONAL),
     CYAML_FIELD_MAPPING("input", REQUIRED, struct dig_config_text, input, input_fields),
     NUMBER(config_text, tick_Hz),
     NUMBER(config_text, stale_ms),

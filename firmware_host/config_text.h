@@ -61,7 +61,7 @@ struct dig_publish_text {
 };
 
 struct dig_config_text {
-    char                      *table, *machine, *scene;
+    char                      *table, *machine, *scene, *model;
     struct dig_input_text      input;
     double                    *tick_Hz, *stale_ms, *time_scale;
     struct dig_realtime_text  *realtime;

@@ -4,6 +4,7 @@
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "files/yaml.h"
+#include "firmware_host/load_model.h"
 #include "tables/load.h"
 
 #include <assert.h>
@@ -92,6 +93,9 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
     if (status == DIG_OK) {
         status = check_scene(path, &l.config, &l.machine, l.set, error);
     }
+    if (status == DIG_OK && l.config.model.text[0] != '\0') {
+        status = dig_load_model(&l.config, &l.machine, l.set, &l.correction, &l.corrects, error);
+    }
     if (status != DIG_OK) {
         dig_loaded_finish(&l);
         return status;
@@ -109,6 +113,11 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
     enum dig_status       status = dig_config_read(path, &config, error);
     status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
     status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
+    if (status == DIG_OK && config.model.text[0] != '\0') {
+        struct dig_correction unused; // the machine is fixed at start
+        bool                  corrects;
+        status = dig_load_model(&config, machine, loaded, &unused, &corrects, error);
+    }
     if (status != DIG_OK) {
         dig_curve_set_destroy(loaded);
         return status;

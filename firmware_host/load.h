@@ -5,6 +5,7 @@
 
 #include "core/machine.h"
 #include "core/recording.h"
+#include "estimator/correction.h"
 #include "firmware_host/config.h"
 #include "firmware_host/signal_map.h"
 
@@ -14,9 +15,11 @@
 struct dig_loaded {
     struct dig_config            config;
     struct dig_machine           machine;
-    struct dig_curve_set        *set;
-    struct dig_signal_map        map;       // of a bus
-    struct dig_machine_recording recording; // of a replay
+    bool                         corrects;   // a model names effects of the machine
+    struct dig_correction        correction; // what they say
+    struct dig_curve_set        *set;        // with the model's effects of the soil in it
+    struct dig_signal_map        map;        // of a bus
+    struct dig_machine_recording recording;  // of a replay
 };
 
 /// Errors as dig_daemon_create(). Writes on success only; free with dig_loaded_finish().

@@ -1,0 +1,110 @@
+#include "firmware_host/load_model.h"
+
+#include "estimator/effects/effect.h"
+#include "files/model_json.h"
+#include "files/yaml.h"
+#include "tables/load.h"
+#include "tables/load_effects.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+// The file of that name beside another, when there is one; else the name as it stands.
+static void look_beside(const char *const beside, const char *const name, const size_t size,
+                        char path[])
+{
+    const char *const slash  = strrchr(beside, '/');
+    const char *const last   = strrchr(name, '/');
+    const int         folder = slash == NULL ? 0 : (int)(slash - beside) + 1;
+    const int         length =
+        snprintf(path, size, "%.*s%s", folder, beside, last == NULL ? name : last + 1);
+    if (length < 0 || (size_t)length >= size || access(path, R_OK) != 0) {
+        (void)snprintf(path, size, "%s", name);
+    }
+}
+
+static bool needs_curves(const struct dig_model *const model)
+{
+    bool needs = model->unlisted != NULL;
+    for (size_t e = 0; e < model->effects; e++) {
+        needs = needs || !dig_effect_is_of_machine(model->effect[e].effect);
+    }
+    return needs;
+}
+
+// Every curve of *set with the model's effects in it; the table is read once more, as it is.
+static enum dig_status change_curves(const struct dig_config *const config,
+                                     const struct dig_model *const  model,
+                                     struct dig_curve_set *const set, struct dig_error *const error)
+{
+    struct dig_curve_set  *plain   = NULL;
+    struct dig_effect_set *effects = NULL;
+    enum dig_status        status  = dig_table_load(config->table.text, &plain, error);
+    if (status == DIG_OK &&
+        (plain->entries != set->entries || strcmp(plain->scene_hash, set->scene_hash) != 0)) {
+        status = dig_error_set(error, DIG_EINVAL, "%s: it changed while it was read",
+                               config->table.text);
+    }
+    if (status == DIG_OK && model->effects_table[0] != '\0') {
+        char path[DIG_MODEL_PATH_SIZE];
+        look_beside(config->table.text, model->effects_table, sizeof path, path);
+        status = dig_effects_load(path, plain, &effects, error);
+    }
+    if (status == DIG_OK && dig_effects_apply(plain, effects, model, set) != DIG_OK) {
+        status =
+            dig_yaml_refuse(config->model.text, "effects", error,
+                            "an effect of the soil that no table at hand tells, or a parameter "
+                            "it does not have; expected those of the table of effects");
+    }
+    dig_effect_set_destroy(effects);
+    dig_curve_set_destroy(plain);
+    return status;
+}
+
+static enum dig_status check(const struct dig_config *const    config,
+                             const struct dig_model *const     model,
+                             const struct dig_machine *const   machine,
+                             const struct dig_curve_set *const set,
+                             struct dig_correction *const correction, struct dig_error *const error)
+{
+    const char *const path = config->model.text;
+    if (strcmp(model->scene_hash, set->scene_hash) != 0) {
+        return dig_yaml_refuse(path, "scene_hash", error, "%.12s…, but %s is of scene %.12s…",
+                               model->scene_hash, config->table.text, set->scene_hash);
+    }
+    if (dig_effects_correction(model, correction) != DIG_OK ||
+        dig_correction_check(machine, correction) != DIG_OK) {
+        return dig_yaml_refuse(path, "effects", error,
+                               "the machine %s cannot be so, expected parameters of the catalogue "
+                               "with which its linkages still close",
+                               machine->name);
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_load_model(const struct dig_config *const  config,
+                               const struct dig_machine *const machine,
+                               struct dig_curve_set *const     set,
+                               struct dig_correction *const correction, bool *const corrects,
+                               struct dig_error *const error)
+{
+    assert(config != NULL && machine != NULL && set != NULL);
+    assert(correction != NULL && corrects != NULL);
+    struct dig_model      model  = { .effects = 0 };
+    struct dig_correction found  = { .delay_s = 0.0 };
+    enum dig_status       status = dig_model_read(config->model.text, &model, error);
+    if (status == DIG_OK) {
+        status = check(config, &model, machine, set, &found, error);
+    }
+    if (status == DIG_OK && needs_curves(&model)) {
+        status = change_curves(config, &model, set, error);
+    }
+    if (status == DIG_OK) {
+        *corrects   = !dig_correction_is_none(&found);
+        *correction = found;
+    }
+    dig_model_finish(&model);
+    return status;
+}

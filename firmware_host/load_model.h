@@ -1,0 +1,25 @@
+// What the closed loop found, put to use: a model file's effects of the soil go into the table's
+// curves, those of the machine become a correction.
+
+#ifndef DIG_FIRMWARE_HOST_LOAD_MODEL_H
+#define DIG_FIRMWARE_HOST_LOAD_MODEL_H
+
+#include "core/curve.h"
+#include "core/machine.h"
+#include "estimator/correction.h"
+#include "firmware_host/config.h"
+
+#include <stdbool.h>
+
+/// Reads config->model and changes the curves of *set; corrects: the model names effects of the
+/// machine. Its table of effects is looked for beside config->table first, then where the model
+/// says. DIG_EINVAL, DIG_EIO, DIG_ESCHEMA with the file and what was expected: also a model of
+/// another scene, an effect no table at hand tells, or a correction the machine cannot have; then
+/// *set may be half changed and nothing else is written.
+DIG_MUST_CHECK enum dig_status dig_load_model(const struct dig_config  *config,
+                                              const struct dig_machine *machine,
+                                              struct dig_curve_set     *set,
+                                              struct dig_correction *correction, bool *corrects,
+                                              struct dig_error *error);
+
+#endif // DIG_FIRMWARE_HOST_LOAD_MODEL_H
