@@ -3,6 +3,7 @@
 #ifndef DIG_TOOLS_DIGLOOP_COMMANDS_H
 #define DIG_TOOLS_DIGLOOP_COMMANDS_H
 
+#include "closed_loop/trace.h"
 #include "core/curve.h"
 #include "core/effect_set.h"
 #include "core/error.h"
@@ -38,6 +39,11 @@ DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *optio
 DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_options *options,
                                               const struct dig_curve_set   *set,
                                               struct dig_error             *error);
+
+/// Writes the model file asked for: the trace's gravel and effects, with the files they need.
+DIG_MUST_CHECK enum dig_status
+digloop_save_model(const struct digloop_options *options, const struct dig_curve_set *set,
+                   const char *effects, const struct dig_trace *trace, struct dig_error *error);
 
 /// The table of effects asked for, or the one beside the table if there is one; path names it, ""
 /// when there is none: then it says so on standard error and leaves *effects. Free with

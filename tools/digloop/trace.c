@@ -61,11 +61,10 @@ static enum dig_status write_json(const char *const path, const struct dig_trace
                                       : dig_error_set(error, DIG_EIO, "%s: not written", path);
 }
 
-static enum dig_status write_results(const struct digloop_options *const  options,
-                                     const struct dig_curve_set *const    set,
-                                     const struct digloop_campaign *const campaign,
-                                     const struct dig_trace *const        trace,
-                                     struct dig_error *const              error)
+static enum dig_status
+write_results(const struct digloop_options *const options, const struct dig_curve_set *const set,
+              const char *const effects, const struct digloop_campaign *const campaign,
+              const struct dig_trace *const trace, struct dig_error *const error)
 {
     enum dig_status status = DIG_OK;
     if (options->json_out != NULL) {
@@ -80,6 +79,9 @@ static enum dig_status write_results(const struct digloop_options *const  option
             .measured = campaign->measured,
         };
         status = dig_trace_html(trace, &subject, options->html, error);
+    }
+    if (status == DIG_OK && options->add != NULL) {
+        status = digloop_save_model(options, set, effects, trace, error);
     }
     // People read on standard error when a program reads standard output.
     const bool for_program = options->json_out != NULL && strcmp(options->json_out, "-") == 0;
@@ -111,7 +113,7 @@ enum dig_status digloop_trace(const struct digloop_options *const options,
         }
     }
     if (status == DIG_OK) {
-        status = write_results(options, set, &campaign, trace, error);
+        status = write_results(options, set, path, &campaign, trace, error);
     }
     if (trace != NULL) {
         dig_trace_finish(trace);

@@ -1,0 +1,50 @@
+// What a trace found as a model file that digsightd loads.
+
+#include "files/model_json.h"
+#include "tools/digloop/commands.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A tooth goes on wearing from where the campaign left it.
+static void count_digs(const size_t digs, struct dig_model_effect *const effect)
+{
+    if (effect->effect == DIG_EFFECT_WEAR && effect->parameters < DIG_MODEL_PARAMETERS_MAX) {
+        const double done = (double)digs;
+        effect->parameter[effect->parameters++] =
+            (struct dig_model_parameter){ "digs", done, done, done };
+    }
+}
+
+enum dig_status digloop_save_model(const struct digloop_options *const options,
+                                   const struct dig_curve_set *const set, const char *const effects,
+                                   const struct dig_trace *const trace,
+                                   struct dig_error *const       error)
+{
+    struct dig_model *const model = calloc(1, sizeof *model);
+    if (model == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    (void)snprintf(model->table, sizeof model->table, "%s", options->table);
+    (void)snprintf(model->effects_table, sizeof model->effects_table, "%s", effects);
+    memcpy(model->scene_hash, set->scene_hash, sizeof model->scene_hash);
+    model->gravel       = trace->gravel;
+    model->low          = trace->low;
+    model->high         = trace->high;
+    model->noise_floor  = trace->noise_floor;
+    model->error_before = trace->before.value;
+    model->error_after  = trace->after.value;
+    model->effects      = trace->effects;
+    (void)snprintf(model->provenance, sizeof model->provenance, "digloop %s trace %.200s",
+                   DIG_VERSION, options->recording[0]);
+    for (size_t e = 0; e < trace->effects; e++) {
+        model->effect[e] = trace->effect[e];
+        count_digs(trace->digs, &model->effect[e]);
+    }
+    model->unlisted              = trace->unlisted; // the trace keeps it
+    const enum dig_status status = dig_model_save(options->add, model, error);
+    free(model);
+    return status;
+}
