@@ -10,6 +10,9 @@ static const double back_share = 0.25;
 // How fast the expectation follows the sender's clock.
 static const double follow_share = 0.1;
 
+// More cycles without a frame than chance makes: perhaps the host was only busy.
+static const int64_t pause = 2;
+
 static bool follow_counter(struct dig_frame_watch *const watch, const uint64_t mod,
                            const uint64_t counter)
 {
@@ -34,7 +37,7 @@ static void follow_cycle(struct dig_frame_watch *const watch, const double cycle
     const double off_ns      = (double)time_ns - expected_ns;
     watch->due_ns            = llround(expected_ns + cycle_ns + follow_share * off_ns);
     watch->total++;
-    watch->frames = late < 0 && watch->owed > 0 ? 0 : watch->frames + 1;
+    watch->frames = (late < 0 && watch->owed > 0) || late > pause ? 0 : watch->frames + 1;
     if (watch->frames >= DIG_WATCH_FRAMES || watch->total >= DIG_WATCH_LONGEST) {
         watch->missed += watch->owed > 0 ? watch->owed : 0;
         watch->owed   = 0;

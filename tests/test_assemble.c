@@ -248,6 +248,101 @@ static void time_that_goes_back_gives_no_sample(void **state)
     assert_true(dig_assembler_take(&a, &on, &s));
 }
 
+// Angles every 10 ms, pressures every 50 ms and out of step: values belong to one moment all the
+// same.
+static void messages_of_unlike_rates_are_brought_to_one_time(void **state)
+{
+    (void)state;
+    struct dig_assembler_settings slow = can;
+    slow.coherent_s                    = 0.012;
+    slow.frame[0].delay_s              = 0.003; // the pressures are older than their stamps say
+    struct dig_assembler a;
+    dig_assembler_init(&a, &slow);
+    int samples = 0;
+    for (int64_t ms = 0; ms < 2000; ms++) {
+        const int64_t      at_ns  = (1000 + ms) * MS;
+        const double       past_s = 1e-3 * (double)(ms - 3);
+        struct dig_reading r =
+            ms % 50 == 7 ? pressures(at_ns, past_s) : angles(at_ns, 1e-3 * (double)ms);
+        struct dig_sample s;
+        if ((ms % 50 == 7 || ms % 10 == 2) && dig_assembler_take(&a, &r, &s)) {
+            const double t_s = 1e-9 * (double)(s.time_ns - 1000 * MS);
+            if (samples++ == 0) {
+                continue; // there is nothing before the first pressures
+            }
+            assert_close(s.value[DIG_SIGNAL_BOOM_HEAD_Pa], t_s, 1e-9);
+            assert_close(s.value[DIG_SIGNAL_BOOM_rad], t_s, 1e-9);
+        }
+    }
+    assert_in_range(samples, 38, 40);
+}
+
+static void a_value_that_jumps_is_dropped_until_it_could_have_come_there(void **state)
+{
+    (void)state;
+    struct dig_assembler_settings careful     = poll_settings;
+    careful.max_rate[DIG_SIGNAL_BOOM_HEAD_Pa] = 100.0; // and so 2 at once, and 1 more each 10 ms
+    struct dig_assembler a;
+    dig_assembler_init(&a, &careful);
+    struct dig_sample s;
+    for (int64_t i = 0; i < 60; i++) {
+        struct dig_reading r             = poll(1000 * MS + i * 10 * MS, (uint64_t)i);
+        r.value[DIG_SIGNAL_BOOM_HEAD_Pa] = i == 10 ? 50.0 : i >= 20 ? 11.0 : 1.0;
+        assert_true(dig_assembler_take(&a, &r, &s));
+        // 10 away: believed once 20 ms and 80 ms are over.
+        assert_true(s.valid[DIG_SIGNAL_BOOM_HEAD_Pa] == !(i == 10 || (i >= 20 && i < 27)));
+        assert_true(s.valid[DIG_SIGNAL_BOOM_ROD_Pa]);
+    }
+    assert_int_equal(a.drops.jump, 1 + 7);
+}
+
+static void frames_that_repeat_or_fail_to_come_are_counted(void **state)
+{
+    (void)state;
+    struct dig_assembler_settings counted = can;
+    counted.frame[0].counter_mod          = 16;
+    counted.frame[1].cycle_s              = 0.010;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &counted);
+    struct dig_sample s;
+    int               samples = 0;
+    for (int64_t i = 0; i < 200; i++) {
+        struct dig_reading       p = pressures(1000 * MS + i * 10 * MS, 1.0);
+        const struct dig_reading g = angles(1000 * MS + i * 10 * MS, 1.0);
+        p.counter                  = (uint64_t)(i == 50 ? 49 : i); // the one before again
+        if (i != 20 && i != 21) {
+            (void)dig_assembler_take(&a, &p, &s);
+        }
+        samples += i != 100 && dig_assembler_take(&a, &g, &s) ? 1 : 0;
+    }
+    assert_int_equal(a.drops.repeated, 1);
+    assert_int_equal(a.drops.missed, 2 + 1 + 1); // two, the one replaced, the angles
+    assert_int_equal(samples, 200 - 2 - 1 - 1);
+}
+
+static void pressures_that_freeze_under_a_moving_front_stop_samples(void **state)
+{
+    (void)state;
+    struct dig_assembler_settings watchful = poll_settings;
+    watchful.stuck_s                       = 0.5;
+    struct dig_assembler a;
+    dig_assembler_init(&a, &watchful);
+    struct dig_sample s;
+    int               during = 0, after = 0;
+    for (int64_t i = 0; i < 300; i++) {
+        struct dig_reading r             = poll(1000 * MS + i * 10 * MS, (uint64_t)i);
+        const bool         stands        = i >= 100 && i < 200;
+        r.value[DIG_SIGNAL_BOOM_HEAD_Pa] = stands ? 7.0 : (double)i;
+        r.value[DIG_SIGNAL_BOOM_rad]     = 0.004 * (double)i;
+        const bool came                  = dig_assembler_take(&a, &r, &s);
+        during += stands && came ? 1 : 0;
+        after += i >= 200 && came ? 1 : 0;
+    }
+    assert_in_range(during, 25, 27); // 0.1 rad
+    assert_int_equal(after, 100);
+    assert_int_equal(a.drops.stuck, 100 - during);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +353,10 @@ int main(void)
         cmocka_unit_test(a_counter_that_stands_still_stops_samples_until_it_moves),
         cmocka_unit_test(a_poll_that_repeats_the_counter_gives_no_second_sample),
         cmocka_unit_test(time_scale_makes_a_fast_bench_look_like_the_machine),
+        cmocka_unit_test(messages_of_unlike_rates_are_brought_to_one_time),
+        cmocka_unit_test(a_value_that_jumps_is_dropped_until_it_could_have_come_there),
+        cmocka_unit_test(frames_that_repeat_or_fail_to_come_are_counted),
+        cmocka_unit_test(pressures_that_freeze_under_a_moving_front_stop_samples),
         cmocka_unit_test(time_that_goes_back_gives_no_sample),
     };
     return cmocka_run_group_tests_name("assemble", tests, NULL, NULL);

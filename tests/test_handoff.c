@@ -170,9 +170,32 @@ static void between_threads_a_slot_only_moves_on_and_tears_nothing(void **state)
     assert_int_equal(pthread_join(producer, NULL), 0);
 }
 
+static void what_is_looked_at_stays_until_the_next_look(void **state)
+{
+    (void)state;
+    int               memory[3];
+    struct dig_latest latest;
+    dig_latest_init(&latest, sizeof memory[0], memory);
+    assert_null(dig_latest_look(&latest));
+    for (int i = 1; i < 20; i += 3) {
+        dig_latest_put(&latest, &i);
+        const int *const seen = dig_latest_look(&latest);
+        assert_non_null(seen);
+        for (int newer = i + 1; newer < i + 3; newer++) {
+            dig_latest_put(&latest, &newer);
+            assert_int_equal(*seen, i);
+        }
+        const int *const next = dig_latest_look(&latest);
+        assert_non_null(next);
+        assert_int_equal(*next, i + 2);
+        assert_null(dig_latest_look(&latest));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_looked_at_stays_until_the_next_look),
         cmocka_unit_test(a_ring_gives_back_in_order_and_says_full_and_empty),
         cmocka_unit_test(a_ring_survives_its_counters_running_over),
         cmocka_unit_test(a_slot_gives_the_latest_once),

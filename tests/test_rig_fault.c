@@ -19,6 +19,11 @@ static void every_kind_is_read_with_its_time(void **state)
     assert_int_equal(parse("frozen@1").kind, DIG_RIG_FAULT_FROZEN);
     assert_int_equal(parse("missing@1").kind, DIG_RIG_FAULT_MISSING);
     assert_int_equal(parse("out-of-range@1").kind, DIG_RIG_FAULT_OUT_OF_RANGE);
+    assert_int_equal(parse("stuck-pressures@1").kind, DIG_RIG_FAULT_STUCK_PRESSURES);
+    assert_int_equal(parse("stuck-angles@1").kind, DIG_RIG_FAULT_STUCK_ANGLES);
+    assert_int_equal(parse("slow=2@1").kind, DIG_RIG_FAULT_SLOW);
+    assert_close(parse("drop=0.25@1:2").amount, 0.25, 0.0);
+    assert_close(parse("drop=0.25@1:2").end_s, 3.0, 0.0);
     assert_close(parse("frozen@5.5:2").begin_s, 5.5, 0.0);
     assert_close(parse("frozen@5.5:2").end_s, 7.5, 0.0);
     assert_true(isinf(parse("frozen@0").end_s));
@@ -27,10 +32,12 @@ static void every_kind_is_read_with_its_time(void **state)
 static void nonsense_is_refused_and_writes_nothing(void **state)
 {
     (void)state;
-    static const char *const bad[] = { "",          "frozen",      "frozen@",    "frozen@x",
-                                       "frozen@-1", "frozen@1:",   "frozen@1:0", "frozen@1:-2",
-                                       "frozen@1x", "frozen@1:2x", "froze@1",    "frozen2@1",
-                                       "@1",        "frozen@nan",  "frozen@inf", "frozen@1:nan" };
+    static const char *const bad[] = { "",           "frozen",      "frozen@",      "frozen@x",
+                                       "frozen@-1",  "frozen@1:",   "frozen@1:0",   "frozen@1:-2",
+                                       "frozen@1x",  "frozen@1:2x", "froze@1",      "frozen2@1",
+                                       "@1",         "drop@1",      "drop=@1",      "drop=0@1",
+                                       "drop=1.5@1", "drop=x@1",    "frozen=0.1@1", "drop=0.1",
+                                       "frozen@nan", "frozen@inf",  "frozen@1:nan" };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_rig_fault fault = { .begin_s = 42.0 };
         struct dig_error     error = { "" };

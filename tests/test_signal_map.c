@@ -51,6 +51,67 @@ static void golden_pressure_frame_becomes_pascals(void **state)
     assert_false(r.has_alive);
 }
 
+// What SAE J1939-71 sets apart is no value when the map says so, whatever its range allows.
+static void j1939_s_reserved_values_are_not_available(void **state)
+{
+    (void)state;
+    struct dig_signal_map map = can_map();
+    const unsigned        p   = (unsigned)dig_signal_map_group(&map, 0x18FF79E8, true);
+    const unsigned        a   = (unsigned)dig_signal_map_group(&map, 0x18FF7DE8, true);
+    const unsigned        t   = (unsigned)dig_signal_map_group(&map, 0x18FF7EE8, true);
+    map.j1939                 = true;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        map.entry[i].min           = -1e12;
+        map.entry[i].max           = 1e12;
+        map.entry[i].not_available = 0;
+    }
+    struct dig_reading r;
+    const uint8_t      pressure[8] = { 0xFA, 0xFB, 0xFC, 0xFD, 0xFE, 0xFF, 0, 0 };
+    assert_int_equal(dig_signal_map_frame(&map, p, 8, pressure, 0, &r), DIG_OK);
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(r.state[DIG_SIGNAL_BOOM_HEAD_Pa + i],
+                         i == 0 ? DIG_READING_OK : DIG_READING_NOT_AVAILABLE);
+    }
+    const uint8_t angle[8] = { 0xFF, 0xFA, 0x00, 0xFB, 0x12, 0xFE, 0, 0 };
+    assert_int_equal(dig_signal_map_frame(&map, a, 8, angle, 0, &r), DIG_OK);
+    assert_int_equal(r.state[DIG_SIGNAL_BOOM_rad], DIG_READING_OK);
+    assert_int_equal(r.state[DIG_SIGNAL_ARM_rad], DIG_READING_NOT_AVAILABLE);
+    assert_int_equal(r.state[DIG_SIGNAL_BUCKET_rad], DIG_READING_NOT_AVAILABLE);
+    for (unsigned raw = 0x3FFC; raw <= 0x3FFF; raw++) { // 14 bits
+        const uint8_t tilt[8] = { 0, 0, (uint8_t)raw, (uint8_t)(raw >> 8) };
+        assert_int_equal(dig_signal_map_frame(&map, t, 8, tilt, 0, &r), DIG_OK);
+        assert_int_equal(r.state[DIG_SIGNAL_PITCH_rad],
+                         raw < 0x3FFE ? DIG_READING_OK : DIG_READING_NOT_AVAILABLE);
+    }
+}
+
+static void a_frame_with_a_wrong_checksum_is_refused(void **state)
+{
+    (void)state;
+    struct dig_dbc        dbc;
+    struct dig_signal_map map;
+    assert_int_equal(dig_dbc_read("tests/data/sealed/zx200_sealed.dbc", &dbc, NULL), DIG_OK);
+    assert_int_equal(dig_signal_map_read("tests/data/sealed/signals.yaml", &dbc, &map, NULL),
+                     DIG_OK);
+    dig_dbc_finish(&dbc);
+    const int group = dig_signal_map_group(&map, 0x18FF79E8, true);
+    assert_true(group >= 0);
+    assert_int_equal(map.group[group].frame.counter_mod, 16);
+    assert_close(map.group[group].frame.cycle_s, 0.010, 1e-12);
+
+    // 0xA2: CRC-8 SAE J1850 of 69 37 32 37 32 37 F5, worked out with another program.
+    const uint8_t      good[8] = { 0x69, 0x37, 0x32, 0x37, 0x32, 0x37, 0xF5, 0xA2 };
+    uint8_t            bad[8];
+    struct dig_reading r = { .time_ns = 42 };
+    memcpy(bad, good, 8);
+    bad[0] ^= 1U;
+    assert_int_equal(dig_signal_map_frame(&map, (unsigned)group, 8, bad, 1, &r), DIG_ESTALE);
+    assert_int_equal(r.time_ns, 42);
+    assert_int_equal(dig_signal_map_frame(&map, (unsigned)group, 8, good, 1, &r), DIG_OK);
+    assert_int_equal(r.counter, 5);
+    assert_close(r.value[DIG_SIGNAL_BOOM_HEAD_Pa], 11e6, 1e-6);
+}
+
 static void the_alive_counter_and_the_optional_signals_are_read(void **state)
 {
     (void)state;
@@ -245,6 +306,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(golden_pressure_frame_becomes_pascals),
+        cmocka_unit_test(j1939_s_reserved_values_are_not_available),
+        cmocka_unit_test(a_frame_with_a_wrong_checksum_is_refused),
         cmocka_unit_test(the_alive_counter_and_the_optional_signals_are_read),
         cmocka_unit_test(ids_are_told_apart_and_short_frames_refused),
         cmocka_unit_test(golden_register_block_becomes_si),

@@ -1,0 +1,67 @@
+// Tests for firmware_host/stuck.c
+
+#include "firmware_host/stuck.h"
+
+#include "tests/testlib.h"
+
+#define MS 1000000LL
+
+// A front that moves at 0.2 rad/s, its pressures with it; what stands stands from sample `from` on.
+static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, const double boom,
+                           const double pressure_Pa, const int from)
+{
+    struct dig_stuck stuck = { 0 };
+    for (int i = 0; i < 1000; i++) {
+        const int         a = angles_stand && i > from ? from : i;
+        const int         p = pressures_stand && i > from ? from : i;
+        struct dig_sample s = { .time_ns = 1000 * MS + i * 10 * MS };
+        for (int k = 0; k < 3; k++) {
+            s.value[DIG_SIGNAL_BOOM_rad + k] = k == 2 ? 0.002 * a : boom * 0.002 * a;
+        }
+        for (int k = 0; k < 6; k++) {
+            s.value[DIG_SIGNAL_BOOM_HEAD_Pa + k] = 5e6 + pressure_Pa * (p % 50) / 50.0;
+        }
+        if (dig_stuck_step(&stuck, 0.5, &s)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void values_that_move_are_never_stuck(void **state)
+{
+    (void)state;
+    assert_int_equal(first_stuck(false, false, 1.0, 3e6, 0), -1);
+}
+
+static void a_front_that_stands_is_not_stuck(void **state)
+{
+    (void)state;
+    assert_int_equal(first_stuck(true, true, 1.0, 3e6, 100), -1);
+    assert_int_equal(first_stuck(true, false, 1.0, 0.5e6, 100), -1); // an engine's ripple
+}
+
+static void pressures_that_stand_while_boom_and_arm_turn_are_stuck(void **state)
+{
+    (void)state;
+    // 0.1 rad at 0.002 rad a sample.
+    assert_in_range(first_stuck(false, true, 1.0, 3e6, 100), 149, 153);
+    assert_int_equal(first_stuck(false, true, 0.0, 3e6, 100), -1); // the bucket alone
+}
+
+static void angles_that_stand_while_pressures_change_are_stuck_after_a_while(void **state)
+{
+    (void)state;
+    assert_in_range(first_stuck(true, false, 1.0, 3e6, 100), 150, 153);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values_that_move_are_never_stuck),
+        cmocka_unit_test(a_front_that_stands_is_not_stuck),
+        cmocka_unit_test(pressures_that_stand_while_boom_and_arm_turn_are_stuck),
+        cmocka_unit_test(angles_that_stand_while_pressures_change_are_stuck_after_a_while),
+    };
+    return cmocka_run_group_tests_name("stuck", tests, NULL, NULL);
+}
