@@ -170,6 +170,13 @@ fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S second
 	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
 
+.PHONY: arm64 deb
+arm64: ## Cross-build for 64-bit ARM and run the unit tests under qemu-user
+	$(Q)BUILD=$(BUILD)/arm64 scripts/arm64.sh
+
+deb: all ## A Debian package of what is installed, $(BUILD)/digsight_VERSION_ARCH.deb
+	$(Q)BUILD=$(BUILD) VERSION=$(VERSION) scripts/deb.sh
+
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
@@ -229,4 +236,4 @@ help: ## This list
 
 .SECONDARY:
 -include messages/java.mk
--include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD) -name '*.d' -type f -not -path '*/arm64-root/*' 2>/dev/null)
