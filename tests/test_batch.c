@@ -1,0 +1,128 @@
+#include "closed_loop/batch.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 60 };
+
+static struct made_world world;
+
+static int make(void **state)
+{
+    (void)state;
+    world = made_world(5);
+    return 0;
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    made_world_finish(&world);
+    return 0;
+}
+
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+
+static struct dig_batch *batch_of(struct dig_measured measured[DIGS], enum dig_status *const status)
+{
+    uint64_t seed = 3;
+    bool     take[DIGS];
+    double   place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        take[i] = true;
+    }
+    struct dig_batch *batch = malloc(sizeof *batch);
+    dig_surface_place(world.surface, &gravel, place);
+    *status = dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch);
+    return batch;
+}
+
+// One dig scatters by 1 in every direction, in whatever channel and bin.
+static void digs_of_one_gravel_scatter_by_one(void **state)
+{
+    (void)state;
+    struct dig_measured *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status      status;
+    struct dig_batch    *batch = batch_of(measured, &status);
+    assert_int_equal(status, DIG_OK);
+    assert_int_equal(batch->groups, 2);
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_batch_group *const group = &batch->group[g];
+        assert_int_equal(group->digs, DIGS / 2);
+        assert_int_equal(group->features, DIG_FEATURES);
+        const double freedom = (double)(group->features * (group->digs - 1));
+        // Five sigma of chi square, and the floor that is in S but not in the digs.
+        assert_close(group->about / freedom, 0.97, 5.0 * sqrt(2.0 / freedom) + 0.05);
+    }
+    free(batch);
+    free(measured);
+}
+
+static void what_the_machine_adds_is_taken_off(void **state)
+{
+    (void)state;
+    struct dig_measured *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status      status;
+    struct dig_batch    *plain = batch_of(measured, &status);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].value[0][k] += 1e-4;
+            measured[i].machine[0][k] += 1e-4;
+        }
+    }
+    bool take[DIGS];
+    memset(take, true, sizeof take);
+    double            place[DIG_AXES];
+    struct dig_batch *off = malloc(sizeof *off);
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, off),
+                     DIG_OK);
+    for (size_t k = 0; k < DIG_FEATURES; k++) {
+        assert_close(off->group[0].mean[k], plain->group[0].mean[k], 1e-3);
+    }
+    free(off);
+    free(plain);
+    free(measured);
+}
+
+// Digs that were measured in part are compared in that part; of nothing there is no batch.
+static void only_what_all_digs_have_is_compared(void **state)
+{
+    (void)state;
+    struct dig_measured *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status      status;
+    struct dig_batch    *batch = batch_of(measured, &status);
+    bool                 take[DIGS];
+    memset(take, true, sizeof take);
+    measured[0].last        = 0.75;
+    measured[2].measured[1] = false;
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch), DIG_OK);
+    assert_int_equal(batch->group[0].features, 2 * 7);
+    assert_int_equal(batch->group[1].features, DIG_FEATURES);
+    measured[0].last = 0.1;
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
+        DIG_ENOMATCH);
+    memset(take, false, sizeof take);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
+        DIG_ENOMATCH);
+    free(batch);
+    free(measured);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(digs_of_one_gravel_scatter_by_one),
+        cmocka_unit_test(what_the_machine_adds_is_taken_off),
+        cmocka_unit_test(only_what_all_digs_have_is_compared),
+    };
+    return cmocka_run_group_tests_name("batch", tests, make, clean);
+}
