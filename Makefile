@@ -58,7 +58,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup demo tables evaluate test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
+.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -80,6 +80,9 @@ tables: all ## Compute what tables/coarse.sqlite lacks (hours of one core when i
 
 evaluate: all ## How right tables/coarse.sqlite is on digs of LIGGGHTS
 	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
+
+paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
+	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh
 
 setup: ## Install everything any target needs
 	$(Q)scripts/setup.sh build demo test lint spy valgrind
@@ -170,6 +173,10 @@ fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S second
 	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
 
+$(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
 .PHONY: arm64 deb
 arm64: ## Cross-build for 64-bit ARM and run the unit tests under qemu-user
 	$(Q)BUILD=$(BUILD)/arm64 scripts/arm64.sh
@@ -178,6 +185,14 @@ deb: all ## A Debian package of what is installed, $(BUILD)/digsight_VERSION_ARC
 	$(Q)BUILD=$(BUILD) VERSION=$(VERSION) scripts/deb.sh
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
+bench: all $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/*.c)) ## Side by side with others, one line each: name ratio unit detail (BENCH_QUICK=1: seconds of it)
+	$(Q)scripts/setup.sh bench
+	$(Q)BUILD=$(BUILD) scripts/bench.sh
+
+$(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
 
