@@ -173,10 +173,10 @@ enum dig_status dig_batch_make(const struct dig_surface *const surface,
 {
     assert(surface != NULL && scatter != NULL && measured != NULL && batch != NULL);
     memset(batch, 0, sizeof *batch);
-    batch->surface  = surface;
-    batch->scatter  = scatter;
-    batch->measured = measured;
-    double feature[DIG_MEASURED_MAX][DIG_FEATURES];
+    batch->surface                                 = surface;
+    batch->scatter                                 = scatter;
+    batch->measured                                = measured;
+    double feature[DIG_MEASURED_MAX][DIG_FEATURES] = { { 0.0 } };
     for (size_t i = 0; i < digs && batch->digs < DIG_MEASURED_MAX; i++) {
         const size_t t = (size_t)measured[i].trajectory;
         if (!take[i] || !surface->known[t]) {

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 #define DIG_FEATURE_BINS 10
-#define DIG_FEATURES     (DIG_FORCE_CHANNELS * DIG_FEATURE_BINS) // channel by channel
+#define DIG_FEATURES     ((size_t)DIG_FORCE_CHANNELS * DIG_FEATURE_BINS) // channel by channel
 
 /// Points [*from, *to) of the progress grid that make a bin.
 void dig_feature_bin(size_t bin, size_t *from, size_t *to);

@@ -114,11 +114,11 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
                        double normal[])
 {
     assert(problem->unknowns <= DIG_LEVENBERG_UNKNOWNS);
-    double *const r        = problem->memory;
-    double *const tried    = r + problem->residuals;
-    double *const jacobian = tried + problem->residuals;
-    double        gradient[DIG_LEVENBERG_UNKNOWNS];
-    double        damping = 1e-3;
+    double *const r                                = problem->memory;
+    double *const tried                            = r + problem->residuals;
+    double *const jacobian                         = tried + problem->residuals;
+    double        gradient[DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
+    double        damping                          = 1e-3;
     clip(problem, x);
     problem->residual(problem->context, x, r);
     double sum = sum_of_squares(problem->residuals, r);

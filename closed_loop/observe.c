@@ -204,7 +204,7 @@ enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
                                       struct dig_error *const           error)
 {
     assert(observation != NULL);
-    struct dig_observed   o;
+    struct dig_observed   o      = { .trajectory = 0 };
     const enum dig_status status = dig_observe_dig(set, recording, &o, error);
     if (status != DIG_OK) {
         return status;

@@ -233,7 +233,7 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
                               const struct dig_machine_side *const machine,
                               struct dig_trace *const              trace)
 {
-    trace->curves          = calloc(t->digs, sizeof *trace->curves);
+    trace->curves          = calloc(t->digs + 1, sizeof *trace->curves);
     trace->digs            = t->digs;
     enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
     if (status == DIG_OK) {

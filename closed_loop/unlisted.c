@@ -225,8 +225,8 @@ enum dig_status dig_unlisted_find(const struct dig_batch *const  batch,
         return DIG_ENOMEM;
     }
     fill(batch, soil, plain, r);
-    struct dig_unlisted found = { .log_evidence = 0.0 };
-    size_t              chosen[FUNCTIONS_MAX + 1];
+    struct dig_unlisted found                     = { .log_evidence = 0.0 };
+    size_t              chosen[FUNCTIONS_MAX + 1] = { 0 };
     size_t              of_gravel;
     const double        alone = explain(r, 0, chosen, &of_gravel);
     for (bool better = true; better && found.functions < FUNCTIONS_MAX;) {
