@@ -1,5 +1,6 @@
 #include "tools/digloop/campaign.h"
 
+#include "closed_loop/clipped.h"
 #include "closed_loop/observe.h"
 #include "files/campaign_yaml.h"
 #include "files/lcm_log.h"
@@ -161,6 +162,20 @@ static bool is_force_recording(const char *const path)
     return strstr(line, "My_Nm") != NULL;
 }
 
+// What a sensor cut off would be taken for an effect.
+static enum dig_status check_range(const struct dig_machine *const           machine,
+                                   const struct dig_machine_recording *const recording,
+                                   const char *const file, struct dig_error *const error)
+{
+    struct dig_clip clip;
+    return dig_clipped_find(machine, recording, &clip)
+               ? dig_error_set(error, DIG_EINVAL,
+                               "%s: %s stays at its highest value, %.4g Pa, for %.1f s: clipped, "
+                               "expected a pressure within the sensor's range",
+                               file, dig_signal_name(clip.signal), clip.limit_Pa, clip.time_s)
+               : DIG_OK;
+}
+
 static enum dig_status load_machine(const struct dig_campaign *const  from,
                                     const struct dig_curve_set *const set,
                                     struct digloop_campaign *const    campaign,
@@ -181,6 +196,9 @@ static enum dig_status load_machine(const struct dig_campaign *const  from,
         const char *const file = from->recording[i].file;
         status                 = dig_lcm_log_is(file) ? dig_lcm_log_read(file, &recording[i], error)
                                                       : dig_machine_recording_read(file, &recording[i], error);
+        if (status == DIG_OK) {
+            status = check_range(&machine, &recording[i], file, error);
+        }
     }
     if (status == DIG_OK) {
         status = dig_machine_side_create(&machine, set, from->recordings, recording,
