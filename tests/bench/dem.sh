@@ -107,7 +107,7 @@ for n in $sizes; do
     first=${first:-"$grains $kB"}
 done
 # shellcheck disable=SC2086 # numbers
-echo $ours_at | awk '{ for (k = 1; k <= NF; k += 3) { x = log($k); y = log($k / $(k + 1)); n++
+echo $ours_at | awk 'NF > 3 { for (k = 1; k <= NF; k += 3) { x = log($k); y = log($k / $(k + 1)); n++
         sx += x; sy += y; sxx += x * x; sxy += x * y }
     printf "dem_exponent %.3f exponent processor time of a step over the number of grains, %d sizes\n",
         (n * sxy - sx * sy) / (n * sxx - sx * sx), n
