@@ -68,14 +68,18 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
     if (dig_setup_world(scene, &gravel, ode, &bed, 0.0, &kinds, &world, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    dig_ode_scene_destroy(ode);
+    if (world.bodies == NULL || world.bodies->ode == NULL) {
+        dig_ode_scene_destroy(ode);
+    }
     dig_bed_finish(&bed);
     return world;
 }
 
 static void finish(struct dig_world *const world)
 {
+    struct dig_ode_scene *const ode = world->bodies == NULL ? NULL : world->bodies->ode;
     dig_setup_finish(world);
+    dig_ode_scene_destroy(ode);
 }
 
 static void a_clump_weighs_what_its_volume_weighs_and_falls_like_it(void **state)
@@ -219,7 +223,7 @@ static void a_clump_bounces_as_a_body_of_ode_does(void **state)
     dBodySetLinearVel(other.body, 0.3, 0.0, -0.8);
     const int steps = 10000; // 10 ms: into the floor and off it, turning
     double    most  = 0.0;
-    dem_run(&world, steps);
+    dem_run(&world, (size_t)steps);
     for (int s = 0; s < steps * 10; s++) {
         push_other(&other, dt_s);
         dWorldStep(other.world, dt_s);
@@ -302,6 +306,74 @@ static void the_closest_point_of_a_rock_is_the_closest(void **state)
     }
 }
 
+// A rock as heavy as some grains among them, nothing else in the world: what it gains they lose.
+static void a_rock_takes_what_momentum_the_grains_lose(void **state)
+{
+    (void)state;
+    struct dig_scene scene            = clump_scene(5e-6);
+    scene.gravity_mps2                = 1e-300;
+    scene.bed.clump.spheres           = 0;
+    scene.bed.obstacles               = 1;
+    scene.bed.obstacle[0]             = (struct dig_obstacle){ .shape         = DIG_OBSTACLE_BOX,
+                                                               .centre_m      = { 0.0, 0.0, 0.5 },
+                                                               .size_m        = { 0.02, 0.016, 0.012 },
+                                                               .movable       = true,
+                                                               .density_kgpm3 = 2600.0 };
+    const double     at[2][3]         = { { -0.02, 0.003, 0.502 }, { 0.006, 0.002, 0.52 } };
+    const double     no[2][3]         = { { 0.0 } };
+    struct dig_world world            = make_world(&scene, 2, at, no);
+    world.grains.motion[0].v_mps[0]   = 1.0;
+    world.grains.motion[1].v_mps[2]   = -0.7;
+    const struct dig_rock *const rock = &world.bodies->obstacles.rock[0];
+    dem_run(&world, 6000);
+    assert_true(rock->body.v_mps[0] > 0.01 && rock->body.v_mps[2] < -0.01);
+    assert_true(fabs(rock->body.w_radps[1]) > 0.1);
+    const double start[3] = { GRAIN_kg, 0.0, -0.7 * GRAIN_kg };
+    for (int a = 0; a < 3; a++) {
+        double p_Ns = rock->body.mass_kg * rock->body.v_mps[a];
+        for (size_t i = 0; i < 2; i++) {
+            p_Ns += GRAIN_kg * world.grains.motion[i].v_mps[a];
+        }
+        assert_close(p_Ns, start[a], 1e-9 * GRAIN_kg);
+    }
+    finish(&world);
+}
+
+// The tool drives a rock ahead of it through empty space: what the rock gains the tool has felt.
+static void the_bucket_feels_the_rock_it_pushes(void **state)
+{
+    (void)state;
+    static const enum dig_obstacle_shape shape[] = { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
+    for (size_t i = 0; i < 2; i++) {
+        struct dig_scene scene    = clump_scene(2e-5);
+        scene.gravity_mps2        = 1e-300;
+        scene.bed.clump.spheres   = 0;
+        scene.bed.obstacles       = 1;
+        scene.bed.obstacle[0]     = (struct dig_obstacle){ .shape         = shape[i],
+                                                           .centre_m      = { 0.03, 0.0, 0.178 },
+                                                           .size_m        = { 0.02, 0.03, 0.02 },
+                                                           .movable       = true,
+                                                           .density_kgpm3 = 2600.0 };
+        const double     at[1][3] = { { 0.5, 0.5, 0.5 } };
+        const double     no[1][3] = { { 0.0 } };
+        struct dig_world world    = make_world(&scene, 1, at, no);
+        struct dig_tool  tool     = dig_tool_make(&scene.bucket);
+        double           felt_Ns  = 0.0;
+        world.tool                = &tool;
+        for (int s = 0; s < 10000; s++) {
+            const struct dig_pose pose = { .x_m = 0.2 * s * world.dt_s, .z_m = 0.2 };
+            dig_tool_place(&tool, pose, 0.2, 0.0, 0.0);
+            dig_ode_scene_move(world.bodies->ode, pose, 0.2, 0.0, 0.0);
+            dem_run(&world, 1);
+            felt_Ns += world.on_tool.f_N[0] * world.dt_s;
+        }
+        const struct dig_rigid *const body = &world.bodies->obstacles.rock[0].body;
+        assert_true(body->v_mps[0] > 0.1);
+        assert_close(felt_Ns, -body->mass_kg * body->v_mps[0], 1e-6 * body->mass_kg);
+        finish(&world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -310,6 +382,8 @@ int main(void)
         cmocka_unit_test(a_clump_bounces_as_a_body_of_ode_does),
         cmocka_unit_test(a_grain_rests_on_a_rock_and_the_rock_bears_it),
         cmocka_unit_test(the_closest_point_of_a_rock_is_the_closest),
+        cmocka_unit_test(a_rock_takes_what_momentum_the_grains_lose),
+        cmocka_unit_test(the_bucket_feels_the_rock_it_pushes),
     };
     return cmocka_run_group_tests_name("bodies", tests, NULL, NULL);
 }
