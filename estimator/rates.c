@@ -97,13 +97,15 @@ void dig_rates_centred(const size_t n, const double time_s[], const double joint
                        const double half_s, const double sigma_rad, struct dig_rates rates[])
 {
     assert(n == 0 || (time_s != NULL && joint_rad != NULL && rates != NULL));
-    size_t first = 0;
+    // A hair wider, so that rounding leaves no sample out on one side alone.
+    const double reach_s = half_s + 1e-6;
+    size_t       first   = 0;
     for (size_t i = 0; i < n; i++) {
-        while (time_s[first] < time_s[i] - half_s) {
+        while (time_s[first] < time_s[i] - reach_s) {
             first++;
         }
         struct sums sums = { .n = 0.0 };
-        for (size_t k = first; k < n && time_s[k] <= time_s[i] + half_s; k++) {
+        for (size_t k = first; k < n && time_s[k] <= time_s[i] + reach_s; k++) {
             add(&sums, time_s[k] - time_s[i], &joint_rad[DIG_JOINTS * k],
                 &joint_rad[DIG_JOINTS * i]);
         }
