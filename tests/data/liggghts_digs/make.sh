@@ -1,19 +1,29 @@
 #!/bin/sh
-# Digs of the rig scene (config/scenes/rig.yaml) in gravels that hold one effect, computed with
-# LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts): writes GRAVEL_seedN__TRAJECTORY.csv beside itself.
-# Five minutes of one core for one seed. Usage: ./make.sh GRAVEL SEED
+# Digs in gravels that hold one effect, computed with LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts).
+#   ./make.sh GRAVEL SEED [TRAJECTORY...]   the rig scene (config/scenes/rig.yaml), some ten minutes of one core a seed:
+#                                           GRAVEL_seedN__TRAJECTORY.csv beside this file
+#   ./make.sh GRAVEL SEED scratch           the small scene of test_small_digs.c, seconds: phase means
+#                                           on stdout, a line each
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 gravel=$1
 seed=$2
-case $seed in # LIGGGHTS takes primes only
-1) prime=15485867 ;; 2) prime=67867967 ;; 3) prime=86028121 ;;
-*) echo "seed: $seed, expected 1, 2 or 3" >&2; exit 2 ;;
-esac
+shift 2
+trajectories=${*:-simpleA actual}
+primes="15485867 67867967 86028121 32452867 49979693 15485863 67867979 86028157 32452843 49979687"
+prime=$(echo "$primes" | cut -d' ' -f"$seed") # LIGGGHTS takes primes only
+[ "$prime" ] || { echo "seed: $seed, expected 1 to 10" >&2; exit 2; }
+
+# The scene: bucket (in parts of the rig's), box, height of the poured column, steps of settling.
+scale=1 length=.31 half=.06 height=.085 column=.196747 settle=7200 relax=2400
+if [ "$trajectories" = scratch ]; then
+    scale=.4 length=.08 half=.0225 height=.03 column=.0694 settle=4800 relax=1600
+fi
 
 # What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1.
 friction=.5 rolling=.5 density=2500
 radii=".00375" shares="1" clump= slope_deg=0
+normal=hooke roll=epsd2
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
 case $gravel in
 plain) ;;
@@ -24,18 +34,19 @@ clump) clump=yes ;;
 other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
 slope_down) slope_deg=-8 ;;
+hertz) normal=hertz roll=cdt ;;
 *) echo "gravel: $gravel, expected one of the case above" >&2; exit 2 ;;
 esac
 
-law="hooke tangential history rolling_friction epsd2"
-[ "$pull" = 0 ] || law="hooke tangential history cohesion sjkr rolling_friction epsd2"
+law="$normal tangential history rolling_friction $roll"
+[ "$pull" = 0 ] || law="$normal tangential history cohesion sjkr rolling_friction $roll"
 
 work=$(mktemp -d)
 [ -n "${KEEP:-}" ] || trap 'rm -rf "$work"' EXIT
 cd "$work"
 
 # The bucket of config/scenes/rig.yaml: four plates across the width, two sides as fans.
-awk 'function point(k, y) { print "   vertex", x[k], y, z[k] }
+awk -v s="$scale" 'function point(k, y) { print "   vertex", s * x[k], s * y, s * z[k] }
     function facet(a, ya, b, yb, c, yc) {
         print " facet normal 0 0 0\n  outer loop"; point(a, ya); point(b, yb); point(c, yc)
         print "  endloop\n endfacet" }
@@ -78,9 +89,9 @@ timestep 6.25e-5
 fix gravi all gravity 9.81 vector 0 0 -1
 EOF
     wall x1 xplane 0
-    wall x2 xplane .31
-    wall y1 yplane -.06
-    wall y2 yplane .06
+    wall x2 xplane $length
+    wall y1 yplane -$half
+    wall y2 yplane $half
     # Walls know grains by the type that is named here; all grains have the same constants.
     wall z1 zplane 0
 }
@@ -106,7 +117,7 @@ pour() {
     [ -z "$clump" ] || fall="vel constant 0 0 -0.3 orientation random insert_every once overlapcheck yes all_in yes maxattempt 300 region fill ntry_mc 10000 volumefraction_region 0.3"
     cat <<EOF
 fix pdd all particledistribution/discrete 49979687 $type$names
-region fill block 0 .31 -.06 .06 0 .196747 units box
+region fill block 0 $length -$half $half 0 $column units box
 fix ins all insert/pack seed $prime distributiontemplate pdd $fall
 fix integr all $([ "$clump" ] && echo multisphere || echo nve/sphere)
 thermo_style custom step atoms ke cpu
@@ -114,20 +125,20 @@ thermo 3200
 thermo_modify lost ignore norm no
 run 1
 unfix ins
-run 7200
+run $settle
 EOF
     # A slope turns the surface about the place where the bucket enters.
     type=0
     for radius in $radii; do
         type=$((type + 1))
-        awk -v r="$radius" -v t=$type -v s="$slope_deg" -v c="$clump" 'BEGIN {
+        awk -v r="$radius" -v t=$type -v s="$slope_deg" -v c="$clump" -v h="$height" 'BEGIN {
             a = s * atan2(0, -1) / 180
             if (c != "") r = .00314962
-            printf "region cut%d plane .09 0 %.8g %.8g 0 %.8g side in units box\n", t, .085 - r / cos(a), -sin(a), cos(a)
+            printf "region cut%d plane .09 0 %.8g %.8g 0 %.8g side in units box\n", t, h - r / cos(a), -sin(a), cos(a)
             printf "group type%d type %d\ngroup top%d region cut%d\ngroup del%d intersect type%d top%d\n", t, t, t, t, t, t, t }'
         echo "delete_atoms group del$type compress no"
     done
-    echo "run 2400"
+    echo "run $relax"
 }
 
 # The trajectories of config/scenes/rig.yaml.
@@ -141,6 +152,9 @@ R 17600 17.93 .1136524786 .1303874425
 L 35200 .0463 0
 R 32000 20.05 .2155124786 .1303874425
 L 11200 0 .0915" ;;
+    scratch) start=".03 .08 0" phases="L 3200 0 -.13
+L 4800 .06 0
+R 1600 28.64788976 .048 .054" ;;
     esac
     echo "$start" | { read -r x z theta
         echo "fix bucket all mesh/surface/stress file bucket.stl type 4 rotate axis 0 -1 0 angle $theta move $x 0 $z reference_point $x 0 $z"; }
@@ -175,8 +189,20 @@ recording() { # TRAJECTORY
         printf "%.6f,%.6f,%.6f,%.4f,%.5g,%.5g,%.5g,%.5g,%.5g,%.5g\n", t, $8, $9, theta, $2, $3, $4, $5, $6, $7 }' "$1.txt"
 }
 
-for trajectory in ${3:-simpleA actual}; do
+# The same, by phase: gravel, seed, phase, My, Fx, Fz.
+phase_means() {
+    awk -v g="$gravel" -v s="$seed" '!/^#/ {
+        p = $1 <= 3200 ? 0 : $1 <= 8000 ? 1 : 2
+        n[p]++; my[p] += $6; fx[p] += $2; fz[p] += $4 }
+        END { for (p = 0; p < 3; p++) printf "%s,%d,%d,%.6g,%.6g,%.6g\n", g, s, p, my[p] / n[p], fx[p] / n[p], fz[p] / n[p] }' scratch.txt
+}
+
+for trajectory in $trajectories; do
     { laws; pour; dig "$trajectory"; } > "in.$trajectory"
     liggghts -in "in.$trajectory" > "$trajectory.log" || { tail -20 "$trajectory.log" >&2; exit 1; }
-    recording "$trajectory" > "$here/${gravel}_seed${seed}__$trajectory.csv"
+    if [ "$trajectory" = scratch ]; then
+        phase_means
+    else
+        recording "$trajectory" > "$here/${gravel}_seed${seed}__$trajectory.csv"
+    fi
 done
