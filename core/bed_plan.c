@@ -224,6 +224,37 @@ static enum dig_status check_obstacles(const struct dig_bed_plan *const bed,
     return DIG_OK;
 }
 
+// Without sides y repeats about 0, and nothing may meet its own image.
+static enum dig_status check_period(const struct dig_scene *const scene,
+                                    struct dig_error *const       error)
+{
+    const struct dig_box *const box       = &scene->box;
+    double                      largest_m = scene->material.diameter_m;
+    if (!scene->bed.periodic_y) {
+        return DIG_OK;
+    }
+    for (size_t i = 0; i < scene->bed.sizes; i++) {
+        largest_m = fmax(largest_m, scene->bed.size[i].diameter_m);
+    }
+    const double least_m = scene->bucket.width_m + 4.0 * largest_m;
+    if (!(fabs(box->y_min_m + box->y_max_m) <= 1e-9 * least_m) ||
+        !(box->y_max_m - box->y_min_m > least_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "box_m.y: [%g, %g], expected as much to both sides of 0 with "
+                             "bed.periodic_y, and %g m in all",
+                             box->y_min_m, box->y_max_m, least_m);
+    }
+    for (size_t i = 0; i < scene->bed.obstacles; i++) {
+        if (scene->bed.obstacle[i].movable) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.obstacles[%zu].movable: true, expected false with "
+                                 "bed.periodic_y",
+                                 i);
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status check_earlier(const struct dig_scene *const scene,
                                      struct dig_error *const       error)
 {
@@ -265,6 +296,9 @@ enum dig_status dig_bed_plan_check(const struct dig_scene *const scene,
     }
     if (status == DIG_OK) {
         status = check_obstacles(&scene->bed, error);
+    }
+    if (status == DIG_OK) {
+        status = check_period(scene, error);
     }
     return status == DIG_OK ? check_earlier(scene, error) : status;
 }

@@ -152,6 +152,9 @@ struct dig_scene {
 /// Bucket pin to tooth, m.
 double dig_scene_tooth_m(const struct dig_scene *scene);
 
+/// The length after which y repeats, 0 where the box has sides.
+double dig_scene_period_m(const struct dig_scene *scene);
+
 /// The trajectory of that name, or NULL.
 const struct dig_trajectory *dig_scene_find(const struct dig_scene *scene, const char *name);
 

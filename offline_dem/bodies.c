@@ -1,19 +1,23 @@
 #include "offline_dem/bodies.h"
 
+#include "offline_dem/period.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// A clump at rest where its spheres lie, but for its fall.
-static void place_clump(const struct dig_clump_shape *const shape, const struct dig_bed *const bed,
-                        const size_t first, const double mass_kg, const double fall_mps,
-                        struct dig_clump_body *const clump)
+// A clump at rest where its spheres lie, but for its fall; those that are on the other side of a
+// period are taken back to the first.
+static void place_clump(const double period_m, const struct dig_clump_shape *const shape,
+                        const struct dig_bed *const bed, const size_t first, const double mass_kg,
+                        const double fall_mps, struct dig_clump_body *const clump)
 {
     double at_m[DIG_CLUMP_MAX][3];
     double rotation[3][3];
     for (size_t k = 0; k < shape->spheres; k++) {
         at_m[k][0]       = bed->x_m[first + k];
-        at_m[k][1]       = bed->y_m[first + k];
+        at_m[k][1]       = bed->y_m[first] + dig_period_fold(bed->y_m[first + k] - bed->y_m[first],
+                                                             period_m, dig_period_inverse(period_m));
         at_m[k][2]       = bed->z_m[first + k];
         clump->member[k] = (uint32_t)(first + k);
     }
@@ -59,7 +63,8 @@ enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
     dig_obstacles_place(&made->obstacles, bed);
     for (size_t b = 0; b < clumps; b++) {
         const size_t first = b * shape->spheres;
-        place_clump(shape, bed, first, body_kg[first], fall_mps, &clump[b]);
+        place_clump(dig_scene_period_m(scene), shape, bed, first, body_kg[first], fall_mps,
+                    &clump[b]);
         for (size_t k = 0; k < shape->spheres; k++) {
             of[first + k] = (uint32_t)(b + 1);
         }

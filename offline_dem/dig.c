@@ -1,7 +1,9 @@
 #include "offline_dem/dig.h"
 
 #include "core/units.h"
+#include "offline_dem/bodies.h"
 #include "offline_dem/level.h"
+#include "offline_dem/refuse.h"
 #include "offline_dem/setup.h"
 #include "offline_dem/vtk.h"
 
@@ -101,7 +103,7 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
-            status = dig_vtk_write(d->vtk_dir, r / PICTURE_WINDOWS, &d->world.grains, &d->tool);
+            status = dig_vtk_write(d->vtk_dir, r / PICTURE_WINDOWS, &d->world, &d->tool);
         }
         if (status == DIG_OK) {
             status = record_window(d, r * window, window, &recording->row[r]);
@@ -112,6 +114,11 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
         }
     }
     recording->rows = rows;
+    if (status == DIG_OK && d->vtk_dir != NULL && rows > 0) {
+        status = dig_vtk_index(d->vtk_dir, (rows - 1) / PICTURE_WINDOWS + 1,
+                               PICTURE_WINDOWS * (double)window * dt_s,
+                               d->world.bodies != NULL && d->world.bodies->obstacles.rocks > 0);
+    }
     return status;
 }
 
@@ -171,6 +178,18 @@ static enum dig_status dig_before(struct drive *const d)
     return status;
 }
 
+static enum dig_status dig_all(struct drive *const d, struct dig_recording *const recording,
+                               struct dig_error *const error)
+{
+    enum dig_status status = dig_before(d);
+    if (status == DIG_OK) {
+        d->world.tool = &d->tool;
+        dig_world_touched(&d->world);
+        status = drive(d, recording);
+    }
+    return status == DIG_OK ? status : dig_setup_explain(status, error);
+}
+
 enum dig_status dig_dig_run(const struct dig_scene *const  scene,
                             const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                             const struct dig_trajectory *const trajectory,
@@ -184,6 +203,10 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
     if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
         return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
                              trajectory->phases, DIG_PHASES_MAX);
+    }
+    status = dig_refuse_path(scene, trajectory, error);
+    if (status != DIG_OK) {
+        return status;
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
     if (ode == NULL) {
@@ -201,13 +224,10 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
     struct dig_recording made = { 0 };
     status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &d.world, error);
     if (status == DIG_OK) {
-        status = dig_before(&d);
-        if (status == DIG_OK) {
-            d.world.tool = &d.tool;
-            dig_world_touched(&d.world);
-            status = drive(&d, &made);
-        }
-        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+        place_tool(&d, 0.0);
+        status = dig_refuse_overlap(&d.world, error);
+        status = status == DIG_OK ? dig_refuse_start(&d.world, &d.tool, error) : status;
+        status = status == DIG_OK ? dig_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);
     }
     dig_ode_scene_destroy(ode);

@@ -2,6 +2,7 @@
 
 #include "core/units.h"
 #include "offline_dem/contacts.h"
+#include "offline_dem/period.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -99,6 +100,18 @@ double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], 
     return apart;
 }
 
+// Where a grain is, as the rock sees it: in its image that is nearest along y.
+static void look_at(const struct dig_world *const world, const struct dig_rock *const rock,
+                    const double x_m[], double seen_m[3])
+{
+    const double y_m = rock->body.x_m[1];
+    memcpy(seen_m, x_m, 3 * sizeof *seen_m);
+    if (world->period_y_m > 0.0) {
+        seen_m[1] = y_m + dig_period_fold(x_m[1] - y_m, world->period_y_m,
+                                          dig_period_inverse(world->period_y_m));
+    }
+}
+
 enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
                                    const struct dig_world *const world)
 {
@@ -120,7 +133,9 @@ enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
         const double reach_m = g->kind[kind].radius_m + world->at_m[i][3];
         for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
             double closest_m[3];
-            if (dig_rock_closest(&o->rock[r], g->motion[i].x_m, closest_m) < reach_m) {
+            double seen_m[3];
+            look_at(world, &o->rock[r], g->motion[i].x_m, seen_m);
+            if (dig_rock_closest(&o->rock[r], seen_m, closest_m) < reach_m) {
                 const uint32_t at = was[i * o->rocks + r];
                 status            = dig_contacts_add(&fresh[kind], i, r, r,
                                           at == UINT32_MAX ? NULL : &o->contact[kind], at);
@@ -140,18 +155,20 @@ enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
 }
 
 // A grain pressed into a rock still stands on the outside of it.
-static void fill(const struct dig_rock *const rock, const struct dig_motion *const m,
-                 const double radius_m, const size_t c, struct dig_block *const block,
-                 double arm_m[3])
+static void fill(const struct dig_world *const world, const struct dig_rock *const rock,
+                 const struct dig_motion *const m, const double radius_m, const size_t c,
+                 struct dig_block *const block, double arm_m[3])
 {
-    double              closest_m[3];
-    const double        apart_m = dig_rock_closest(rock, m->x_m, closest_m);
+    double closest_m[3];
+    double seen_m[3];
+    look_at(world, rock, m->x_m, seen_m);
+    const double        apart_m = dig_rock_closest(rock, seen_m, closest_m);
     const double        safe_m  = fmax(apart_m, 1e-3 * radius_m);
     double              n[3];
     double              length_m = 0.0;
     const double *const w        = rock->body.w_radps;
     for (int k = 0; k < 3; k++) {
-        n[k] = (m->x_m[k] - closest_m[k]) * (apart_m < 0.0 ? -1.0 : 1.0);
+        n[k] = (seen_m[k] - closest_m[k]) * (apart_m < 0.0 ? -1.0 : 1.0);
         length_m += n[k] * n[k];
         arm_m[k] = closest_m[k] - rock->body.x_m[k];
     }
@@ -200,7 +217,7 @@ void dig_obstacles_push(struct dig_obstacles *const o, struct dig_world *const w
             double           arm_m[DIG_BLOCK][3];
             double           memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
             for (size_t c = 0; c < count; c++) {
-                fill(&o->rock[list->j[first + c]], &world->grains.motion[list->i[first + c]],
+                fill(world, &o->rock[list->j[first + c]], &world->grains.motion[list->i[first + c]],
                      radius_m, c, &block, arm_m[c]);
             }
             for (int m = 0; m < DIG_MEMORIES; m++) {

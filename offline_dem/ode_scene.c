@@ -36,14 +36,23 @@ static void make_triangles(struct dig_ode_scene *const ode, const struct dig_buc
     }
 }
 
-static void make_walls(struct dig_ode_scene *const ode, const struct dig_box *const box)
+static void add_wall(struct dig_ode_scene *const ode, const double x, const double y,
+                     const double z, const double offset_m)
 {
-    ode->walls   = dSimpleSpaceCreate(NULL);
-    ode->wall[0] = dCreatePlane(ode->walls, 1.0, 0.0, 0.0, box->x_min_m);
-    ode->wall[1] = dCreatePlane(ode->walls, -1.0, 0.0, 0.0, -box->x_max_m);
-    ode->wall[2] = dCreatePlane(ode->walls, 0.0, 1.0, 0.0, box->y_min_m);
-    ode->wall[3] = dCreatePlane(ode->walls, 0.0, -1.0, 0.0, -box->y_max_m);
-    ode->wall[4] = dCreatePlane(ode->walls, 0.0, 0.0, 1.0, box->z_min_m);
+    ode->wall[ode->planes++] = dCreatePlane(ode->walls, x, y, z, offset_m);
+}
+
+static void make_walls(struct dig_ode_scene *const ode, const struct dig_scene *const scene)
+{
+    const struct dig_box *const box = &scene->box;
+    ode->walls                      = dSimpleSpaceCreate(NULL);
+    add_wall(ode, 1.0, 0.0, 0.0, box->x_min_m);
+    add_wall(ode, -1.0, 0.0, 0.0, -box->x_max_m);
+    if (!scene->bed.periodic_y) {
+        add_wall(ode, 0.0, 1.0, 0.0, box->y_min_m);
+        add_wall(ode, 0.0, -1.0, 0.0, -box->y_max_m);
+    }
+    add_wall(ode, 0.0, 0.0, 1.0, box->z_min_m);
 }
 
 struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *const scene)
@@ -55,7 +64,7 @@ struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *const scene)
     }
     ode->world = dWorldCreate();
     dWorldSetGravity(ode->world, 0.0, 0.0, -scene->gravity_mps2);
-    make_walls(ode, &scene->box);
+    make_walls(ode, scene);
 
     make_triangles(ode, &scene->bucket);
     ode->mesh = dGeomTriMeshDataCreate();
@@ -111,12 +120,12 @@ void dig_ode_scene_read(const struct dig_ode_scene *const ode, struct dig_tool *
 
 size_t dig_ode_scene_walls(const struct dig_ode_scene *const ode, struct dig_wall wall[])
 {
-    for (size_t k = 0; k < DIG_ODE_WALLS; k++) {
+    for (size_t k = 0; k < ode->planes; k++) {
         dVector4 plane;
         dGeomPlaneGetParams(ode->wall[k], plane);
         wall[k] = (struct dig_wall){ { plane[0], plane[1], plane[2] }, plane[3] };
     }
-    return DIG_ODE_WALLS;
+    return ode->planes;
 }
 
 size_t dig_ode_scene_collide(struct dig_ode_scene *const ode, const double centre_m[3],

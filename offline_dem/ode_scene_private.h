@@ -17,6 +17,7 @@ struct dig_ode_scene {
     dWorldID       world;
     dSpaceID       walls; // planes have no bounds: apart, so that nothing else pays for them
     dGeomID        wall[DIG_ODE_WALLS];
+    size_t         planes; // of them
     dBodyID        bucket;
     dGeomID        shell;
     dGeomID        sphere; // moved to wherever a collision is asked for

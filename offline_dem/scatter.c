@@ -74,7 +74,7 @@ static void plan_classes(struct pouring *const p)
     p->high_m[2] =
         box->z_min_m + height_m * scene->packing.fill_factor / scene->packing.solid_fraction;
     p->tallest_m = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * TALLEST;
-    p->period_m  = scene->bed.periodic_y ? box->y_max_m - box->y_min_m : 0.0;
+    p->period_m  = dig_scene_period_m(scene);
 }
 
 static size_t count_spheres(const struct pouring *const p)

@@ -106,6 +106,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
         .bodies       = bodies,
+        .period_y_m   = dig_scene_period_m(scene),
     };
     made.walls = dig_ode_scene_walls(ode, made.wall);
     dig_world_init(&made, &grains);

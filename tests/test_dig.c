@@ -132,10 +132,39 @@ static void what_cannot_be_computed_is_refused_by_name(void **state)
     radius[1] = NAN;
     expect_refusal(&scene, &gravel, &bed, "bed");
     radius[1] = GRAIN_m;
-    // Two grains in the same place: the law throws them apart faster than the step can follow.
+    // Two that overlap by a quarter of a radius: the law throws them apart faster than this step
+    // can follow. By more than that they are refused.
     scene.time_step_s = 0.01;
-    at[1]             = 0.0101;
+    at[1]             = 0.01 + 1.75 * GRAIN_m / sqrt(3.0);
     expect_refusal(&scene, &gravel, &bed, "time_step_s");
+}
+
+static void what_a_dig_cannot_begin_with_is_refused(void **state)
+{
+    (void)state;
+    struct dig_scene     scene = small_scene();
+    double               at[2] = { 0.01, 0.0101 }, radius[2] = { GRAIN_m, GRAIN_m };
+    const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
+    expect_refusal(&scene, &gravel, &bed, "bed: grains");
+    at[1] = 0.02;
+    // Behind the tooth, .036 below the pin at (.03, .053), the second grain is in the bucket's floor.
+    scene.trajectory[0].start_z_m       = 0.053;
+    scene.trajectory[0].phase[0].vz_mps = 0.0;
+    double               y[2]           = { 0.0, 0.01 };
+    const struct dig_bed in_way   = {
+          .grains = 2, .x_m = at, .y_m = y, .z_m = at, .radius_m = radius
+    };
+    expect_refusal(&scene, &gravel, &in_way, "starts in the bed");
+
+    scene                               = small_scene();
+    scene.trajectory[0].phase[0].vz_mps = -0.3;
+    expect_refusal(&scene, &gravel, &bed, "box_m.z");
+    scene                                   = small_scene();
+    scene.trajectory[0].phase[1].duration_s = 3.0;
+    expect_refusal(&scene, &gravel, &bed, "box_m.x");
+    scene                = small_scene();
+    scene.bucket.width_m = 0.05;
+    expect_refusal(&scene, &gravel, &bed, "box_m.y");
 }
 
 static void a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not(void **state)
@@ -214,7 +243,21 @@ static void pictures_are_written_where_they_are_wanted(void **state)
             (void)unlink(path);
         }
     }
-    (void)rmdir(dir);
+    // The index over time names them all, and nothing else is left.
+    for (int k = 0; k < 2; k++) {
+        char path[128], text[1024] = "", last[64];
+        (void)snprintf(path, sizeof path, "%s/%s.vtk.series", dir, name[k]);
+        FILE *const file = fopen(path, "r");
+        assert_non_null(file);
+        assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+        (void)fclose(file);
+        (void)snprintf(last, sizeof last, "{\"name\": \"%s_0005.vtk\", \"time\": 0.5}\n]}",
+                       name[k]);
+        assert_non_null(strstr(text, last));
+        assert_null(strstr(text, "_0006"));
+        (void)unlink(path);
+    }
+    assert_int_equal(rmdir(dir), 0);
     // The folder is gone: the dig says so and writes nothing.
     made = (struct dig_recording){ .rows = 77 };
     assert_int_equal(
@@ -246,6 +289,7 @@ int main(void)
         cmocka_unit_test(a_dig_is_recorded_from_air_to_its_end),
         cmocka_unit_test(the_same_dig_twice_gives_the_same_bits),
         cmocka_unit_test(what_cannot_be_computed_is_refused_by_name),
+        cmocka_unit_test(what_a_dig_cannot_begin_with_is_refused),
         cmocka_unit_test(a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not),
         cmocka_unit_test(a_dig_that_is_stopped_writes_nothing),
         cmocka_unit_test(pictures_are_written_where_they_are_wanted),
