@@ -98,6 +98,7 @@ enum dig_status dig_effects_apply(const struct dig_curve_set *const  plain,
 {
     assert(plain != NULL && model != NULL && out != NULL && out != plain);
     assert(out->entries == plain->entries && out->trajectories == plain->trajectories);
+    size_t told = 0;
     for (size_t e = 0; e < plain->entries; e++) {
         for (size_t t = 0; t < plain->trajectories; t++) {
             const size_t slot = e * plain->trajectories + t;
@@ -105,10 +106,14 @@ enum dig_status dig_effects_apply(const struct dig_curve_set *const  plain,
                 continue;
             }
             const enum dig_status status = apply(plain, effects, model, e, t, &out->curve[slot]);
-            if (status != DIG_OK) {
+            if (status == DIG_ENOMATCH) {
+                out->packings[slot] = 0; // no bed tells it: not known, rather than wrong
+            } else if (status != DIG_OK) {
                 return status;
+            } else {
+                told++;
             }
         }
     }
-    return DIG_OK;
+    return told > 0 ? DIG_OK : DIG_ENOMATCH;
 }

@@ -89,8 +89,9 @@ DIG_MUST_CHECK enum dig_status dig_effects_correction(const struct dig_model *mo
 /// Writes into out what the plain set would be with the model's soil effects in it: every entry's
 /// curves, for a first pass, an unworn tooth and the table's own pace; sd grows by the templates'.
 /// An unlisted effect's share of the rms is added the same way. out is another set of the same
-/// table; only its curves are written. DIG_ENOMATCH: an effect that neither a template nor a
-/// reduced form tells; then out is unspecified. Some ten milliseconds for a table.
+/// table; its curves are written, and packings become 0 where an effect cannot be told along a
+/// trajectory. DIG_ENOMATCH: it cannot be told anywhere; DIG_EINVAL: a parameter it does not have.
+/// Then out is unspecified. Some ten milliseconds for a table.
 DIG_MUST_CHECK enum dig_status dig_effects_apply(const struct dig_curve_set  *plain,
                                                  const struct dig_effect_set *effects,
                                                  const struct dig_model      *model,
