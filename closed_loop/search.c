@@ -10,9 +10,11 @@
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 
 // An effect is believed to be the whole truth when digs of its own would misfit as much in one
-// campaign of a hundred, or when it takes away this share of what the plain hypothesis leaves.
+// campaign of a hundred, or when it takes away this share of what the plain hypothesis leaves and
+// what it leaves itself is at most so many times what digs of its own would.
 static const double least_fit   = 0.01;
 static const double least_share = 0.75;
+static const double most_left   = 2.0;
 
 // Log evidence by which one answer must lead, and within which two are not told apart.
 static const double lead       = 3.0;
@@ -29,6 +31,7 @@ struct context {
     uint64_t               seed;
     struct dig_hypothesis  single[DIG_NULL_RIVALS];
     struct dig_null        plain_null;
+    double                 expected; // misfit of digs that chosen made
     struct dig_search     *s;
 };
 
@@ -102,6 +105,19 @@ static void spread_batch(struct dig_batch *const batch, const double spread)
     dig_batch_summarise(batch);
 }
 
+// The digs differ as an effect says that differs from dig to dig: no mere scatter.
+static bool is_told_by_order(const struct context *const c)
+{
+    bool told = false;
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        const enum dig_effect_id effect = c->single[i].effect[0];
+        const bool by_dig = effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
+                            effect == DIG_EFFECT_COMPACTION;
+        told = told || (by_dig && c->s->log_evidence[i] > lead);
+    }
+    return told;
+}
+
 static enum dig_status decide_whether(struct context *const c)
 {
     struct dig_statistic statistic;
@@ -112,7 +128,7 @@ static enum dig_status decide_whether(struct context *const c)
         return status;
     }
     c->s->spread = 1.0;
-    if (c->plain_null.mean[1] > 0.0 &&
+    if (c->plain_null.mean[1] > 0.0 && !is_told_by_order(c) &&
         dig_null_p(&c->plain_null, 1, statistic.about) < c->false_alarm) {
         c->s->spread = sqrt(statistic.about / c->plain_null.mean[1]);
         spread_batch(c->batch, c->s->spread);
@@ -217,6 +233,7 @@ static enum dig_status weigh_chosen(struct context *const c, bool *const more)
         dig_null_draw(c->batch, c->soil, &c->s->chosen, n, added, c->draws / 2, &c->seed, &null);
     if (status == DIG_OK) {
         c->s->p_fit = dig_null_p(&null, 0, c->s->chosen.squares - about_of(c->batch));
+        c->expected = null.mean[0];
         *more       = n > 0 && dig_null_p(&null, 2, statistic.gain) < c->false_alarm;
     }
     return status;
@@ -224,7 +241,9 @@ static enum dig_status weigh_chosen(struct context *const c, bool *const more)
 
 static bool is_believable(const struct context *const c)
 {
-    return c->s->p_fit >= least_fit || share_of(c, &c->s->chosen) >= least_share;
+    const double left = c->s->chosen.squares - about_of(c->batch);
+    return c->s->p_fit >= least_fit ||
+           (share_of(c, &c->s->chosen) >= least_share && left <= most_left * c->expected);
 }
 
 static void give_up(struct context *const c)

@@ -10,6 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Share of the scatter of one dig below which a change of the prediction is not made.
+static const double matters = 0.15;
+
+// Of -2 log likelihood of the soil, for which the air's first choice is given up.
+static const double clearly_less = 12.0;
+
 struct dig_trace_settings dig_trace_settings_default(void)
 {
     return (struct dig_trace_settings){ .false_alarm = 0.01, .seed = 1, .bootstraps = 200 };
@@ -142,6 +148,49 @@ static enum dig_status trace_machine(struct dig_machine_side *const         mach
     return status;
 }
 
+static bool is_in(const struct dig_candidate_set *const set, const enum dig_effect_id effect)
+{
+    bool found = false;
+    for (size_t e = 0; e < set->effects; e++) {
+        found = found || set->effect[e] == effect;
+    }
+    return found;
+}
+
+// Of the machine's effects that free air cannot tell apart, the one that leaves least in the soil
+// is kept. Leaves the batch and *plain with it.
+static enum dig_status choose_in_soil(struct dig_machine_side *const machine, const size_t digs,
+                                      struct dig_measured measured[], struct work *const w,
+                                      struct dig_fitted *const plain, struct dig_error *const error)
+{
+    struct dig_machine_finding *const air    = w->air;
+    enum dig_status                   status = make_batch(w, digs, measured, plain, error);
+    const struct dig_model_effect     first  = air->effect[0];
+    double                            least  = plain->misfit - clearly_less;
+    for (size_t i = 0; air->effects == 1 && air->sets > 0 && i < air->candidates; i++) {
+        const struct dig_candidate *const c = &air->candidate[i];
+        if (status != DIG_OK || c->effect == first.effect || !is_in(&air->set[0], c->effect)) {
+            continue;
+        }
+        struct dig_model_effect other = { .effect      = c->effect,
+                                          .probability = first.probability,
+                                          .parameters  = c->parameters };
+        memcpy(other.parameter, c->parameter, sizeof other.parameter);
+        status = dig_machine_side_apply(machine, 1, &other, measured);
+        if (status == DIG_OK) {
+            status = make_batch(w, digs, measured, plain, error);
+        }
+        if (status == DIG_OK && plain->misfit < least) {
+            least          = plain->misfit;
+            air->effect[0] = other;
+        }
+    }
+    if (status == DIG_OK) {
+        status = dig_machine_side_apply(machine, air->effects, air->effect, measured);
+    }
+    return status == DIG_OK ? make_batch(w, digs, measured, plain, error) : status;
+}
+
 static struct dig_gravel gravel_at(const struct dig_surface *const surface, const double number[])
 {
     return dig_surface_gravel(surface, number);
@@ -173,11 +222,12 @@ static enum dig_status fill_verdict(const struct dig_tracing *const         t,
         dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
                        of_soil ? s->without_name.depends_on : "the machine's motion in free air");
-        trace->seen_in[trace->effects] = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
-        trace->effect[trace->effects++] =
-            (struct dig_model_effect){ .effect = DIG_EFFECT_UNLISTED,
-                                       .probability =
-                                           of_soil ? 1.0 - s->p_complete : 1.0 - air->p_complete };
+        trace->seen_in[trace->effects]  = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
+        trace->effect[trace->effects++] = (struct dig_model_effect){
+            .effect      = DIG_EFFECT_UNLISTED,
+            .probability = of_soil ? 1.0 - s->p_complete
+                                   : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
+        };
     }
     return DIG_OK;
 }
@@ -213,6 +263,26 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
     trace->high          = gravel_at(t->surface, s->chosen.high);
 }
 
+// A change of the moment much below the floor is as likely to make a dig worse as better.
+static void drop_what_does_not_matter(const struct dig_tracing *const t,
+                                      struct dig_trace *const         trace)
+{
+    double change = 0.0;
+    double whole  = 0.0;
+    for (size_t i = 0; i < t->digs; i++) {
+        const struct dig_trace_curves *const c = &trace->curves[i];
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            change += pow(c->after[DIG_CHANNEL_MY_Nm][k] - c->before[DIG_CHANNEL_MY_Nm][k], 2.0);
+            whole += pow(c->before_sd[DIG_CHANNEL_MY_Nm][k], 2.0);
+        }
+    }
+    for (size_t i = 0; change < matters * matters * whole && i < t->digs; i++) {
+        struct dig_trace_curves *const c = &trace->curves[i];
+        memcpy(c->after, c->before, sizeof c->after);
+        memcpy(c->after_sd, c->before_sd, sizeof c->after_sd);
+    }
+}
+
 static void fill_errors(const struct dig_tracing *const t, const struct work *const w,
                         struct dig_trace *const trace)
 {
@@ -239,11 +309,14 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
     if (status == DIG_OK) {
         fill_decision(t, machine, w->air, trace);
         status = fill_verdict(t, w->air, trace);
+
+        trace->significant = trace->significant || trace->effects > 0;
     }
     if (status == DIG_OK) {
         fill_sets(t->search, w->air, trace);
         dig_trace_fill_candidates(t, trace);
         dig_trace_fill_curves(t, trace->unlisted, trace->curves);
+        drop_what_does_not_matter(t, trace);
         fill_errors(t, w, trace);
         dig_trace_advise(t, trace);
     }
@@ -268,13 +341,17 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK && machine != NULL) {
         status = trace_machine(machine, settings, w, measured);
         if (status == DIG_OK && w->air->effects > 0) {
-            status = make_batch(w, digs, measured, &plain, error);
+            status = choose_in_soil(machine, digs, measured, w, &plain, error);
         }
     }
     if (status == DIG_OK) {
         const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
+    }
+    // Nothing was found: nothing changes.
+    if (status == DIG_OK && !w->search->significant && w->air->effects == 0) {
+        w->search->chosen = w->before;
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
                                    digs, measured,   w->batch,   &w->before, w->search };
