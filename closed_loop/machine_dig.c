@@ -14,6 +14,9 @@ static const double rates_half_s = 0.12;
 // Kept clear of the soil at both ends of the air: blends of the motion, and the rates' half.
 static const double clear_s = 0.25;
 
+// And after the dump, as pressures may be late.
+static const double dumped_s = 0.6;
+
 // In tooth lengths: spacing of the vertices, how far a path may lie off its trajectory (the
 // estimator's path_limit_m on the rig), and how far off a start may be turned.
 static const double spacing_share = 0.025;
@@ -169,7 +172,7 @@ static size_t find_dumped(const struct dig_machine_dig *const dig)
         if (most_rad < least_rad + dump_rad) {
             most_rad = phi_rad; // still closed: the most is counted from where it is least
         } else if (phi_rad < most_rad - closed_rad) {
-            return sample_at(dig, dig->time_s[most] + clear_s);
+            return sample_at(dig, dig->time_s[most] + dumped_s);
         }
     }
     return dig->samples;

@@ -181,8 +181,9 @@ void dig_fit_solve(const struct dig_fit *const fit, const unsigned set,
     }
 }
 
-static double evidence(const struct dig_fit *const fit, const unsigned set)
+double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)
 {
+    assert(fit != NULL);
     struct dig_fit_answer answer = { .at = NULL };
     dig_fit_solve(fit, set, &answer);
     return answer.log_evidence;
@@ -192,12 +193,12 @@ static double evidence(const struct dig_fit *const fit, const unsigned set)
 static double best_change(const struct dig_fit *const fit, const unsigned set, const bool adds,
                           unsigned *const changed)
 {
-    const double now  = evidence(fit, set);
+    const double now  = dig_fit_evidence(fit, set);
     double       best = -INFINITY;
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         const unsigned bit = 1U << e;
         if (((set & bit) == 0) == adds) {
-            const double gain = evidence(fit, set ^ bit) - now;
+            const double gain = dig_fit_evidence(fit, set ^ bit) - now;
             if (gain > best) {
                 best     = gain;
                 *changed = set ^ bit;

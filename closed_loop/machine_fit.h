@@ -47,6 +47,9 @@ void dig_fit_sum(struct dig_fit *fit, const double weight[]);
 /// the lines have it. at and sigma of *answer are filled.
 void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
+/// The log evidence of a set alone.
+double dig_fit_evidence(const struct dig_fit *fit, unsigned set);
+
 /// Adds effects to the set while the log evidence grows by least at least, the best one each time;
 /// then takes out what it no longer needs.
 unsigned dig_fit_select(const struct dig_fit *fit, double least, unsigned set);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOOTSTRAPS = 200, REFINEMENTS = 4, ROUNDS = 4 };
+enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
 
 // Air that leaves more than this of a row's variance is not understood.
 static const double unclear_rest2 = 1.2;
@@ -113,7 +113,7 @@ static enum dig_status refine(struct search *const s)
                 break;
             }
         }
-        if (moved < 0.02) {
+        if (moved < 0.005) {
             break;
         }
     }
@@ -142,8 +142,13 @@ static enum dig_status select_effects(struct search *const s)
     s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
     s->rest2      = s->rest2_none;
     for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+        // Where the first steps have led, others may do better, and some may not be needed.
         const unsigned before = s->set;
-        s->set                = dig_fit_select(&s->fit, s->least, s->set);
+        const unsigned anew   = dig_fit_select(&s->fit, s->least, 0);
+        const unsigned more   = dig_fit_select(&s->fit, s->least, before);
+        s->set = dig_fit_evidence(&s->fit, anew) >= dig_fit_evidence(&s->fit, more) - s->least
+                     ? anew
+                     : more;
         if (s->set == before) {
             break;
         }

@@ -1,0 +1,298 @@
+// Tests for closed_loop/machine_side.c and its parts: machine recordings from the rig's machine
+// (virtual work), spoilt here by formulas of the test's own.
+
+#include "closed_loop/machine_side.h"
+
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+#include "tools/rig/mechanism.h"
+#include "tools/rig/sensors.h"
+#include "tools/rig/track.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { KINDS = 2, DIGS = 4 };
+
+static struct dig_machine    machine;
+static struct dig_rig_track  track[KINDS];
+static struct dig_curve_set *set;
+
+static int build(void **state)
+{
+    (void)state;
+    static const char *const  kind[KINDS] = { "simpleA", "actual" };
+    const struct made_options options     = { .relative_sd = 0.1, .packings = 3 };
+    struct dig_error          error       = { "" };
+    set                                   = made_table(&options);
+    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
+        return -1;
+    }
+    struct dig_rig_track_options how = dig_rig_track_options_default();
+    how.placed                       = true; // where digrig would put it: the search takes seconds
+    how.pin_X_m                      = 7.43;
+    how.pin_Z_m                      = -0.62;
+    for (int k = 0; k < KINDS; k++) {
+        char                 path[200];
+        struct dig_recording recording;
+        (void)snprintf(path, sizeof path, "tests/data/reference/mu0.5_mur0.5_rho2500__%s.csv",
+                       kind[k]);
+        if (dig_recording_read(path, &recording, &error) != DIG_OK ||
+            dig_rig_track_build(&machine, &how, 1, &recording, &track[k], &error) != DIG_OK) {
+            return -1;
+        }
+        dig_recording_finish(&recording);
+    }
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    made_table_destroy(set);
+    for (int k = 0; k < KINDS; k++) {
+        dig_rig_track_finish(&track[k]);
+    }
+    return 0;
+}
+
+// What the machine does that its file does not say.
+struct fault {
+    double dry_N;       // the bucket cylinder's seal, against its motion
+    double rod_Pa;      // the bucket's rod side sensor reads so much more
+    double late_s;      // pressures are so old
+    double payload_kg;  // in the middle of the bucket, from the second dig on
+    double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
+};
+
+static double push_N(const int j, const double head_Pa, const double rod_Pa)
+{
+    const struct dig_cylinder *const c = &machine.cylinder[j];
+    return c->count * (head_Pa * dig_cylinder_head_m2(c) - rod_Pa * dig_cylinder_rod_m2(c));
+}
+
+// Makes one row's true pressures those that push so much more.
+static void push_more(struct dig_rig_row *const row, const int j, const double more_N)
+{
+    struct dig_rig_pushes pushes;
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        pushes.N[k] = push_N(k, row->pressures.head_Pa[k], row->pressures.rod_Pa[k]);
+    }
+    pushes.N[j] += more_N;
+    dig_rig_work_pressures(&machine, &pushes, &row->pressures);
+}
+
+static double rod_mps(const struct dig_rig_track *const t, const size_t i, const int j)
+{
+    const size_t b = i > 0 ? i - 1 : i, a = i + 1 < t->rows ? i + 1 : i;
+    double       from_m, to_m;
+    assert_int_equal(
+        dig_rig_cylinder_m(&machine, (enum dig_joint)j, t->row[b].joints.rad[j], &from_m), DIG_OK);
+    assert_int_equal(
+        dig_rig_cylinder_m(&machine, (enum dig_joint)j, t->row[a].joints.rad[j], &to_m), DIG_OK);
+    return (to_m - from_m) / (t->step_s * (double)(a - b));
+}
+
+static double payload_N(const struct dig_rig_row *const row, const int j, const double kg)
+{
+    // The work of its weight over a small turn of the joint.
+    double high[2], lever_m;
+    for (int way = 0; way < 2; way++) {
+        struct dig_rig_joints at = row->joints;
+        at.rad[j] += way == 0 ? -1e-5 : 1e-5;
+        high[way] = dig_rig_com_m(&machine, &at, DIG_JOINT_BUCKET).y;
+    }
+    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
+                     DIG_OK);
+    return kg * 9.81 * (high[1] - high[0]) / 2e-5 / lever_m;
+}
+
+static struct dig_machine_recording record(const int kind, const size_t order,
+                                           const struct fault *const fault, const uint64_t seed)
+{
+    const struct dig_rig_track *const t     = &track[kind];
+    struct dig_machine_recording      r     = { t->rows, malloc(t->rows * sizeof *r.row) };
+    struct dig_rig_noise              noise = dig_rig_noise_init(seed);
+    const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
+    for (size_t i = 0; i < t->rows; i++) {
+        const size_t       then = i > late ? i - late : 0;
+        struct dig_rig_row row  = t->row[then];
+        push_more(&row, DIG_JOINT_BUCKET,
+                  fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            const double time_s = t->step_s * (double)then + 40.0 * (double)order;
+            push_more(&row, j, order > 0 ? payload_N(&row, j, fault->payload_kg) : 0.0);
+            push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
+        }
+        row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
+        row.joints = t->row[i].joints;
+        r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
+        dig_rig_quantise(&machine, &r.row[i]);
+    }
+    return r;
+}
+
+struct campaign {
+    struct dig_machine_recording recording[DIGS];
+    struct dig_measured          measured[DIGS];
+    struct dig_machine_side     *side;
+    struct dig_machine_finding   finding;
+};
+
+static struct campaign *trace(const struct fault *const fault, const uint64_t seed)
+{
+    struct campaign *const c     = calloc(1, sizeof *c);
+    struct dig_error       error = { "" };
+    for (size_t d = 0; d < DIGS; d++) {
+        c->recording[d]           = record((int)(d % KINDS), d, fault, seed * 100 + d);
+        c->measured[d].trajectory = d % KINDS == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        c->measured[d].use        = d == DIGS - 1 ? DIG_USE_HOLDOUT : DIG_USE_FIT;
+        c->measured[d].order      = d;
+    }
+    if (dig_machine_side_create(&machine, set, DIGS, c->recording, c->measured, &c->side, &error) !=
+        DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(dig_machine_side_trace(c->side, 0.01, seed, &c->finding), DIG_OK);
+    return c;
+}
+
+static void end(struct campaign *const c)
+{
+    dig_machine_side_destroy(c->side);
+    for (int d = 0; d < DIGS; d++) {
+        dig_machine_recording_finish(&c->recording[d]);
+    }
+    free(c);
+}
+
+static void a_machine_as_its_file_says_raises_no_alarm(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        const struct fault     none = { .dry_N = 0.0 };
+        struct campaign *const c    = trace(&none, seed);
+        assert_false(c->finding.significant);
+        assert_false(c->finding.unexplained);
+        assert_int_equal(c->finding.effects, 0);
+        assert_close(c->finding.residual_air, 0.9, 0.15);
+        for (int d = 0; d < DIGS; d++) {
+            assert_close(c->measured[d].pace, 1.0, 0.01);
+            assert_true(c->measured[d].measured[DIG_CHANNEL_FX_N]);
+            assert_true(c->measured[d].first < 0.05 && c->measured[d].last > 0.99);
+        }
+        end(c);
+    }
+}
+
+// The only effect found is this one; its parameter has this value within its interval.
+static void expect_found(const struct campaign *const c, const enum dig_effect_id effect,
+                         const char *const parameter, const double value)
+{
+    assert_true(c->finding.significant && !c->finding.unexplained);
+    assert_int_equal(c->finding.effects, 1);
+    const struct dig_model_effect *const found = &c->finding.effect[0];
+    assert_int_equal(found->effect, effect);
+    // Digs are drawn anew: a third of the draws lack the first, which alone carries no payload.
+    assert_true(found->probability > 0.6);
+    for (size_t p = 0; parameter != NULL && p < found->parameters; p++) {
+        if (strcmp(found->parameter[p].name, parameter) == 0) {
+            const double wide = found->parameter[p].high - found->parameter[p].low;
+            assert_close(found->parameter[p].value, value, wide);
+            return;
+        }
+    }
+    assert_null(parameter);
+}
+
+// rms over digs of My by two tellings of it, rig scale.
+static double apart(const struct campaign *const a, const struct campaign *const b,
+                    const bool corrected)
+{
+    double sum = 0.0, whole = 0.0;
+    for (int d = 0; d < DIGS; d++) {
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double of =
+                a->measured[d].value[0][k] - (corrected ? a->measured[d].machine[0][k] : 0.0);
+            sum += pow(of - b->measured[d].value[0][k], 2.0);
+            whole += pow(b->measured[d].value[0][k], 2.0);
+        }
+    }
+    return sqrt(sum / whole);
+}
+
+static void each_effect_is_named_and_taken_off_the_digs(void **state)
+{
+    (void)state;
+    const struct {
+        struct fault       fault;
+        enum dig_effect_id effect;
+        const char        *parameter;
+        double             value;
+    } cases[] = {
+        { { .dry_N = 4000.0 }, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0 },
+        { { .rod_Pa = 4e5 }, DIG_EFFECT_PRESSURE_OFFSET, NULL, 0.0 },
+        { { .late_s = 0.2 }, DIG_EFFECT_SENSOR_DELAY, "delay_s", 0.2 },
+        { { .payload_kg = 90.0 }, DIG_EFFECT_PAYLOAD, "payload_kg", 90.0 },
+    };
+    const struct fault     none  = { .dry_N = 0.0 };
+    struct campaign *const clean = trace(&none, 9);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct campaign *const c = trace(&cases[i].fault, 20 + i);
+        expect_found(c, cases[i].effect, cases[i].parameter, cases[i].value);
+        const double before = apart(c, clean, false);
+        assert_int_equal(
+            dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, c->measured),
+            DIG_OK);
+        const double after = apart(c, clean, true);
+        print_message("%s: %.4f of the moment before, %.4f after\n",
+                      dig_effect_name(cases[i].effect), before, after);
+        assert_true(after < 0.5 * before + 0.004);
+        end(c);
+    }
+    end(clean);
+}
+
+static void what_the_catalogue_lacks_gets_no_name(void **state)
+{
+    (void)state;
+    const struct fault     fault = { .wandering_N = 3000.0 };
+    struct campaign *const c     = trace(&fault, 5);
+    assert_true(c->finding.significant && c->finding.unexplained);
+    assert_int_equal(c->finding.effects, 0);
+    end(c);
+}
+
+static void a_recording_without_its_dig_is_refused_by_name(void **state)
+{
+    (void)state;
+    const struct fault           none  = { .dry_N = 0.0 };
+    struct dig_machine_recording r     = record(0, 0, &none, 1);
+    struct dig_measured *const   m     = calloc(1, sizeof *m);
+    struct dig_machine_side     *side  = NULL;
+    struct dig_error             error = { "" };
+    (void)snprintf(m->name, sizeof m->name, "north.csv");
+    m->trajectory = MADE_ACTUAL; // it is simpleA
+    assert_int_equal(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), DIG_ENOMATCH);
+    assert_non_null(strstr(error.text, "north.csv"));
+    assert_non_null(strstr(error.text, "actual"));
+    assert_null(side);
+    r.rows = 30;
+    assert_int_equal(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), DIG_EINVAL);
+    dig_machine_recording_finish(&r);
+    free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_machine_as_its_file_says_raises_no_alarm),
+        cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
+        cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
+        cmocka_unit_test(a_recording_without_its_dig_is_refused_by_name),
+    };
+    return cmocka_run_group_tests_name("machine_side", tests, build, tear_down);
+}
