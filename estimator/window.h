@@ -54,8 +54,8 @@ void dig_window_close(struct dig_window *window);
 /// sigma: white noise averages over the smoothing, the slow part does not.
 ///
 /// DIG_ENOMATCH when fewer than two points of the grid were reached, or samples are missing for
-/// longer than half_s of rig time: what was not measured is not made up. Uses the window's own arrays;
-/// O(samples * corners).
+/// longer than half_s of rig time: what was not measured is not made up. Uses the window's own
+/// arrays; O(samples * corners).
 DIG_MUST_CHECK enum dig_status dig_window_observe(struct dig_window      *window,
                                                   const struct dig_route *route,
                                                   const struct dig_track *track, double limit_m,

@@ -113,8 +113,10 @@ static void connect_threads(struct dig_daemon *const d)
     struct handoff_memory *const m = &d->memory;
     dig_ring_init(&d->readings, sizeof m->readings[0], READINGS, m->readings);
     dig_ring_init(&d->records, sizeof m->records[0], RECORDS, m->records);
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): the memory itself is handed over, by pointer
     dig_ring_init(&d->digs, sizeof m->digs[0], DIGS, m->digs);
     dig_ring_init(&d->results, sizeof m->results[0], RESULTS, m->results);
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): as above
     dig_ring_init(&d->spares, sizeof m->spares[0], DIGS, m->spares);
     dig_latest_init(&d->offer, sizeof m->offer[0], m->offer);
     dig_latest_init(&d->table, sizeof m->table[0], m->table);
