@@ -169,9 +169,12 @@ check-valgrind: $(test_bins) ## The unit tests under memcheck
 	    DIG_TEST_QUICK=1 valgrind -q --child-silent-after-fork=yes --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
 
 FUZZ_S ?= 60
-fuzz: ## Damaged files against every reader, under sanitizers, for FUZZ_S seconds
-	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
+fuzz: ## Damaged files, frames and replies against every reader, under sanitizers, FUZZ_S seconds each
+	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files $(BUILD)/asan/tests/fuzz/fuzz_bus \
+	    BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
+	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
+	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
 
 $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
