@@ -202,6 +202,25 @@ static void a_file_not_yet_filled_becomes_a_table(void **state)
     assert_int_equal(ask("empty.sqlite", "SELECT count(*) FROM scene"), 1);
 }
 
+// Laws and beds stand in the canonical text behind the trajectories.
+static void a_scene_that_is_not_plain_has_a_table_too(void **state)
+{
+    (void)state;
+    struct dig_scene  scene = fixture_scene();
+    struct dig_store *store = NULL;
+    struct dig_error  error = { "" };
+    scene.laws.rolling      = DIG_ROLLING_NONE;
+    scene.bed.preload_Pa    = 500.0;
+    if (dig_store_create(scratch_path("bed.sqlite"), &scene, &store, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    dig_store_close(store);
+    if (dig_store_open(scratch_path("bed.sqlite"), &store, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    dig_store_close(store);
+}
+
 static void there_is_one_writer_at_a_time(void **state)
 {
     (void)state;
@@ -309,6 +328,7 @@ int main(void)
         cmocka_unit_test(another_scene_is_refused_and_both_are_named),
         cmocka_unit_test(what_cannot_become_a_table_is_left_as_it_was),
         cmocka_unit_test(a_file_not_yet_filled_becomes_a_table),
+        cmocka_unit_test(a_scene_that_is_not_plain_has_a_table_too),
         cmocka_unit_test(there_is_one_writer_at_a_time),
         cmocka_unit_test(a_killed_writer_leaves_whole_runs_only),
         cmocka_unit_test(the_check_counts_holes_and_finds_entries_that_lie),
