@@ -179,7 +179,10 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
     const struct dig_trajectory *const t    = &walk->trajectory[run->origin.trajectory];
     struct blind_group                 what = { .source = "ours", .gravel = run->origin.gravel };
     const int                          path = path_find(t->name);
-    if (path < 0) {
+    // Digs for comparison with LIGGGHTS share their first bed with the table of effects.
+    const bool shared = strcmp(walk->name, "ours") == 0 &&
+                        (run->origin.packing == 0 || run->origin.effect[0] == '\0');
+    if (path < 0 || shared) {
         return DIG_OK;
     }
     if (run->origin.effect[0] != '\0') {
@@ -301,6 +304,9 @@ enum dig_status blind_pool_read(const char *const data, struct blind_pool *const
     if (status == DIG_OK) {
         (void)snprintf(folder, sizeof folder, "%s/liggghts_digs", data);
         status = read_liggghts(folder, &p, error);
+    }
+    if (status == DIG_OK) {
+        status = read_tables(folder, &p, error);
     }
     if (status == DIG_OK) {
         (void)snprintf(folder, sizeof folder, "%s/blind", data);
