@@ -67,7 +67,7 @@ static struct scatter scatter_of(const struct dig_machine *const     machine,
     struct scatter s;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_cylinder *const cylinder = &machine->cylinder[j];
-        double *const                    Pa       = &s.Pa[DIG_CHAMBERS * j];
+        double *const                    Pa       = &s.Pa[(size_t)DIG_CHAMBERS * (size_t)j];
 
         Pa[DIG_CHAMBER_HEAD] = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_HEAD);
         Pa[DIG_CHAMBER_ROD]  = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_ROD);
@@ -205,7 +205,7 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
     assert(machine != NULL && air != NULL);
     size_t points = 1;
     for (size_t d = 0; d < digs; d++) {
-        points += 4 * POINTS_BESIDE + (size_t)(dig[d].time_s[dig[d].samples - 1] / step_s);
+        points += 4 * (size_t)POINTS_BESIDE + (size_t)(dig[d].time_s[dig[d].samples - 1] / step_s);
     }
     struct dig_air made = {
         .machine = *machine,

@@ -174,7 +174,8 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
     const size_t             from    = beside(dig, dig->contact, -beside_s);
     const size_t             to      = beside(dig, dig->end, beside_s);
     struct dig_window *const window  = calloc(1, sizeof *window);
-    struct reading *const    reading = malloc((to - from + 1) * sizeof *reading);
+    const size_t             rows    = to > from ? to - from : 0;
+    struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
     if (window == NULL || reading == NULL) {
         free(window);
         free(reading);

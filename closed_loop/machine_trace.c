@@ -99,9 +99,9 @@ static enum dig_status refine(struct search *const s)
         dig_fit_solve(&s->fit, s->set, &answer);
 
         const double now   = dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at);
-        double       share = 1.0;
         double       moved = 0.0;
-        for (int halved = 0; halved < 6; halved++, share *= 0.5) {
+        for (int halved = 0; halved < 6; halved++) {
+            const double share = ldexp(1.0, -halved);
             for (size_t c = 0; c < n; c++) {
                 s->sigma[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
             }

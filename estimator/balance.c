@@ -76,7 +76,7 @@ static double drive_Nm(const struct dig_readings *const readings,
                        const struct dig_lever *const lever, const int j)
 {
     double push_N = readings->push[j].push_N;
-    if (readings->friction != NULL) {
+    if (readings->friction != NULL && readings->rates != NULL) {
         const double rod_mps = lever->arm_m * readings->rates->velocity_radps[j];
         push_N -= dig_friction_loss_N(&readings->friction[j], push_N, rod_mps);
     }

@@ -96,7 +96,8 @@ static void centred_rates_have_no_lag(void **state)
     dig_rates_centred(N, t, q, 0.1, 1e-4, rates);
     for (int i = 40; i < N - 40; i++) {
         for (int j = 0; j < DIG_JOINTS; j++) {
-            // A mean over the window flattens by (omega half)^2 / 10, of no phase: a lag of 2 ms would show.
+            // A mean over the window flattens by (omega half)^2 / 10, of no phase: a lag of 2 ms
+            // would show.
             assert_close(rates[i].velocity_radps[j], 0.6 * cos(2.0 * t[i] + j), 0.6 * 0.005);
             assert_close(rates[i].acceleration_radps2[j], -1.2 * sin(2.0 * t[i] + j), 1.2 * 0.004);
         }
