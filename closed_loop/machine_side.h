@@ -12,9 +12,10 @@
 struct dig_machine_side; // samples of all machine recordings of a campaign
 
 /// Takes machine recordings, one dig each, in the campaign's order, and places each dig on the
-/// table's grid: *measured (all of it but machine, with use and pass as given) is filled for each.
-/// Froude's scale: machine's tooth length / table's. DIG_ENOMATCH: a recording holds no dig along
-/// its trajectory (*error names which). Free with dig_machine_side_destroy().
+/// table's grid: *measured (all of it but machine, with name, order, use and pass as given) is
+/// filled for each. trajectory says which dig to look for, -1: any of the table's. Froude's scale:
+/// machine's tooth length / table's. DIG_ENOMATCH: a recording holds no dig along its trajectory
+/// (*error names which). Free with dig_machine_side_destroy().
 DIG_MUST_CHECK enum dig_status
 dig_machine_side_create(const struct dig_machine *machine, const struct dig_curve_set *set,
                         size_t digs, const struct dig_machine_recording recording[],
