@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
+enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6, MOST_AT_ONCE = 2 };
 
 // Air that leaves more than this of a row's variance is not understood.
 static const double unclear_rest2 = 1.2;
@@ -289,6 +289,24 @@ static void write_sets(const struct search *const s, struct dig_machine_finding 
     }
 }
 
+// More effects than one trusts to be there at once share out the form of a cause that has none of
+// theirs; so does a payload that weighs less than nothing.
+static bool is_makeshift(const struct search *const s)
+{
+    int    effects = 0;
+    double payload = 0.0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
+    }
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 && column->segment < 0) {
+            payload = s->lines.at[c];
+        }
+    }
+    return effects > MOST_AT_ONCE || payload < 0.0;
+}
+
 enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side,
                                        const double false_alarm, const uint64_t seed,
                                        struct dig_machine_finding *const finding)
@@ -305,10 +323,10 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
         status = select_effects(&s);
     }
     if (status == DIG_OK) {
-        const double rows  = (double)s.air.rows;
-        const double means = (double)(DIG_JOINTS * s.air.segments);
-        const bool   unclear =
-            s.rest2 > unclear_rest2 * rows || s.slow > means + unclear_sigmas * sqrt(2.0 * means);
+        const double rows    = (double)s.air.rows;
+        const double means   = (double)(DIG_JOINTS * s.air.segments);
+        const bool   unclear = s.rest2 > unclear_rest2 * rows || is_makeshift(&s) ||
+                             s.slow > means + unclear_sigmas * sqrt(2.0 * means);
         double inclusion[DIG_MACHINE_EFFECTS];
 
         *finding              = (struct dig_machine_finding){ .unexplained = unclear };
