@@ -39,6 +39,15 @@ static bool differs_by_dig(const enum dig_effect_id effect)
            effect == DIG_EFFECT_COMPACTION;
 }
 
+bool dig_hypothesis_differs(const struct dig_hypothesis *const hypothesis)
+{
+    bool differs = false;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        differs = differs || differs_by_dig(hypothesis->effect[e]);
+    }
+    return differs;
+}
+
 bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct dig_soil *const soil,
                              const enum dig_effect_id effect)
 {
@@ -288,10 +297,8 @@ void dig_hypothesis_fit(const struct dig_batch *const batch, const struct dig_so
     };
     const size_t   more = thorough ? sizeof places / sizeof places[0] : 0;
     double         memory[MEMORY];
-    struct problem p = { .batch = batch, .soil = soil, .hypothesis = hypothesis };
-    for (size_t e = 0; e < hypothesis->effects; e++) {
-        p.differs = p.differs || differs_by_dig(hypothesis->effect[e]);
-    }
+    struct problem p       = { .batch = batch, .soil = soil, .hypothesis = hypothesis };
+    p.differs              = dig_hypothesis_differs(hypothesis);
     struct dig_levenberg l = { .unknowns   = DIG_AXES + hypothesis->effects,
                                .residuals  = count_residuals(&p),
                                .step       = 1e-4,
@@ -314,4 +321,34 @@ void dig_hypothesis_fit(const struct dig_batch *const batch, const struct dig_so
         }
     }
     *fitted = best;
+}
+
+double dig_hypothesis_squares(const struct dig_batch *const  batch,
+                              const struct dig_soil *const   soil,
+                              const struct dig_fitted *const fitted, const double noise[])
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_batch_group *const group              = &batch->group[g];
+        double                              mean[DIG_FEATURES] = { 0.0 };
+        for (size_t i = 0; i < batch->digs; i++) {
+            double feature[DIG_FEATURES];
+            double y[DIG_FEATURES];
+            double ignored;
+            if (batch->dig[i].group != g) {
+                continue;
+            }
+            dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
+                                    &batch->measured[batch->dig[i].measured], feature, &ignored);
+            dig_batch_whiten(group, feature, y);
+            for (size_t k = 0; k < group->features; k++) {
+                mean[k] += y[k] / (double)group->digs;
+            }
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            sum += (group->mean[k] - mean[k]) * (group->mean[k] - mean[k]) /
+                   (1.0 / (double)group->digs + noise[g]);
+        }
+    }
+    return sum;
 }

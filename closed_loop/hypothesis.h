@@ -42,6 +42,9 @@ struct dig_fitted {
 bool dig_hypothesis_possible(const struct dig_batch *batch, const struct dig_soil *soil,
                              enum dig_effect_id effect);
 
+/// True when some effect of it differs from dig to dig of a trajectory.
+bool dig_hypothesis_differs(const struct dig_hypothesis *hypothesis);
+
 /// Fits. start: numbers to start from (place, u); more starts are tried when thorough. Some hundred
 /// microseconds a start.
 void dig_hypothesis_fit(const struct dig_batch *batch, const struct dig_soil *soil,
@@ -58,5 +61,9 @@ void dig_hypothesis_features(const struct dig_soil *soil, const struct dig_hypot
 void dig_hypothesis_curve(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
                           const double number[], const struct dig_measured *dig,
                           double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
+/// Squares of the means' misfit of a fitted hypothesis as they would be with another's noise.
+double dig_hypothesis_squares(const struct dig_batch *batch, const struct dig_soil *soil,
+                              const struct dig_fitted *fitted, const double noise[]);
 
 #endif // DIG_CLOSED_LOOP_HYPOTHESIS_H

@@ -8,14 +8,16 @@
 #include <string.h>
 
 // The misfit of means and of digs about them, without what does not depend on the digs.
-static void split(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
-                  struct dig_statistic *const statistic)
+static void split(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                  const struct dig_fitted *const fitted, struct dig_statistic *const statistic)
 {
     statistic->about = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
         statistic->about += batch->group[g].about;
     }
-    statistic->misfit = fitted->squares - statistic->about;
+    statistic->misfit = dig_hypothesis_differs(&fitted->hypothesis)
+                            ? dig_hypothesis_squares(batch, soil, fitted, fitted->noise)
+                            : fitted->squares - statistic->about;
 }
 
 void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
@@ -25,7 +27,7 @@ void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *co
 {
     assert(rivals <= DIG_NULL_RIVALS);
     dig_hypothesis_fit(batch, soil, base, start, thorough, &fitted[0]);
-    split(batch, &fitted[0], statistic);
+    split(batch, soil, &fitted[0], statistic);
     statistic->gain = 0.0;
     statistic->best = rivals;
     for (size_t i = 0; i < rivals; i++) {

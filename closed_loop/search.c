@@ -15,6 +15,7 @@ enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 static const double least_fit   = 0.01;
 static const double least_share = 0.75;
 static const double most_left   = 2.0;
+static const double much_left   = 4.0;
 
 // Log evidence by which one answer must lead, and within which two are not told apart.
 static const double lead       = 3.0;
@@ -31,7 +32,7 @@ struct context {
     uint64_t               seed;
     struct dig_hypothesis  single[DIG_NULL_RIVALS];
     struct dig_null        plain_null;
-    double                 expected; // misfit of digs that chosen made
+    double                 left, expected; // misfit of chosen, and of digs that it made
     struct dig_search     *s;
 };
 
@@ -70,6 +71,14 @@ static void list_rivals(struct context *const c)
             c->single[c->s->rivals++] = (struct dig_hypothesis){ 1, { effect }, false };
         }
     }
+}
+
+// What a fit leaves of the digs' means.
+static double left_of(const struct context *const c, const struct dig_fitted *const fitted)
+{
+    return dig_hypothesis_differs(&fitted->hypothesis)
+               ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted->noise)
+               : fitted->squares - about_of(c->batch);
 }
 
 // Fits everything once, thoroughly, from the middle of the table.
@@ -139,8 +148,7 @@ static enum dig_status decide_whether(struct context *const c)
     c->s->p_complete  = 1.0 - (1.0 - p) * (1.0 - p);
     c->s->significant = c->s->p_complete < c->false_alarm;
     for (size_t i = 0; i < c->s->rivals; i++) {
-        c->s->rival_fit[i] =
-            dig_null_p(&c->plain_null, 0, c->s->rival[i].squares - about_of(c->batch));
+        c->s->rival_fit[i] = dig_null_p(&c->plain_null, 0, left_of(c, &c->s->rival[i]));
     }
     return status;
 }
@@ -154,13 +162,17 @@ static size_t best_rival(const struct dig_search *const s)
     return best;
 }
 
+static double best_evidence(const struct dig_search *const s)
+{
+    return s->rivals > 0 ? fmax(s->log_evidence[best_rival(s)], 0.0) : 0.0;
+}
+
 // Share of the plain hypothesis' excess misfit that a fit takes away.
 static double share_of(const struct context *const c, const struct dig_fitted *const fitted)
 {
     const double expected = c->plain_null.mean[0];
-    const double about    = about_of(c->batch);
-    const double before   = c->s->plain.squares - about - expected;
-    const double after    = fitted->squares - about - expected;
+    const double before   = left_of(c, &c->s->plain) - expected;
+    const double after    = left_of(c, fitted) - expected;
     return before > 0.0 ? 1.0 - after / before : 1.0;
 }
 
@@ -227,23 +239,39 @@ static enum dig_status weigh_chosen(struct context *const c, bool *const more)
     struct dig_null       null;
     const bool            room = c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
     const size_t          n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
+    // Digs that differ cost as many times more as there are of them.
+    const size_t draws =
+        dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
     dig_null_fit(c->batch, c->soil, &c->s->chosen.hypothesis, n, added, c->s->chosen.number, false,
                  fitted, &statistic);
     const enum dig_status status =
-        dig_null_draw(c->batch, c->soil, &c->s->chosen, n, added, c->draws / 2, &c->seed, &null);
+        dig_null_draw(c->batch, c->soil, &c->s->chosen, n, added, draws, &c->seed, &null);
     if (status == DIG_OK) {
-        c->s->p_fit = dig_null_p(&null, 0, c->s->chosen.squares - about_of(c->batch));
+        c->s->p_fit = dig_null_p(&null, 0, statistic.misfit);
+        c->left     = statistic.misfit;
         c->expected = null.mean[0];
         *more       = n > 0 && dig_null_p(&null, 2, statistic.gain) < c->false_alarm;
     }
     return status;
 }
 
+// Where much is left of the plain hypothesis, the effect's own curves must explain it: not only the
+// noise that an effect of this size, known from few beds, brings along.
+static bool is_matched(const struct context *const c)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
+    const double after =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, c->s->plain.noise);
+    return before < much_left * expected || before - after >= least_share * (before - expected);
+}
+
 static bool is_believable(const struct context *const c)
 {
-    const double left = c->s->chosen.squares - about_of(c->batch);
-    return c->s->p_fit >= least_fit ||
-           (share_of(c, &c->s->chosen) >= least_share && left <= most_left * c->expected);
+    return is_matched(c) &&
+           (c->s->p_fit >= least_fit ||
+            (share_of(c, &c->s->chosen) >= least_share && c->left <= most_left * c->expected));
 }
 
 static void give_up(struct context *const c)
@@ -285,10 +313,10 @@ static enum dig_status decide_which(struct context *const c)
 static bool is_outside(const struct context *const c)
 {
     const struct dig_fitted *const chosen = &c->s->chosen;
-    const double p = dig_null_p(&c->plain_null, 0, c->s->beyond.squares - about_of(c->batch));
-    const double by_gravel = evidence_of(c, &c->s->beyond, 1);
-    const double by_effect =
-        c->s->unlisted ? 0.0 : evidence_of(c, chosen, chosen->hypothesis.effects);
+    const double                   p = dig_null_p(&c->plain_null, 0, left_of(c, &c->s->beyond));
+    const double                   by_gravel = evidence_of(c, &c->s->beyond, 1);
+    const double                   by_effect =
+        c->s->unlisted ? best_evidence(c->s) : evidence_of(c, chosen, chosen->hypothesis.effects);
     return by_gravel > 0.0 && by_gravel >= by_effect &&
            (p >= least_fit || share_of(c, &c->s->beyond) >= least_share);
 }
