@@ -118,7 +118,7 @@ static void defects_are_refused_by_key_and_write_nothing(void **state)
         { "\"version\": 1", "\"version\": 2", "version" },
         { "cylinder_friction", "cylinder_fiction", "cylinder_fiction" },
         { "\"probability\": 0.98", "\"probability\": 1.2", "probability" },
-        { "\"value\": 812", "\"value\": .nan", "coulomb_N" },
+        { "\"value\": 812", "\"value\": .nan", "parameters[0].value" },
         { "\"friction\": 0.52", "\"friction\": -1", "gravel" },
         { "\"table\"", "\"tabel\"", "tabel" },
         { "\"effects\": [", "\"effects\": 3, \"x\": [", "effects" },
