@@ -1,11 +1,10 @@
 #!/bin/bash
-# digloop trace and design as a user meets them: nothing missing, bad campaigns, what they leave behind.
-# A bad campaign gets a clear refusal or no claim; never a confident wrong one.
+# digloop trace as a user meets it: LIGGGHTS digs in plain gravel, and campaigns that cannot be traced.
 set -u
 BIN=${BIN:-build/bin}
-table=${TABLE:-$(ls tables/rig.sqlite tables/coarse.sqlite 2>/dev/null | head -n 1)}
+table=${TABLE:-tables/rig.sqlite}
+[ -e "$table" ] || table=tables/coarse.sqlite
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
-machine=$PWD/config/machines/zx200_trench.yaml
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 passed=0 failed=0
@@ -20,134 +19,66 @@ check() { # SENTENCE COMMAND…
     fi
 }
 
-# A campaign of the reference gravel: ROLE lines "seed trajectory role", machine or not.
-campaign() { # NAME [machine], lines on standard input
-    local folder=$work/$1 n=0 seed trajectory role rest
-    mkdir -p "$folder"
-    { echo "scene: ${scene:-$PWD/config/scenes/rig.yaml}"
-      [ "${2:-}" = machine ] && echo "machine: $machine"
-      echo "recordings:"; } >"$folder/campaign.yaml"
-    while read -r seed trajectory role rest; do
-        n=$((n + 1))
-        local from=${reference}_seed${seed}__$trajectory.csv
-        [ "$seed" = 1 ] && from=${reference}__$trajectory.csv
-        if [ "${2:-}" = machine ]; then
-            # shellcheck disable=SC2086 # options of the machine
-            "$BIN/digrig" record "$from" --machine "$machine" --seed "$n" ${rest:-} -o "$folder/d$n.csv" 2>/dev/null || return 1
-        else
-            cp "$from" "$folder/d$n.csv"
-        fi
-        echo "  - {file: d$n.csv, trajectory: $trajectory, role: $role}" >>"$folder/campaign.yaml"
-    done
-}
-
-trace() { # NAME OPTIONS…
-    "$BIN/digloop" trace "$table" "$work/$1" "${@:2}" --json "$work/$1.json" >"$work/$1.out" 2>"$work/$1.err"
-}
-
-# Refused with exit status 2 and every word, or traced without a claim.
-claims_nothing() { # NAME WORDS…
-    local word
-    trace "$1"
+# Exit status 2 and a message that holds every word.
+refuses() { # WORDS… -- FOLDER
+    local words=() word
+    while [ "$1" != -- ]; do words+=("$1"); shift; done
+    "$BIN/digloop" trace "$table" "$2" --json "$work/never" >"$work/out" 2>"$work/err"
     local rc=$?
-    if [ $rc = 0 ]; then
-        grep -q '"verdict": \["none"\]' "$work/$1.json" || { echo "      claimed: $(cat "$work/$1.json")"; return 1; }
-        return 0
-    fi
-    [ $rc = 2 ] && [ ! -e "$work/$1.json" ] || { echo "      exit status $rc, $(cat "$work/$1.err")"; return 1; }
-    for word in "${@:2}"; do
-        grep -qF -- "$word" "$work/$1.err" || { echo "      no \"$word\" in: $(cat "$work/$1.err")"; return 1; }
+    [ "$rc" = 2 ] || { echo "      exit status $rc"; return 1; }
+    for word in "${words[@]}"; do
+        grep -qF -- "$word" "$work/err" || { echo "      no \"$word\" in: $(cat "$work/err")"; return 1; }
+    done
+    [ ! -e "$work/never" ]
+}
+
+campaign() { # FOLDER SCENE, then FILE TRAJECTORY ROLE…
+    mkdir -p "$work/$1"
+    { echo "scene: $2"; echo "recordings:"; } >"$work/$1/campaign.yaml"
+    local folder=$1
+    shift 2
+    while [ $# -gt 0 ]; do
+        echo "  - {file: $1, trajectory: $2, role: $3}" >>"$work/$folder/campaign.yaml"
+        shift 3
     done
 }
 
-refuses() { # NAME WORDS…
-    claims_nothing "$@" && [ ! -e "$work/$1.json" ]
-}
+A=$reference R=__actual.csv S=__simpleA.csv
+campaign plain rig "$A$S" simpleA identify "$A$R" actual fit "${A}_seed2$S" simpleA fit "${A}_seed2$R" actual fit \
+    "${A}_seed3$S" simpleA fit "${A}_seed3$R" actual holdout "${A}_seed4$R" actual holdout
+"$BIN/digloop" trace "$table" "$work/plain" --json "$work/t.json" --html "$work/t.html" --add "$work/m.json" \
+    >"$work/text" 2>"$work/err"
+check "digs of LIGGGHTS in plain gravel are traced" [ $? = 0 ]
+check "nothing is found in them" grep -q '"verdict": \["none"\]' "$work/t.json"
+check "in words too" grep -qi "nothing is missing" "$work/text"
+check "before and after are the same then" \
+    eval '[ "$(sed -nE "s/.*error_before\": (\{[^}]*\}).*/\1/p" "$work/t.json")" = "$(sed -nE "s/.*error_after\": (\{[^}]*\}).*/\1/p" "$work/t.json")" ]'
+check "the page needs no network" eval '! grep -qE "(src|href)=\"https?:" "$work/t.html"'
+check "the model names its table" grep -q "\"table\": \"$table\"" "$work/m.json"
+"$BIN/digloop" trace "$table" "$work/plain" --json "$work/again.json" >/dev/null 2>&1
+check "the same campaign gives the same answer" cmp -s "$work/t.json" "$work/again.json"
+"$BIN/digloop" trace "$table" "$work/plain" --json - >"$work/stdout.json" 2>/dev/null
+check "JSON may go to standard output, alone" cmp -s "$work/t.json" "$work/stdout.json"
 
-campaign plain <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual fit
-3 actual fit
-4 actual holdout
-END
-trace plain --html "$work/plain.html"
-check "a campaign with nothing missing is traced" [ $? = 0 ]
-check "and nothing is claimed" grep -q '"verdict": \["none"\]' "$work/plain.json"
-check "with an error on the holdout dig, the same before and after" \
-    eval '[ "$(grep -o "\"error_before\": .*[0-9]}" "$work/plain.json" | cut -d: -f2-)" = "$(grep -o "\"error_after\": .*[0-9]}" "$work/plain.json" | cut -d: -f2-)" ]'
-check "the page is whole and stands alone" \
-    eval 'tail -n 1 "$work/plain.html" | grep -q "</html>" && ! grep -o "https\?://[^\"]*" "$work/plain.html" | grep -qv www.w3.org'
-trace plain
-cp "$work/plain.json" "$work/first.json"
-trace plain
-check "the same campaign gives the same answer" cmp -s "$work/plain.json" "$work/first.json"
+campaign named config/scenes/rig.yaml "$A$S" simpleA identify "$A$R" actual fit
+sed -i "s|scene: .*|scene: $PWD/config/scenes/rig.yaml|" "$work/named/campaign.yaml"
+"$BIN/digloop" trace "$table" "$work/named" --json "$work/n.json" >/dev/null 2>&1
+check "a scene may be a file; without a holdout the errors are not known" \
+    eval '[ $? = 0 ] && grep -q "\"holdout\": null" "$work/n.json"'
 
-campaign one <<'END'
-1 simpleA identify
-END
-check "one dig is too few" refuses one "expected"
-campaign open <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual fit
-END
-check "without a holdout dig nothing is confirmed" claims_nothing open
-check "and its error is null" eval '[ ! -e "$work/open.json" ] || grep -q "\"error_after\": {\"holdout\": null" "$work/open.json"'
-scene=$PWD/config/scenes/paper_basic.yaml
-sed 's/width_m: 0.07/width_m: 0.12/; s/^name: rig/name: wide/' config/scenes/rig.yaml >"$work/wide.yaml"
-scene=$work/wide.yaml campaign wide <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual holdout
-END
-check "another scene is refused, both named" refuses wide wide rig
-scene=
-campaign gone <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual holdout
-END
-rm "$work/gone/d2.csv"
-check "a missing recording is refused by name" \
-    eval '! trace gone && [ ! -e "$work/gone.json" ] && grep -q d2.csv "$work/gone.err"'
-campaign swapped <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual holdout
-END
-sed -i 's/d2.csv, trajectory: simpleA/d2.csv, trajectory: actual/' "$work/swapped/campaign.yaml"
-check "a dig along another path than said is refused" refuses swapped d2.csv
-
-campaign air machine <<'END'
-1 simpleA identify
-2 simpleA fit
-1 actual fit
-3 actual holdout
-END
-check "a machine with nothing missing claims nothing" claims_nothing air
-campaign airless machine <<'END'
-1 simpleA identify --no-air
-2 simpleA fit --no-air
-1 actual fit --no-air
-3 actual holdout --no-air
-END
-check "without free air nothing of the machine is claimed" claims_nothing airless
-mkdir "$work/clipped" && cp "$work/air"/* "$work/clipped"
-for n in 1 2 3 4; do
-    # Sensors that end at 3 MPa.
-    awk -F, -v OFS=, '!/^#/ && $1 + 0 == $1 { for (i = 5; i <= 10; i++) if ($i > 3e6) $i = 3e6 } 1' \
-        "$work/air/d$n.csv" >"$work/clipped/d$n.csv"
-done
-trace clipped
-rc=$?
-check "clipped pressures are refused or called unlisted, not given a name" \
-    eval '[ $rc = 2 ] || grep -q "\"verdict\": \[\"\(none\|unlisted\)\"\]" "$work/clipped.json"'
-
-"$BIN/digloop" design "$table" --json >"$work/design.json" 2>"$work/design.err"
-check "digs are ranked" [ $? = 0 ]
-check "one is recommended" grep -q '"recommended": "simple' "$work/design.json"
-check "design takes no campaign" eval '! "$BIN/digloop" design "$table" "$work/plain" 2>"$work/err" && grep -q expected "$work/err"'
+campaign one rig "$A$S" simpleA identify
+check "one dig is too few" refuses "expected two or more" -- "$work/one"
+campaign other another "$A$S" simpleA identify "$A$R" actual fit
+check "another scene is refused" refuses "another" "rig" -- "$work/other"
+campaign swapped rig "$A$S" actual identify "$A$R" actual fit
+check "a dig along another trajectory is named" refuses "mu0.5_mur0.5_rho2500__simpleA.csv" "campaign.yaml says actual" -- "$work/swapped"
+campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
+check "a trajectory that the table lacks is named" refuses "sideways" -- "$work/nowhere"
+campaign gone rig none.csv simpleA identify "$A$R" actual fit
+check "a missing recording is named" eval '! "$BIN/digloop" trace "$table" "$work/gone" >/dev/null 2>"$work/err" && grep -q none.csv "$work/err"'
+campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
+check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- "$work/machine"
+check "a folder without a campaign is named" eval '! "$BIN/digloop" trace "$table" "$work" >/dev/null 2>"$work/err" && grep -q campaign.yaml "$work/err"'
 
 echo "$passed passed, $failed failed"
-[ $failed = 0 ]
+[ "$failed" = 0 ]
