@@ -3,8 +3,8 @@
 // A message with a counter of its own is followed by it. Another that comes in a fixed cycle is
 // followed by the clock: a phase-locked expectation of the next stamp, so that jitter below half a
 // cycle means nothing; a burst after a pause pays back what the pause owed, as the frames were only
-// late. What is still owed after DIG_WATCH_FRAMES frames that pay nothing back, or DIG_WATCH_LONGEST in
-// any case, was missed.
+// late. What is still owed after DIG_WATCH_FRAMES frames that pay nothing back, or
+// DIG_WATCH_LONGEST in any case, was missed.
 
 #ifndef DIG_FIRMWARE_HOST_FRAME_WATCH_H
 #define DIG_FIRMWARE_HOST_FRAME_WATCH_H

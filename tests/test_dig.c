@@ -147,12 +147,13 @@ static void what_a_dig_cannot_begin_with_is_refused(void **state)
     const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
     expect_refusal(&scene, &gravel, &bed, "bed: grains");
     at[1] = 0.02;
-    // Behind the tooth, .036 below the pin at (.03, .053), the second grain is in the bucket's floor.
+    // Behind the tooth, .036 below the pin at (.03, .053), the second grain is in the bucket's
+    // floor.
     scene.trajectory[0].start_z_m       = 0.053;
     scene.trajectory[0].phase[0].vz_mps = 0.0;
     double               y[2]           = { 0.0, 0.01 };
-    const struct dig_bed in_way   = {
-          .grains = 2, .x_m = at, .y_m = y, .z_m = at, .radius_m = radius
+    const struct dig_bed in_way         = {
+                .grains = 2, .x_m = at, .y_m = y, .z_m = at, .radius_m = radius
     };
     expect_refusal(&scene, &gravel, &in_way, "starts in the bed");
 
