@@ -72,13 +72,13 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
-tables: all ## Compute what tables/coarse.sqlite lacks (hours of one core when it lacks all)
-	$(Q)for grid in base_9 base_5 base_3 coarse_a coarse_b; do \
-	    $(BUILD)/bin/digtable generate config/scenes/rig.yaml config/grids/$$grid.yaml \
-	        -o tables/coarse.sqlite || exit 1; done
-	$(Q)$(BUILD)/bin/digtable check tables/coarse.sqlite
+tables: all ## Compute what tables/rig.sqlite and rig_effects.sqlite lack of their grids (hours of all cores)
+	$(Q)for table in rig rig_effects; do \
+	    $(BUILD)/bin/digtable generate config/scenes/rig.yaml config/grids/$$table.yaml \
+	        -o tables/$$table.sqlite || exit 1; \
+	    $(BUILD)/bin/digtable check tables/$$table.sqlite || exit 1; done
 
-evaluate: all ## How right tables/coarse.sqlite is on digs of LIGGGHTS
+evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
 	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
 
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots

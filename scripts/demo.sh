@@ -1,5 +1,5 @@
 #!/bin/bash
-# The main job, end to end, on digs that another DEM code computed: finish a coarse table, let a machine
+# The main job, end to end, on digs that another DEM code computed: add to a table, let a machine
 # dig on a real bus, let the daemon identify the gravel and predict the real dig, show how right it was.
 #   BIN=build/bin OUT=build/demo scripts/demo.sh
 set -eu
@@ -14,10 +14,10 @@ say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 rm -rf "$out" && mkdir -p "$out"
 out=$(cd "$out" && pwd)
 
-say "1. Table: the coarse table that ships, and the points it lacks, computed now by the DEM"
-cp tables/coarse.sqlite "$out/table.sqlite"
+say "1. Table: the rig's table that ships, and one more bed of two gravels, computed now by the DEM"
+cp tables/rig.sqlite "$out/table.sqlite"
 chmod u+w "$out/table.sqlite"
-"$bin/digtable" generate config/scenes/rig.yaml config/grids/coarse.yaml -o "$out/table.sqlite" --time-limit 60
+"$bin/digtable" generate config/scenes/rig.yaml config/grids/demo.yaml -o "$out/table.sqlite" --time-limit 60
 "$bin/digtable" check "$out/table.sqlite"
 
 say "2. Machine, bus and daemon: a simple dig, then a real dig, in gravel nobody here computed"

@@ -3,7 +3,7 @@
 # identified from its simpleA dig, its actual dig is predicted and compared. One line a case.
 #   BIN=build/bin scripts/evaluate.sh [TABLE.sqlite]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/coarse.sqlite}
+bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -117,8 +117,7 @@ static void read_files(const struct pair *const p, const int k, struct phase_mea
 static int read_all(void **state)
 {
     (void)state;
-    const bool rig = access("tables/rig.sqlite", R_OK) == 0;
-    read_table(rig ? "tables/rig.sqlite" : "tables/coarse.sqlite");
+    read_table("tables/rig.sqlite");
     for (size_t g = 0; g < PAIRS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
             read_files(&pair[g], k, &both[g][k].theirs);

@@ -33,7 +33,7 @@ static const char help[] =
     "holds no identified and predicted dig, 2 bad usage or bad input.\n"
     "\n"
     "examples:\n"
-    "  digreport --table tables/coarse.sqlite --machine config/machines/zx200_trench.yaml \\\n"
+    "  digreport --table tables/rig.sqlite --machine config/machines/zx200_trench.yaml \\\n"
     "            --html report.html \"SocketCAN=site.lcm\"\n";
 
 struct options {

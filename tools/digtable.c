@@ -46,7 +46,7 @@ static const char help_text[] =
     "examples:\n"
     "  digtable dig config/scenes/rig.yaml --trajectory simpleA --friction .5 --rolling .5 \\\n"
     "           --density 2500 -o dig.csv\n"
-    "  digtable generate config/scenes/rig.yaml config/grids/coarse.yaml -o rig.sqlite "
+    "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o rig.sqlite "
     "--time-limit 3600\n"
     "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o part3.sqlite --shard "
     "3/16\n"

@@ -136,7 +136,7 @@ static struct {
     long   taken, refused;
 } target[] = {
     { "scene", "config/scenes/rig.yaml", read_scene, NULL, 0, 0, 0 },
-    { "grid", "config/grids/coarse.yaml", read_grid, NULL, 0, 0, 0 },
+    { "grid", "config/grids/rig.yaml", read_grid, NULL, 0, 0, 0 },
     { "machine", "config/machines/zx200.yaml", read_machine, NULL, 0, 0, 0 },
     { "force recording", "tests/data/formats/force_recording.csv", read_force, NULL, 0, 0, 0 },
     { "machine recording", "tests/data/formats/machine_recording.csv", read_machine_recording, NULL,

@@ -2,7 +2,7 @@
 # digloop and digreport as a user meets them: LIGGGHTS digs against the table that ships, and bad input.
 set -u
 BIN=${BIN:-build/bin}
-table=${TABLE:-tables/coarse.sqlite}
+table=${TABLE:-tables/rig.sqlite}
 reference=tests/data/reference/mu0.5_mur0.5_rho2500
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -60,7 +60,7 @@ check "a path that is none of the table's is refused with its distance" \
 check "an unknown trajectory is named" refuses "nowhere" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory nowhere -o "$work/never"
 sed 's/"scene_hash": "./"scene_hash": "x/' "$work/id.json" >"$work/other.json"
-check "an identity of another scene is refused, both named" refuses "other.json" "coarse.sqlite" "expected one scene" -- \
+check "an identity of another scene is refused, both named" refuses "other.json" "rig.sqlite" "expected one scene" -- \
     "$BIN/digloop" predict "$table" --identified "$work/other.json" --trajectory actual -o "$work/never"
 sed 's/"digs": 5/"digs": many/' "$work/id.json" >"$work/broken.json"
 check "a broken identity is named by file, line and key" refuses "broken.json:2" "digs" "expected" -- \

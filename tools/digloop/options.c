@@ -32,8 +32,8 @@ static const char help[] =
     "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
     "\n"
     "examples:\n"
-    "  digloop identify tables/coarse.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
-    "  digloop predict tables/coarse.sqlite --identified id.json --trajectory actual \\\n"
+    "  digloop identify tables/rig.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
+    "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
     "          --measured actual_1.csv\n"
     "  digloop trace tables/rig.sqlite campaign/ --json trace.json --html trace.html --add "
     "model.json\n";
