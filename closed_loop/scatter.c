@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FOLDS = 5, LEAST_FREEDOM = 12 };
+enum { FOLDS = 10, LEAST_FREEDOM = 12 };
 
 // How far S is drawn towards a covariance whose correlations depend on the distance of two bins
 // alone (and are this much smaller, so that it stays positive definite). Of 0.1 ... 0.9 the
@@ -46,6 +46,13 @@ static double freedom_of(const struct dig_scatter_residual *const r)
     return 1.0 - 1.0 / (double)r->packings;
 }
 
+// Of an entry with few packings all residuals are held out together: about their mean they know of
+// each other. Those of an entry with many are held out in turn: it may be most of the table.
+static size_t fold_of(const struct dig_scatter_residual *const r, const size_t index)
+{
+    return (r->packings >= FOLDS / 2 ? index : r->entry) % FOLDS;
+}
+
 // Mean correlation of all pairs of bins of two channels that are lag apart.
 static double mean_correlation(const double s[DIG_FEATURES][DIG_FEATURES], const size_t one,
                                const size_t other, const int lag)
@@ -82,7 +89,7 @@ static void draw_towards_even(double s[DIG_FEATURES][DIG_FEATURES])
     memcpy(s, drawn, sizeof drawn);
 }
 
-// S of the residuals of one trajectory, without those of one fold of entries (fold FOLDS: of all),
+// S of the residuals of one trajectory, without those of one fold (fold FOLDS: of all),
 // each over its factor.
 static double pool(const struct dig_scatter *const scatter, const size_t t, const size_t n,
                    const struct dig_scatter_residual r[], const size_t without,
@@ -91,7 +98,7 @@ static double pool(const struct dig_scatter *const scatter, const size_t t, cons
     memset(s, 0, DIG_FEATURES * sizeof s[0]);
     double freedom = 0.0;
     for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1 && r[i].entry % FOLDS != without) {
+        if (r[i].trajectory == t && r[i].packings > 1 && fold_of(&r[i], i) != without) {
             add_pairs(&r[i], 1.0 / dig_scatter_factor(scatter, t, r[i].strength), s);
             freedom += freedom_of(&r[i]);
         }
@@ -180,7 +187,7 @@ static double taken_part(const struct dig_scatter *const scatter, const size_t t
     return freedom > 0.0 ? sum / freedom : 1.0;
 }
 
-// Variance of digs over an S they took no part in, averaged over folds of entries.
+// Variance of digs over an S they took no part in, averaged over folds.
 static double held_out(const struct dig_scatter *const scatter, const size_t t, const size_t n,
                        const struct dig_scatter_residual r[])
 {
@@ -196,7 +203,7 @@ static double held_out(const struct dig_scatter *const scatter, const size_t t, 
             continue;
         }
         for (size_t i = 0; i < n; i++) {
-            if (r[i].trajectory == t && r[i].packings > 1 && r[i].entry % FOLDS == fold) {
+            if (r[i].trajectory == t && r[i].packings > 1 && fold_of(&r[i], i) == fold) {
                 sum += freedom_of(&r[i]) * size_of((const double(*)[DIG_FEATURES])s, &r[i]) /
                        dig_scatter_factor(scatter, t, r[i].strength);
                 freedom += freedom_of(&r[i]);
