@@ -20,6 +20,36 @@ static void split(const struct dig_batch *const batch, const struct dig_soil *co
                             : fitted->squares - statistic->about;
 }
 
+// Fits base with one effect more. What an effect adds need not grow evenly with it, so that a fit
+// may end near none: several magnitudes are started from.
+static void fit_rival(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                      const struct dig_hypothesis *const base,
+                      const struct dig_hypothesis *const rival, const struct dig_fitted *const from,
+                      const bool thorough, struct dig_fitted *const fitted)
+{
+    static const double starts[] = { 0.3, 0.6, -0.5 };
+    const size_t        last     = DIG_AXES + rival->effects - 1;
+    const size_t      added = rival->effects > base->effects ? sizeof starts / sizeof starts[0] : 1;
+    struct dig_fitted best  = { .misfit = INFINITY };
+    for (size_t s = 0; s < added; s++) {
+        double                   at[DIG_HYPOTHESIS_NUMBERS];
+        struct dig_fitted        tried;
+        const enum dig_effect_id effect = rival->effect[rival->effects - 1];
+        memcpy(at, from->number, sizeof at);
+        if (rival->effects > base->effects) {
+            at[last] = starts[s] * (starts[s] > 0.0 ? soil->high[effect] : -soil->low[effect]);
+        }
+        if (s > 0 && fabs(at[last]) <= 0.0) {
+            continue;
+        }
+        dig_hypothesis_fit(batch, soil, rival, at, thorough, &tried);
+        if (tried.misfit < best.misfit) {
+            best = tried;
+        }
+    }
+    *fitted = best;
+}
+
 void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
                   const struct dig_hypothesis *const base, const size_t rivals,
                   const struct dig_hypothesis rival[], const double start[], const bool thorough,
@@ -31,14 +61,7 @@ void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *co
     statistic->gain = 0.0;
     statistic->best = rivals;
     for (size_t i = 0; i < rivals; i++) {
-        // The added effect starts on the side it may be on, a third of its range in.
-        double       from[DIG_HYPOTHESIS_NUMBERS];
-        const size_t last = DIG_AXES + rival[i].effects - 1;
-        memcpy(from, fitted[0].number, sizeof from);
-        if (rival[i].effects > base->effects) {
-            from[last] = 0.3 * soil->high[rival[i].effect[rival[i].effects - 1]];
-        }
-        dig_hypothesis_fit(batch, soil, &rival[i], from, thorough, &fitted[1 + i]);
+        fit_rival(batch, soil, base, &rival[i], &fitted[0], thorough, &fitted[1 + i]);
         const double gain = fitted[0].misfit - fitted[1 + i].misfit;
         if (gain > statistic->gain) {
             statistic->gain = gain;
