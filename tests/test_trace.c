@@ -44,7 +44,7 @@ static void dig_campaign(const size_t effects, const enum dig_effect_id effect,
 static enum dig_status run(struct dig_trace *const trace, struct dig_error *const error)
 {
     struct dig_trace_settings settings = dig_trace_settings_default();
-    settings.bootstraps                = 60;
+    settings.bootstraps                = 24;
     return dig_trace_run(world.set, NULL, world.effects, &settings, NULL, DIGS, measured, trace,
                          error);
 }
