@@ -46,7 +46,8 @@ plain=$residual
 run with_model "time_scale: 2
 model: heavier.json"
 echo "mean moment in the air, Nm: $plain without the model, $residual with it"
-check "without the model the air is not empty" within "$plain" 500 5000
+# 250 kg at a quarter of a metre are 600 Nm; the bias of free air, learnt meanwhile, takes some of it.
+check "without the model the air is not empty" within "$plain" 200 5000
 check "with it the residual is a fifth or less" within "$residual" 0 "$(awk -v p="$plain" 'BEGIN { print p / 5 }')"
 
 refused() { # NAME: refused with exit status 2, naming the file
