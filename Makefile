@@ -202,7 +202,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(libs)
 # Another machine, other formulas: what digloop trace is judged by. BLIND_N campaigns without an
 # effect and, in proportion, those with one; BLIND_ARGS: see tests/blind/README.md.
 BLIND_N     ?= 1000
-BLIND_TABLE ?= $(firstword $(wildcard tables/rig.sqlite tables/coarse.sqlite))
+BLIND_TABLE ?= tables/rig.sqlite
 blind_objs  := $(call objs,$(wildcard tests/blind/*.c))
 bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig ## How often digloop trace is right, on campaigns it never saw
 	$(Q)mkdir -p $(BUILD)/blind

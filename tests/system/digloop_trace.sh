@@ -3,7 +3,6 @@
 set -u
 BIN=${BIN:-build/bin}
 table=${TABLE:-tables/rig.sqlite}
-[ -e "$table" ] || table=tables/coarse.sqlite
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
