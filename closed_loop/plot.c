@@ -57,7 +57,7 @@ static void put_series(FILE *const to, const size_t index, const struct dig_plot
 static void put_script(FILE *const to, const struct dig_plot *const plot)
 {
     (void)fprintf(to,
-                  "set terminal svg size %u,%u dynamic font 'sans-serif,14' background "
+                  "set terminal svg size %u,%u dynamic noenhanced font 'sans-serif,14' background "
                   "'#ffffff'\n",
                   plot->width == 0 ? 900 : plot->width, plot->height == 0 ? 420 : plot->height);
     (void)fprintf(to, "set key outside bottom center horizontal samplen 2\nset bmargin 6\nset grid "
