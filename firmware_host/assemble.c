@@ -117,10 +117,11 @@ static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
         if (!a->settings.needed[g]) {
             continue;
         }
-        if (!a->fresh[g]) {
+        const struct dig_past_reading *const last = past_of(a, g, 0);
+        if (!a->fresh[g] || last == NULL) {
             return false;
         }
-        const int64_t last_ns = past_of(a, g, 0)->time_ns;
+        const int64_t last_ns = last->time_ns;
         oldest                = last_ns < oldest ? last_ns : oldest;
         youngest              = last_ns > youngest ? last_ns : youngest;
     }

@@ -138,7 +138,7 @@ static bool overlaps_one(const struct pouring *const p, const struct dig_bed *co
 static bool overlaps(const struct pouring *const p, const struct dig_bed *const bed,
                      const double at_m[3], const double radius_m)
 {
-    ptrdiff_t cell[3];
+    ptrdiff_t cell[3] = { 0 };
     find_cell(&p->cells, at_m, cell);
     const ptrdiff_t *const n = p->cells.count;
     for (ptrdiff_t z = cell[2] - 1; z <= cell[2] + 1; z++) {

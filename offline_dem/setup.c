@@ -79,7 +79,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     struct dig_kinds       found  = { 0 };
     struct dig_grains      grains = { 0 };
     struct dig_bodies     *bodies = NULL;
-    uint8_t *const         of     = malloc(bed->grains + 1);
+    uint8_t *const         of     = calloc(bed->grains + 1, 1);
     enum dig_status        status = dig_clump_shape_make(&scene->bed.clump, &shape);
     if (status != DIG_OK) {
         status = dig_error_set(error, status, "bed.clump: no volume, expected some");
