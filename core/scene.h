@@ -12,9 +12,9 @@
 #include <stdbool.h>
 
 #define DIG_PROFILE_MAX   16
-#define DIG_SIZES_MAX     8 // classes of grain size
-#define DIG_MATERIALS_MAX 4 // materials of grains beside the table's gravel
-#define DIG_PAIRS_MAX     (DIG_MATERIALS_MAX * DIG_MATERIALS_MAX)
+#define DIG_SIZES_MAX     8  // classes of grain size
+#define DIG_MATERIALS_MAX 4  // materials of grains beside the table's gravel
+#define DIG_PAIRS_MAX     16 // two of DIG_MATERIALS_MAX, in either order
 #define DIG_LAYERS_MAX    4
 #define DIG_SURFACE_MAX   16 // points of the ground's profile
 #define DIG_CLUMP_MAX     8  // spheres of a clump

@@ -468,9 +468,9 @@ static enum dig_status read_message(const struct work *const work, const size_t 
                                                       : status;
 }
 
-static enum dig_status read_map(const struct work *const work, const struct map_text *const text)
+// What holds for the map as a whole, whatever its signals are.
+static enum dig_status check_map(const struct work *const work, const struct map_text *const text)
 {
-    struct dig_signal_map *const map = work->map;
     if (text->kind == DIG_MAP_CAN && work->dbc == NULL) {
         return dig_yaml_refuse(work->path, "kind", work->error,
                                "can, expected modbus for this input");
@@ -492,6 +492,16 @@ static enum dig_status read_map(const struct work *const work, const struct map_
         return dig_yaml_refuse(work->path, text->j1939 ? "j1939" : "messages", work->error,
                                "given for modbus, expected with kind: can only");
     }
+    return DIG_OK;
+}
+
+static enum dig_status read_map(const struct work *const work, const struct map_text *const text)
+{
+    struct dig_signal_map *const map    = work->map;
+    enum dig_status              status = check_map(work, text);
+    if (status != DIG_OK) {
+        return status;
+    }
     map->kind           = text->kind;
     map->function       = text->function == 3 ? 3 : 4;
     map->low_word_first = text->low_word_first;
@@ -499,7 +509,6 @@ static enum dig_status read_map(const struct work *const work, const struct map_
     map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
     map->coherent_s     = text->coherent_ms > 0.0 ? text->coherent_ms * 1e-3 : 6e-3;
 
-    enum dig_status status = DIG_OK;
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         status = read_signal(work, i, &text->signals[i]);
     }

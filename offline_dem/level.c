@@ -77,8 +77,10 @@ static size_t cell_of(const struct map *const map, const double x_m[])
 
 static void centre_of(const struct map *const map, const size_t cell, double x_m[2])
 {
-    x_m[0] = map->low_m[0] + ((double)(cell % map->count[0]) + 0.5) * map->edge_m;
-    x_m[1] = map->low_m[1] + ((double)(cell / map->count[0]) + 0.5) * map->edge_m;
+    const size_t column = cell % map->count[0];
+    const size_t row    = cell / map->count[0];
+    x_m[0]              = map->low_m[0] + ((double)column + 0.5) * map->edge_m;
+    x_m[1]              = map->low_m[1] + ((double)row + 0.5) * map->edge_m;
 }
 
 // Highest of the cell and the eight around it: what is set down there overlaps nothing.

@@ -29,7 +29,7 @@ static void remove_all(struct dig_ode_scene *const ode)
 
 static dBodyID make_body(struct dig_ode_scene *const ode, const struct dig_rock *const rock)
 {
-    const dBodyID       body = dBodyCreate(ode->world);
+    dBodyID             body = dBodyCreate(ode->world);
     const double *const h    = rock->half_m;
     dMass               mass;
     if (rock->shape == DIG_OBSTACLE_BOX) {
@@ -69,14 +69,14 @@ void dig_ode_rocks_put(struct dig_ode_scene *const ode, const size_t rocks,
     ode->count = rocks;
 }
 
-static size_t rock_of(const struct dig_ode_scene *const ode, const dGeomID geom)
+static size_t rock_of(const struct dig_ode_scene *const ode, dGeomID geom)
 {
     return (size_t)((const dGeomID *)dGeomGetData(geom) - ode->rock);
 }
 
 // A joint that gives way as the law's spring and damper do, over one step.
 static dJointID join(struct meeting *const m, const dContactGeom *const at, const size_t rock,
-                     const dBodyID a, const dBodyID b)
+                     dBodyID a, dBodyID b)
 {
     const struct dig_rock_touch *const t       = &m->touch[rock];
     const double                       give    = m->dt_s * t->normal_Npm + t->damping_Nspm;
@@ -85,17 +85,17 @@ static dJointID join(struct meeting *const m, const dContactGeom *const at, cons
     contact.surface.mu       = t->friction;
     contact.surface.soft_erp = m->dt_s * t->normal_Npm / give;
     contact.surface.soft_cfm = 1.0 / give;
-    const dJointID joint     = dJointCreateContact(m->ode->world, m->ode->touching, &contact);
+    dJointID joint           = dJointCreateContact(m->ode->world, m->ode->touching, &contact);
     dJointAttach(joint, a, b);
     return joint;
 }
 
-static void meet(void *const data, const dGeomID a, const dGeomID b)
+static void meet(void *const data, dGeomID a, dGeomID b)
 {
     struct meeting *const m     = data;
     const bool            turn  = dGeomGetData(a) == NULL;
-    const dGeomID         rock  = turn ? b : a;
-    const dGeomID         other = turn ? a : b;
+    dGeomID               rock  = turn ? b : a;
+    dGeomID               other = turn ? a : b;
     dContactGeom          found[CONTACTS_MAX];
     if (dGeomGetBody(rock) == NULL && dGeomGetBody(other) == NULL) {
         return;
@@ -109,7 +109,7 @@ static void meet(void *const data, const dGeomID a, const dGeomID b)
 static void feel(struct meeting *const m, const dContactGeom *const at, const size_t rock)
 {
     if (m->felt < sizeof m->feedback / sizeof m->feedback[0]) {
-        const dJointID joint = join(m, at, rock, m->ode->body[rock], m->ode->bucket);
+        dJointID joint = join(m, at, rock, m->ode->body[rock], m->ode->bucket);
         dJointSetFeedback(joint, &m->feedback[m->felt++]);
     }
 }

@@ -88,7 +88,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     } else {
         status = dig_kinds_find(scene, gravel, bed, &shape, &found, of, error);
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && of != NULL) {
         status = make_grains(scene, bed, &shape, fall_mps, &found, of, &grains, &bodies);
         if (status == DIG_EINVAL) {
             status = dig_error_set(error, status,

@@ -169,8 +169,10 @@ static void write_rock_points(FILE *const file, const struct dig_rock *const roc
             double p[3];
             double x_m[3];
             p[face / 2]           = face % 2 == 0 ? -1.0 : 1.0;
-            p[(face / 2 + 1) % 3] = 2.0 * (k % (FACETS + 1)) / FACETS - 1.0;
-            p[(face / 2 + 2) % 3] = 2.0 * (k / (FACETS + 1)) / FACETS - 1.0;
+            const int column      = k % (FACETS + 1);
+            const int row         = k / (FACETS + 1);
+            p[(face / 2 + 1) % 3] = 2.0 * column / FACETS - 1.0;
+            p[(face / 2 + 2) % 3] = 2.0 * row / FACETS - 1.0;
             const double length   = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
             for (int a = 0; a < 3; a++) {
                 p[a] *=
@@ -191,12 +193,12 @@ static void write_rocks(FILE *const file, const struct dig_obstacles *const obst
     for (size_t r = 0; r < obstacles->rocks; r++) {
         write_rock_points(file, &obstacles->rock[r]);
     }
-    const size_t quads = faces * FACETS * FACETS;
+    const size_t tiles = (size_t)FACETS * FACETS; // of one face
+    const size_t quads = faces * tiles;
     (void)fprintf(file, "POLYGONS %zu %zu\n", quads, 5 * quads);
     for (size_t q = 0; q < quads; q++) {
-        const size_t within = q % (FACETS * FACETS);
-        const size_t first =
-            q / (FACETS * FACETS) * side * side + within / FACETS * side + within % FACETS;
+        const size_t within = q % tiles;
+        const size_t first  = q / tiles * side * side + within / FACETS * side + within % FACETS;
         (void)fprintf(file, "4 %zu %zu %zu %zu\n", first, first + 1, first + side + 1,
                       first + side);
     }
