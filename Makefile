@@ -38,6 +38,8 @@ test_src  := $(wildcard tests/test_*.c)
 testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
+# Those that wait for a bus most of the time: one after the other, beside those that compute.
+bus_tests := $(wildcard tests/system/daemon_*.sh tests/system/rig.sh)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
 threaded_tests := $(shell grep -l pthread tests/test_*.c)
@@ -149,14 +151,17 @@ $(BUILD)/tests/system/%: $(BUILD)/tests/system/%.o $(libs)
 
 check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make test` does once all is installed)
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
-	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh $(system_tests)
+	$(Q)BIN=$(BUILD)/bin nice -n 15 scripts/run_tests.sh $(filter-out $(bus_tests),$(system_tests)) & files=$$!; \
+	    BIN=$(BUILD)/bin scripts/run_tests.sh $(bus_tests); buses=$$?; wait $$files && exit $$buses
 
 check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+# Two tests repeat, for statistics, what smaller ones do once: minutes under a sanitizer, for nothing new.
+statistics := tests/test_round_trip.c tests/test_rig_track.c
 check-asan: ## The unit tests under AddressSanitizer and UBSan
-	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan \
+	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
 
 check-tsan: ## The threaded units under ThreadSanitizer
