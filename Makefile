@@ -38,8 +38,10 @@ test_src  := $(wildcard tests/test_*.c)
 testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
-# Those that wait for a bus most of the time: one after the other, beside those that compute.
-bus_tests := $(wildcard tests/system/daemon_*.sh tests/system/rig.sh)
+# Those that wait for a bus most of the time: one after the other, beside those that compute; CAN in User
+# Mode Linux wants a core of its own and comes last.
+can_tests := tests/system/daemon_can.sh tests/system/daemon_can_faults.sh tests/system/rig.sh
+bus_tests := $(filter-out $(can_tests),$(wildcard tests/system/daemon_*.sh)) $(can_tests)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
 threaded_tests := $(shell grep -l pthread tests/test_*.c)
