@@ -290,6 +290,7 @@ static enum dig_status take_match(const struct work *const           work,
                 { "match.max_evaluations", text->max_evaluations, 1, 1000000, &config->match_evaluations },
     };
     const struct number number[] = {
+        { "match.least_path", text->least_path, 0.01, 1.0, &config->match_least_path },
         { "match.expires_h", text->expires_h, 0.01, 1000.0, &expires_h },
         { "match.drift_floors", text->drift_floors, 1.0, 1000.0, &config->drift_floors },
     };
@@ -377,6 +378,7 @@ static struct dig_config defaults(void)
         .lcm_url           = DEFAULT_LCM_URL,
         .estimator         = dig_estimator_settings_default(),
         .match_evaluations = 2000,
+        .match_least_path  = 0.6,
         .match_expires_s   = 12.0 * 3600.0,
         .drift_floors      = 3.0,
         .estimate_every    = 1,

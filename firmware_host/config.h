@@ -44,6 +44,7 @@ struct dig_config {
     char                          lcm_url[256];
     struct dig_estimator_settings estimator;
     int                           match_evaluations;
+    double                        match_least_path; // of a dig's path that identifies
     struct dig_path               match_state; // where the gravel known is kept; "": nowhere
     double                        match_expires_s;
     double                        drift_floors;

@@ -46,6 +46,7 @@ struct dig_estimator_text {
 
 struct dig_match_text {
     int    *max_evaluations;
+    double *least_path;
     char   *state;
     double *expires_h, *drift_floors;
 };

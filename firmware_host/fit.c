@@ -65,8 +65,29 @@ static void keep(struct dig_fit *const fit)
     }
 }
 
+// Too little of a path: a gravel told from it would be wide of the truth, and take the place of a
+// better one.
+static bool is_too_short(struct dig_fit *const fit, const struct dig_observation *const dig)
+{
+    const double path = dig->last - dig->first;
+    if (path >= fit->config->match_least_path) {
+        return false;
+    }
+    char text[200];
+    (void)snprintf(
+        text, sizeof text,
+        "dig %u (%s): no match, %.0f %% of its path was measured, expected at least %.0f %%",
+        dig->dig_count, fit->set->trajectory[dig->trajectory].name, 100.0 * path,
+        100.0 * fit->config->match_least_path);
+    note(fit, text);
+    return true;
+}
+
 static void match_dig(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
+    if (is_too_short(fit, dig)) {
+        return;
+    }
     struct dig_match match;
     enum dig_status  status =
         dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match);

@@ -77,6 +77,7 @@ static struct bench *bench_create(void)
     }
     b->config.estimator         = dig_estimator_settings_default();
     b->config.match_evaluations = 300;
+    b->config.match_least_path  = 0.6;
     b->config.match_expires_s   = 3600.0;
     b->config.drift_floors      = 3.0;
     dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
@@ -172,6 +173,29 @@ static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **
 
 // Digs that identify nothing watch the ground: as predicted it is the same; two in a row that are
 // not, and it counts as another.
+static void a_dig_broken_off_leaves_what_is_known(void **state)
+{
+    (void)state;
+    struct bench *const    b   = bench_create();
+    struct dig_observation dig = { .dig_count = 6, .trajectory = 0, .first = 0.0 };
+    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+        dig.moment_Nm[p] = moment_Nm(7, p);
+        dig.sigma_Nm[p]  = 0.005;
+    }
+    dig_in(b, 3, 0, 1.0);
+    dig.last = 0.59;
+    dig_fit_take(&b->fit, &dig);
+    assert_int_equal(b->fit.known.match.dig_count, 5);
+    struct dig_note note;
+    assert_true(dig_latest_take(&b->notes, &note));
+    assert_non_null(strstr(note.text, "59 % of its path was measured, expected at least 60 %"));
+
+    dig.last = 0.61;
+    dig_fit_take(&b->fit, &dig);
+    assert_int_equal(b->fit.known.match.dig_count, 6);
+    free(b);
+}
+
 static void ground_that_changed_is_no_longer_known(void **state)
 {
     (void)state;
@@ -335,6 +359,7 @@ int main(void)
         cmocka_unit_test(a_simple_dig_identifies_the_gravel_it_was_made_of),
         cmocka_unit_test(a_dig_that_does_not_identify_is_passed_over),
         cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),
+        cmocka_unit_test(a_dig_broken_off_leaves_what_is_known),
         cmocka_unit_test(ground_that_changed_is_no_longer_known),
         cmocka_unit_test(a_gravel_that_is_too_old_is_no_longer_known),
         cmocka_unit_test(what_is_known_survives_in_its_file),
