@@ -228,19 +228,28 @@ enum dig_status dig_observe_mean(const size_t n, const struct dig_observation on
     if (n == 0) {
         return dig_error_set(error, DIG_EINVAL, "no recording, expected one or more");
     }
-    struct dig_observation sum = one[0];
-    for (size_t i = 1; i < n; i++) {
+    struct dig_observation sum = { .dig_count  = one[n - 1].dig_count,
+                                   .trajectory = one[0].trajectory,
+                                   .first      = one[0].first,
+                                   .last       = one[0].last };
+    for (size_t i = 0; i < n; i++) {
         if (one[i].trajectory != sum.trajectory) {
             return dig_error_set(error, DIG_EINVAL,
                                  "recordings of different trajectories, expected digs along one");
         }
         sum.off_path_m = fmax(sum.off_path_m, one[i].off_path_m);
-        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-            sum.moment_Nm[k] += one[i].moment_Nm[k];
-        }
+        sum.first      = fmax(sum.first, one[i].first);
+        sum.last       = fmin(sum.last, one[i].last);
+    }
+    if (!(sum.last > sum.first)) {
+        return dig_error_set(error, DIG_EINVAL, "the digs have no part of the path in common");
     }
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum.moment_Nm[k] /= (double)n;
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        for (size_t i = 0; i < n && at >= sum.first && at <= sum.last; i++) {
+            sum.moment_Nm[k] += one[i].moment_Nm[k] / (double)n;
+            sum.sigma_Nm[k] = hypot(sum.sigma_Nm[k], one[i].sigma_Nm[k] / (double)n);
+        }
     }
     *mean = sum;
     return DIG_OK;

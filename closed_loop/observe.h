@@ -42,8 +42,9 @@ DIG_MUST_CHECK enum dig_status dig_observe_recording(const struct dig_curve_set 
                                                      struct dig_observation     *observation,
                                                      struct dig_error           *error);
 
-/// The mean of several observations of one trajectory: their scatter averages down. DIG_EINVAL when
-/// they are of different trajectories or there is none.
+/// The mean of several observations of one trajectory over the range that all of them have: their
+/// scatter and their sensors' errors average down. DIG_EINVAL when they are of different
+/// trajectories, have no range in common, or there is none.
 DIG_MUST_CHECK enum dig_status dig_observe_mean(size_t n, const struct dig_observation one[],
                                                 struct dig_observation *mean,
                                                 struct dig_error       *error);

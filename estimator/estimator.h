@@ -62,10 +62,12 @@ struct dig_observation {
 
 #define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
 
-/// Which gravel. Distances are ||measured - table|| / ||measured|| over the points measured.
+/// Which gravel. Distances are ||measured - table|| / ||measured|| over the points measured, of all
+/// digs that were pooled.
 struct dig_match {
     bool              valid;
-    uint32_t          dig_count; // of the observation it came from
+    uint32_t          dig_count; // of the observation it came from, the youngest of several
+    size_t            digs;      // pooled
     int               nearest;   // entry of the table
     double            nearest_distance;
     struct dig_gravel gravel; // between the grid points

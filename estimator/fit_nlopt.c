@@ -3,6 +3,7 @@
 
 #include "estimator/interpolate.h"
 #include "estimator/match.h"
+#include "estimator/pool.h"
 #include "estimator/posterior.h"
 
 #include <nlopt.h>
@@ -19,21 +20,21 @@ static const double no_curve = 1e6;
 
 // The fit in positions 0 … 1 along the axes that have more than one point.
 struct problem {
-    const struct dig_curve_set   *set;
-    const struct dig_observation *observation;
-    unsigned                      dimensions;
-    enum dig_axis                 axis[DIG_AXES];
-    struct dig_gravel             fixed; // the other axes
+    const struct dig_curve_set *set;
+    const struct dig_pool_sums *sums;
+    unsigned                    dimensions;
+    enum dig_axis               axis[DIG_AXES];
+    struct dig_gravel           fixed; // the other axes
 };
 
-static struct problem make_problem(const struct dig_curve_set *const   set,
-                                   const struct dig_observation *const observation,
-                                   const struct dig_match *const       match)
+static struct problem make_problem(const struct dig_curve_set *const set,
+                                   const struct dig_pool_sums *const sums,
+                                   const struct dig_match *const     match)
 {
     struct problem problem = {
-        .set         = set,
-        .observation = observation,
-        .fixed       = set->gravel[match->nearest],
+        .set   = set,
+        .sums  = sums,
+        .fixed = set->gravel[match->nearest],
     };
     for (int a = 0; a < DIG_AXES; a++) {
         if (set->axis_count[a] > 1) {
@@ -55,12 +56,16 @@ static struct dig_gravel gravel_of(const struct problem *const problem, const do
 static struct dig_distance distance_at(const struct problem *const    problem,
                                        const struct dig_gravel *const gravel)
 {
-    struct dig_cell cell;
-    const size_t    trajectory = (size_t)problem->observation->trajectory;
-    if (dig_cell_find(problem->set, gravel, trajectory, &cell) != DIG_OK) {
-        return (struct dig_distance){ .distance = no_curve, .noise_floor = no_curve };
+    struct dig_misfit all = { .miss2_Nm2 = 0.0 };
+    for (size_t g = 0; g < problem->sums->groups; g++) {
+        const struct dig_pooled *const group = &problem->sums->group[g];
+        struct dig_cell                cell;
+        if (dig_cell_find(problem->set, gravel, group->trajectory, &cell) != DIG_OK) {
+            return (struct dig_distance){ .distance = no_curve, .noise_floor = no_curve };
+        }
+        dig_misfit_add(&all, dig_cell_misfit(&cell, group));
     }
-    return dig_cell_distance(&cell, problem->observation);
+    return dig_misfit_distance(&all);
 }
 
 // NOLINTNEXTLINE(readability-non-const-parameter): the signature is NLopt's
@@ -200,24 +205,18 @@ static enum dig_status improve(struct problem *const problem, const double start
     return DIG_OK;
 }
 
-enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
-                               const struct dig_observation *const observation,
-                               const int max_evaluations, struct dig_match *const match)
+static enum dig_status refine(const struct dig_curve_set *const set,
+                              const struct dig_pool_sums *const sums, const int max_evaluations,
+                              struct dig_match *const match)
 {
-    assert(set != NULL && observation != NULL && match != NULL);
-    if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
-        max_evaluations < 1 || dig_observation_check(set, observation) != DIG_OK) {
-        return DIG_EINVAL;
-    }
-
     // A table of scattered points has no cell to be unsure in: the nearest entry stands.
     struct dig_match      refined = *match;
-    const enum dig_status judged  = dig_posterior_fill(set, observation, &refined);
+    const enum dig_status judged  = dig_posterior_fill(set, sums, &refined);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
 
-    struct problem problem = make_problem(set, observation, match);
+    struct problem problem = make_problem(set, sums, match);
     double         best    = match->nearest_distance;
     if (problem.dimensions > 0) {
         const struct starts starts         = choose_starts(&problem, &refined.mean);
@@ -254,4 +253,30 @@ enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
     }
     *match = refined;
     return DIG_OK;
+}
+
+enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const size_t digs,
+                                    const struct dig_observation dig[], const int max_evaluations,
+                                    struct dig_match *const match)
+{
+    assert(set != NULL && dig != NULL && match != NULL);
+    if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
+        max_evaluations < 1 || digs < 1 || digs > DIG_POOL_MAX) {
+        return DIG_EINVAL;
+    }
+    for (size_t d = 0; d < digs; d++) {
+        if (dig_observation_check(set, &dig[d]) != DIG_OK) {
+            return DIG_EINVAL;
+        }
+    }
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+    return refine(set, &sums, max_evaluations, match);
+}
+
+enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
+                               const struct dig_observation *const observation,
+                               const int max_evaluations, struct dig_match *const match)
+{
+    return dig_fit_refine_pool(set, 1, observation, max_evaluations, match);
 }

@@ -1,6 +1,7 @@
 #include "estimator/match.h"
 
 #include "estimator/interpolate.h"
+#include "estimator/pool.h"
 
 #include <assert.h>
 #include <math.h>
@@ -32,24 +33,21 @@ enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
     return sum > 0.0 && isfinite(sum) ? DIG_OK : DIG_EINVAL;
 }
 
-struct dig_distance dig_cell_distance(const struct dig_cell *const        cell,
-                                      const struct dig_observation *const observation)
+struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
+                                  const struct dig_pooled *const group)
 {
-    double miss2  = 0.0;
-    double floor2 = 0.0;
-    double whole2 = 0.0;
+    struct dig_misfit misfit = { .miss2_Nm2 = group->scatter_Nm2, .whole2_Nm2 = group->whole_Nm2 };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        if (!is_measured(observation, k)) {
+        const double n = group->count[k];
+        if (!(n > 0.0)) {
             continue;
         }
-        const double miss = observation->moment_Nm[k] - dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
+        const double miss = group->mean_Nm[k] - dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
         const double sd   = dig_cell_sd(cell, DIG_CHANNEL_MY_Nm, k);
-        miss2 += miss * miss;
-        floor2 += sd * sd * (1.0 + cell->inverse_packings) + pow(observation->sigma_Nm[k], 2.0);
-        whole2 += observation->moment_Nm[k] * observation->moment_Nm[k];
+        misfit.miss2_Nm2 += n * miss * miss;
+        misfit.floor2_Nm2 += n * (sd * sd * (1.0 + cell->inverse_packings) + group->sigma2_Nm2[k]);
     }
-    return (struct dig_distance){ .distance    = sqrt(miss2 / whole2),
-                                  .noise_floor = sqrt(floor2 / whole2) };
+    return misfit;
 }
 
 enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
@@ -74,22 +72,15 @@ enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
-                                  const struct dig_observation *const observation,
-                                  const double outside_floors, struct dig_match *const match)
+// Distance of an entry from all digs; infinite when it lacks one of their trajectories.
+static struct dig_distance entry_distance(const struct dig_curve_set *const set, const size_t entry,
+                                          const struct dig_pool_sums *const sums)
 {
-    assert(set != NULL && observation != NULL && match != NULL);
-    const enum dig_status status = dig_observation_check(set, observation);
-    if (status != DIG_OK || !(outside_floors > 0.0)) {
-        return DIG_EINVAL;
-    }
-
-    int                 nearest = -1;
-    struct dig_distance best    = { .distance = INFINITY };
-    for (size_t e = 0; e < set->entries; e++) {
-        const size_t slot = e * set->trajectories + (size_t)observation->trajectory;
+    struct dig_misfit all = { .miss2_Nm2 = 0.0 };
+    for (size_t g = 0; g < sums->groups; g++) {
+        const size_t slot = entry * set->trajectories + sums->group[g].trajectory;
         if (set->packings[slot] <= 0) {
-            continue;
+            return (struct dig_distance){ .distance = INFINITY };
         }
         const struct dig_cell cell = {
             .corners          = 1,
@@ -97,7 +88,31 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
             .weight           = { 1.0 },
             .inverse_packings = 1.0 / (double)set->packings[slot],
         };
-        const struct dig_distance distance = dig_cell_distance(&cell, observation);
+        dig_misfit_add(&all, dig_cell_misfit(&cell, &sums->group[g]));
+    }
+    return dig_misfit_distance(&all);
+}
+
+enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,
+                                       const struct dig_observation dig[],
+                                       const double outside_floors, struct dig_match *const match)
+{
+    assert(set != NULL && dig != NULL && match != NULL);
+    if (digs < 1 || digs > DIG_POOL_MAX || !(outside_floors > 0.0)) {
+        return DIG_EINVAL;
+    }
+    for (size_t d = 0; d < digs; d++) {
+        if (dig_observation_check(set, &dig[d]) != DIG_OK) {
+            return DIG_EINVAL;
+        }
+    }
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+
+    int                 nearest = -1;
+    struct dig_distance best    = { .distance = INFINITY };
+    for (size_t e = 0; e < set->entries; e++) {
+        const struct dig_distance distance = entry_distance(set, e, &sums);
         if (distance.distance < best.distance) {
             best    = distance;
             nearest = (int)e;
@@ -109,7 +124,8 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
 
     *match = (struct dig_match){
         .valid            = true,
-        .dig_count        = observation->dig_count,
+        .dig_count        = sums.dig_count,
+        .digs             = digs,
         .nearest          = nearest,
         .nearest_distance = best.distance,
         .gravel           = set->gravel[nearest],
@@ -122,4 +138,11 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
         .outside_floors   = outside_floors,
     };
     return DIG_OK;
+}
+
+enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
+                                  const struct dig_observation *const observation,
+                                  const double outside_floors, struct dig_match *const match)
+{
+    return dig_match_nearest_pool(set, 1, observation, outside_floors, match);
 }

@@ -8,16 +8,38 @@
 #include "core/curve.h"
 #include "estimator/estimator.h"
 
-/// Distance of a curve of the table from an observation, and what the noise alone would make it.
+#include <math.h>
+
+/// How far digs are from a curve of the table, and what the noise alone would make that; relative
+/// to what was measured.
 struct dig_distance {
     double distance, noise_floor;
 };
 
-struct dig_cell; // estimator/interpolate.h
+/// The same before roots are drawn: sums over points and digs.
+struct dig_misfit {
+    double miss2_Nm2, floor2_Nm2, whole2_Nm2;
+};
 
-/// Over the points measured. The observation must have passed its check.
-struct dig_distance dig_cell_distance(const struct dig_cell        *cell,
-                                      const struct dig_observation *observation);
+static inline void dig_misfit_add(struct dig_misfit *const sum, const struct dig_misfit more)
+{
+    sum->miss2_Nm2 += more.miss2_Nm2;
+    sum->floor2_Nm2 += more.floor2_Nm2;
+    sum->whole2_Nm2 += more.whole2_Nm2;
+}
+
+static inline struct dig_distance dig_misfit_distance(const struct dig_misfit *const sum)
+{
+    return (struct dig_distance){ .distance    = sqrt(sum->miss2_Nm2 / sum->whole2_Nm2),
+                                  .noise_floor = sqrt(sum->floor2_Nm2 / sum->whole2_Nm2) };
+}
+
+struct dig_cell;   // estimator/interpolate.h
+struct dig_pooled; // estimator/pool.h
+
+/// Over the points measured, each dig by itself: pooling changes neither distance nor floor but
+/// for what chance does to them.
+struct dig_misfit dig_cell_misfit(const struct dig_cell *cell, const struct dig_pooled *group);
 
 /// DIG_EINVAL: not finite, 0 everywhere, a range outside 0 … 1, or a trajectory the set lacks.
 DIG_MUST_CHECK enum dig_status dig_observation_check(const struct dig_curve_set   *set,
@@ -38,15 +60,28 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set   *s
                                                  const struct dig_observation *observation,
                                                  double outside_floors, struct dig_match *match);
 
+/// The same of several digs of one ground (1 to DIG_POOL_MAX, youngest last): the entry that is
+/// nearest to all, the root mean square of their distances. An entry that lacks a trajectory that
+/// was dug is passed over. 50 kB of stack.
+DIG_MUST_CHECK enum dig_status dig_match_nearest_pool(const struct dig_curve_set *set, size_t digs,
+                                                      const struct dig_observation dig[],
+                                                      double                       outside_floors,
+                                                      struct dig_match            *match);
+
 /// From a nearest match on between the grid points, and the posterior of the gravel (low and high
 /// widened where needed to hold the gravel of the smallest distance); judges again whether the
 /// gravel is outside the table. Allocates (in NLopt); never call it in the tick. At most
 /// max_evaluations of the distance, then the posterior on a fixed grid: some ten milliseconds and
-/// 200 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;
+/// 250 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;
 /// DIG_ENOMEM. Then *match is unchanged.
 DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set   *set,
                                               const struct dig_observation *observation,
                                               int max_evaluations, struct dig_match *match);
+
+/// The same of the digs that dig_match_nearest_pool() took: the posterior given all of them.
+DIG_MUST_CHECK enum dig_status dig_fit_refine_pool(const struct dig_curve_set *set, size_t digs,
+                                                   const struct dig_observation dig[],
+                                                   int max_evaluations, struct dig_match *match);
 
 /// The curve predicted for one trajectory at the match, rig scale: mean and 1 sigma of one dig, the
 /// spread between packings and the uncertainty of the gravel taken together. A match that was not

@@ -15,12 +15,11 @@ static const double pooled_weight = 4.0;
 // Share of the table's pooled spread below which no point of a curve is believed.
 static const double least_spread = 0.25;
 
+// Of the digs along one trajectory.
 struct likelihood {
-    const struct dig_curve_set   *set;
-    const struct dig_observation *observation;
-    double                        effective; // independent errors along the dig
-    double                        relative2; // pooled (sd / mean)^2 of the trajectory
-    size_t                        from, end; // points measured
+    const struct dig_pooled *group;
+    double                   per_point; // independent errors along the dig, at each point measured
+    double                   relative2; // pooled (sd / mean)^2 of the trajectory
 };
 
 // Squared spread of one dig relative to the mean, over all entries of the trajectory.
@@ -52,50 +51,71 @@ static double pooled_relative2(const struct dig_curve_set *const set, const size
 
 static double log_likelihood(const struct likelihood *const l, const struct dig_cell *const cell)
 {
-    const double own     = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
-    const double shared  = pooled_weight / (pooled_weight + own);
-    const double widened = 1.0 + cell->inverse_packings;
+    const double own    = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
+    const double shared = pooled_weight / (pooled_weight + own);
 
     double mean_Nm[DIG_CURVE_POINTS];
-    double mean2 = 0.0;
-    for (size_t k = l->from; k < l->end; k++) {
-        mean_Nm[k] = dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
-        mean2 += mean_Nm[k] * mean_Nm[k];
+    double mean2  = 0.0;
+    double points = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        if (l->group->count[k] > 0.0) {
+            mean_Nm[k] = dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
+            mean2 += mean_Nm[k] * mean_Nm[k];
+            points += 1.0;
+        }
     }
-    const double points = (double)(l->end - l->from);
     const double floor2 = least_spread * least_spread * l->relative2 * mean2 / points;
 
     double sum = 0.0;
-    for (size_t k = l->from; k < l->end; k++) {
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        if (!(l->group->count[k] > 0.0)) {
+            continue;
+        }
+        const double one_of  = 1.0 / l->group->count[k];
         const double sd      = dig_cell_sd(cell, DIG_CHANNEL_MY_Nm, k);
         const double pooled2 = l->relative2 * mean_Nm[k] * mean_Nm[k];
         const double spread2 = (1.0 - shared) * sd * sd + shared * pooled2 + floor2;
-        const double sigma   = l->observation->sigma_Nm[k];
-        const double d       = spread2 * widened + sigma * sigma + 1e-300;
-        const double miss    = l->observation->moment_Nm[k] - mean_Nm[k];
+        const double d =
+            spread2 * (one_of + cell->inverse_packings) + l->group->sigma2_Nm2[k] * one_of + 1e-300;
+        const double miss = l->group->mean_Nm[k] - mean_Nm[k];
         sum += miss * miss / d + log(d);
     }
-    return -0.5 * l->effective * sum / points;
+    return -0.5 * l->per_point * sum;
 }
 
-static struct likelihood start(const struct dig_curve_set *const   set,
-                               const struct dig_observation *const observation)
+static struct likelihood likelihood_of(const struct dig_curve_set *const set,
+                                       const struct dig_pooled *const    group)
 {
-    const size_t                       trajectory = (size_t)observation->trajectory;
-    const struct dig_trajectory *const t          = &set->trajectory[trajectory];
+    const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
-    const double share   = observation->last - observation->first;
     const double correlation_m = DIG_POSTERIOR_CORRELATION * set->tooth_m;
 
-    const double last_point = DIG_CURVE_POINTS - 1;
+    double points = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        points += group->count[k] > 0.0 ? 1.0 : 0.0;
+    }
+    const double share = (points - 1.0) / (DIG_CURVE_POINTS - 1);
     return (struct likelihood){
-        .set         = set,
-        .observation = observation,
-        .effective   = fmax(share * whole_m / correlation_m, 1.0),
-        .relative2   = pooled_relative2(set, trajectory),
-        .from        = (size_t)ceil(observation->first * last_point),
-        .end         = (size_t)floor(observation->last * last_point) + 1,
+        .group     = group,
+        .per_point = fmax(share * whole_m / correlation_m, 1.0) / points,
+        .relative2 = pooled_relative2(set, group->trajectory),
     };
+}
+
+// Of all digs at one gravel; -infinity where the table has no curve.
+static double log_likelihood_at(const struct dig_curve_set *const set,
+                                const struct dig_gravel *const gravel, const size_t groups,
+                                const struct likelihood l[])
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < groups; g++) {
+        struct dig_cell cell;
+        if (dig_cell_find(set, gravel, l[g].group->trajectory, &cell) != DIG_OK) {
+            return -INFINITY;
+        }
+        sum += log_likelihood(&l[g], &cell);
+    }
+    return sum;
 }
 
 // The fine grid: points are centres of equal intervals of each axis's position.
@@ -169,29 +189,28 @@ static void draw_samples(const struct dig_curve_set *const set, const struct fin
     match->samples = DIG_MATCH_SAMPLES;
 }
 
-enum dig_status dig_posterior_fill(const struct dig_curve_set *const   set,
-                                   const struct dig_observation *const observation,
-                                   struct dig_match *const             match)
+enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
+                                   const struct dig_pool_sums *const sums,
+                                   struct dig_match *const           match)
 {
-    assert(set != NULL && observation != NULL && match != NULL);
+    assert(set != NULL && sums != NULL && match != NULL);
     for (int a = 0; a < DIG_AXES; a++) {
         if (set->axis_count[a] == 0) {
             return DIG_ENOMATCH;
         }
     }
-    const struct likelihood l    = start(set, observation);
-    const struct fine       fine = make_fine(set);
+    struct likelihood l[DIG_TRAJECTORY_MAX];
+    for (size_t g = 0; g < sums->groups; g++) {
+        l[g] = likelihood_of(set, &sums->group[g]);
+    }
+    const struct fine fine = make_fine(set);
 
     double weight[GRID_MAX];
     double most = -INFINITY;
     for (size_t i = 0; i < fine.all; i++) {
         const struct dig_gravel gravel = gravel_at(set, &fine, i);
-        struct dig_cell         cell;
-        weight[i] = -INFINITY;
-        if (dig_cell_find(set, &gravel, (size_t)observation->trajectory, &cell) == DIG_OK) {
-            weight[i] = log_likelihood(&l, &cell);
-        }
-        most = fmax(most, weight[i]);
+        weight[i]                      = log_likelihood_at(set, &gravel, sums->groups, l);
+        most                           = fmax(most, weight[i]);
     }
     if (!isfinite(most)) {
         return DIG_ENOMATCH;

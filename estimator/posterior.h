@@ -1,5 +1,5 @@
-// How sure the matcher is: the posterior of the gravel given one dig, on a fine grid over the
-// interpolated table.
+// How sure the matcher is: the posterior of the gravel given one dig or several of one ground, on a
+// fine grid over the interpolated table.
 //
 // Uniform prior over friction, rolling friction and log density within the table's complete cells.
 // Errors along a dig are not independent: a packing that resists more does so for about a bucket's
@@ -7,14 +7,23 @@
 //
 //   log L = -n_eff / 2 * mean over points ( (m - t)^2 / D + log D ),   n_eff = path / correlation
 //
-// D: variance of one dig about a mean of few packings, drawn towards the table's pooled spread as a
-// standard deviation of three packings is itself uncertain, plus the measurement's sigma^2.
+// m: mean of the n digs along a trajectory. D: its variance about the table's mean of few packings
+// N,
+//
+//   D = spread^2 (1/n + 1/N) + sigma^2 / n
+//
+// spread: of one dig, drawn towards the table's pooled spread as a standard deviation of three
+// packings is itself uncertain; sigma: of one measurement. Digs average their own part down, the
+// table's error is common to all. How the digs scatter about their mean is not used: it would tell
+// gravels apart by their spreads, which the table knows too badly for that. Trajectories are
+// independent: their logarithms add.
 
 #ifndef DIG_ESTIMATOR_POSTERIOR_H
 #define DIG_ESTIMATOR_POSTERIOR_H
 
 #include "core/curve.h"
 #include "estimator/estimator.h"
+#include "estimator/pool.h"
 
 /// Path over which errors of a dig are correlated (equivalent width), in bucket lengths. Measured
 /// on 26 LIGGGHTS digs of three gravels over 4 to 5 packings: autocorrelation of the normalised
@@ -22,10 +31,10 @@
 #define DIG_POSTERIOR_CORRELATION 0.25
 
 /// Fills mean, low, high and the samples of *match. DIG_ENOMATCH when the table has no complete
-/// cell for the observation's trajectory; then *match is unchanged. The observation must have
-/// passed dig_observation_check(). About 8000 evaluations; 130 kB of stack.
-DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set   *set,
-                                                  const struct dig_observation *observation,
-                                                  struct dig_match             *match);
+/// cell for the trajectories that were dug; then *match is unchanged. About 8000 evaluations a
+/// trajectory; 130 kB of stack.
+DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
+                                                  const struct dig_pool_sums *sums,
+                                                  struct dig_match           *match);
 
 #endif // DIG_ESTIMATOR_POSTERIOR_H

@@ -9,7 +9,7 @@ BIN=${BIN:-build/bin}
 helpers=$BIN/../tests/system
 scene=config/scenes/rig.yaml
 machine=config/machines/zx200_trench.yaml
-passed=0 failed=0 children=()
+passed=0 failed=0 always_failed=0 children=()
 
 if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     ip link set lo up multicast on 2>/dev/null
@@ -46,6 +46,13 @@ start() { # OUTPUT COMMAND…
     children+=("$started")
 }
 
+# What must hold on a bus that is late, too.
+check_always() { # SENTENCE COMMAND…
+    local before=$failed
+    check "$@"
+    always_failed=$((always_failed + failed - before))
+}
+
 check() { # SENTENCE COMMAND…
     if "${@:2}"; then
         passed=$((passed + 1))
@@ -61,13 +68,18 @@ rig_late_ms() {
     sed -nE 's/.*the latest ([0-9]+)\.[0-9]+ ms late.*/\1/p' "$work"/*.err 2>/dev/null | sort -n | tail -n 1
 }
 
-# A failure on a machine that did not keep the bus's time says nothing: it is skipped, aloud.
+# A failure on a machine that did not keep the bus's time says nothing: it is skipped, aloud. Wrong
+# numbers published as good (check_always) are excused by much more only: a second of the clock is several of
+# the machine, and what lay on the bus then is no motion any more.
 LATE_LIMIT_ms=300
+LATE_ALWAYS_ms=1000
 
 finish() {
     local late_ms
     late_ms=$(rig_late_ms)
-    if [ "$failed" -gt 0 ] && [ "${late_ms:-0}" -gt "$LATE_LIMIT_ms" ]; then
+    local limit_ms=$LATE_LIMIT_ms
+    [ "$always_failed" = 0 ] || limit_ms=$LATE_ALWAYS_ms
+    if [ "$failed" -gt 0 ] && [ "${late_ms:-0}" -gt "$limit_ms" ]; then
         echo "SKIP: $failed checks failed while the rig was up to $late_ms ms late on its bus: this machine was too busy to judge"
         echo "$passed passed, 0 failed, $failed skipped"
         return 0
@@ -156,16 +168,18 @@ rig() { # KEY: a number of the rig's counts
 # Judges $work/NAME.lcm into $work/NAME.judged. In dig BLIND the angles stand still: nothing can tell at
 # once; it has to be told before two seconds of wrong estimates are published.
 judge() { # NAME [BLIND]
-    "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 >"$work/$1.judged" 2>"$work/$1.err"
+    local late_s
+    late_s=$(awk -v ms="$(rig_late_ms)" -v speed="$speed" 'BEGIN { print ms > 0 ? 1e-3 * ms * speed : 0 }')
+    "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 "$late_s" >"$work/$1.judged" 2>"$work/$1.err"
     sed 's/^/      /' "$work/$1.judged"
     judged=$work/$1.judged
     check "$1: estimates are published" within "$(judged all 2)" 100 1e9
     local blind=0
-    [ -z "${2-}" ] || blind=$("$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 \
+    [ -z "${2-}" ] || blind=$("$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 "$late_s" \
         "$(awk -v c="${contacts[$2 - 1]}" 'BEGIN { print c - 2 }')" 12 | awk '$1 == "within" { print $2 }')
-    check "$1: no wrong estimate is published as good" [ "$(judged all 3)" = "$blind" ]
+    check_always "$1: no wrong estimate is published as good" [ "$(judged all 3)" = "$blind" ]
     check "$1: but for two seconds at most while angles stand" within "$blind" 0 200
-    check "$1: nor a wrong match or prediction" [ "$(judged all 6) $(judged all 8)" = "0 0" ]
+    check_always "$1: nor a wrong match or prediction" [ "$(judged all 6) $(judged all 8)" = "0 0" ]
 }
 
 judged() { # KIND FIELD [DIG]: a field of the line "all", or of a dig's

@@ -37,6 +37,15 @@ log again
 "$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
 read_log again
 check "the log of the daemon is accepted as a recording and gives the gravel again" identified "$work/again.txt"
+identify() { # NAME RECORDING…: with digloop, offline
+    "$BIN/digloop" identify "$work/table.sqlite" "${@:2}" --json >"$work/$1.json" 2>"$work/$1.err" &&
+        sed -nE 's/.*"mean": \{"friction": ([^,]*), "rolling": ([^,]*), "density_kgpm3": ([^}]*)\}.*/\1 \2 \3/p' "$work/$1.json"
+}
+by_force=$(identify by_force "$work/simpleA.csv")
+by_log=$(identify by_log "$work/csv.lcm" --machine "$machine" --trajectory simpleA)
+check "digloop finds the dig in the log and the same gravel as in the force recording" \
+    awk -v a="$by_force" -v b="$by_log" 'BEGIN { exit !(split(a, x, " ") == 3 && split(b, y, " ") == 3 &&
+        (y[1] / x[1] - 1) ^ 2 < 0.15 ^ 2 && (y[2] / x[2] - 1) ^ 2 < 0.15 ^ 2 && (y[3] / x[3] - 1) ^ 2 < 0.15 ^ 2) }'
 "$BIN/digreport" --table "$work/table.sqlite" --machine "$machine" --truth .5,.4,2200 --recording "$work/simpleA.csv" \
     --recording "$work/actual.csv" --html "$work/page.html" --json "$work/page.json" "a replay=$work/csv.lcm" \
     >"$work/report.txt" 2>"$work/report.err"

@@ -44,6 +44,44 @@ check "as a force recording that can be read again" \
 "$BIN/digloop" identify "$table" "$work/next.csv" >"$work/out" 2>&1
 check "the predicted dig is a dig of the table" [ $? = 0 ]
 
+# The same digs through a machine: joint angles and pressures with the bus' steps and noise.
+machine=config/machines/zx200_trench.yaml
+number() { # FILE KEY AXIS: of an identity
+    sed -nE "s/.*\"$2\": \{[^}]*\"$3\": ([0-9.e+-]+).*/\1/p" "$1"
+}
+agrees() { # A B: A's mean lies within B's 90 % interval, on every axis
+    local axis
+    for axis in friction rolling density_kgpm3; do
+        awk -v v="$(number "$1" mean $axis)" -v low="$(number "$2" low $axis)" -v high="$(number "$2" high $axis)" \
+            'BEGIN { exit !(v != "" && low != "" && v >= low && v <= high) }' || { echo "      $axis"; return 1; }
+    done
+}
+"$BIN/digrig" record "$reference"{,_seed2}__simpleA.csv "$reference"__actual.csv --machine "$machine" -o "$work/run.csv" 2>"$work/err"
+"$BIN/digloop" identify "$table" "$reference"{,_seed2}__simpleA.csv --json >"$work/force.json" 2>"$work/err"
+check "digs are found in a machine recording and identified" eval '"$BIN/digloop" identify "$table" "$work/run.csv" \
+    --machine "$machine" --trajectory simpleA --json >"$work/machine.json" 2>"$work/err"'
+check "both of the trajectory asked for" grep -q '"digs": 2' "$work/machine.json"
+check "as the gravel that the force recordings say" agrees "$work/machine.json" "$work/force.json"
+check "and the other way round" agrees "$work/force.json" "$work/machine.json"
+"$BIN/digloop" predict "$table" --identified "$work/force.json" --trajectory actual --measured "$reference"__actual.csv --json \
+    >"$work/by_force.json"
+"$BIN/digloop" predict "$table" --identified "$work/force.json" --trajectory actual --measured "$work/run.csv" \
+    --machine "$machine" --json >"$work/by_machine.json"
+check "a prediction is as wrong against the machine recording as against the force recording" \
+    awk -v a="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_force.json")" \
+        -v b="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_machine.json")" \
+        'BEGIN { exit !(a > 0 && b > 0 && (a - b) ^ 2 < 0.02 ^ 2) }'
+check "digs along two trajectories are not pooled" refuses "different trajectories" "--trajectory" -- \
+    "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$machine"
+check "without its machine a machine recording is refused" refuses "run.csv" "--machine" -- \
+    "$BIN/digloop" identify "$table" "$work/run.csv"
+sed 's/^bucket_width_m: .*/bucket_width_m: 1.0/' "$machine" >"$work/wide.yaml"
+check "a machine with a bucket of another shape is refused, both named" refuses "wide.yaml" "rig.sqlite" "same shape" -- \
+    "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$work/wide.yaml"
+head -n 300 "$work/run.csv" >"$work/air.csv"
+check "a recording without a dig is refused" refuses "air.csv" "digs in it: 0" -- \
+    "$BIN/digloop" identify "$table" "$work/air.csv" --machine "$machine"
+
 check "digloop without arguments is bad usage" refuses "expected a command" -- "$BIN/digloop"
 check "an unknown command is named" refuses "frobnicate" -- "$BIN/digloop" frobnicate "$table"
 check "a table that is none is named" refuses README.md -- "$BIN/digloop" identify README.md "$reference"__simpleA.csv

@@ -1,12 +1,11 @@
 #include "tools/digloop/campaign.h"
 
-#include "closed_loop/clipped.h"
 #include "closed_loop/observe.h"
 #include "files/campaign_yaml.h"
-#include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
+#include "tools/digloop/recording.h"
 
 #include <assert.h>
 #include <math.h>
@@ -149,33 +148,6 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
     return DIG_OK;
 }
 
-// The first line of a recording that is not a comment names its columns; an LCM log has none.
-static bool is_force_recording(const char *const path)
-{
-    char        line[512] = "";
-    FILE *const file      = fopen(path, "r");
-    while (file != NULL && fgets(line, sizeof line, file) != NULL && line[0] == '#') {
-    }
-    if (file != NULL) {
-        (void)fclose(file);
-    }
-    return strstr(line, "My_Nm") != NULL;
-}
-
-// What a sensor cut off would be taken for an effect.
-static enum dig_status check_range(const struct dig_machine *const           machine,
-                                   const struct dig_machine_recording *const recording,
-                                   const char *const file, struct dig_error *const error)
-{
-    struct dig_clip clip;
-    return dig_clipped_find(machine, recording, &clip)
-               ? dig_error_set(error, DIG_EINVAL,
-                               "%s: %s stays at its highest value, %.4g Pa, for %.1f s: clipped, "
-                               "expected a pressure within the sensor's range",
-                               file, dig_signal_name(clip.signal), clip.limit_Pa, clip.time_s)
-               : DIG_OK;
-}
-
 static enum dig_status load_machine(const struct dig_campaign *const  from,
                                     const struct dig_curve_set *const set,
                                     struct digloop_campaign *const    campaign,
@@ -194,11 +166,7 @@ static enum dig_status load_machine(const struct dig_campaign *const  from,
     enum dig_status status = dig_machine_read(from->machine, &machine, error);
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
-        status                 = dig_lcm_log_is(file) ? dig_lcm_log_read(file, &recording[i], error)
-                                                      : dig_machine_recording_read(file, &recording[i], error);
-        if (status == DIG_OK) {
-            status = check_range(&machine, &recording[i], file, error);
-        }
+        status                 = digloop_read_machine(file, &machine, &recording[i], error);
     }
     if (status == DIG_OK) {
         status = dig_machine_side_create(&machine, set, from->recordings, recording,
@@ -227,7 +195,7 @@ static enum dig_status load(const struct dig_campaign *const  from,
     if (status != DIG_OK) {
         return status;
     }
-    if (exists(from->recording[0].file) && !is_force_recording(from->recording[0].file)) {
+    if (!digloop_is_force_recording(from->recording[0].file)) {
         return load_machine(from, set, campaign, error);
     }
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {

@@ -17,8 +17,9 @@ struct digloop_options {
     const char *command, *table;
     int         recordings; // or campaign folders: what stands after the table
     char      **recording;
-    const char *identified, *trajectory, *out, *measured; // identify, predict
-    const char *effects, *json_out, *html, *add;          // trace
+    const char *machine, *trajectory;            // identify, predict
+    const char *identified, *out, *measured;     // predict
+    const char *effects, *json_out, *html, *add; // trace
     bool        json;
 };
 
@@ -26,6 +27,11 @@ struct digloop_options {
 /// wrong with it.
 DIG_MUST_CHECK enum dig_status
 digloop_parse(int argc, char *argv[], struct digloop_options *options, struct dig_error *error);
+
+/// The index of --trajectory in the set. DIG_EINVAL names it when there is none.
+DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_options *options,
+                                                       const struct dig_curve_set   *set,
+                                                       int *trajectory, struct dig_error *error);
 
 DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_options *options,
                                                 const struct dig_curve_set   *set,

@@ -1,8 +1,8 @@
 #include "closed_loop/observe.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
-#include "files/recording_csv.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/recording.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,32 +11,74 @@
 #define EVALUATIONS    400
 #define OUTSIDE_FLOORS 3.0
 
-static enum dig_status observe_all(const struct digloop_options *const options,
-                                   const struct dig_curve_set *const   set,
-                                   struct dig_observation *const       mean,
-                                   struct dig_error *const             error)
+// Digs of all recordings.
+struct pool {
+    size_t                  digs;
+    struct dig_observation *dig; // [digs]
+};
+
+static enum dig_status add(struct pool *const pool, const struct dig_observed_digs *const more,
+                           struct dig_error *const error)
 {
-    struct dig_observation *const one = calloc((size_t)options->recordings, sizeof *one);
-    if (one == NULL) {
+    struct dig_observation *const grown =
+        realloc(pool->dig, (pool->digs + more->digs) * sizeof *grown);
+    if (grown == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
+    memcpy(grown + pool->digs, more->dig, more->digs * sizeof *grown);
+    pool->dig = grown;
+    pool->digs += more->digs;
+    return DIG_OK;
+}
+
+static enum dig_status collect(const struct digloop_options *const options,
+                               const struct dig_curve_set *const   set,
+                               const struct dig_machine *const machine, const int trajectory,
+                               struct pool *const pool, struct dig_error *const error)
+{
     enum dig_status status = DIG_OK;
     for (int i = 0; i < options->recordings && status == DIG_OK; i++) {
-        struct dig_recording recording = { 0 };
-        status = dig_recording_read(options->recording[i], &recording, error);
+        struct dig_observed_digs digs = { .digs = 0 };
+        status = digloop_read_digs(options->recording[i], machine, set, trajectory, &digs, error);
         if (status == DIG_OK) {
-            struct dig_error why = { "" };
-            status               = dig_observe_recording(set, &recording, &one[i], &why);
-            if (status != DIG_OK) {
-                (void)dig_error_set(error, status, "%s: %s", options->recording[i], why.text);
-            }
+            status = add(pool, &digs, error);
         }
-        dig_recording_finish(&recording);
+        dig_observed_digs_finish(&digs);
     }
+    return status;
+}
+
+// The mean of all digs, and how many there were.
+static enum dig_status observe_all(const struct digloop_options *const options,
+                                   const struct dig_curve_set *const   set,
+                                   struct dig_observation *const mean, size_t *const digs,
+                                   struct dig_error *const error)
+{
+    struct dig_machine machine;
+    int                trajectory = -1;
+    enum dig_status    status     = DIG_OK;
+    if (options->trajectory != NULL) {
+        status = digloop_find_trajectory(options, set, &trajectory, error);
+    }
+    if (status == DIG_OK && options->machine != NULL) {
+        status = digloop_load_machine(options->machine, options->table, set, &machine, error);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct pool pool = { .digs = 0 };
+    status =
+        collect(options, set, options->machine != NULL ? &machine : NULL, trajectory, &pool, error);
     if (status == DIG_OK) {
-        status = dig_observe_mean((size_t)options->recordings, one, mean, error);
+        struct dig_error why = { "" };
+        status               = dig_observe_mean(pool.digs, pool.dig, mean, &why);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s; --trajectory NAME takes those along one",
+                                why.text);
+        }
     }
-    free(one);
+    *digs = pool.digs;
+    free(pool.dig);
     return status;
 }
 
@@ -58,7 +100,8 @@ enum dig_status digloop_identify(const struct digloop_options *const options,
 {
     struct dig_observation observation = { .trajectory = 0 };
     struct dig_match       match;
-    enum dig_status        status = observe_all(options, set, &observation, error);
+    size_t                 digs   = 0;
+    enum dig_status        status = observe_all(options, set, &observation, &digs, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -75,7 +118,7 @@ enum dig_status digloop_identify(const struct digloop_options *const options,
     }
 
     struct dig_identity id = {
-        .digs             = (size_t)options->recordings,
+        .digs             = digs,
         .gravel           = match.gravel,
         .mean             = match.mean,
         .low              = match.low,

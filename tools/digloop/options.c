@@ -10,12 +10,16 @@ static const char help[] =
     "traces what a model lacks.\n"
     "\n"
     "usage:\n"
-    "  digloop identify TABLE.sqlite RECORDING.csv… [--json]\n"
-    "      which gravel: force recordings of one trajectory, pooled\n"
+    "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--trajectory NAME]\n"
+    "                   [--json]\n"
+    "      which gravel: all digs of the recordings along one trajectory, pooled. A recording is "
+    "a\n"
+    "      force recording, or with --machine a machine recording or an LCM log of the daemon,\n"
+    "      which may hold several digs: --trajectory takes those along one\n"
     "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
-    "                  [-o CURVE.csv] [--measured RECORDING.csv] [--json]\n"
-    "      what that gravel will resist along another trajectory, at the table's scale; with a\n"
-    "      measured dig, how wrong that was: relative Euclidean norm of the moment, +-0.16 s\n"
+    "                  [-o CURVE.csv] [--measured RECORDING [--machine MACHINE.yaml]] [--json]\n"
+    "      what that gravel will resist along another trajectory, at the table's scale; with digs\n"
+    "      measured, how wrong that was: relative Euclidean norm of the moment, +-0.16 s\n"
     "  digloop trace TABLE.sqlite CAMPAIGN/ [--effects EFFECTS.sqlite]\n"
     "                [--json OUT.json] [--html OUT.html] [--add MODEL.json]\n"
     "      what the table lacks: the residual of a campaign's digs, the effect it traces to, the\n"
@@ -35,6 +39,11 @@ static const char help[] =
     "  digloop identify tables/rig.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
     "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
     "          --measured actual_1.csv\n"
+    "  digloop identify tables/rig.sqlite run.csv --machine config/machines/zx200_trench.yaml\n"
+    "  digloop identify tables/rig.sqlite day.lcm --machine config/machines/zx200_trench.yaml \\\n"
+    "          --trajectory simpleA --json >id.json\n"
+    "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
+    "          --measured day.lcm --machine config/machines/zx200_trench.yaml\n"
     "  digloop trace tables/rig.sqlite campaign/ --json trace.json --html trace.html --add "
     "model.json\n";
 
@@ -45,7 +54,13 @@ static bool has_trace_options(const struct digloop_options *const o)
 
 static bool has_predict_options(const struct digloop_options *const o)
 {
-    return o->identified != NULL || o->trajectory != NULL || o->measured != NULL || o->out != NULL;
+    return o->identified != NULL || o->measured != NULL || o->out != NULL;
+}
+
+// What reads digs of its own takes.
+static bool has_dig_options(const struct digloop_options *const o)
+{
+    return o->trajectory != NULL || o->machine != NULL;
 }
 
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
@@ -55,24 +70,25 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                        !has_predict_options(o) && !has_trace_options(o)
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL,
-                                   "identify: expected TABLE.sqlite and 1 to %d RECORDING.csv",
+                                   "identify: expected TABLE.sqlite and 1 to %d RECORDING",
                                    DIGLOOP_RECORDINGS_MAX);
     }
     if (strcmp(o->command, "predict") == 0) {
         return o->recordings == 0 && o->identified != NULL && o->trajectory != NULL &&
-                       !has_trace_options(o)
+                       (o->machine == NULL || o->measured != NULL) && !has_trace_options(o)
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL,
                                    "predict: expected TABLE.sqlite --identified ID.json "
-                                   "--trajectory NAME");
+                                   "--trajectory NAME, and --machine with --measured only");
     }
     if (strcmp(o->command, "trace") == 0) {
-        return o->recordings == 1 && !has_predict_options(o)
+        return o->recordings == 1 && !has_predict_options(o) && !has_dig_options(o)
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL, "trace: expected TABLE.sqlite CAMPAIGN/");
     }
     if (strcmp(o->command, "design") == 0) {
-        return o->recordings == 0 && !has_predict_options(o) && o->html == NULL && o->add == NULL
+        return o->recordings == 0 && !has_predict_options(o) && !has_dig_options(o) &&
+                       o->html == NULL && o->add == NULL
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL, "design: expected TABLE.sqlite");
     }
@@ -89,10 +105,22 @@ static bool is_trace(const int argc, char *argv[])
 enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_options *const options,
                               struct dig_error *const error)
 {
-    enum { IDENTIFIED = 256, TRAJECTORY, MEASURED, EFFECTS, JSON, HTML, ADD, HELP, VERSION };
+    enum {
+        IDENTIFIED = 256,
+        TRAJECTORY,
+        MACHINE,
+        MEASURED,
+        EFFECTS,
+        JSON,
+        HTML,
+        ADD,
+        HELP,
+        VERSION
+    };
     const struct option known[] = {
         { "identified", required_argument, NULL, IDENTIFIED },
         { "trajectory", required_argument, NULL, TRAJECTORY },
+        { "machine", required_argument, NULL, MACHINE },
         { "measured", required_argument, NULL, MEASURED },
         { "effects", required_argument, NULL, EFFECTS },
         { "json", is_trace(argc, argv) ? required_argument : no_argument, NULL, JSON },
@@ -108,6 +136,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         switch (c) {
         case IDENTIFIED: o.identified = optarg; break;
         case TRAJECTORY: o.trajectory = optarg; break;
+        case MACHINE: o.machine = optarg; break;
         case 'o': o.out = optarg; break;
         case MEASURED: o.measured = optarg; break;
         case EFFECTS: o.effects = optarg; break;
@@ -136,4 +165,18 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         *options = o;
     }
     return status;
+}
+
+enum dig_status digloop_find_trajectory(const struct digloop_options *const options,
+                                        const struct dig_curve_set *const   set,
+                                        int *const trajectory, struct dig_error *const error)
+{
+    for (size_t t = 0; t < set->trajectories; t++) {
+        if (strcmp(set->trajectory[t].name, options->trajectory) == 0) {
+            *trajectory = (int)t;
+            return DIG_OK;
+        }
+    }
+    return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory",
+                         options->trajectory, options->table);
 }

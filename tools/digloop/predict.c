@@ -1,10 +1,10 @@
 #include "estimator/predict.h"
-#include "closed_loop/observe.h"
 #include "closed_loop/score.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
 #include "files/recording_csv.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/recording.h"
 
 #include <assert.h>
 #include <math.h>
@@ -79,30 +79,24 @@ static void put_array(FILE *const to, const char *const name, const float curve[
     (void)fputs("]", to);
 }
 
-// How wrong the predicted curve is against a measured dig.
+// How wrong the predicted curve is against the digs measured along its trajectory.
 static enum dig_status score_measured(const struct digloop_options *const options,
-                                      const struct dig_curve_set *const set, const size_t t,
+                                      const struct dig_curve_set *const set, const int t,
                                       const struct dig_curve *const curve,
                                       struct dig_score *const score, struct dig_error *const error)
 {
-    struct dig_recording   recording = { 0 };
-    struct dig_observation seen      = { .trajectory = 0 };
-    enum dig_status        status    = dig_recording_read(options->measured, &recording, error);
-    if (status == DIG_OK) {
-        struct dig_error why = { "" };
-        status               = dig_observe_recording(set, &recording, &seen, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", options->measured, why.text);
-        }
+    struct dig_machine       machine;
+    struct dig_observed_digs seen   = { .digs = 0 };
+    enum dig_status          status = DIG_OK;
+    if (options->machine != NULL) {
+        status = digloop_load_machine(options->machine, options->table, set, &machine, error);
     }
-    dig_recording_finish(&recording);
+    if (status == DIG_OK) {
+        status = digloop_read_digs(options->measured, options->machine != NULL ? &machine : NULL,
+                                   set, t, &seen, error);
+    }
     if (status != DIG_OK) {
         return status;
-    }
-    if ((size_t)seen.trajectory != t) {
-        return dig_error_set(error, DIG_EINVAL, "%s: a dig along %s, expected one along %s",
-                             options->measured, set->trajectory[seen.trajectory].name,
-                             set->trajectory[t].name);
     }
     double predicted_Nm[DIG_CURVE_POINTS];
     double sigma_Nm[DIG_CURVE_POINTS];
@@ -110,8 +104,11 @@ static enum dig_status score_measured(const struct digloop_options *const option
         predicted_Nm[k] = (double)curve->mean[DIG_CHANNEL_MY_Nm][k];
         sigma_Nm[k]     = (double)curve->sd[DIG_CHANNEL_MY_Nm][k];
     }
-    dig_score_add(score, &set->trajectory[t], set->tooth_m, seen.first, seen.last, seen.moment_Nm,
-                  predicted_Nm, sigma_Nm);
+    for (size_t i = 0; i < seen.digs; i++) {
+        dig_score_add(score, &set->trajectory[t], set->tooth_m, seen.dig[i].first, seen.dig[i].last,
+                      seen.dig[i].moment_Nm, predicted_Nm, sigma_Nm);
+    }
+    dig_observed_digs_finish(&seen);
     return DIG_OK;
 }
 
@@ -131,18 +128,15 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
                              "one scene",
                              options->identified, id.scene_hash, options->table, set->scene_hash);
     }
-    size_t t = 0;
-    while (t < set->trajectories && strcmp(set->trajectory[t].name, options->trajectory) != 0) {
-        t++;
-    }
-    if (t == set->trajectories) {
-        return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory",
-                             options->trajectory, options->table);
+    int t  = 0;
+    status = digloop_find_trajectory(options, set, &t, error);
+    if (status != DIG_OK) {
+        return status;
     }
 
     const struct dig_match match = match_of(&id);
     struct dig_curve       curve;
-    status = dig_predict_curve(set, &match, t, &curve);
+    status = dig_predict_curve(set, &match, (size_t)t, &curve);
     if (status != DIG_OK) {
         return dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
     }
