@@ -46,6 +46,20 @@ by_log=$(identify by_log "$work/csv.lcm" --machine "$machine" --trajectory simpl
 check "digloop finds the dig in the log and the same gravel as in the force recording" \
     awk -v a="$by_force" -v b="$by_log" 'BEGIN { exit !(split(a, x, " ") == 3 && split(b, y, " ") == 3 &&
         (y[1] / x[1] - 1) ^ 2 < 0.15 ^ 2 && (y[2] / x[2] - 1) ^ 2 < 0.15 ^ 2 && (y[3] / x[3] - 1) ^ 2 < 0.15 ^ 2) }'
+mkdir "$work/campaign"
+cp "$work/csv.lcm" "$work/campaign/day.lcm"
+cp "$machine" "$work/campaign/machine.yaml"
+cat >"$work/campaign/campaign.yaml" <<YAML
+scene: rig
+machine: machine.yaml
+recordings:
+  - {file: day.lcm, trajectory: simpleA, role: identify}
+  - {file: day.lcm, trajectory: actual, role: fit}
+  - {file: day.lcm, trajectory: actual, role: holdout}
+YAML
+"$BIN/digloop" trace "$work/table.sqlite" "$work/campaign" --json "$work/trace.json" >"$work/trace.txt" 2>"$work/trace.err"
+check "digloop trace finds each dig of a campaign in the log" \
+    within "$(tr -d '\n' <"$work/trace.json" | sed -nE 's/.*"error_before": \{"holdout": ([0-9.]+).*/\1/p')" 0 0.1
 "$BIN/digreport" --table "$work/table.sqlite" --machine "$machine" --truth .5,.4,2200 --recording "$work/simpleA.csv" \
     --recording "$work/actual.csv" --html "$work/page.html" --json "$work/page.json" "a replay=$work/csv.lcm" \
     >"$work/report.txt" 2>"$work/report.err"

@@ -1,0 +1,182 @@
+// Tests for closed_loop/observe_machine.c: machine recordings from the rig's machine (virtual
+// work), against the force recordings they were made of.
+
+#include "closed_loop/observe_machine.h"
+
+#include "closed_loop/observe.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "tests/made_table.h"
+#include "tests/testlib.h"
+#include "tools/rig/sensors.h"
+#include "tools/rig/track.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 2 };
+
+static const char *const file[DIGS] = {
+    "tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv",
+    "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv",
+};
+
+static struct dig_machine     machine;
+static struct dig_rig_track   track;
+static struct dig_curve_set  *set;
+static struct dig_observation direct[DIGS]; // of the force recordings
+
+static int build(void **state)
+{
+    (void)state;
+    const struct made_options options = { .relative_sd = 0.1, .packings = 3 };
+    struct dig_recording      recording[DIGS];
+    struct dig_error          error = { "" };
+    set                             = made_table(&options);
+    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
+        return -1;
+    }
+    for (int d = 0; d < DIGS; d++) {
+        if (dig_recording_read(file[d], &recording[d], &error) != DIG_OK ||
+            dig_observe_recording(set, &recording[d], &direct[d], &error) != DIG_OK) {
+            return -1;
+        }
+    }
+    struct dig_rig_track_options how = dig_rig_track_options_default();
+    how.placed                       = true; // where digrig would put it: the search takes seconds
+    how.pin_X_m                      = 7.43;
+    how.pin_Z_m                      = -0.62;
+    const enum dig_status status =
+        dig_rig_track_build(&machine, &how, DIGS, recording, &track, &error);
+    for (int d = 0; d < DIGS; d++) {
+        dig_recording_finish(&recording[d]);
+    }
+    return status == DIG_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    made_table_destroy(set);
+    dig_rig_track_finish(&track);
+    return 0;
+}
+
+static struct dig_machine_recording record(void)
+{
+    struct dig_machine_recording r     = { track.rows, malloc(track.rows * sizeof *r.row) };
+    struct dig_rig_noise         noise = dig_rig_noise_init(7);
+    for (size_t i = 0; i < track.rows; i++) {
+        const int64_t time_ns = llround((double)i * track.step_s * 1e9) + 1;
+        r.row[i]              = dig_rig_sense(&machine, &track.row[i], time_ns, &noise);
+        dig_rig_quantise(&machine, &r.row[i]);
+    }
+    return r;
+}
+
+// Norm of the difference over that of the moment, where both were measured.
+static double apart(const struct dig_observation *const a, const struct dig_observation *const b)
+{
+    double miss  = 0.0;
+    double whole = 0.0;
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = k / (DIG_CURVE_POINTS - 1.0);
+        if (at >= fmax(a->first, b->first) && at <= fmin(a->last, b->last)) {
+            miss += pow(a->moment_Nm[k] - b->moment_Nm[k], 2.0);
+            whole += pow(b->moment_Nm[k], 2.0);
+        }
+    }
+    return sqrt(miss / whole);
+}
+
+static void expect_both(const struct dig_observed_digs *const digs)
+{
+    assert_int_equal(digs->digs, DIGS);
+    assert_int_equal(digs->seen, DIGS);
+    for (int d = 0; d < DIGS; d++) {
+        const double wrong = apart(&digs->dig[d], &direct[d]);
+        print_message("%s: %.4f apart, %.3f to %.3f\n", file[d], wrong, digs->dig[d].first,
+                      digs->dig[d].last);
+        assert_int_equal(digs->dig[d].trajectory, direct[d].trajectory);
+        assert_int_equal(digs->dig[d].dig_count, d + 1);
+        assert_true(digs->dig[d].first < 0.05 && digs->dig[d].last > 0.95);
+        assert_true(wrong < 0.05); // a third of what another packing is away
+    }
+}
+
+static void every_dig_is_found_and_resists_as_the_force_recording_says(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r     = record();
+    struct dig_observed_digs     digs  = { .digs = 0 };
+    struct dig_error             error = { "" };
+    if (dig_observe_machine(&machine, set, &r, &digs, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    expect_both(&digs);
+    dig_observed_digs_finish(&digs);
+
+    // A bus that loses one sample in four.
+    for (size_t i = 0; i < r.rows; i += 4) {
+        r.row[i].valid[DIG_SIGNAL_BUCKET_HEAD_Pa] = false;
+        r.row[i].value[DIG_SIGNAL_BUCKET_HEAD_Pa] = 0.0;
+    }
+    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_OK);
+    expect_both(&digs);
+    dig_observed_digs_finish(&digs);
+    dig_machine_recording_finish(&r);
+}
+
+// What was not measured is not made up: the other dig is whole.
+static void a_dig_with_a_gap_is_seen_but_not_observed(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r    = record();
+    struct dig_observed_digs     digs = { .digs = 0 };
+    for (size_t i = r.rows * 6 / 10; i < r.rows * 7 / 10; i++) {
+        r.row[i].valid[DIG_SIGNAL_ARM_rad] = false;
+    }
+    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, NULL), DIG_OK);
+    assert_int_equal(digs.seen, DIGS);
+    assert_int_equal(digs.digs, 1);
+    assert_int_equal(digs.dig[0].trajectory, direct[0].trajectory);
+    dig_observed_digs_finish(&digs);
+    dig_machine_recording_finish(&r);
+}
+
+static void without_a_dig_it_is_refused_and_nothing_written(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r    = record();
+    const size_t                 rows = r.rows;
+    struct dig_observed_digs     digs = { .seen = 42 };
+    struct dig_error             error;
+
+    r.rows = 200; // air
+    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_ENOMATCH);
+    assert_non_null(strstr(error.text, "digs in it: 0"));
+
+    // Broken off within the first dig: it has not ended.
+    r.rows = rows / 4;
+    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_ENOMATCH);
+    assert_int_equal(digs.seen, 42);
+    assert_null(digs.dig);
+
+    struct dig_machine broken = machine;
+    broken.link[0].length_m   = -1.0;
+    assert_int_equal(dig_observe_machine(&broken, set, &r, &digs, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, machine.name));
+    assert_int_equal(digs.seen, 42);
+    dig_machine_recording_finish(&r);
+    dig_observed_digs_finish(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_dig_is_found_and_resists_as_the_force_recording_says),
+        cmocka_unit_test(a_dig_with_a_gap_is_seen_but_not_observed),
+        cmocka_unit_test(without_a_dig_it_is_refused_and_nothing_written),
+    };
+    return cmocka_run_group_tests_name("observe_machine", tests, build, tear_down);
+}

@@ -1,0 +1,170 @@
+#include "tools/digloop/recording.h"
+
+#include "closed_loop/clipped.h"
+#include "closed_loop/observe.h"
+#include "core/sample.h"
+#include "files/lcm_log.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Shapes this much apart after scaling are two scenes.
+static const double similar = 0.05;
+
+// The first line of a recording that is not a comment names its columns; an LCM log has none.
+bool digloop_is_force_recording(const char *const path)
+{
+    assert(path != NULL);
+    if (dig_lcm_log_is(path)) {
+        return false;
+    }
+    char        line[512] = "";
+    FILE *const file      = fopen(path, "r");
+    while (file != NULL && fgets(line, sizeof line, file) != NULL && line[0] == '#') {
+    }
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    return strstr(line, dig_signal_name(DIG_SIGNAL_BOOM_rad)) == NULL;
+}
+
+// What a sensor cut off would be taken for the soil's, or for an effect.
+static enum dig_status check_range(const struct dig_machine *const           machine,
+                                   const struct dig_machine_recording *const recording,
+                                   const char *const file, struct dig_error *const error)
+{
+    struct dig_clip clip;
+    return dig_clipped_find(machine, recording, &clip)
+               ? dig_error_set(error, DIG_EINVAL,
+                               "%s: %s stays at its highest value, %.4g Pa, for %.1f s: clipped, "
+                               "expected a pressure within the sensor's range",
+                               file, dig_signal_name(clip.signal), clip.limit_Pa, clip.time_s)
+               : DIG_OK;
+}
+
+enum dig_status digloop_read_machine(const char *const                   path,
+                                     const struct dig_machine *const     machine,
+                                     struct dig_machine_recording *const recording,
+                                     struct dig_error *const             error)
+{
+    assert(path != NULL && machine != NULL && recording != NULL);
+    struct dig_machine_recording read = { .rows = 0 };
+    enum dig_status status            = dig_lcm_log_is(path) ? dig_lcm_log_read(path, &read, error)
+                                                             : dig_machine_recording_read(path, &read, error);
+    if (status == DIG_OK) {
+        status = check_range(machine, &read, path, error);
+    }
+    if (status != DIG_OK) {
+        dig_machine_recording_finish(&read);
+        return status;
+    }
+    *recording = read;
+    return DIG_OK;
+}
+
+enum dig_status digloop_load_machine(const char *const path, const char *const table,
+                                     const struct dig_curve_set *const set,
+                                     struct dig_machine *const         machine,
+                                     struct dig_error *const           error)
+{
+    assert(path != NULL && table != NULL && set != NULL && machine != NULL);
+    struct dig_machine    read;
+    const enum dig_status status = dig_machine_read(path, &read, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const double shape = read.bucket_width_m / read.link[DIG_JOINT_BUCKET].length_m;
+    const double scene = set->bucket_width_m / set->tooth_m;
+    if (!(fabs(shape / scene - 1.0) <= similar)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in %s "
+                             "is %.3f times; expected the same shape within %.0f %%",
+                             path, shape, set->scene_name, table, scene, 100.0 * similar);
+    }
+    *machine = read;
+    return DIG_OK;
+}
+
+// The one dig of a force recording.
+static enum dig_status read_force(const char *const path, const struct dig_curve_set *const set,
+                                  struct dig_observed_digs *const digs,
+                                  struct dig_error *const         error)
+{
+    struct dig_recording recording = { 0 };
+    enum dig_status      status    = dig_recording_read(path, &recording, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_error              why = { "" };
+    struct dig_observation *const dig = calloc(1, sizeof *dig);
+    status = dig != NULL ? dig_observe_recording(set, &recording, dig, &why)
+                         : dig_error_set(&why, DIG_ENOMEM, "out of memory");
+    dig_recording_finish(&recording);
+    if (status != DIG_OK) {
+        free(dig);
+        return dig_error_set(error, status, "%s: %s", path, why.text);
+    }
+    *digs = (struct dig_observed_digs){ .digs = 1, .dig = dig, .seen = 1 };
+    return DIG_OK;
+}
+
+static enum dig_status read_samples(const char *const path, const struct dig_machine *const machine,
+                                    const struct dig_curve_set *const set,
+                                    struct dig_observed_digs *const   digs,
+                                    struct dig_error *const           error)
+{
+    if (machine == NULL) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: no force recording, expected --machine MACHINE.yaml for a "
+                             "machine recording or an LCM log",
+                             path);
+    }
+    struct dig_machine_recording recording = { .rows = 0 };
+    enum dig_status              status    = digloop_read_machine(path, machine, &recording, error);
+    if (status == DIG_OK) {
+        struct dig_error why = { "" };
+        status               = dig_observe_machine(machine, set, &recording, digs, &why);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", path, why.text);
+        }
+    }
+    dig_machine_recording_finish(&recording);
+    return status;
+}
+
+enum dig_status digloop_read_digs(const char *const path, const struct dig_machine *const machine,
+                                  const struct dig_curve_set *const set, const int trajectory,
+                                  struct dig_observed_digs *const digs,
+                                  struct dig_error *const         error)
+{
+    assert(path != NULL && set != NULL && digs != NULL);
+    assert(trajectory < (int)set->trajectories);
+    struct dig_observed_digs read   = { .digs = 0 };
+    enum dig_status          status = digloop_is_force_recording(path)
+                                          ? read_force(path, set, &read, error)
+                                          : read_samples(path, machine, set, &read, error);
+    if (status != DIG_OK || read.dig == NULL) {
+        return status;
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < read.digs; i++) {
+        if (trajectory < 0 || read.dig[i].trajectory == trajectory) {
+            read.dig[kept++] = read.dig[i];
+        }
+    }
+    if (kept == 0) {
+        status = dig_error_set(error, DIG_ENOMATCH, "%s: a dig along %s, expected one along %s",
+                               path, set->trajectory[read.dig[0].trajectory].name,
+                               set->trajectory[trajectory].name);
+        dig_observed_digs_finish(&read);
+        return status;
+    }
+    read.digs = kept;
+    *digs     = read;
+    return DIG_OK;
+}
