@@ -107,3 +107,22 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
     *cell = found;
     return DIG_OK;
 }
+
+void dig_cell_blend(const struct dig_cell *const cell, const enum dig_channel channel,
+                    double mean[DIG_CURVE_POINTS], double sd[DIG_CURVE_POINTS])
+{
+    assert(cell != NULL && mean != NULL && sd != NULL);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        mean[k] = 0.0;
+        sd[k]   = 0.0;
+    }
+    for (size_t c = 0; c < cell->corners; c++) {
+        const double       weight  = cell->weight[c];
+        const float *const mean_of = cell->curve[c]->mean[channel];
+        const float *const sd_of   = cell->curve[c]->sd[channel];
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            mean[k] += weight * (double)mean_of[k];
+            sd[k] += weight * (double)sd_of[k];
+        }
+    }
+}

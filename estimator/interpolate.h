@@ -51,4 +51,8 @@ static inline double dig_cell_sd(const struct dig_cell *const cell, const enum d
     return sum;
 }
 
+/// The same of all points at once, several times faster.
+void dig_cell_blend(const struct dig_cell *cell, enum dig_channel channel,
+                    double mean[DIG_CURVE_POINTS], double sd[DIG_CURVE_POINTS]);
+
 #endif // DIG_ESTIMATOR_INTERPOLATE_H

@@ -36,18 +36,22 @@ enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
 struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
                                   const struct dig_pooled *const group)
 {
-    struct dig_misfit misfit = { .miss2_Nm2 = group->scatter_Nm2, .whole2_Nm2 = group->whole_Nm2 };
+    double mean_Nm[DIG_CURVE_POINTS];
+    double sd_Nm[DIG_CURVE_POINTS];
+    dig_cell_blend(cell, DIG_CHANNEL_MY_Nm, mean_Nm, sd_Nm);
+
+    const double widened = 1.0 + cell->inverse_packings;
+    double       miss2   = 0.0;
+    double       floor2  = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double n = group->count[k];
-        if (!(n > 0.0)) {
-            continue;
-        }
-        const double miss = group->mean_Nm[k] - dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
-        const double sd   = dig_cell_sd(cell, DIG_CHANNEL_MY_Nm, k);
-        misfit.miss2_Nm2 += n * miss * miss;
-        misfit.floor2_Nm2 += n * (sd * sd * (1.0 + cell->inverse_packings) + group->sigma2_Nm2[k]);
+        const double n    = group->count[k]; // 0 where nothing was measured
+        const double miss = group->mean_Nm[k] - mean_Nm[k];
+        miss2 += n * miss * miss;
+        floor2 += n * (sd_Nm[k] * sd_Nm[k] * widened + group->sigma2_Nm2[k]);
     }
-    return misfit;
+    return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
+                                .floor2_Nm2 = floor2,
+                                .whole2_Nm2 = group->whole_Nm2 };
 }
 
 enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,

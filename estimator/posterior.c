@@ -15,11 +15,16 @@ static const double pooled_weight = 4.0;
 // Share of the table's pooled spread below which no point of a curve is believed.
 static const double least_spread = 0.25;
 
+// Keeps variances apart from 0, and products of four of them from the end of the numbers.
+static const double least_d = 1e-60;
+
 // Of the digs along one trajectory.
 struct likelihood {
     const struct dig_pooled *group;
-    double                   per_point; // independent errors along the dig, at each point measured
+    double                   effective; // independent errors along the dig
     double                   relative2; // pooled (sd / mean)^2 of the trajectory
+    size_t                   from, end; // first point measured, and behind the last
+    double                   points;    // measured
 };
 
 // Squared spread of one dig relative to the mean, over all entries of the trajectory.
@@ -55,32 +60,36 @@ static double log_likelihood(const struct likelihood *const l, const struct dig_
     const double shared = pooled_weight / (pooled_weight + own);
 
     double mean_Nm[DIG_CURVE_POINTS];
-    double mean2  = 0.0;
-    double points = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        if (l->group->count[k] > 0.0) {
-            mean_Nm[k] = dig_cell_mean(cell, DIG_CHANNEL_MY_Nm, k);
-            mean2 += mean_Nm[k] * mean_Nm[k];
-            points += 1.0;
-        }
-    }
-    const double floor2 = least_spread * least_spread * l->relative2 * mean2 / points;
+    double sd_Nm[DIG_CURVE_POINTS];
+    dig_cell_blend(cell, DIG_CHANNEL_MY_Nm, mean_Nm, sd_Nm);
 
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        if (!(l->group->count[k] > 0.0)) {
+    double mean2 = 0.0;
+    for (size_t k = l->from; k < l->end; k++) {
+        mean2 += l->group->count[k] > 0.0 ? mean_Nm[k] * mean_Nm[k] : 0.0;
+    }
+    const double floor2 = least_spread * least_spread * l->relative2 * mean2 / l->points;
+
+    // A logarithm is dear: one of a few variances' product.
+    double sum     = 0.0;
+    double product = 1.0;
+    for (size_t k = l->from; k < l->end; k++) {
+        const double n = l->group->count[k];
+        if (!(n > 0.0)) {
             continue;
         }
-        const double one_of  = 1.0 / l->group->count[k];
-        const double sd      = dig_cell_sd(cell, DIG_CHANNEL_MY_Nm, k);
         const double pooled2 = l->relative2 * mean_Nm[k] * mean_Nm[k];
-        const double spread2 = (1.0 - shared) * sd * sd + shared * pooled2 + floor2;
+        const double spread2 = (1.0 - shared) * sd_Nm[k] * sd_Nm[k] + shared * pooled2 + floor2;
         const double d =
-            spread2 * (one_of + cell->inverse_packings) + l->group->sigma2_Nm2[k] * one_of + 1e-300;
+            spread2 * (1.0 / n + cell->inverse_packings) + l->group->sigma2_Nm2[k] / n + least_d;
         const double miss = l->group->mean_Nm[k] - mean_Nm[k];
-        sum += miss * miss / d + log(d);
+        sum += miss * miss / d;
+        product *= d;
+        if (k % 4 == 3) {
+            sum += log(product);
+            product = 1.0;
+        }
     }
-    return -0.5 * l->per_point * sum;
+    return -0.5 * l->effective * (sum + log(product)) / l->points;
 }
 
 static struct likelihood likelihood_of(const struct dig_curve_set *const set,
@@ -90,16 +99,19 @@ static struct likelihood likelihood_of(const struct dig_curve_set *const set,
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
     const double correlation_m = DIG_POSTERIOR_CORRELATION * set->tooth_m;
 
-    double points = 0.0;
+    struct likelihood l = { .group     = group,
+                            .relative2 = pooled_relative2(set, group->trajectory),
+                            .from      = DIG_CURVE_POINTS };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        points += group->count[k] > 0.0 ? 1.0 : 0.0;
+        if (group->count[k] > 0.0) {
+            l.from = k < l.from ? k : l.from;
+            l.end  = k + 1;
+            l.points += 1.0;
+        }
     }
-    const double share = (points - 1.0) / (DIG_CURVE_POINTS - 1);
-    return (struct likelihood){
-        .group     = group,
-        .per_point = fmax(share * whole_m / correlation_m, 1.0) / points,
-        .relative2 = pooled_relative2(set, group->trajectory),
-    };
+    const double share = (l.points - 1.0) / (DIG_CURVE_POINTS - 1);
+    l.effective        = fmax(share * whole_m / correlation_m, 1.0);
+    return l;
 }
 
 // Of all digs at one gravel; -infinity where the table has no curve.

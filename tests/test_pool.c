@@ -1,0 +1,233 @@
+// Tests for estimator/pool.c, and for what several digs do to distance and posterior
+
+#include "estimator/pool.h"
+
+#include "estimator/match.h"
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PACKINGS = 3 };
+static const double               scatter = 0.1;
+static const struct made_options  few     = { .relative_sd = 0.1, .packings = PACKINGS };
+static const struct made_options  flat    = { .relative_sd = 0.1,
+                                              .packings    = PACKINGS,
+                                              .one_density = true };
+static const enum made_trajectory both[]  = { MADE_SIMPLE_A, MADE_SIMPLE_B };
+
+static struct dig_match fit(const struct dig_curve_set *const set, const size_t digs,
+                            const struct dig_observation dig[], const int evaluations)
+{
+    struct dig_match match;
+    assert_int_equal(dig_match_nearest_pool(set, digs, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine_pool(set, digs, dig, evaluations, &match), DIG_OK);
+    assert_int_equal(match.digs, digs);
+    return match;
+}
+
+static struct dig_gravel random_gravel(uint64_t *const seed, const double density_kgpm3)
+{
+    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
+                                  density_kgpm3 } };
+}
+
+// What the table's mean of few packings is wrong by is the same for all digs of a trajectory; each
+// adds its own.
+static void dig_there(const struct dig_gravel *const gravel, const enum made_trajectory along,
+                      const size_t digs, struct dig_observation dig[], uint64_t *const seed)
+{
+    struct dig_observation true_mean = made_observation(gravel, along, 0.0);
+    made_disturb(&true_mean, scatter / sqrt(PACKINGS), seed);
+    for (size_t d = 0; d < digs; d++) {
+        dig[d]           = true_mean;
+        dig[d].dig_count = (uint32_t)d + 1;
+        made_disturb(&dig[d], scatter, seed);
+    }
+}
+
+static void the_oldest_leaves_a_full_pool(void **state)
+{
+    (void)state;
+    static struct dig_pool       pool;
+    const struct dig_gravel      gravel = { { 0.5, 0.5, 2500 } };
+    const struct dig_observation one    = made_observation(&gravel, MADE_SIMPLE_A, 0.0);
+    for (unsigned i = 1; i <= DIG_POOL_MAX + 3; i++) {
+        struct dig_observation dig = one;
+        dig.dig_count              = i;
+        dig_pool_add(&pool, &dig);
+        assert_int_equal(pool.digs, i < DIG_POOL_MAX ? i : DIG_POOL_MAX);
+        assert_int_equal(pool.dig[pool.digs - 1].dig_count, i);
+    }
+    assert_int_equal(pool.dig[0].dig_count, 4);
+}
+
+// The test's own sums: two trajectories, other ranges, sigmas of their own.
+static void sums_are_what_brute_force_adds_up(void **state)
+{
+    (void)state;
+    enum { DIGS = 5 };
+    struct dig_curve_set *const set  = made_table(&few);
+    uint64_t                    seed = 5;
+    struct dig_observation      dig[DIGS];
+    for (int d = 0; d < DIGS; d++) {
+        const struct dig_gravel gravel = random_gravel(&seed, 2200);
+        dig[d]                         = made_observation(&gravel, both[d % 2], 0.0);
+        made_disturb(&dig[d], 0.2, &seed);
+        dig[d].first = 0.1 * d;
+        dig[d].last  = d == 3 ? 0.5 : 1.0;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            dig[d].sigma_Nm[k] = 0.01 * (1 + d) * k;
+        }
+    }
+    size_t best  = 0;
+    double least = INFINITY, floor_at_best = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        double miss2 = 0.0, whole2 = 0.0, floor2 = 0.0;
+        for (int d = 0; d < DIGS; d++) {
+            const struct dig_curve *const c =
+                &set->curve[e * MADE_TRAJECTORIES + (size_t)dig[d].trajectory];
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                if (k / 255.0 >= dig[d].first && k / 255.0 <= dig[d].last) {
+                    miss2 += pow(dig[d].moment_Nm[k] - (double)c->mean[0][k], 2.0);
+                    whole2 += pow(dig[d].moment_Nm[k], 2.0);
+                    floor2 += pow((double)c->sd[0][k], 2.0) * (1.0 + 1.0 / PACKINGS) +
+                              pow(dig[d].sigma_Nm[k], 2.0);
+                }
+            }
+        }
+        if (sqrt(miss2 / whole2) < least) {
+            least         = sqrt(miss2 / whole2);
+            floor_at_best = sqrt(floor2 / whole2);
+            best          = e;
+        }
+    }
+    struct dig_match match;
+    assert_int_equal(dig_match_nearest_pool(set, DIGS, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(match.nearest, (int)best);
+    assert_close(match.nearest_distance, least, 1e-12);
+    assert_close(match.noise_floor, floor_at_best, 1e-12);
+    made_table_destroy(set);
+}
+
+static void a_gravel_without_one_of_the_trajectories_is_passed_over(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const  set    = made_table(&few);
+    const struct dig_observation dig[2] = { made_observation(&set->gravel[5], MADE_SIMPLE_A, 0.0),
+                                            made_observation(&set->gravel[5], MADE_SIMPLE_B, 0.0) };
+    struct dig_match             match;
+    assert_int_equal(dig_match_nearest_pool(set, 2, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(match.nearest, 5);
+    set->packings[5 * MADE_TRAJECTORIES + MADE_SIMPLE_B] = 0;
+    assert_int_equal(dig_match_nearest_pool(set, 2, dig, 2.5, &match), DIG_OK);
+    assert_int_not_equal(match.nearest, 5);
+    made_table_destroy(set);
+}
+
+// Nine of ten gravels lie in their interval however many digs it comes from, and it narrows as the
+// digs' own scatter does: to what the table is wrong by, not to nothing.
+static void more_digs_tell_more_and_never_too_much(void **state)
+{
+    (void)state;
+    static const size_t digs[] = { 1, 2, 4, 8 };
+    enum { STEPS = sizeof digs / sizeof digs[0] };
+    struct dig_curve_set *const set             = made_table(&flat);
+    const int                   trials          = getenv("DIG_TEST_QUICK") != NULL ? 60 : 300;
+    uint64_t                    seed            = 2026;
+    int                         in[STEPS][2]    = { { 0 } };
+    double                      width[STEPS][2] = { { 0 } };
+    for (int trial = 0; trial < trials; trial++) {
+        const struct dig_gravel gravel = random_gravel(&seed, 2500);
+        struct dig_observation  dig[DIG_POOL_MAX];
+        dig_there(&gravel, MADE_ACTUAL, DIG_POOL_MAX, dig, &seed);
+        for (int s = 0; s < STEPS; s++) {
+            const struct dig_match m = fit(set, digs[s], dig, 100);
+            for (int a = 0; a < 2; a++) {
+                const double v = gravel.value[a];
+                in[s][a] += v >= m.low.value[a] && v <= m.high.value[a] ? 1 : 0;
+                width[s][a] += (m.high.value[a] - m.low.value[a]) / trials;
+            }
+        }
+    }
+    for (int s = 0; s < STEPS; s++) {
+        for (int a = 0; a < 2; a++) {
+            const double share = (double)in[s][a] / trials;
+            print_message("%zu digs, axis %d: %.3f in the interval, mean width %.3f\n", digs[s], a,
+                          share, width[s][a]);
+            // Three standard deviations of a binomial count.
+            assert_close(share, 0.9, 3.0 * sqrt(0.9 * 0.1 / trials));
+            if (s > 0) {
+                assert_true(width[s][a] < width[s - 1][a]);
+            }
+        }
+        // Errors of 1/n + 1/3 parts of one dig's variance: of eight digs 0.59 of those of one.
+        if (digs[s] == 8) {
+            assert_true(width[s][0] / width[0][0] > 0.50 && width[s][0] / width[0][0] < 0.70);
+        }
+    }
+    made_table_destroy(set);
+}
+
+// The same digs in another order, and along two trajectories, say the same or more.
+static void trajectories_add_up(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set    = made_table(&flat);
+    uint64_t                    seed   = 11;
+    const struct dig_gravel     gravel = { { 0.62, 0.4, 2500 } };
+    struct dig_observation      dig[4];
+    dig_there(&gravel, MADE_SIMPLE_A, 2, &dig[0], &seed);
+    dig_there(&gravel, MADE_SIMPLE_B, 2, &dig[2], &seed);
+    const struct dig_observation mixed[4] = { dig[2], dig[0], dig[3], dig[1] };
+    const struct dig_match       a = fit(set, 2, dig, 1), b = fit(set, 2, &dig[2], 1);
+    const struct dig_match       all = fit(set, 4, dig, 1), other = fit(set, 4, mixed, 1);
+    for (int axis = 0; axis < 2; axis++) {
+        const double width = all.high.value[axis] - all.low.value[axis];
+        assert_true(width < a.high.value[axis] - a.low.value[axis]);
+        assert_true(width < b.high.value[axis] - b.low.value[axis]);
+        assert_close(other.low.value[axis], all.low.value[axis], 1e-6);
+        assert_close(other.high.value[axis], all.high.value[axis], 1e-6);
+    }
+    made_table_destroy(set);
+}
+
+static void refusals_write_nothing(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set = made_table(&flat);
+    struct dig_observation      dig[DIG_POOL_MAX + 1];
+    for (int d = 0; d <= DIG_POOL_MAX; d++) {
+        dig[d] = made_observation(&set->gravel[3], MADE_SIMPLE_A, 0.0);
+    }
+    struct dig_match match = { .nearest = 42 };
+    assert_int_equal(dig_match_nearest_pool(set, 0, dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest_pool(set, DIG_POOL_MAX + 1, dig, 2.5, &match), DIG_EINVAL);
+    dig[2].moment_Nm[9] = NAN;
+    assert_int_equal(dig_match_nearest_pool(set, 3, dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(match.nearest, 42);
+
+    assert_int_equal(dig_match_nearest_pool(set, 2, dig, 2.5, &match), DIG_OK);
+    struct dig_match before;
+    memcpy(&before, &match, sizeof before);
+    assert_int_equal(dig_fit_refine_pool(set, 0, dig, 10, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine_pool(set, DIG_POOL_MAX + 1, dig, 10, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine_pool(set, 3, dig, 10, &match), DIG_EINVAL);
+    assert_memory_equal(&match, &before, sizeof match);
+    made_table_destroy(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_oldest_leaves_a_full_pool),
+        cmocka_unit_test(sums_are_what_brute_force_adds_up),
+        cmocka_unit_test(a_gravel_without_one_of_the_trajectories_is_passed_over),
+        cmocka_unit_test(more_digs_tell_more_and_never_too_much),
+        cmocka_unit_test(trajectories_add_up),
+        cmocka_unit_test(refusals_write_nothing),
+    };
+    return cmocka_run_group_tests_name("pool", tests, NULL, NULL);
+}
