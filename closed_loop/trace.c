@@ -1,5 +1,6 @@
 #include "closed_loop/trace.h"
 
+#include "closed_loop/consequence.h"
 #include "closed_loop/judge.h"
 #include "closed_loop/machine_side.h"
 #include "closed_loop/trace_parts.h"
@@ -15,6 +16,10 @@ static const double matters = 0.15;
 
 // Of -2 log likelihood of the soil, for which the air's first choice is given up.
 static const double clearly_less = 12.0;
+
+// Probability of an effect of the machine that is seen in free air and too small to be seen in
+// soil.
+static const double unconfirmed = 0.5;
 
 struct dig_trace_settings dig_trace_settings_default(void)
 {
@@ -40,6 +45,7 @@ struct work {
     struct dig_machine_finding *air;
     struct dig_fitted           before;
     bool                        fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
+    double                      size[DIG_MODEL_EFFECTS_MAX]; // of air's effects, in the soil
 };
 
 static void finish(struct work *const w)
@@ -191,6 +197,31 @@ static enum dig_status choose_in_soil(struct dig_machine_side *const machine, co
     return status == DIG_OK ? make_batch(w, digs, measured, plain, error) : status;
 }
 
+// Free air may show what the soil hides: an effect of the machine that a gravel of the table could
+// stand in for is named, but the digs do not confirm it, and no more than even odds are claimed.
+static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, const size_t digs,
+                                     const struct dig_measured measured[], struct work *const w,
+                                     const struct dig_fitted *const plain)
+{
+    struct dig_measured *const alone = malloc(digs * sizeof *alone);
+    if (alone == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status = DIG_OK;
+    memcpy(alone, measured, digs * sizeof *alone);
+    for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
+        struct dig_model_effect *const effect = &w->air->effect[e];
+
+        status = dig_machine_side_apply(machine, 1, effect, alone);
+        if (status == DIG_OK) {
+            w->size[e] = dig_consequence_size(w->batch, plain, alone);
+            effect->probability *= fmax(dig_consequence_chance(w->size[e]), unconfirmed);
+        }
+    }
+    free(alone);
+    return status;
+}
+
 static struct dig_gravel gravel_at(const struct dig_surface *const surface, const double number[])
 {
     return dig_surface_gravel(surface, number);
@@ -299,6 +330,19 @@ static void fill_errors(const struct dig_tracing *const t, const struct work *co
         dig_judge_floor(t->set, t->digs, t->measured, trace->curves, any ? w->holdout : w->fit);
 }
 
+// Where nothing better is to be said: why a probability stops at one half.
+static void advise_on_size(const struct work *const w, struct dig_trace *const trace)
+{
+    for (size_t e = 0; e < w->air->effects && trace->advice[0] == '\0'; e++) {
+        if (w->size[e] < 1.0) {
+            (void)snprintf(trace->advice, sizeof trace->advice,
+                           "%s shows in free air; in the soil a gravel of the table leaves %.1f of "
+                           "the noise floor of it, so the digs themselves do not confirm it",
+                           dig_effect_name(w->air->effect[e].effect), w->size[e]);
+        }
+    }
+}
+
 static enum dig_status report(const struct dig_tracing *const t, const struct work *const w,
                               const struct dig_machine_side *const machine,
                               struct dig_trace *const              trace)
@@ -319,6 +363,7 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
         drop_what_does_not_matter(t, trace);
         fill_errors(t, w, trace);
         dig_trace_advise(t, trace);
+        advise_on_size(w, trace);
     }
     return status;
 }
@@ -342,6 +387,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = trace_machine(machine, settings, w, measured);
         if (status == DIG_OK && w->air->effects > 0) {
             status = choose_in_soil(machine, digs, measured, w, &plain, error);
+        }
+        if (status == DIG_OK) {
+            status = weigh_in_soil(machine, digs, measured, w, &plain);
         }
     }
     if (status == DIG_OK) {

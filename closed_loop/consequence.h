@@ -1,0 +1,22 @@
+// How much of an effect of the machine reaches what the campaign is about: the moment of the digs.
+
+#ifndef DIG_CLOSED_LOOP_CONSEQUENCE_H
+#define DIG_CLOSED_LOOP_CONSEQUENCE_H
+
+#include "closed_loop/batch.h"
+#include "closed_loop/hypothesis.h"
+
+/// Size of what measured[].machine adds to the moment of the batch's digs: rms over rig time of
+/// what is left of it after the best refit of the gravel, within the table, over the rms of the
+/// campaign's floor (scatter of one dig / sqrt(digs), and what the digs of a trajectory share:
+/// fitted->noise). fitted: the gravel, machine effects off. measured: the campaign's, as the
+/// batch's. Below 1 another gravel serves as well as naming the effect. 0 where nothing is added.
+/// Milliseconds.
+double dig_consequence_size(const struct dig_batch *batch, const struct dig_fitted *fitted,
+                            const struct dig_measured measured[]);
+
+/// The chance that an effect of this size is no smaller than the floor, which is known to a
+/// quarter.
+double dig_consequence_chance(double size);
+
+#endif // DIG_CLOSED_LOOP_CONSEQUENCE_H

@@ -1,0 +1,139 @@
+#include "closed_loop/consequence.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 8 };
+
+static struct made_world       world;
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured    *measured;
+static struct dig_batch       *batch;
+static struct dig_soil        *soil;
+static struct dig_fitted       plain;
+
+static int make(void **state)
+{
+    (void)state;
+    uint64_t     seed = 3;
+    bool         take[DIGS];
+    double       place[DIG_AXES];
+    const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    world                                       = made_world(5);
+    measured                                    = calloc(DIGS, sizeof *measured);
+    batch                                       = malloc(sizeof *batch);
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        take[i] = true;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    static const struct dig_hypothesis none = { .effects = 0 };
+    if (dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch) !=
+            DIG_OK ||
+        dig_soil_create(world.surface, world.effects, &soil) != DIG_OK) {
+        return 1;
+    }
+    dig_hypothesis_fit(batch, soil, &none, middle, true, &plain);
+    return 0;
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    free(batch);
+    free(measured);
+    made_world_finish(&world);
+    return 0;
+}
+
+// The machine adds this share of the scatter of one dig, changing sign ten times along each dig: no
+// gravel does that.
+static void add_wave(const double share)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        const enum made_trajectory which = i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        double                     rms   = 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double p = (double)k / (DIG_CURVE_POINTS - 1);
+            rms += pow(made_moment_Nm(&gravel, which, p, 0.0), 2.0) / DIG_CURVE_POINTS;
+        }
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double p = (double)k / (DIG_CURVE_POINTS - 1);
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] =
+                share * MADE_SCATTER * sqrt(rms) * sqrt(2.0) * sin(31.0 * p);
+        }
+    }
+}
+
+static void without_the_machine_there_is_no_size(void **state)
+{
+    (void)state;
+    add_wave(0.0);
+    assert_close(dig_consequence_size(batch, &plain, measured), 0.0, 1e-12);
+}
+
+// Four digs of each trajectory: their mean scatters by half as much as one; what all share (.05 for
+// the DEM and the surface's) makes the floor 1 / .55 to 1 / .6 of that.
+static void what_no_gravel_does_counts_in_floors(void **state)
+{
+    (void)state;
+    add_wave(2.0);
+    const double size = dig_consequence_size(batch, &plain, measured);
+    assert_in_range(1000.0 * size, 3000, 4000);
+    add_wave(4.0);
+    assert_close(dig_consequence_size(batch, &plain, measured), 2.0 * size, 0.05 * size);
+}
+
+static void what_another_gravel_does_is_no_size(void **state)
+{
+    (void)state;
+    const struct dig_gravel other = { { 0.6, 0.55, 3000 } };
+    double                  here[DIG_AXES];
+    double                  there[DIG_AXES];
+    dig_surface_place(world.surface, &gravel, here);
+    dig_surface_place(world.surface, &other, there);
+    struct dig_fitted at = plain;
+    memcpy(at.number, here, sizeof here);
+    for (size_t i = 0; i < DIGS; i++) {
+        double a[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double b[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_surface_curve(world.surface, (size_t)measured[i].trajectory, here, a);
+        dig_surface_curve(world.surface, (size_t)measured[i].trajectory, there, b);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] =
+                b[DIG_CHANNEL_MY_Nm][k] - a[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    assert_close(dig_consequence_size(batch, &at, measured), 0.0, 0.02);
+    // Twice of it is beyond the table's grid.
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] *= 20.0;
+        }
+    }
+    assert_true(dig_consequence_size(batch, &at, measured) > 3.0);
+}
+
+static void at_the_floor_the_odds_are_even(void **state)
+{
+    (void)state;
+    assert_close(dig_consequence_chance(1.0), 0.5, 1e-12);
+    assert_true(dig_consequence_chance(0.3) < 0.01);
+    assert_true(dig_consequence_chance(1.5) > 0.95);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_the_machine_there_is_no_size),
+        cmocka_unit_test(what_no_gravel_does_counts_in_floors),
+        cmocka_unit_test(what_another_gravel_does_is_no_size),
+        cmocka_unit_test(at_the_floor_the_odds_are_even),
+    };
+    return cmocka_run_group_tests_name("consequence", tests, make, clean);
+}
