@@ -21,7 +21,8 @@ void dig_html_text(FILE *const to, const char *const text)
 
 static const char style[] =
     "<style>body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:960px;margin:0 auto;"
-    "padding:1em}h1{font-size:1.5em}h2{font-size:1.2em;margin-top:2em;border-top:1px solid #ddd;"
+    "padding:1em}h1{font-size:1.5em;overflow-wrap:anywhere}h2{font-size:1.2em;margin-top:2em;"
+    "border-top:1px solid #ddd;"
     "padding-top:1em}table{border-collapse:collapse;display:block;overflow-x:auto}"
     "td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #eee;font-weight:normal}"
     "th:first-child{text-align:left}tr:first-child th{color:#666}figure{margin:1em 0}"
