@@ -23,6 +23,24 @@ static void put_named(FILE *const to, const char *const name, const struct dig_g
     (void)fputs(",\n ", to);
 }
 
+static void put_numbers(FILE *const to, const char *const name, const double number[])
+{
+    (void)fprintf(to, ",\n   \"%s\": [", name);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(to, "%s%.7g", k == 0 ? "" : k % 16 == 0 ? ",\n    " : ", ", number[k]);
+    }
+    (void)fputs("]", to);
+}
+
+static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
+{
+    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g", dig->trajectory,
+                  dig->first, dig->last);
+    put_numbers(to, "moment_Nm", dig->moment_Nm);
+    put_numbers(to, "sigma_Nm", dig->sigma_Nm);
+    (void)fputs("}", to);
+}
+
 void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
 {
     assert(to != NULL && identity != NULL);
@@ -42,7 +60,12 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
         (void)fputs(i == 0 ? "" : ",\n  ", to);
         put_gravel(to, &identity->sample[i]);
     }
-    (void)fprintf(to, "]}\n");
+    (void)fputs(identity->recorded > 0 ? "],\n \"recorded\": [" : "]", to);
+    for (size_t i = 0; i < identity->recorded; i++) {
+        (void)fputs(i == 0 ? "" : ",\n  ", to);
+        put_dig(to, &identity->recording[i]);
+    }
+    (void)fputs(identity->recorded > 0 ? "]}\n" : "}\n", to);
 }
 
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -60,6 +83,9 @@ struct identity_text {
     bool               outside;
     struct gravel_text samples[DIG_IDENTITY_SAMPLES_MAX];
     uint32_t           samples_count;
+
+    struct dig_identity_dig recorded[DIG_IDENTITY_DIGS_MAX];
+    uint32_t                recorded_count;
 };
 
 static const cyaml_schema_field_t gravel_fields[] = {
@@ -71,6 +97,22 @@ static const cyaml_schema_field_t gravel_fields[] = {
 
 static const cyaml_schema_value_t sample = { CYAML_VALUE_MAPPING(REQUIRED, struct gravel_text,
                                                                  gravel_fields) };
+
+static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
+
+static const cyaml_schema_field_t dig_fields[] = {
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_identity_dig, trajectory, 1),
+    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_identity_dig, first),
+    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_identity_dig, last),
+    CYAML_FIELD_SEQUENCE_FIXED("moment_Nm", REQUIRED, struct dig_identity_dig, moment_Nm, &number,
+                               DIG_CURVE_POINTS),
+    CYAML_FIELD_SEQUENCE_FIXED("sigma_Nm", REQUIRED, struct dig_identity_dig, sigma_Nm, &number,
+                               DIG_CURVE_POINTS),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t recorded = { CYAML_VALUE_MAPPING(
+    REQUIRED, struct dig_identity_dig, dig_fields) };
 
 #define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
 
@@ -89,6 +131,8 @@ static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, outside),
     CYAML_FIELD_SEQUENCE("samples", REQUIRED, struct identity_text, samples, &sample, 0,
                          DIG_IDENTITY_SAMPLES_MAX),
+    CYAML_FIELD_SEQUENCE("recorded", CYAML_FLAG_OPTIONAL, struct identity_text, recorded, &recorded,
+                         0, DIG_IDENTITY_DIGS_MAX),
     CYAML_FIELD_END,
 };
 
@@ -105,6 +149,15 @@ static bool is_gravel(const struct dig_gravel *const g)
     return isfinite(g->value[0]) && isfinite(g->value[1]) && isfinite(g->value[2]) &&
            g->value[DIG_AXIS_FRICTION] >= 0.0 && g->value[DIG_AXIS_ROLLING] >= 0.0 &&
            g->value[DIG_AXIS_DENSITY_kgpm3] > 0.0;
+}
+
+static bool is_dig(const struct dig_identity_dig *const dig)
+{
+    bool is = dig->first >= 0.0 && dig->last > dig->first && dig->last <= 1.0;
+    for (size_t k = 0; is && k < DIG_CURVE_POINTS; k++) {
+        is = isfinite(dig->moment_Nm[k]) && isfinite(dig->sigma_Nm[k]) && dig->sigma_Nm[k] >= 0.0;
+    }
+    return is;
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
@@ -130,6 +183,7 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
                       .noise_floor      = text->noise_floor,
                       .outside          = text->outside,
                       .samples          = text->samples_count,
+                      .recorded         = text->recorded_count,
     };
     memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
     memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
@@ -140,6 +194,16 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
                                      "the %zu-th is no gravel, expected friction and rolling >= 0, "
                                      "density > 0",
                                      i + 1);
+        }
+    }
+    for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
+        read.recording[i] = text->recorded[i];
+        if (!is_dig(&read.recording[i])) {
+            status =
+                dig_yaml_refuse(path, "recorded", error,
+                                "the %zu-th is no dig, expected 0 <= first < last <= 1, finite "
+                                "moments, sigmas >= 0",
+                                i + 1);
         }
     }
     if (status == DIG_OK && !is_gravel(&read.gravel)) {

@@ -11,6 +11,16 @@
 #include <stdio.h>
 
 #define DIG_IDENTITY_SAMPLES_MAX 64
+#define DIG_IDENTITY_DIGS_MAX    8
+
+/// A dig it was identified from, as it was observed (docs/numerics/estimator.md): rig scale, on the
+/// table's grid of progress, 0 where nothing was measured.
+struct dig_identity_dig {
+    char   trajectory[DIG_NAME_SIZE];
+    double first, last; // progress that was measured
+    double moment_Nm[DIG_CURVE_POINTS];
+    double sigma_Nm[DIG_CURVE_POINTS];
+};
 
 struct dig_identity {
     char              scene_hash[65];            // of the table it was identified with
@@ -25,9 +35,12 @@ struct dig_identity {
     bool              outside;                   // none of the table's gravels
     size_t            samples;                   // gravels that stand for the posterior
     struct dig_gravel sample[DIG_IDENTITY_SAMPLES_MAX];
+    // The last of the digs, oldest first, for who goes on with them; 0: they are not kept.
+    size_t                  recorded;
+    struct dig_identity_dig recording[DIG_IDENTITY_DIGS_MAX];
 };
 
-/// One JSON object and a line feed.
+/// One JSON object and a line feed; "recorded" only where there is one.
 void dig_identity_write(FILE *to, const struct dig_identity *identity);
 
 /// DIG_EINVAL names file, line, key and what was expected; DIG_EIO: it cannot be opened. Writes on

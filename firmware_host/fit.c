@@ -60,7 +60,8 @@ static void keep(struct dig_fit *const fit)
 {
     struct dig_error error = { "" };
     if (fit->config->match_state.text[0] != '\0' &&
-        dig_known_write(fit->config->match_state.text, &fit->known, &error) != DIG_OK) {
+        dig_known_write(fit->config->match_state.text, &fit->known, fit->set, &fit->pool, &error) !=
+            DIG_OK) {
         note(fit, error.text);
     }
 }
@@ -83,14 +84,43 @@ static bool is_too_short(struct dig_fit *const fit, const struct dig_observation
     return true;
 }
 
+// The entry nearest to a pool, or to its youngest dig alone where no entry has all of their
+// trajectories.
+static enum dig_status match_pool(const struct dig_fit *const fit, struct dig_pool *const pool,
+                                  struct dig_match *const match)
+{
+    const double          floors = fit->config->estimator.outside_floors;
+    const enum dig_status status =
+        dig_match_nearest_pool(fit->set, pool->digs, pool->dig, floors, match);
+    if (status != DIG_ENOMATCH || pool->digs == 1) {
+        return status;
+    }
+    pool->dig[0] = pool->dig[pool->digs - 1];
+    pool->digs   = 1;
+    return dig_match_nearest(fit->set, pool->dig, floors, match);
+}
+
 static void match_dig(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
     if (is_too_short(fit, dig)) {
         return;
     }
+    struct dig_known       judged  = fit->known;
+    const enum dig_kinship kinship = dig_known_judge(
+        &judged, dig, &fit->next.forecast.along[dig->trajectory], &fit->known_settings);
+    if (kinship == DIG_DOUBTED) {
+        fit->known = judged;
+        tell(fit);
+        return;
+    }
+    struct dig_pool pool = { .digs = 0 };
+    if (kinship == DIG_KIN) {
+        pool = fit->pool;
+    }
+    dig_pool_add(&pool, dig);
+
     struct dig_match match;
-    enum dig_status  status =
-        dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match);
+    enum dig_status  status = match_pool(fit, &pool, &match);
     if (status != DIG_OK) {
         note_dig(fit, dig,
                  status == DIG_ENOMATCH ? "no match, the table holds no curve of this dig"
@@ -98,13 +128,17 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
                  status);
         return;
     }
-    status = dig_fit_refine(fit->set, dig, fit->config->match_evaluations, &match);
+    status =
+        dig_fit_refine_pool(fit->set, pool.digs, pool.dig, fit->config->match_evaluations, &match);
     if (status != DIG_OK) {
         // The nearest entry stands: it is exact, only coarse.
         note_dig(fit, dig, "nearest entry only", status);
     }
-    fit->known =
-        dig_known_of(fit->set, &match, dig->trajectory, dig_input_now_ns(), &fit->known_settings);
+    fit->pool  = pool;
+    fit->known = dig_known_of(fit->set, &match, dig, dig_input_now_ns(), &fit->known_settings);
+    if (kinship == DIG_KIN) {
+        fit->known.drift = judged.drift;
+    }
     tell(fit);
     keep(fit);
     atomic_fetch_add(&fit->matches, 1);
@@ -141,6 +175,15 @@ static enum dig_status check_table(const struct dig_fit *const       fit,
                                             dig_status_str(status));
 }
 
+static bool has_same_digs(const struct dig_curve_set *const a, const struct dig_curve_set *const b)
+{
+    bool same = a->trajectories == b->trajectories;
+    for (size_t t = 0; same && t < a->trajectories; t++) {
+        same = strcmp(a->trajectory[t].name, b->trajectory[t].name) == 0;
+    }
+    return same;
+}
+
 // The table the configuration names now. All is checked before anything changes; a gravel that is
 // known stays known where the new table holds it.
 static void reload(struct dig_fit *const fit)
@@ -162,6 +205,9 @@ static void reload(struct dig_fit *const fit)
     fit->set      = set;
     fit->generation++;
     fit->lambda = fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    if (!has_same_digs(fit->retiring, set)) {
+        fit->pool.digs = 0;
+    }
     if (!dig_known_move(&fit->known, set)) {
         fit->known.valid       = false;
         fit->known.match.valid = false;
@@ -194,8 +240,8 @@ void dig_fit_restore(struct dig_fit *const fit)
     if (path[0] == '\0' || access(path, F_OK) != 0) {
         return;
     }
-    const enum dig_status status = dig_known_read(path, fit->set, dig_input_now_ns(),
-                                                  &fit->known_settings, &fit->known, &error);
+    const enum dig_status status = dig_known_read(
+        path, fit->set, dig_input_now_ns(), &fit->known_settings, &fit->known, &fit->pool, &error);
     if (status == DIG_OK) {
         tell(fit);
     } else {

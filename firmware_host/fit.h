@@ -52,6 +52,7 @@ struct dig_fit {
 
     // the thread's own
     struct dig_known known;
+    struct dig_pool  pool; // the digs it is known from; none: restored without them
     struct dig_offer next; // what is offered
 };
 
@@ -59,8 +60,9 @@ struct dig_fit {
 /// What is wrong with the file is noted, no error: the daemon then knows nothing.
 void dig_fit_restore(struct dig_fit *fit);
 
-/// One dig as observed: matched when its trajectory identifies, else compared with what was
-/// expected.
+/// One dig as observed. Of a trajectory that does not identify: compared with what was expected.
+/// Of one that does: matched together with the digs before when it is of their ground, by itself
+/// when it is of another (dig_known_judge).
 void dig_fit_take(struct dig_fit *fit, const struct dig_observation *dig);
 
 /// One turn: a dig that waits in the ring, a reload asked for, what is too old. True when there was

@@ -1,5 +1,6 @@
 #include "firmware_host/known.h"
 
+#include "estimator/match.h"
 #include "files/identity_json.h"
 #include "files/whole.h"
 
@@ -18,11 +19,12 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(fmin(seconds, 3e9) * (double)NS_PER_S);
 }
 
-struct dig_known dig_known_of(const struct dig_curve_set *const set,
-                              const struct dig_match *const match, const int trajectory,
-                              const int64_t now_ns, const struct dig_known_settings *const settings)
+struct dig_known dig_known_of(const struct dig_curve_set *const   set,
+                              const struct dig_match *const       match,
+                              const struct dig_observation *const dig, const int64_t now_ns,
+                              const struct dig_known_settings *const settings)
 {
-    assert(set != NULL && match != NULL && settings != NULL && match->nearest >= 0);
+    assert(set != NULL && match != NULL && dig != NULL && settings != NULL && match->nearest >= 0);
     struct dig_known known = {
         .any        = true,
         .valid      = match->valid,
@@ -31,9 +33,11 @@ struct dig_known dig_known_of(const struct dig_curve_set *const set,
         .time_ns    = now_ns,
         .expires_ns = now_ns + ns(settings->expires_s),
         .drift      = (double)NAN,
+
+        .path_measured = dig->last - dig->first,
     };
     (void)snprintf(known.trajectory, sizeof known.trajectory, "%s",
-                   set->trajectory[trajectory].name);
+                   set->trajectory[dig->trajectory].name);
     (void)snprintf(known.table, sizeof known.table, "%s", set->scene_hash);
     return known;
 }
@@ -64,11 +68,11 @@ static double floors_between(const struct dig_observation *const dig,
     return sqrt(miss2 / floor2);
 }
 
-bool dig_known_watch(struct dig_known *const known, const struct dig_observation *const dig,
-                     const struct dig_expected *const       expected,
-                     const struct dig_known_settings *const settings)
+// Compares a dig with what was expected of it; false when that cannot be.
+static bool compare(struct dig_known *const known, const struct dig_observation *const dig,
+                    const struct dig_expected *const       expected,
+                    const struct dig_known_settings *const settings)
 {
-    assert(known != NULL && dig != NULL && expected != NULL && settings != NULL);
     if (!known->valid || !expected->valid) {
         return false;
     }
@@ -78,6 +82,41 @@ bool dig_known_watch(struct dig_known *const known, const struct dig_observation
     }
     known->drift    = floors;
     known->differed = floors > settings->drift_floors ? known->differed + 1 : 0;
+    if (known->differed == 0) {
+        known->wanted[0] = '\0';
+    }
+    return true;
+}
+
+enum dig_kinship dig_known_judge(struct dig_known *const                known,
+                                 const struct dig_observation *const    dig,
+                                 const struct dig_expected *const       expected,
+                                 const struct dig_known_settings *const settings)
+{
+    assert(known != NULL && dig != NULL && expected != NULL && settings != NULL);
+    if (!compare(known, dig, expected, settings)) {
+        return DIG_STRANGER;
+    }
+    if (known->differed == 0) {
+        return DIG_KIN;
+    }
+    if (known->differed >= DIG_DRIFT_DIGS || known->match.digs < 2 ||
+        known->drift > DIG_DRIFT_FAR * settings->drift_floors) {
+        return DIG_STRANGER;
+    }
+    (void)snprintf(known->wanted, sizeof known->wanted,
+                   "a simple dig differed from those before: dig another");
+    return DIG_DOUBTED;
+}
+
+bool dig_known_watch(struct dig_known *const known, const struct dig_observation *const dig,
+                     const struct dig_expected *const       expected,
+                     const struct dig_known_settings *const settings)
+{
+    assert(known != NULL && dig != NULL && expected != NULL && settings != NULL);
+    if (!compare(known, dig, expected, settings)) {
+        return false;
+    }
     if (known->differed >= DIG_DRIFT_DIGS) {
         end(known, "the ground has changed");
     }
@@ -94,13 +133,31 @@ bool dig_known_age(struct dig_known *const known, const int64_t now_ns)
     return true;
 }
 
-enum dig_status dig_known_write(const char *const path, const struct dig_known *const known,
-                                struct dig_error *const error)
+static void put_pool(const struct dig_curve_set *const set, const struct dig_pool *const pool,
+                     struct dig_identity *const identity)
 {
-    assert(path != NULL && known != NULL && known->match.samples <= DIG_IDENTITY_SAMPLES_MAX);
+    identity->recorded = pool->digs;
+    for (size_t i = 0; i < pool->digs; i++) {
+        const struct dig_observation *const dig = &pool->dig[i];
+        struct dig_identity_dig *const      to  = &identity->recording[i];
+        memcpy(to->trajectory, set->trajectory[dig->trajectory].name, sizeof to->trajectory);
+        memcpy(to->moment_Nm, dig->moment_Nm, sizeof to->moment_Nm);
+        memcpy(to->sigma_Nm, dig->sigma_Nm, sizeof to->sigma_Nm);
+        to->first = dig->first;
+        to->last  = dig->last;
+    }
+}
+
+enum dig_status dig_known_write(const char *const path, const struct dig_known *const known,
+                                const struct dig_curve_set *const set,
+                                const struct dig_pool *const pool, struct dig_error *const error)
+{
+    assert(path != NULL && known != NULL && set != NULL && pool != NULL &&
+           known->match.samples <= DIG_IDENTITY_SAMPLES_MAX);
+    _Static_assert(DIG_POOL_MAX <= DIG_IDENTITY_DIGS_MAX, "a pool must fit");
     const struct dig_match *const m        = &known->match;
     struct dig_identity           identity = {
-                  .digs             = 1,
+                  .digs             = m->digs,
                   .gravel           = m->gravel,
                   .mean             = m->mean,
                   .low              = m->low,
@@ -115,6 +172,7 @@ enum dig_status dig_known_write(const char *const path, const struct dig_known *
     memcpy(identity.scene_hash, known->table, sizeof identity.scene_hash);
     memcpy(identity.trajectory, known->trajectory, sizeof identity.trajectory);
     memcpy(identity.sample, m->sample, m->samples * sizeof m->sample[0]);
+    put_pool(set, pool, &identity);
 
     struct dig_out        out    = { 0 };
     const enum dig_status status = dig_out_open(&out, path, error);
@@ -189,12 +247,38 @@ static enum dig_status check_age(const char *const path, const double most_s, do
     return DIG_OK;
 }
 
+// The digs of the file, unless one is of a trajectory the table does not have.
+static void take_pool(const struct dig_curve_set *const set,
+                      const struct dig_identity *const identity, struct dig_pool *const pool)
+{
+    pool->digs = 0;
+    for (size_t i = 0; i < identity->recorded && i < DIG_POOL_MAX; i++) {
+        const struct dig_identity_dig *const from = &identity->recording[i];
+        struct dig_observation               dig  = { .trajectory = -1 };
+        for (size_t t = 0; t < set->trajectories; t++) {
+            if (strcmp(set->trajectory[t].name, from->trajectory) == 0) {
+                dig.trajectory = (int)t;
+            }
+        }
+        memcpy(dig.moment_Nm, from->moment_Nm, sizeof dig.moment_Nm);
+        memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
+        dig.first = from->first;
+        dig.last  = from->last;
+        if (dig_observation_check(set, &dig) != DIG_OK) {
+            pool->digs = 0;
+            return;
+        }
+        dig_pool_add(pool, &dig);
+    }
+}
+
 enum dig_status dig_known_read(const char *const path, const struct dig_curve_set *const set,
                                const int64_t                          now_ns,
                                const struct dig_known_settings *const settings,
-                               struct dig_known *const known, struct dig_error *const error)
+                               struct dig_known *const known, struct dig_pool *const pool,
+                               struct dig_error *const error)
 {
-    assert(path != NULL && set != NULL && settings != NULL && known != NULL);
+    assert(path != NULL && set != NULL && settings != NULL && known != NULL && pool != NULL);
     double              age_s  = 0.0;
     enum dig_status     status = check_age(path, settings->expires_s, &age_s, error);
     struct dig_identity i;
@@ -209,8 +293,11 @@ enum dig_status dig_known_read(const char *const path, const struct dig_curve_se
         .time_ns    = now_ns - ns(age_s),
         .expires_ns = now_ns + ns(settings->expires_s - age_s),
         .drift      = (double)NAN,
+
+        .path_measured = (double)NAN,
     };
     struct dig_match *const m = &read.match;
+    m->digs                   = i.digs;
     m->valid                  = true;
     m->gravel                 = i.gravel;
     m->mean                   = i.mean;
@@ -231,6 +318,7 @@ enum dig_status dig_known_read(const char *const path, const struct dig_curve_se
                              path, read.table, set->scene_hash);
     }
     *known = read;
+    take_pool(set, &i, pool);
     return DIG_OK;
 }
 

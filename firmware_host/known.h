@@ -1,17 +1,20 @@
 // Which gravel is known: from which dig, since when, until when, and whether the ground is still
 // that. It outlives the daemon in a file, which is an identity as `digloop identify --json` writes
-// it (files/identity_json.h); how old it is, the file's modification time says.
+// it (files/identity_json.h), with the digs it was made of; how old it is, the file's modification
+// time says.
 
 #ifndef DIG_FIRMWARE_HOST_KNOWN_H
 #define DIG_FIRMWARE_HOST_KNOWN_H
 
 #include "core/error.h"
 #include "estimator/estimator.h"
+#include "estimator/pool.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define DIG_DRIFT_DIGS 2 // in a row that must differ before the ground counts as another
+#define DIG_DRIFT_DIGS 2   // in a row that must differ before the ground counts as another
+#define DIG_DRIFT_FAR  2.0 // times drift_floors: a simple dig so far off needs no second
 
 struct dig_known_settings {
     double expires_s; // after the dig it came from
@@ -32,12 +35,28 @@ struct dig_known {
     double            drift;               // of the last dig compared, in noise floors; NaN: none
     int               differed;            // digs in a row that did
     char              wanted[96];          // what is to be done, for people; "" nothing
+    double            path_measured;       // share of that dig's path; NaN: not known any more
 };
 
-/// What is known from a match of one dig of that trajectory.
+/// What is known from a match of digs of which dig is the youngest.
 struct dig_known dig_known_of(const struct dig_curve_set *set, const struct dig_match *match,
-                              int trajectory, int64_t now_ns,
+                              const struct dig_observation *dig, int64_t now_ns,
                               const struct dig_known_settings *settings);
+
+/// What a simple dig is to the ground that is known.
+enum dig_kinship {
+    DIG_KIN,     // of the same ground: to be matched together with the digs before
+    DIG_DOUBTED, // it differs, and may be a chance: what is known stays, another is asked for
+    DIG_STRANGER // of another ground, or of the first
+};
+
+/// Compares a simple dig with what was expected of it. It is a stranger when nothing is known or
+/// expected; when it differs by more than DIG_DRIFT_FAR * drift_floors; when it is one of
+/// DIG_DRIFT_DIGS in a row that differ; or when it differs from a ground known from a single dig:
+/// of two digs that contradict each other the younger counts. Remembers the drift.
+enum dig_kinship dig_known_judge(struct dig_known *known, const struct dig_observation *dig,
+                                 const struct dig_expected       *expected,
+                                 const struct dig_known_settings *settings);
 
 /// Compares a dig that identifies nothing with what was expected of it. After DIG_DRIFT_DIGS in a
 /// row that differ, what is known is known no longer. True when anything changed that is worth
@@ -49,18 +68,23 @@ bool dig_known_watch(struct dig_known *known, const struct dig_observation *dig,
 /// True when it expired just now.
 bool dig_known_age(struct dig_known *known, int64_t now_ns);
 
-/// Writes all of it or nothing. DIG_EIO: it cannot be written (no room); the old file stands.
+/// Writes all of it, with the digs (of trajectories of the set), or nothing. DIG_EIO: it cannot be
+/// written (no room); the old file stands.
 DIG_MUST_CHECK enum dig_status dig_known_write(const char *path, const struct dig_known *known,
-                                               struct dig_error *error);
+                                               const struct dig_curve_set *set,
+                                               const struct dig_pool      *pool,
+                                               struct dig_error           *error);
 
 /// DIG_EINVAL: not an identity, of another table (scene hash) or of a gravel the table does not
 /// have; DIG_ESTALE: older than settings->expires_s, or more than an hour younger than now (a wall
 /// clock that was set back: its age cannot be known); DIG_EIO: it cannot be read, as when there is
-/// none. Writes on success only.
+/// none. A file that holds none of its digs leaves the pool empty: what is known stands until the
+/// next simple dig begins anew. Writes on success only.
 DIG_MUST_CHECK enum dig_status dig_known_read(const char *path, const struct dig_curve_set *set,
                                               int64_t                          now_ns,
                                               const struct dig_known_settings *settings,
-                                              struct dig_known *known, struct dig_error *error);
+                                              struct dig_known *known, struct dig_pool *pool,
+                                              struct dig_error *error);
 
 /// The same gravel judged by another table: nearest entry anew. False when that table does not hold
 /// it; *known is untouched then.

@@ -197,6 +197,8 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .sample_density_kgpm3  = sample[DIG_AXIS_DENSITY_kgpm3],
         .hint_trajectory       = hint,
         .hint_J_per_kg         = result->hint_J_per_kg,
+        .digs                  = (int32_t)m->digs,
+        .path_measured         = k->path_measured,
         .advice                = advice(),
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));

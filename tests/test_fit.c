@@ -2,6 +2,7 @@
 
 #include "firmware_host/fit.h"
 
+#include "files/identity_json.h"
 #include "tests/scratch.h"
 
 #include <fcntl.h>
@@ -127,6 +128,7 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
     struct bench *const b = bench_create();
     for (int gravel = 0; gravel < GRAVELS; gravel++) {
         struct dig_fit_result result;
+        b->fit.known = (struct dig_known){ .any = false };
         dig_in(b, gravel, 0, 1.0);
         const struct dig_offer *const offer = dig_latest_look(&b->offer);
         assert_non_null(offer);
@@ -138,6 +140,8 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
         assert_true(result.known.valid && !result.known.restored);
         assert_int_equal(result.known.match.nearest, gravel);
         assert_string_equal(result.known.trajectory, "simpleA");
+        assert_int_equal(result.known.match.digs, 1);
+        assert_close(result.known.path_measured, 1.0, 0.0);
         assert_string_equal(result.hint_trajectory, ""); // nor says it what a bucket carries
     }
     assert_int_equal(atomic_load(&b->fit.matches), GRAVELS);
@@ -234,6 +238,112 @@ static void ground_that_changed_is_no_longer_known(void **state)
     free(b);
 }
 
+static double friction_width(const struct dig_match *const m)
+{
+    return m->high.value[DIG_AXIS_FRICTION] - m->low.value[DIG_AXIS_FRICTION];
+}
+
+// How far factor times a gravel is from what is predicted of it, in floors.
+static double drift_of(struct bench *const b, const int gravel, const double factor)
+{
+    const struct dig_known before = b->fit.known;
+    dig_in(b, gravel, 1, factor);
+    const double          drift = b->fit.known.drift;
+    struct dig_fit_result result;
+    b->fit.known = before;
+    while (dig_ring_pop(&b->results, &result)) {
+    }
+    return drift;
+}
+
+static struct bench *bench_of_two_digs(void)
+{
+    struct bench *const b = bench_create();
+    for (int g = 0; g < GRAVELS; g++) {
+        b->packings[g * TRAJECTORIES + 1] = 3;
+        b->curve[g * TRAJECTORIES + 1]    = b->curve[g * TRAJECTORIES];
+    }
+    return b;
+}
+
+static void simple_digs_of_one_ground_are_matched_together(void **state)
+{
+    (void)state;
+    struct bench *const b      = bench_create();
+    double              before = INFINITY;
+    for (int i = 1; i <= 10; i++) {
+        dig_in(b, 5, 0, i % 2 == 0 ? 1.01 : 0.99);
+        const struct dig_match *const m    = &b->fit.known.match;
+        const size_t                  digs = i < DIG_POOL_MAX ? (size_t)i : DIG_POOL_MAX;
+        assert_int_equal(m->digs, digs);
+        assert_int_equal(m->nearest, 5);
+        assert_true(i > 4 || friction_width(m) < before);
+        assert_true(isnan(b->fit.known.drift) == (i == 1));
+        before = friction_width(m);
+    }
+    assert_int_equal(atomic_load(&b->fit.matches), 10);
+    free(b);
+}
+
+// Of several that agreed, one that differs is doubted; the second, or one far off, begins anew.
+static void a_simple_dig_that_differs_is_doubted_first(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_of_two_digs();
+    for (int i = 0; i < 3; i++) {
+        dig_in(b, 5, 0, 1.0);
+    }
+    double factor = 1.0;
+    while (drift_of(b, 5, factor) < 4.0) {
+        factor += 0.01;
+    }
+    assert_true(drift_of(b, 5, factor) < 6.0);
+    struct dig_fit_result result;
+    dig_in(b, 5, 0, factor);
+    while (dig_ring_pop(&b->results, &result)) {
+    }
+    assert_true(result.known.valid);
+    assert_int_equal(result.known.match.digs, 3);
+    assert_true(result.known.drift > 3.0);
+    assert_string_equal(result.known.wanted,
+                        "a simple dig differed from those before: dig another");
+    dig_in(b, 5, 0, 1.0);
+    assert_int_equal(b->fit.known.match.digs, 4);
+    assert_string_equal(b->fit.known.wanted, "");
+
+    dig_in(b, 5, 0, factor);
+    assert_int_equal(b->fit.known.match.digs, 4);
+    dig_in(b, 5, 0, factor);
+    assert_int_equal(b->fit.known.match.digs, 1);
+    assert_true(isnan(b->fit.known.drift));
+    assert_int_equal(b->fit.pool.digs, 1);
+    assert_close(b->fit.pool.dig[0].moment_Nm[100], factor * moment_Nm(5, 100), 1e-12);
+
+    // Of one against one the younger counts; and so does one that is far off.
+    dig_in(b, 5, 0, 1.0);
+    dig_in(b, 5, 0, 1.0);
+    dig_in(b, 5, 0, 1.0);
+    assert_true(b->fit.known.match.digs >= 2);
+    dig_in(b, 0, 0, 0.5);
+    assert_int_equal(b->fit.known.match.digs, 1);
+    free(b);
+}
+
+static void a_ground_given_up_is_not_matched_with_the_next(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_of_two_digs();
+    dig_in(b, 5, 0, 1.0);
+    dig_in(b, 5, 0, 1.0);
+    dig_in(b, 5, 1, 2.0);
+    dig_in(b, 5, 1, 2.0);
+    assert_false(b->fit.known.valid);
+    dig_in(b, 5, 0, 1.0);
+    assert_true(b->fit.known.valid);
+    assert_int_equal(b->fit.known.match.digs, 1);
+    free(b);
+}
+
 static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
 {
     (void)state;
@@ -315,6 +425,47 @@ static void what_is_known_survives_in_its_file(void **state)
     free(again);
 }
 
+// After a restart the digs before still count; from a file without them the next begins anew.
+static void the_digs_of_a_ground_survive_too(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
+                   scratch_path("pool.json"));
+    (void)strcpy(b->set.scene_hash,
+                 "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
+    for (int i = 0; i < 9; i++) {
+        dig_in(b, 5, 0, 1.0 + 0.001 * i);
+    }
+    for (int bare = 0; bare < 2; bare++) {
+        struct bench *const again = bench_create();
+        again->config.match_state = b->config.match_state;
+        memcpy(again->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+        if (bare == 1) {
+            struct dig_identity id;
+            assert_int_equal(dig_identity_read(scratch_path("pool.json"), &id, NULL), DIG_OK);
+            id.recorded      = 0;
+            FILE *const file = fopen(scratch_path("pool.json"), "w");
+            dig_identity_write(file, &id);
+            (void)fclose(file);
+        }
+        dig_fit_restore(&again->fit);
+        assert_true(again->fit.known.restored && again->fit.known.match.digs == DIG_POOL_MAX);
+        assert_int_equal(again->fit.pool.digs, bare == 1 ? 0 : DIG_POOL_MAX);
+        if (bare == 0) {
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                assert_close(again->fit.pool.dig[7].moment_Nm[k], b->fit.pool.dig[7].moment_Nm[k],
+                             1e-6);
+            }
+        }
+        dig_in(again, 5, 0, 1.0);
+        assert_int_equal(again->fit.known.match.digs, bare == 1 ? 1 : DIG_POOL_MAX);
+        assert_false(again->fit.known.restored);
+        free(again);
+    }
+    free(b);
+}
+
 static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **state)
 {
     (void)state;
@@ -361,8 +512,12 @@ int main(void)
         cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),
         cmocka_unit_test(a_dig_broken_off_leaves_what_is_known),
         cmocka_unit_test(ground_that_changed_is_no_longer_known),
+        cmocka_unit_test(simple_digs_of_one_ground_are_matched_together),
+        cmocka_unit_test(a_simple_dig_that_differs_is_doubted_first),
+        cmocka_unit_test(a_ground_given_up_is_not_matched_with_the_next),
         cmocka_unit_test(a_gravel_that_is_too_old_is_no_longer_known),
         cmocka_unit_test(what_is_known_survives_in_its_file),
+        cmocka_unit_test(the_digs_of_a_ground_survive_too),
         cmocka_unit_test(a_file_that_cannot_be_written_is_said_and_the_match_stands),
         cmocka_unit_test(the_hint_is_the_dig_that_carries_for_the_least_energy),
     };

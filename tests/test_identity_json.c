@@ -22,6 +22,17 @@ static struct dig_identity example(void)
         .sample           = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
     };
     memset(id.scene_hash, 'a', 64);
+    id.recorded = 2;
+    for (int i = 0; i < 2; i++) {
+        struct dig_identity_dig *const dig = &id.recording[i];
+        (void)strcpy(dig->trajectory, i == 0 ? "simpleA" : "simpleB");
+        dig->first = 0.125;
+        dig->last  = 0.875;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            dig->moment_Nm[k] = 0.001 * k * (1 + i);
+            dig->sigma_Nm[k]  = 0.75;
+        }
+    }
     return id;
 }
 
@@ -53,13 +64,21 @@ static void what_was_written_is_read_back(void **state)
         assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
     }
     assert_close(back.noise_floor, 0.2, 1e-9);
+    assert_int_equal(back.recorded, 2);
+    assert_string_equal(back.recording[1].trajectory, "simpleB");
+    assert_close(back.recording[1].first, 0.125, 0.0);
+    assert_close(back.recording[1].last, 0.875, 0.0);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close(back.recording[1].moment_Nm[k], 0.002 * k, 1e-7);
+        assert_close(back.recording[0].sigma_Nm[k], 0.75, 0.0);
+    }
 }
 
 // Each defect names the file and the key, and leaves what was there.
 static void defects_are_refused_by_name(void **state)
 {
     (void)state;
-    char                      good[4096];
+    static char               good[32768];
     const struct dig_identity id   = example();
     FILE *const               file = tmpfile();
     dig_identity_write(file, &id);
@@ -77,9 +96,13 @@ static void defects_are_refused_by_name(void **state)
         { "2345.6", "nan", "density_kgpm3" },
         { "\"simpleA\"", "\"a name that is far too long for any trajectory\"", "trajectory" },
         { "{\"scene_hash\"", "{\"scene\"", "scene" },
+        { "\"last\": 0.875", "\"last\": 0.1", "recorded" },
+        { "0.75, 0.75", "0.75, -0.75", "recorded" },
+        { "0.75, 0.75", "0.75", "sigma_Nm" },
+        { "0.75, 0.75", "0.75, 0.75, 0.75", "sigma_Nm" },
     };
     for (size_t i = 0; i < sizeof defect / sizeof defect[0]; i++) {
-        char              bad[4096];
+        static char       bad[32768];
         const char *const at = strstr(good, defect[i].was);
         assert_non_null(at);
         (void)snprintf(bad, sizeof bad, "%.*s%s%s", (int)(at - good), good, defect[i].is,
@@ -87,7 +110,9 @@ static void defects_are_refused_by_name(void **state)
         const char *const   path      = scratch_write("bad.json", bad);
         struct dig_identity untouched = { .digs = 42 };
         struct dig_error    error     = { "" };
-        assert_int_equal(dig_identity_read(path, &untouched, &error), DIG_EINVAL);
+        if (dig_identity_read(path, &untouched, &error) != DIG_EINVAL) {
+            fail_msg("%s for %s is taken", defect[i].is, defect[i].was);
+        }
         assert_int_equal(untouched.digs, 42);
         if (strstr(error.text, path) == NULL || strstr(error.text, defect[i].names) == NULL) {
             fail_msg("\"%s\" does not name %s", error.text, defect[i].names);

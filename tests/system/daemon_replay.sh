@@ -33,6 +33,17 @@ check "health goes from waiting over running to stopping" \
       "running stopping waiting_for_bus " ]
 check "nothing was lost" [ "$(last health "$work/csv.txt" $h_lost)" = 0 ]
 
+"$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
+    -o "$work/thrice.csv" 2>"$work/rig.err"
+config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {state: thrice.json}"
+log thrice
+"$BIN/digsightd" -c "$work/thrice.yaml" 2>"$work/daemon.log"
+read_log thrice
+check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 1) } END { print n }' "$work/thrice.txt")" = 3 ]
+check "which narrows the interval" awk '$1 == "match" { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
+check "and keeps the gravel" identified "$work/thrice.txt"
+check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json")" = 3 ]
+
 log again
 "$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
 read_log again
