@@ -1,7 +1,7 @@
 #include "core/sample.h"
 
 #include <assert.h>
-#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char *const names[DIG_SIGNALS] = {
@@ -34,6 +34,23 @@ int dig_signal_find(const char *const name)
     return -1;
 }
 
+bool dig_signal_tells_moment(const enum dig_signal signal)
+{
+    return signal <= DIG_SIGNAL_BUCKET_rad || signal == DIG_SIGNAL_BUCKET_HEAD_Pa ||
+           signal == DIG_SIGNAL_BUCKET_ROD_Pa;
+}
+
+bool dig_sample_has_moment(const struct dig_sample *const sample)
+{
+    assert(sample != NULL);
+    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
+        if (!sample->valid[i] && dig_signal_tells_moment((enum dig_signal)i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool dig_sample_is_complete(const struct dig_sample *const sample)
 {
     assert(sample != NULL);
@@ -43,4 +60,18 @@ bool dig_sample_is_complete(const struct dig_sample *const sample)
         }
     }
     return true;
+}
+
+void dig_signal_name_missing(const bool valid[const DIG_SIGNALS], const size_t size,
+                             char text[const])
+{
+    assert(valid != NULL && size > 0 && text != NULL);
+    size_t used = 0;
+    text[0]     = '\0';
+    for (int i = 0; i < DIG_SIGNALS_NEEDED && used < size; i++) {
+        if (!valid[i]) {
+            (void)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", names[i]);
+            used = strlen(text);
+        }
+    }
 }

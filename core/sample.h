@@ -5,6 +5,7 @@
 #define DIG_CORE_SAMPLE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /// The order is that of a machine recording's columns and never changes.
@@ -23,8 +24,11 @@ enum dig_signal {
     DIG_SIGNALS
 };
 
-/// Every signal up to here is needed for a wrench; those after it are optional.
+/// Every signal up to here is needed for force and moment; those after it are optional.
 #define DIG_SIGNALS_NEEDED DIG_SIGNAL_PITCH_rad
+
+/// Room for the names of all of those.
+#define DIG_SIGNAL_NAMES_SIZE 160
 
 struct dig_sample {
     int64_t time_ns;            // monotonic, of the youngest signal; any epoch
@@ -38,7 +42,18 @@ const char *dig_signal_name(enum dig_signal signal);
 /// The signal of that name, or -1.
 int dig_signal_find(const char *name);
 
-/// True when every signal a wrench needs is valid.
+/// True for what the moment needs: the three angles and the bucket's pressures. The other
+/// cylinders' pressures tell the force.
+bool dig_signal_tells_moment(enum dig_signal signal);
+
+/// True when every signal the moment needs is valid.
+bool dig_sample_has_moment(const struct dig_sample *sample);
+
+/// True when every signal force and moment need is valid.
 bool dig_sample_is_complete(const struct dig_sample *sample);
+
+/// Writes the names of those signals among the needed that are not valid, "boom_head_Pa, …", cut to
+/// size; "" when none is missing.
+void dig_signal_name_missing(const bool valid[DIG_SIGNALS], size_t size, char text[]);
 
 #endif // DIG_CORE_SAMPLE_H

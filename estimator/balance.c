@@ -7,12 +7,6 @@
 #include <math.h>
 #include <stddef.h>
 
-static double signal(const struct dig_sample *const sample, const enum dig_signal first,
-                     const int offset)
-{
-    return sample->value[(int)first + offset];
-}
-
 // What the chamber holds when its sensor reads this.
 static double truth_Pa(const struct dig_correction *const correction, const int joint,
                        const enum dig_chamber chamber, const double read_Pa)
@@ -20,6 +14,24 @@ static double truth_Pa(const struct dig_correction *const correction, const int 
     return correction == NULL ? read_Pa
                               : (read_Pa - correction->offset_Pa[joint][chamber]) /
                                     (1.0 + correction->gain[joint][chamber]);
+}
+
+// Both chambers of a drive.
+static enum dig_status take_push(const struct dig_machine *const    machine,
+                                 const struct dig_correction *const correction,
+                                 const struct dig_sample *const sample, const int j,
+                                 struct dig_push *const push)
+{
+    const enum dig_signal head = (enum dig_signal)(DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j);
+    const enum dig_signal rod  = (enum dig_signal)(head + 1);
+    if (!sample->valid[head] || !sample->valid[rod]) {
+        *push = (struct dig_push){ .valid = false };
+        return DIG_OK;
+    }
+    return dig_cylinder_push(&machine->cylinder[j],
+                             truth_Pa(correction, j, DIG_CHAMBER_HEAD, sample->value[head]),
+                             truth_Pa(correction, j, DIG_CHAMBER_ROD, sample->value[rod]),
+                             machine->pressure_step_Pa, push);
 }
 
 enum dig_status dig_readings_take(const struct dig_machine *const    machine,
@@ -30,7 +42,7 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
 {
     assert(machine != NULL && sample != NULL && readings != NULL);
     assert(correction == NULL || rates != NULL);
-    if (!dig_sample_is_complete(sample)) {
+    if (!dig_sample_has_moment(sample)) {
         return DIG_ESTALE;
     }
     struct dig_readings r = {
@@ -43,17 +55,9 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
     }
     enum dig_status status = isfinite(r.pitch_rad) ? DIG_OK : DIG_EINVAL;
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        r.joint_rad[j] = signal(sample, DIG_SIGNAL_BOOM_rad, j);
-
-        const double head_Pa = signal(sample, DIG_SIGNAL_BOOM_HEAD_Pa, 2 * j);
-        const double rod_Pa  = signal(sample, DIG_SIGNAL_BOOM_ROD_Pa, 2 * j);
-
-        status = !isfinite(r.joint_rad[j])
-                     ? DIG_EINVAL
-                     : dig_cylinder_push(&machine->cylinder[j],
-                                         truth_Pa(correction, j, DIG_CHAMBER_HEAD, head_Pa),
-                                         truth_Pa(correction, j, DIG_CHAMBER_ROD, rod_Pa),
-                                         machine->pressure_step_Pa, &r.push[j]);
+        r.joint_rad[j] = sample->value[DIG_SIGNAL_BOOM_rad + j];
+        status = isfinite(r.joint_rad[j]) ? take_push(machine, correction, sample, j, &r.push[j])
+                                          : DIG_EINVAL;
     }
     if (status == DIG_OK) {
         *readings = r;

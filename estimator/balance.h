@@ -35,8 +35,9 @@ struct dig_balance {
     bool             moment_ok, force_ok;
 };
 
-/// Reads a sample: with a correction (NULL: none) its pressures are put right first. DIG_ESTALE,
-/// DIG_EINVAL as dig_wrench_solve(). rates: NULL only without correction.
+/// Reads a sample: with a correction (NULL: none) its pressures are put right first. A drive that
+/// lacks a pressure pushes by 0 and is not valid. DIG_ESTALE, DIG_EINVAL as dig_wrench_solve().
+/// rates: NULL only without correction.
 DIG_MUST_CHECK enum dig_status dig_readings_take(const struct dig_machine    *machine,
                                                  const struct dig_correction *correction,
                                                  const struct dig_sample     *sample,

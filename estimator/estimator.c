@@ -344,7 +344,7 @@ static enum dig_status solve(struct dig_estimator *const e, const struct dig_sam
     if (!e->corrects) {
         return dig_wrench_solve(e->machine, sample, wrench, front);
     }
-    if (!dig_sample_is_complete(sample)) {
+    if (!dig_sample_has_moment(sample)) {
         return DIG_ESTALE;
     }
     struct dig_sample   at = *sample;

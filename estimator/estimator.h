@@ -140,7 +140,7 @@ struct dig_correction; // estimator/correction.h
 DIG_MUST_CHECK enum dig_status dig_estimator_correct(struct dig_estimator        *estimator,
                                                      const struct dig_correction *correction);
 
-/// One tick. DIG_ESTALE: an incomplete sample or one not younger than the last; DIG_EINVAL: a
+/// One tick. DIG_ESTALE: a sample without a moment or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
 /// for the tick in which a dig ends while nothing is lent (one to two milliseconds: alignment,
 /// resampling).

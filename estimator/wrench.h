@@ -26,9 +26,10 @@
 
 /// Solves one sample and places the front. A drive at relief or at its stop, or a linkage at its
 /// toggle, clears moment_valid (the bucket's) or force_valid (any) and leaves those numbers 0; the
-/// front is placed all the same. A missing pitch counts as 0.
+/// front is placed all the same. A missing pitch counts as 0. Without the boom's or the arm's
+/// pressures the force is not told; the moment and its sigma are what they are with them.
 ///
-/// DIG_ESTALE: a needed signal is missing. DIG_EINVAL: a number that is not finite. Then nothing is
+/// DIG_ESTALE: an angle or a pressure of the bucket's is missing. DIG_EINVAL: a number that is not finite. Then nothing is
 /// written. Constant time: seven solutions of the balance.
 ///
 /// sigma: pressures through the exact linear dependence, angles through central differences over

@@ -43,7 +43,7 @@ static void machine_columns(struct dig_csv_column column[const DIG_SIGNALS + 1])
     for (int s = 0; s < DIG_SIGNALS; s++) {
         column[s + 1] = (struct dig_csv_column){
             .name      = dig_signal_name((enum dig_signal)s),
-            .optional  = s >= DIG_SIGNALS_NEEDED,
+            .optional  = !dig_signal_tells_moment((enum dig_signal)s),
             .may_empty = true,
         };
     }

@@ -10,8 +10,9 @@
 #include <stdio.h>
 
 /// Read a whole file. DIG_EINVAL names file, line, column and what was expected: unknown or missing
-/// columns, text where a number belongs, NaN or infinity, time that does not ascend, sampling below
-/// 50 Hz, fewer than two rows. DIG_EIO: errno's text. *recording is written on success only.
+/// columns (the boom's and arm's pressures, pitch and temperature may be missing), text where a
+/// number belongs, NaN or infinity, time that does not ascend, sampling below 50 Hz, fewer than two
+/// rows. DIG_EIO: errno's text. *recording is written on success only.
 DIG_MUST_CHECK enum dig_status dig_recording_read(const char *path, struct dig_recording *recording,
                                                   struct dig_error *error);
 DIG_MUST_CHECK enum dig_status dig_machine_recording_read(const char                   *path,

@@ -220,7 +220,7 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
     a->last_ns = due_ns;
 
     const struct dig_sample made = sample_at(a, due_ns);
-    if (a->settings.stuck_s > 0.0 && dig_sample_is_complete(&made) &&
+    if (a->settings.stuck_s > 0.0 && dig_sample_has_moment(&made) &&
         dig_stuck_step(&a->stuck, a->settings.stuck_s, &made)) {
         a->drops.stuck++;
         return false;

@@ -12,6 +12,9 @@
 // Times are scaled to machine time before anything else, so that a bench served at double speed
 // looks like the machine.
 //
+// Signals that no message carries (a machine without pressures of the boom's) are missing from
+// every sample.
+//
 // What is dropped, and counted:
 //   * a needed value that is not available, out of range, NaN, or farther from the last one than
 //     max_rate allows in the time between and 20 ms more;

@@ -495,6 +495,28 @@ static enum dig_status check_map(const struct work *const work, const struct map
     return DIG_OK;
 }
 
+// What the moment needs must be there. A cylinder's force is told by both of its chambers.
+static enum dig_status check_signals(const struct work *const work)
+{
+    const struct dig_map_entry *const entry = work->map->entry;
+    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
+        if (!entry[i].used && dig_signal_tells_moment((enum dig_signal)i)) {
+            return dig_yaml_refuse(work->path, "signals", work->error,
+                                   "no entry %s, expected one for each angle and both pressures of "
+                                   "the bucket's cylinder",
+                                   dig_signal_name((enum dig_signal)i));
+        }
+    }
+    for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i < DIG_SIGNALS_NEEDED; i += 2) {
+        if (entry[i].used != entry[i + 1].used) {
+            return dig_yaml_refuse(work->path, "signals", work->error,
+                                   "no entry %s, expected both pressures of a cylinder or none",
+                                   dig_signal_name((enum dig_signal)(entry[i].used ? i + 1 : i)));
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status read_map(const struct work *const work, const struct map_text *const text)
 {
     struct dig_signal_map *const map    = work->map;
@@ -518,14 +540,7 @@ static enum dig_status read_map(const struct work *const work, const struct map_
     for (unsigned i = 0; status == DIG_OK && i < text->messages_count; i++) {
         status = read_message(work, i, &text->messages[i]);
     }
-    for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS_NEEDED; i++) {
-        if (!map->entry[i].used) {
-            status = dig_yaml_refuse(work->path, "signals", work->error,
-                                     "no entry %s, expected one for each of the nine signals",
-                                     dig_signal_name((enum dig_signal)i));
-        }
-    }
-    return status;
+    return status == DIG_OK ? check_signals(work) : status;
 }
 
 enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc *const dbc,

@@ -269,6 +269,13 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
     (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", d->input.name,
                    1.0 / l->config.tick_s, l->config.lcm_url);
     say(line);
+    char missing[DIG_SIGNAL_NAMES_SIZE];
+    dig_signal_name_missing(l->measured, sizeof missing, missing);
+    if (missing[0] != '\0') {
+        (void)snprintf(line, sizeof line, "not measured: %s; the moment is told, the force is not",
+                       missing);
+        say(line);
+    }
 }
 
 // The input's and the publisher's threads stand a little below the tick: a sample is of use only

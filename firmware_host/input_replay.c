@@ -11,6 +11,7 @@
 struct replay {
     struct dig_machine_recording recording;
     double                       speed;
+    bool                         has[DIG_SIGNALS]; // in any row
     size_t                       next;
     int64_t                      start_ns;
 };
@@ -27,10 +28,12 @@ static enum dig_status open_replay(struct dig_input *const input, struct dig_err
 static void give_row(struct dig_input *const input, const struct dig_sample *const row,
                      const int64_t due_ns)
 {
-    struct dig_reading reading = { .time_ns = due_ns };
+    const struct replay *const replay  = input->source;
+    struct dig_reading         reading = { .time_ns = due_ns };
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         reading.value[i] = row->value[i];
-        reading.state[i] = (uint8_t)(!row->valid[i]             ? DIG_READING_NOT_AVAILABLE
+        reading.state[i] = (uint8_t)(!replay->has[i]            ? DIG_READING_ABSENT
+                                     : !row->valid[i]           ? DIG_READING_NOT_AVAILABLE
                                      : !isfinite(row->value[i]) ? DIG_READING_NAN
                                                                 : DIG_READING_OK);
     }
@@ -89,6 +92,11 @@ enum dig_status dig_input_replay_create(struct dig_input *const             inpu
     struct replay *const replay = calloc(1, sizeof *replay);
     if (replay == NULL) {
         return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < recording->rows; i++) {
+        for (size_t s = 0; s < DIG_SIGNALS; s++) {
+            replay->has[s] |= recording->row[i].valid[s];
+        }
     }
     replay->recording = *recording;
     replay->speed     = speed;

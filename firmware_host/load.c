@@ -74,6 +74,17 @@ static enum dig_status load_recording(struct dig_loaded *const l, struct dig_err
                                 : dig_machine_recording_read(path, &l->recording, error);
 }
 
+// What has an entry in the map, or a value anywhere in the recording.
+static void find_measured(struct dig_loaded *const l)
+{
+    for (size_t s = 0; s < DIG_SIGNALS; s++) {
+        l->measured[s] = l->config.kind != DIG_INPUT_REPLAY && l->map.entry[s].used;
+        for (size_t i = 0; i < l->recording.rows && !l->measured[s]; i++) {
+            l->measured[s] = l->recording.row[i].valid[s];
+        }
+    }
+}
+
 enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,
                          struct dig_error *const error)
 {
@@ -88,6 +99,7 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
             l.config.kind == DIG_INPUT_REPLAY ? load_recording(&l, error) : load_map(&l, error);
     }
     if (status == DIG_OK) {
+        find_measured(&l);
         status = dig_table_load(l.config.table.text, &l.set, error);
     }
     if (status == DIG_OK) {

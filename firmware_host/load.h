@@ -20,6 +20,7 @@ struct dig_loaded {
     struct dig_curve_set        *set;        // with the model's effects of the soil in it
     struct dig_signal_map        map;        // of a bus
     struct dig_machine_recording recording;  // of a replay
+    bool                         measured[DIG_SIGNALS]; // that map or recording has
 };
 
 /// Errors as dig_daemon_create(). Writes on success only; free with dig_loaded_finish().

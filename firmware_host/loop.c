@@ -39,14 +39,14 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(seconds * (double)NS_PER_S);
 }
 
-// One assembled sample: through the estimator if it is whole, out in any case.
+// One assembled sample: through the estimator if it tells the moment, out in any case.
 static void take_sample(struct dig_loop *const loop, const struct dig_sample *const sample,
                         const int64_t arrived_ns, const int64_t now_ns)
 {
     struct dig_record record = { .sample     = *sample,
                                  .arrived_ns = arrived_ns,
                                  .expires_ns = now_ns + ns(loop->settings.stale_s) };
-    if (dig_sample_is_complete(sample) &&
+    if (dig_sample_has_moment(sample) &&
         dig_estimator_step(loop->estimator, sample, &loop->estimate) == DIG_OK) {
         loop->sampled_ns    = now_ns;
         loop->pulse.digs    = loop->estimate.dig_count;

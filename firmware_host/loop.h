@@ -71,7 +71,7 @@ struct dig_pulse {
     int64_t          lost, lost_digs; // records and digs for which there was no room
     int64_t          generation;      // of the table in use
     uint32_t         digs;
-    bool             fresh; // a complete sample came within stale_s
+    bool             fresh; // a sample that tells the moment came within stale_s
 };
 
 /// Where the tick's input comes from and its output goes to; the rings' other ends are other

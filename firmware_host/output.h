@@ -38,7 +38,8 @@ struct dig_health {
     int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
     int32_t             matches;
     struct dig_latency  latency;
-    const char         *table; // scene hash
+    const char         *table;                          // scene hash
+    char                missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
 };
 
 struct dig_output;

@@ -106,7 +106,9 @@ static enum dig_status publish_estimate(struct dig_output *const          output
 {
     const struct dig_estimate *const e = &record->estimate;
     char                             name[TEXT_SIZE];
+    char                             missing[DIG_SIGNAL_NAMES_SIZE];
     (void)snprintf(name, sizeof name, "%s", trajectory_name(set, e->trajectory));
+    dig_signal_name_missing(record->sample.valid, sizeof missing, missing);
     const digsight_estimate_t message = {
         .time_ns         = e->time_ns,
         .utc_us          = utc_us(e->time_ns),
@@ -127,6 +129,7 @@ static enum dig_status publish_estimate(struct dig_output *const          output
         .progress        = e->progress,
         .off_path_m      = e->off_path_m,
         .expires_ns      = record->expires_ns,
+        .missing         = missing,
         .advice          = advice(),
     };
     return sent(digsight_estimate_t_publish(output->lcm, "DIGSIGHT_ESTIMATE", &message));
@@ -247,6 +250,7 @@ enum dig_status dig_output_health(struct dig_output *const       output,
     char    input[TEXT_SIZE];
     char    note[TEXT_SIZE];
     char    table[TEXT_SIZE];
+    char    missing[DIG_SIGNAL_NAMES_SIZE];
     double  latency_to_us[DIG_LATENCY_BINS];
     int64_t latency_count[DIG_LATENCY_BINS];
     for (int i = 0; i < DIG_LATENCY_BINS; i++) {
@@ -254,6 +258,7 @@ enum dig_status dig_output_health(struct dig_output *const       output,
         latency_count[i] = health->latency.count[i];
     }
     (void)snprintf(table, sizeof table, "%s", health->table);
+    (void)snprintf(missing, sizeof missing, "%s", health->missing);
     (void)snprintf(state, sizeof state, "%s", health->state);
     (void)snprintf(input, sizeof input, "%s", health->input);
     (void)snprintf(note, sizeof note, "%s", health->note);
@@ -297,6 +302,7 @@ enum dig_status dig_output_health(struct dig_output *const       output,
               .latency_bins          = DIG_LATENCY_BINS,
               .latency_to_us         = latency_to_us,
               .latency_count         = latency_count,
+              .missing_signals       = missing,
               .table                 = table,
               .advice                = advice(),
     };

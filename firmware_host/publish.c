@@ -74,6 +74,10 @@ static void publish_records(struct dig_publisher *const p)
         if (record.has_estimate) {
             p->estimate = record.estimate;
         }
+        for (size_t i = 0; i < DIG_SIGNALS; i++) {
+            p->seen[i] |= record.sample.valid[i];
+            p->any_seen |= record.sample.valid[i];
+        }
         const bool due = p->records_seen++ % (uint64_t)p->config->estimate_every == 0;
         p->health.unsent += due && p->output == NULL ? 1 : 0;
         if (due && p->output != NULL) {
@@ -199,6 +203,22 @@ static void say_drops(struct dig_publisher *const p, const int64_t now_ns)
     }
 }
 
+// Which signals had no value in the second that ends; a silent bus says nothing about them.
+static void name_missing(struct dig_publisher *const p)
+{
+    if (!p->any_seen) {
+        return;
+    }
+    char missing[DIG_SIGNAL_NAMES_SIZE];
+    dig_signal_name_missing(p->seen, sizeof missing, missing);
+    if (strcmp(missing, p->health.missing) != 0) {
+        memcpy(p->health.missing, missing, sizeof missing);
+        say(p, "without a value: %s", missing[0] != '\0' ? missing : "no signal any more");
+    }
+    memset(p->seen, 0, sizeof p->seen);
+    p->any_seen = false;
+}
+
 static void publish_health(struct dig_publisher *const p, const int64_t now_ns, const bool stopping)
 {
     bool news = false;
@@ -230,6 +250,9 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     p->health.table           = p->set->scene_hash;
     p->health.matches         = (int32_t)atomic_load(&p->fit->matches);
     say_drops(p, now_ns);
+    if (now_ns >= p->next_health_ns) {
+        name_missing(p);
+    }
     if ((news || now_ns >= p->next_health_ns) && p->output != NULL) {
         p->next_health_ns = now_ns + NS_PER_S;
         check_sent(p, dig_output_health(p->output, &p->health));

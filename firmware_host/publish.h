@@ -49,6 +49,8 @@ struct dig_publisher {
     int64_t               said_drops;
     int64_t               next_show_ns;
     uint64_t              records_seen;
+    bool                  seen[DIG_SIGNALS]; // signals that had a value since HEALTH was told last
+    bool                  any_seen;
     struct dig_estimate   estimate; // the last one
 };
 

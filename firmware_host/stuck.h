@@ -26,7 +26,8 @@ struct dig_stuck {
     double  low_rad[2], high_rad[2];      // of boom and arm while the pressures stood
 };
 
-/// Takes a complete sample; true while its pressures or angles are stuck.
+/// Takes a sample that tells the moment; true while its pressures or angles are stuck. Pressures
+/// are told as stuck only where all six are there: the bucket's alone may well stand.
 bool dig_stuck_step(struct dig_stuck *stuck, double stuck_s, const struct dig_sample *sample);
 
 #endif // DIG_FIRMWARE_HOST_STUCK_H

@@ -20,6 +20,8 @@ static struct dig_machine_recording recording(void)
         r.row[i].valid[DIG_SIGNAL_BOOM_rad] = true;
         r.row[i].value[DIG_SIGNAL_ARM_rad]  = i == 3 ? (double)NAN : 1.0;
         r.row[i].valid[DIG_SIGNAL_ARM_rad]  = true;
+
+        r.row[i].valid[DIG_SIGNAL_PITCH_rad] = i == 5;
     }
     return r;
 }
@@ -52,7 +54,9 @@ static void every_line_is_played_once_at_its_time(void **state)
         assert_true(reading.time_ns - first.time_ns == i * MS);
         assert_int_equal(reading.state[DIG_SIGNAL_ARM_rad],
                          i == 3 ? DIG_READING_NAN : DIG_READING_OK);
-        assert_int_equal(reading.state[DIG_SIGNAL_BUCKET_rad], DIG_READING_NOT_AVAILABLE);
+        assert_int_equal(reading.state[DIG_SIGNAL_PITCH_rad],
+                         i == 5 ? DIG_READING_OK : DIG_READING_NOT_AVAILABLE);
+        assert_int_equal(reading.state[DIG_SIGNAL_BUCKET_rad], DIG_READING_ABSENT); // nowhere
     }
     assert_false(dig_ring_pop(&ring, &reading));
     assert_int_equal(atomic_load(&input.frames), ROWS);

@@ -216,9 +216,10 @@ static void a_whole_sample_becomes_an_estimate(void **state)
 static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
 {
     (void)state;
-    struct bench *const b           = bench_create();
-    struct dig_reading  r           = still(1000 * MS);
-    r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
+    struct bench *const b = bench_create();
+    struct dig_reading  r = still(1000 * MS);
+
+    r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
     struct dig_record record;
     assert_true(dig_ring_push(&b->readings, &r));
     dig_loop_tick(&b->loop, 1001 * MS);
@@ -228,6 +229,25 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
     assert_false(pulse.fresh);
     assert_int_equal(pulse.missing, 1);
     assert_int_equal(pulse.drops.not_available, 1);
+    bench_destroy(b);
+}
+
+static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void **state)
+{
+    (void)state;
+    struct bench *const b           = bench_create();
+    struct dig_reading  r           = still(1000 * MS);
+    r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_ABSENT;
+    struct dig_record record;
+    assert_true(dig_ring_push(&b->readings, &r));
+    dig_loop_tick(&b->loop, 1001 * MS);
+    assert_true(dig_ring_pop(&b->records, &record));
+    assert_true(record.has_estimate);
+    assert_true(record.estimate.wrench.moment_valid);
+    assert_true(record.estimate.wrench.sigma_My_Nm > 0.0);
+    assert_false(record.estimate.wrench.force_valid);
+    assert_false(record.sample.valid[DIG_SIGNAL_ARM_HEAD_Pa]);
+    assert_true(pulse_of(b).fresh);
     bench_destroy(b);
 }
 
@@ -438,6 +458,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_sample_becomes_an_estimate),
         cmocka_unit_test(a_sample_with_a_hole_is_passed_on_without_an_estimate),
+        cmocka_unit_test(without_a_pressure_of_the_arms_the_moment_is_told_and_no_force),
         cmocka_unit_test(silence_is_missing_after_the_stale_time_only),
         cmocka_unit_test(a_publisher_that_does_not_keep_up_is_counted_not_waited_for),
         cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),

@@ -127,6 +127,44 @@ static void a_sample_is_complete_without_the_optional_signals_only(void **state)
     }
 }
 
+static void angles_and_the_buckets_pressures_tell_the_moment(void **state)
+{
+    (void)state;
+    struct dig_sample s = { 0 };
+    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
+        s.valid[i] = true;
+    }
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        const bool other =
+            (i >= DIG_SIGNAL_BOOM_HEAD_Pa && i <= DIG_SIGNAL_ARM_ROD_Pa) || i >= DIG_SIGNALS_NEEDED;
+        const bool was = s.valid[i];
+        s.valid[i]     = false;
+        assert_true(dig_sample_has_moment(&s) == other);
+        s.valid[i] = was;
+    }
+}
+
+static void what_is_missing_is_named(void **state)
+{
+    (void)state;
+    bool valid[DIG_SIGNALS];
+    char text[DIG_SIGNAL_NAMES_SIZE];
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        valid[i] = i < DIG_SIGNALS_NEEDED; // the optional ones are never missed
+    }
+    dig_signal_name_missing(valid, sizeof text, text);
+    assert_string_equal(text, "");
+    valid[DIG_SIGNAL_BOOM_ROD_Pa] = valid[DIG_SIGNAL_ARM_HEAD_Pa] = false;
+    dig_signal_name_missing(valid, sizeof text, text);
+    assert_string_equal(text, "boom_rod_Pa, arm_head_Pa");
+    char cut[16];
+    dig_signal_name_missing(valid, sizeof cut, cut);
+    assert_string_equal(cut, "boom_rod_Pa, ar");
+    memset(valid, 0, sizeof valid);
+    dig_signal_name_missing(valid, sizeof text, text);
+    assert_non_null(strstr(text, "bucket_rod_Pa")); // all nine have room
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +173,8 @@ int main(void)
         cmocka_unit_test(areas_are_those_of_circles),
         cmocka_unit_test(every_signal_has_a_name_that_finds_it),
         cmocka_unit_test(a_sample_is_complete_without_the_optional_signals_only),
+        cmocka_unit_test(angles_and_the_buckets_pressures_tell_the_moment),
+        cmocka_unit_test(what_is_missing_is_named),
     };
     return cmocka_run_group_tests_name("machine", tests, NULL, NULL);
 }

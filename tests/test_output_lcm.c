@@ -56,6 +56,7 @@ static void on_estimate(void *const context, const int64_t time_us,
     seen->estimates++;
     seen->estimate = *m;
     keep(seen->trajectory[0], m->trajectory);
+    keep(seen->text[0], m->missing);
     keep(seen->text[2], m->advice);
 }
 
@@ -99,6 +100,7 @@ static void on_health(void *const context, const int64_t time_us, const digsight
     assert_string_equal(m->state, "running");
     assert_string_equal(m->input, "can vcan0");
     assert_string_equal(m->note, "trouble");
+    assert_string_equal(m->missing_signals, "arm_rod_Pa");
     keep(seen->text[0], m->table);
     keep(seen->text[2], m->advice);
     assert_int_equal(m->latency_bins, DIG_LATENCY_BINS);
@@ -142,7 +144,10 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
               .off_path_m = 0.01,
     };
     assert_int_equal(dig_output_record(output, set(), &record), DIG_OK);
-    record.sample.time_ns      = 300;
+    record.sample.time_ns = 300;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        record.sample.valid[i] = i != DIG_SIGNAL_BOOM_ROD_Pa && i != DIG_SIGNAL_ARM_rad;
+    }
     record.estimate.trajectory = -1;
     record.estimate.progress   = NAN;
     assert_int_equal(dig_output_record(output, set(), &record), DIG_OK);
@@ -151,6 +156,7 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     const struct seen seen = read_back("record.lcm");
     assert_int_equal(seen.estimates, 2);
     assert_string_equal(seen.trajectory[0], "");
+    assert_string_equal(seen.text[0], "arm_rad, boom_rod_Pa");
     assert_true(isnan(seen.estimate.progress));
     assert_int_equal(seen.estimate.moment_valid, 1);
     assert_int_equal(seen.estimate.force_valid, 0);
@@ -308,6 +314,7 @@ static void health_carries_every_counter(void **state)
          .reloads_refused = 25,
          .latency         = { .count = { [10] = 99, [20] = 1 }, .samples = 100 },
          .table           = "abc123",
+         .missing         = "arm_rod_Pa",
     };
     assert_int_equal(dig_output_health(output, &health), DIG_OK);
     dig_output_destroy(output);

@@ -54,6 +54,27 @@ static void the_machine_recording_of_the_formats_keeps_what_is_missing_missing(v
     dig_machine_recording_finish(&r);
 }
 
+static void the_booms_and_the_arms_pressures_may_lack_a_column(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r = { 0 };
+    const char *const            few =
+        scratch_write("few.csv", "t_s,boom_rad,arm_rad,bucket_rad,bucket_head_Pa,bucket_rod_Pa\n"
+                                 "0,1,2,3,4,5\n.01,1,2,3,4,5\n");
+    assert_int_equal(dig_machine_recording_read(few, &r, NULL), DIG_OK);
+    assert_true(dig_sample_has_moment(&r.row[1]));
+    assert_false(dig_sample_is_complete(&r.row[1]));
+    assert_false(r.row[0].valid[DIG_SIGNAL_ARM_ROD_Pa]);
+    assert_close(r.row[0].value[DIG_SIGNAL_BUCKET_ROD_Pa], 5.0, 0.0);
+    dig_machine_recording_finish(&r);
+
+    const char *const fewer = scratch_write(
+        "fewer.csv", "t_s,boom_rad,arm_rad,bucket_rad,bucket_head_Pa\n0,1,2,3,4\n.01,1,2,3,4\n");
+    struct dig_error error = { "" };
+    assert_int_equal(dig_machine_recording_read(fewer, &r, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "bucket_rod_Pa: missing"));
+}
+
 static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **state)
 {
     (void)state;
@@ -359,6 +380,7 @@ int main(void)
         cmocka_unit_test(the_force_recording_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
         cmocka_unit_test(a_machine_recording_may_have_a_hole_and_its_times_are_rounded),
+        cmocka_unit_test(the_booms_and_the_arms_pressures_may_lack_a_column),
         cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
         cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
         cmocka_unit_test(defects_of_machine_recordings_and_beds_are_told_too),

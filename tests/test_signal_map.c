@@ -216,6 +216,41 @@ static void wide_registers_signs_and_offsets_are_applied(void **state)
     assert_int_equal(r.state[DIG_SIGNAL_BOOM_rad], DIG_READING_NAN);
 }
 
+#define BARE                                                                                       \
+    "kind: modbus\nsignals:\n"                                                                     \
+    "  - {name: boom_rad, register: 1, min: -2, max: 2}\n"                                         \
+    "  - {name: arm_rad, register: 2, min: -2, max: 2}\n"                                          \
+    "  - {name: bucket_rad, register: 3, min: -2, max: 2}\n"                                       \
+    "  - {name: bucket_head_Pa, register: 4, min: 0, max: 4.0e7}\n"
+
+static void a_machine_with_the_buckets_pressures_alone_can_be_mapped(void **state)
+{
+    (void)state;
+    static const char rod[] = "  - {name: bucket_rod_Pa, register: 5, min: 0, max: 4.0e7}\n";
+    char              text[1024];
+    (void)snprintf(text, sizeof text, BARE "%s", rod);
+    const struct dig_signal_map map = modbus_map(scratch_write("bucket.yaml", text));
+    assert_true(map.entry[DIG_SIGNAL_BUCKET_ROD_Pa].used);
+    assert_false(map.entry[DIG_SIGNAL_BOOM_HEAD_Pa].used);
+    const uint16_t     block[] = { 1, 1, 1, 5000, 6000 };
+    struct dig_reading r;
+    dig_signal_map_registers(&map, block, 5, &r);
+    assert_int_equal(r.state[DIG_SIGNAL_BUCKET_ROD_Pa], DIG_READING_OK);
+    assert_int_equal(r.state[DIG_SIGNAL_ARM_ROD_Pa], DIG_READING_ABSENT);
+
+    struct dig_signal_map none  = { .groups = 42 };
+    struct dig_error      error = { "" };
+    assert_int_equal(dig_signal_map_read(scratch_write("bad.yaml", BARE), NULL, &none, &error),
+                     DIG_EINVAL);
+    assert_non_null(strstr(error.text, "no entry bucket_rod_Pa"));
+    (void)snprintf(text, sizeof text,
+                   BARE "%s  - {name: arm_rod_Pa, register: 6, min: 0, max: 4.0e7}\n", rod);
+    assert_int_equal(dig_signal_map_read(scratch_write("bad.yaml", text), NULL, &none, &error),
+                     DIG_EINVAL);
+    assert_non_null(strstr(error.text, "no entry arm_head_Pa, expected both"));
+    assert_int_equal(none.groups, 42);
+}
+
 static void defects_are_refused_with_file_line_and_key(void **state)
 {
     (void)state;
@@ -312,6 +347,7 @@ int main(void)
         cmocka_unit_test(ids_are_told_apart_and_short_frames_refused),
         cmocka_unit_test(golden_register_block_becomes_si),
         cmocka_unit_test(wide_registers_signs_and_offsets_are_applied),
+        cmocka_unit_test(a_machine_with_the_buckets_pressures_alone_can_be_mapped),
         cmocka_unit_test(defects_are_refused_with_file_line_and_key),
         cmocka_unit_test(can_entries_must_fit_the_dbc),
     };

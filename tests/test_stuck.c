@@ -7,8 +7,10 @@
 #define MS 1000000LL
 
 // A front that moves at 0.2 rad/s, its pressures with it; what stands stands from sample `from` on.
-static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, const double boom,
-                           const double pressure_Pa, const int from)
+// The pressures from the first on are measured.
+static int64_t first_stuck_of(const bool angles_stand, const bool pressures_stand,
+                              const double boom, const double pressure_Pa, const int from,
+                              const int first)
 {
     struct dig_stuck stuck = { 0 };
     for (int i = 0; i < 1000; i++) {
@@ -17,8 +19,10 @@ static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, 
         struct dig_sample s = { .time_ns = 1000 * MS + i * 10 * MS };
         for (int k = 0; k < 3; k++) {
             s.value[DIG_SIGNAL_BOOM_rad + k] = k == 2 ? 0.002 * a : boom * 0.002 * a;
+            s.valid[DIG_SIGNAL_BOOM_rad + k] = true;
         }
-        for (int k = 0; k < 6; k++) {
+        for (int k = first; k < 6; k++) {
+            s.valid[DIG_SIGNAL_BOOM_HEAD_Pa + k] = true;
             s.value[DIG_SIGNAL_BOOM_HEAD_Pa + k] = 5e6 + pressure_Pa * (p % 50) / 50.0;
         }
         if (dig_stuck_step(&stuck, 0.5, &s)) {
@@ -26,6 +30,12 @@ static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, 
         }
     }
     return -1;
+}
+
+static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, const double boom,
+                           const double pressure_Pa, const int from)
+{
+    return first_stuck_of(angles_stand, pressures_stand, boom, pressure_Pa, from, 0);
 }
 
 static void values_that_move_are_never_stuck(void **state)
@@ -55,6 +65,15 @@ static void angles_that_stand_while_pressures_change_are_stuck_after_a_while(voi
     assert_in_range(first_stuck(true, false, 1.0, 3e6, 100), 150, 153);
 }
 
+// A bucket that hangs: its pressures may stand while boom and arm carry it.
+static void the_buckets_pressures_alone_may_stand(void **state)
+{
+    (void)state;
+    enum { BUCKETS = 4 };
+    assert_int_equal(first_stuck_of(false, true, 1.0, 3e6, 100, BUCKETS), -1);
+    assert_in_range(first_stuck_of(true, false, 1.0, 3e6, 100, BUCKETS), 150, 153);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -62,6 +81,7 @@ int main(void)
         cmocka_unit_test(a_front_that_stands_is_not_stuck),
         cmocka_unit_test(pressures_that_stand_while_boom_and_arm_turn_are_stuck),
         cmocka_unit_test(angles_that_stand_while_pressures_change_are_stuck_after_a_while),
+        cmocka_unit_test(the_buckets_pressures_alone_may_stand),
     };
     return cmocka_run_group_tests_name("stuck", tests, NULL, NULL);
 }

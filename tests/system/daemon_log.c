@@ -1,6 +1,6 @@
 // Prints what an LCM log of the daemon holds, a line a message, for system tests to read:
 //   daemon_log LOG.lcm
-//   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS
+//   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING"
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
 //   RESTORED DRIFT "WANTED" DIGS PATH_MEASURED
 //   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT "REASON"
@@ -8,7 +8,7 @@
 //   RECONNECTS
 //          DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
-//          INPUT NOTE
+//          "INPUT" "NOTE" "MISSING"
 //   samples N DURATION_s MAX_GAP_s
 
 #include "files/lcm_log.h"
@@ -26,8 +26,9 @@ static void estimate(void *const context, const int64_t time_us, const digsight_
 {
     (void)context;
     (void)time_us;
-    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d\n", (double)m->time_ns * 1e-9, m->phase,
-                 name(m->trajectory), m->progress, m->moment_Nm, m->sigma_moment_Nm, m->dig_count);
+    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d %d \"%s\"\n", (double)m->time_ns * 1e-9,
+                 m->phase, name(m->trajectory), m->progress, m->moment_Nm, m->sigma_moment_Nm,
+                 m->dig_count, m->force_valid, m->missing);
 }
 
 static void match(void *const context, const int64_t time_us, const digsight_match_t *const m)
@@ -74,8 +75,8 @@ static void health(void *const context, const int64_t time_us, const digsight_he
     for (size_t i = 0; i < sizeof more / sizeof more[0]; i++) {
         (void)printf(" %" PRId64, more[i]);
     }
-    (void)printf(" %.1f %.1f \"%s\" \"%s\"\n", m->worst_tick_cpu_us, m->latency_p99_us, m->input,
-                 m->note);
+    (void)printf(" %.1f %.1f \"%s\" \"%s\" \"%s\"\n", m->worst_tick_cpu_us, m->latency_p99_us,
+                 m->input, m->note, m->missing_signals);
 }
 
 int main(const int argc, char *argv[])

@@ -71,6 +71,25 @@ YAML
 "$BIN/digloop" trace "$work/table.sqlite" "$work/campaign" --json "$work/trace.json" >"$work/trace.txt" 2>"$work/trace.err"
 check "digloop trace finds each dig of a campaign in the log" \
     within "$(tr -d '\n' <"$work/trace.json" | sed -nE 's/.*"error_before": \{"holdout": ([0-9.]+).*/\1/p')" 0 0.1
+# A machine whose bucket cylinder alone is instrumented.
+grep -v '^#' "$work/run.csv" | cut -d, -f1-4,9- >"$work/bucket.csv"
+config bucket "{kind: replay, replay: {file: bucket.csv, speed: 5}}"
+bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
+"$BIN/digsightd" -c "$work/bucket.yaml" --check >"$work/check.txt"
+check "--check says what is not measured" grep -q "not measured: $bare;" "$work/check.txt"
+log bucket
+"$BIN/digsightd" -c "$work/bucket.yaml" 2>"$work/daemon.log"
+read_log bucket
+check "the bucket's pressures alone identify the gravel" identified "$work/bucket.txt"
+check "every estimate has the moment and names what is missing of the force" \
+    eval '[ "$(grep -c "^estimate" "$work/bucket.txt")" -ge "$((rows * 95 / 100))" ] &&
+          ! grep "^estimate" "$work/bucket.txt" | grep -vqF " 0 \"$bare\""'
+check "so does health" eval '[ "$(grep -cF "\"$bare\"" <(grep "^health running" "$work/bucket.txt"))" -ge 3 ]'
+check "where nothing is missing nothing is named" eval '! grep "^health" "$work/csv.txt" | grep -qF "_Pa"'
+by_bucket=$(identify by_bucket "$work/bucket.csv" --machine "$machine" --trajectory simpleA)
+check "digloop identifies from such a recording, too" \
+    awk -v a="$by_force" -v b="$by_bucket" 'BEGIN { exit !(split(a, x, " ") == 3 && split(b, y, " ") == 3 &&
+        (y[1] / x[1] - 1) ^ 2 < 0.15 ^ 2 && (y[2] / x[2] - 1) ^ 2 < 0.15 ^ 2 && (y[3] / x[3] - 1) ^ 2 < 0.15 ^ 2) }'
 "$BIN/digreport" --table "$work/table.sqlite" --machine "$machine" --truth .5,.4,2200 --recording "$work/simpleA.csv" \
     --recording "$work/actual.csv" --html "$work/page.html" --json "$work/page.json" "a replay=$work/csv.lcm" \
     >"$work/report.txt" 2>"$work/report.err"
