@@ -44,17 +44,10 @@ static bool set_is_sound(const struct dig_curve_set *const set)
     return true;
 }
 
-// Vertices this far apart, rig scale: several times what a bus's steps of angle move the pin.
-static double vertex_spacing_m(const struct dig_curve_set *const set)
-{
-    return 0.025 * set->tooth_m;
-}
-
 // Forgets the dig going on.
 static void forget_dig(struct dig_estimator *const e)
 {
-    dig_window_close(&e->raw->window);
-    e->raw->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(e->set) };
+    dig_raw_forget(e->raw, e->set);
     e->next_follower = 0;
     e->choice        = (struct dig_choice){ .told = -1, .candidate = -1 };
     e->progress      = (double)NAN;
@@ -115,26 +108,18 @@ void dig_estimator_adopt(struct dig_estimator *const       estimator,
     forget_dig(estimator);
 }
 
-// The bucket in rig scale and axes: x = -X, theta = -pi/2 - phi.
+// The bucket in rig scale and axes.
 static struct dig_path_point rig_point(const struct dig_estimator *const e,
                                        const struct dig_front *const     front)
 {
-    const double phi_rad   = front->attitude_rad[DIG_JOINT_BUCKET];
-    const double theta_rad = remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI);
-    return (struct dig_path_point){
-        .x_m    = -front->pin_m[DIG_JOINT_BUCKET].x / e->lambda,
-        .z_m    = front->pin_m[DIG_JOINT_BUCKET].y / e->lambda,
-        .turn_m = e->set->tooth_m * theta_rad,
-    };
+    const struct dig_vec2 *const pin = &front->pin_m[DIG_JOINT_BUCKET];
+    return dig_raw_point(e->set, e->lambda, pin->x, pin->y, front->attitude_rad[DIG_JOINT_BUCKET]);
 }
 
 // Vertices of the samples before contact, then the one in contact.
 static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
 {
-    for (size_t i = 0; i < e->raw->window.count; i++) {
-        (void)dig_path_add(&e->raw->path, &e->raw->window.sample[i].pose, false);
-    }
-    dig_path_touch(&e->raw->path, touched);
+    dig_raw_touch(e->raw, touched);
     for (size_t t = 0; t < e->set->trajectories; t++) {
         e->follower[t] = dig_follower_start(&e->route[t], &e->raw->path, e->settings.path_limit_m);
     }
@@ -280,28 +265,17 @@ uint32_t dig_estimator_lost(const struct dig_estimator *const estimator)
 }
 
 // Moves phase, window and path on by one valid moment.
-static void follow_dig(struct dig_estimator *const e, const double time_s, const double dt_s,
+static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, const double dt_s,
                        const struct dig_wrench *const     wrench,
                        const struct dig_path_point *const point)
 {
-    const double               lambda4 = pow(e->lambda, 4.0);
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    const struct dig_window_sample sample = {
-        .time_s    = time_s / sqrt(e->lambda),
-        .moment_Nm = (wrench->My_Nm - e->phase.bias_Nm) / lambda4,
-        .pose      = *point,
-        .sigma_Nm  = (float)(wrench->sigma_My_Nm / lambda4),
-        .slow_Nm   = (float)(wrench->slow_sigma_My_Nm / lambda4),
-    };
-    dig_window_add(&e->raw->window, &sample);
+    dig_raw_add(e->raw, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
 
     switch (event) {
-    case DIG_EVENT_TOUCHED:
-        dig_window_open(&e->raw->window);
-        lay_out_path(e, point);
-        break;
+    case DIG_EVENT_TOUCHED: lay_out_path(e, point); break;
     case DIG_EVENT_LOST: forget_dig(e); break;
     case DIG_EVENT_GONE: finish_dig(e); break;
     case DIG_EVENT_NONE:
@@ -390,7 +364,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     // Without a moment nothing is learnt; the dig goes on from the next one.
     const struct dig_path_point point = rig_point(e, &front);
     if (wrench.moment_valid) {
-        follow_dig(e, 1e-9 * (double)sample->time_ns, fmin(dt_s, longest_step_s), &wrench, &point);
+        follow_dig(e, sample->time_ns, fmin(dt_s, longest_step_s), &wrench, &point);
         wrench.My_Nm -= e->phase.bias_Nm;
     }
 

@@ -5,19 +5,11 @@
 
 #include "estimator/correction.h"
 #include "estimator/estimator.h"
-#include "estimator/path.h"
 #include "estimator/phase.h"
 #include "estimator/rates.h"
+#include "estimator/raw.h"
 #include "estimator/route.h"
 #include "estimator/track.h"
-#include "estimator/window.h"
-
-/// A dig as the tick keeps it. Zeroed: empty.
-struct dig_raw {
-    uint32_t          dig_count;
-    struct dig_path   path;
-    struct dig_window window;
-};
 
 struct dig_estimator {
     // fixed at start

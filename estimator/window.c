@@ -130,6 +130,20 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     return range;
 }
 
+// The progress told of the range: of a dig that goes on, no more than is smoothed from both sides.
+static double told_until(const struct dig_window *const window, const struct range range,
+                         const double half_s)
+{
+    size_t i = range.end - 1;
+    if (window->goes_on && window->progress[i] < 1.0) {
+        const double until_s = window->time_s[i] - half_s;
+        while (i > range.first && window->time_s[i] > until_s) {
+            i--;
+        }
+    }
+    return window->progress[i];
+}
+
 // Samples of the range within half_s of sample i, at least 1: what white noise averages over.
 static double samples_within(const struct dig_window *const window, const struct range range,
                              const size_t i, const double half_s)
@@ -172,7 +186,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
                      &window->smooth_Nm[range.first]);
 
     const double first                       = window->progress[range.first];
-    const double last                        = window->progress[range.end - 1];
+    const double last                        = told_until(window, range, half_s);
     double       moment_Nm[DIG_CURVE_POINTS] = { 0 };
     double       sigma_Nm[DIG_CURVE_POINTS]  = { 0 };
     size_t       i                           = range.first;

@@ -31,6 +31,7 @@ struct dig_window {
     size_t                   count;
     size_t                   stride, skipped; // every stride-th sample is kept
     size_t                   replaced;        // samples replaced since the stride doubled last
+    bool                     goes_on; // more will come: the last half_s cannot be smoothed yet
     struct dig_window_sample sample[DIG_WINDOW_MAX];
     // filled by dig_window_observe()
     double time_s[DIG_WINDOW_MAX];
@@ -51,7 +52,8 @@ void dig_window_close(struct dig_window *window);
 /// to its end (or to where the dig stopped), smoothed over +-half_s of rig time, read off at
 /// DIG_CURVE_POINTS of progress where the furthest progress so far first reached them: a pause or a
 /// step back changes nothing. A sample farther than limit_m from the route moves no progress.
-/// sigma: white noise averages over the smoothing, the slow part does not.
+/// sigma: white noise averages over the smoothing, the slow part does not. Of a dig that goes on,
+/// only what is half_s old is told.
 ///
 /// DIG_ENOMATCH when fewer than two points of the grid were reached, or samples are missing for
 /// longer than half_s of rig time: what was not measured is not made up. Uses the window's own

@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "estimator/estimator_state.h"
 #include "estimator/match.h"
+#include "estimator/shadow.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -76,14 +77,17 @@ struct bench {
     bool                   keeps; // does not give a finished dig back
     double                 time_s;
     size_t                 observations, steps_with_allocation;
+    struct dig_shadow     *shadow; // NULL: none follows
     struct dig_observation observation;
     struct dig_estimate    estimate;
     // of the dig driven last
-    int    known_at_end;   // trajectory as it was told just before the end
-    double known_from;     // true progress from which on it was told, and rightly
-    double worst_progress; // largest error of progress from then on
-    size_t predictions;
-    double worst_prediction; // largest relative error ahead of the bucket
+    struct dig_observation early[4]; // what the shadow saw at these progresses
+    int                    earlies;
+    int                    known_at_end;   // trajectory as it was told just before the end
+    double                 known_from;     // true progress from which on it was told, and rightly
+    double                 worst_progress; // largest error of progress from then on
+    size_t                 predictions;
+    double                 worst_prediction; // largest relative error ahead of the bucket
 };
 
 static struct bench *bench_create(const bool sensors)
@@ -110,6 +114,7 @@ static void bench_destroy(struct bench *const b)
     made_table_destroy(b->set);
     free(b->estimator);
     free(b->spare);
+    free(b->shadow);
     free(b);
 }
 
@@ -153,7 +158,7 @@ static void tick(struct bench *const b, const struct dig_pose pose, const double
     }
     const bool dropped = model_uniform(seed) < drop;
     if (dropped) {
-        sample.valid[DIG_SIGNAL_ARM_HEAD_Pa] = false;
+        sample.valid[DIG_SIGNAL_BUCKET_HEAD_Pa] = false;
     }
 
     const size_t          before = allocations;
@@ -162,6 +167,11 @@ static void tick(struct bench *const b, const struct dig_pose pose, const double
     assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
     b->steps_with_allocation += allocations != before ? 1 : 0;
     b->observations += taken ? 1 : 0;
+    if (b->shadow != NULL && !dropped) {
+        dig_shadow_take(b->shadow, b->set, lambda, &b->estimate);
+        assert_true(b->shadow->on ==
+                    (!dig_estimator_is_idle(b->estimator) && b->estimate.phase != DIG_PHASE_AIR));
+    }
 }
 
 static void look_ahead(struct bench *const b, const struct drive *const drive,
@@ -208,6 +218,8 @@ static void dig(struct bench *const b, struct drive drive)
     const double                whole_m    = dig_trajectory_path_m(&t, rig_tooth_m, 1e3);
     const double                duration_s = dig_trajectory_duration_s(&t);
     const struct dig_pose       start      = dig_trajectory_pose(&t, 0.0);
+    static const double         look_at[]  = { 0.3, 0.45, 0.6, 0.9 };
+    b->earlies                             = 0;
     b->known_from                          = (double)NAN;
     b->known_at_end                        = -1;
     b->worst_progress                      = 0.0;
@@ -227,6 +239,15 @@ static void dig(struct bench *const b, struct drive drive)
         const double moment_Nm = 1e4 * made_moment_Nm(&gravel, drive.which, progress, 0.0);
         tick(b, dig_trajectory_pose(&t, rig_s), 0.0, moment_Nm, drive.drop, &drive.seed);
         look_ahead(b, &drive, progress);
+        if (b->shadow != NULL && b->earlies < 4 && progress >= look_at[b->earlies]) {
+            const struct dig_estimator_settings settings = dig_estimator_settings_default();
+            struct dig_raw *const               scratch  = calloc(1, sizeof *scratch);
+            struct dig_observation *const       early    = &b->early[b->earlies++];
+            if (dig_shadow_observe(b->set, &settings, b->shadow, scratch, early) != DIG_OK) {
+                early->trajectory = -1;
+            }
+            free(scratch);
+        }
         if (progress > 0.45 && paused_s < drive.pause_s) {
             paused_s += tick_s;
         } else if (progress > 0.6 && backed_s <= 0.0 && drive.back_s > 0.0) {
@@ -342,6 +363,67 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         assert_int_equal(b->known_at_end, cases[i].drive.which);
         assert_true(b->known_from < known_before[cases[i].drive.which]);
         assert_true(b->worst_progress < 0.03);
+        bench_destroy(b);
+    }
+}
+
+// What a dig looked like before it was over is what it turns out to have been, as far as it was
+// dug; never a progress that no sample after it had smoothed. Which dig it is may not be known yet.
+static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
+{
+    (void)state;
+    const struct {
+        struct drive drive;
+        int          known_from;
+    } cases[] = {
+        { calm, 0 },
+        { { .which = MADE_SIMPLE_A, .stretch = 2.5, .pause_s = 8, .until = 1, .seed = 1 }, 0 },
+        { { .which   = MADE_ACTUAL,
+            .stretch = 1.7,
+            .pause_s = 3,
+            .until   = 1,
+            .drop    = 0.2,
+            .sensors = true,
+            .seed    = 3 },
+          1 },
+        { { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .sensors = true, .seed = 1 }, 3 },
+    };
+    static const double share[] = { 0.3, 0.45, 0.6, 0.9 };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct drive *const drive = &cases[i].drive;
+        struct bench *const       b     = bench_create(drive->sensors);
+        b->shadow                       = calloc(1, sizeof *b->shadow);
+        dig_shadow_forget(b->shadow, b->set);
+        dig(b, *drive);
+        assert_int_equal(b->observations, 1);
+        assert_int_equal(b->earlies, 4);
+        assert_false(b->shadow->on);
+        for (int s = 0; s < 4; s++) {
+            const struct dig_observation *const o = &b->early[s];
+            if (s < cases[i].known_from) {
+                continue;
+            }
+            assert_int_equal(o->trajectory, (int)drive->which);
+            assert_int_equal(o->dig_count, 1);
+            const struct dig_trajectory t = made_trajectory(drive->which);
+            const double                half =
+                share[s] - dig_trajectory_path_m(&t, rig_tooth_m,
+                                                 dig_trajectory_time_s(&t, rig_tooth_m, share[s]) -
+                                                     DIG_SMOOTH_HALF_s / drive->stretch) /
+                               dig_trajectory_path_m(&t, rig_tooth_m, 1e3);
+            print_message("case %zu, %.2f of the path: %.3f to %.3f, half a window is %.3f\n", i,
+                          share[s], o->first, o->last, half);
+            assert_true(o->last <= share[s] - half + 0.01 && o->last > share[s] - half - 0.03);
+            double miss2 = 0.0, whole2 = 0.0;
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                if (k / 255.0 >= o->first && k / 255.0 <= o->last) {
+                    miss2 += pow(o->moment_Nm[k] - b->observation.moment_Nm[k], 2.0);
+                    whole2 += pow(b->observation.moment_Nm[k], 2.0);
+                }
+            }
+            print_message("    off what it turned out to be by %.4f\n", sqrt(miss2 / whole2));
+            assert_true(sqrt(miss2 / whole2) < 0.02);
+        }
         bench_destroy(b);
     }
 }
@@ -614,6 +696,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_of_dig_is_observed_as_it_was),
+        cmocka_unit_test(a_dig_going_on_is_observed_as_it_will_have_been),
         cmocka_unit_test(a_simple_dig_predicts_the_actual_one),
         cmocka_unit_test(a_load_carried_away_is_no_second_dig),
         cmocka_unit_test(a_scrape_is_counted_but_not_matched),
