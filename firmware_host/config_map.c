@@ -1,8 +1,10 @@
-// The signal map's YAML. Named config_* with the daemon's own configuration: the files that know
-// libcyaml.
+// The signal map's YAML, checked and made into a map. Named config_* with the daemon's own
+// configuration: the files that know libcyaml.
 
 #include "core/units.h"
 #include "files/yaml.h"
+#include "firmware_host/config_map_text.h"
+#include "firmware_host/register_plan.h"
 #include "firmware_host/signal_map.h"
 
 #include <assert.h>
@@ -10,135 +12,6 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-
-// The file as it is written.
-struct alive_text {
-    char                  *message, *signal;
-    unsigned              *reg;
-    enum dig_register_type type;
-    double                 frozen_ms;
-};
-
-struct checksum_text {
-    char             *signal;
-    enum dig_checksum kind;
-};
-
-struct message_text {
-    char                 *message, *counter;
-    double                delay_ms, cycle_ms;
-    struct checksum_text *checksum;
-};
-
-struct signal_text {
-    char                  *name, *message, *signal;
-    unsigned              *reg;
-    enum dig_register_type type;
-    int                    sign;
-    double                 scale, offset, min, max, max_rate;
-    uint64_t              *not_available;
-    unsigned               not_available_count;
-};
-
-struct map_text {
-    enum dig_map_kind    kind;
-    unsigned             function;
-    bool                 low_word_first, j1939;
-    double               coherent_ms;
-    double              *stuck_ms;
-    struct alive_text   *alive;
-    struct message_text *messages;
-    unsigned             messages_count;
-    struct signal_text  *signals;
-    unsigned             signals_count;
-};
-
-#define REQUIRED CYAML_FLAG_DEFAULT
-#define OPTIONAL CYAML_FLAG_OPTIONAL
-#define POINTER  CYAML_FLAG_POINTER
-
-static const cyaml_strval_t kinds[] = { { "can", DIG_MAP_CAN }, { "modbus", DIG_MAP_MODBUS } };
-static const cyaml_strval_t types[] = {
-    { "uint16", DIG_REGISTER_UINT16 },   { "int16", DIG_REGISTER_INT16 },
-    { "uint32", DIG_REGISTER_UINT32 },   { "int32", DIG_REGISTER_INT32 },
-    { "float32", DIG_REGISTER_FLOAT32 },
-};
-
-static const cyaml_schema_value_t raw_value = { CYAML_VALUE_UINT(REQUIRED, uint64_t) };
-
-static const cyaml_schema_field_t alive_fields[] = {
-    CYAML_FIELD_STRING_PTR("message", OPTIONAL | POINTER, struct alive_text, message, 1, 63),
-    CYAML_FIELD_STRING_PTR("signal", OPTIONAL | POINTER, struct alive_text, signal, 1, 63),
-    CYAML_FIELD_UINT_PTR("register", OPTIONAL | POINTER, struct alive_text, reg),
-    CYAML_FIELD_ENUM("type", OPTIONAL, struct alive_text, type, types, CYAML_ARRAY_LEN(types)),
-    CYAML_FIELD_FLOAT("frozen_ms", OPTIONAL, struct alive_text, frozen_ms),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t signal_fields[] = {
-    CYAML_FIELD_STRING_PTR("name", POINTER, struct signal_text, name, 1, 63),
-    CYAML_FIELD_STRING_PTR("message", OPTIONAL | POINTER, struct signal_text, message, 1, 63),
-    CYAML_FIELD_STRING_PTR("signal", OPTIONAL | POINTER, struct signal_text, signal, 1, 63),
-    CYAML_FIELD_UINT_PTR("register", OPTIONAL | POINTER, struct signal_text, reg),
-    CYAML_FIELD_ENUM("type", OPTIONAL, struct signal_text, type, types, CYAML_ARRAY_LEN(types)),
-    CYAML_FIELD_INT("sign", OPTIONAL, struct signal_text, sign),
-    CYAML_FIELD_FLOAT("scale", OPTIONAL, struct signal_text, scale),
-    CYAML_FIELD_FLOAT("offset", OPTIONAL, struct signal_text, offset),
-    CYAML_FIELD_FLOAT("min", REQUIRED, struct signal_text, min),
-    CYAML_FIELD_FLOAT("max", REQUIRED, struct signal_text, max),
-    CYAML_FIELD_FLOAT("max_rate", OPTIONAL, struct signal_text, max_rate),
-    CYAML_FIELD_SEQUENCE("not_available", OPTIONAL | POINTER, struct signal_text, not_available,
-                         &raw_value, 0, DIG_NOT_AVAILABLE_MAX),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_value_t signal_value = { CYAML_VALUE_MAPPING(REQUIRED, struct signal_text,
-                                                                       signal_fields) };
-
-static const cyaml_strval_t checksums[] = {
-    { "sum8", DIG_CHECKSUM_SUM8 },
-    { "xor8", DIG_CHECKSUM_XOR8 },
-    { "crc8_sae_j1850", DIG_CHECKSUM_CRC8_SAE_J1850 },
-    { "j1939_tsc1", DIG_CHECKSUM_J1939_TSC1 },
-};
-
-static const cyaml_schema_field_t checksum_fields[] = {
-    CYAML_FIELD_STRING_PTR("signal", POINTER, struct checksum_text, signal, 1, 63),
-    CYAML_FIELD_ENUM("kind", REQUIRED, struct checksum_text, kind, checksums,
-                     CYAML_ARRAY_LEN(checksums)),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t message_fields[] = {
-    CYAML_FIELD_STRING_PTR("message", POINTER, struct message_text, message, 1, 63),
-    CYAML_FIELD_STRING_PTR("counter", OPTIONAL | POINTER, struct message_text, counter, 1, 63),
-    CYAML_FIELD_FLOAT("delay_ms", OPTIONAL, struct message_text, delay_ms),
-    CYAML_FIELD_FLOAT("cycle_ms", OPTIONAL, struct message_text, cycle_ms),
-    CYAML_FIELD_MAPPING_PTR("checksum", OPTIONAL | POINTER, struct message_text, checksum,
-                            checksum_fields),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_value_t message_value = { CYAML_VALUE_MAPPING(
-    REQUIRED, struct message_text, message_fields) };
-
-static const cyaml_schema_field_t map_fields[] = {
-    CYAML_FIELD_ENUM("kind", REQUIRED, struct map_text, kind, kinds, CYAML_ARRAY_LEN(kinds)),
-    CYAML_FIELD_UINT("function", OPTIONAL, struct map_text, function),
-    CYAML_FIELD_BOOL("low_word_first", OPTIONAL, struct map_text, low_word_first),
-    CYAML_FIELD_BOOL("j1939", OPTIONAL, struct map_text, j1939),
-    CYAML_FIELD_FLOAT("coherent_ms", OPTIONAL, struct map_text, coherent_ms),
-    CYAML_FIELD_FLOAT_PTR("stuck_ms", OPTIONAL | POINTER, struct map_text, stuck_ms),
-    CYAML_FIELD_SEQUENCE("messages", OPTIONAL | POINTER, struct map_text, messages, &message_value,
-                         0, DIG_GROUPS_MAX),
-    CYAML_FIELD_MAPPING_PTR("alive", OPTIONAL | POINTER, struct map_text, alive, alive_fields),
-    CYAML_FIELD_SEQUENCE("signals", POINTER, struct map_text, signals, &signal_value, 1,
-                         DIG_SIGNALS),
-    CYAML_FIELD_END,
-};
-
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(POINTER, struct map_text,
-                                                                 map_fields) };
 
 // What is being read, for messages.
 struct work {
@@ -269,42 +142,24 @@ static enum dig_status find_can(const struct work *const work, const char *const
     return group_of(work, at, message, &entry->group);
 }
 
-static unsigned words_of(const enum dig_register_type type)
-{
-    return type == DIG_REGISTER_UINT16 || type == DIG_REGISTER_INT16 ? 1 : 2;
-}
-
-// Where in the registers; the polled block grows to hold it.
+// Where in the registers.
 static enum dig_status find_register(const struct work *const work, const char *const at,
                                      const unsigned *const reg, struct dig_map_entry *const entry)
 {
-    const struct key             key = key_of(at, "register");
-    struct dig_signal_map *const map = work->map;
+    const struct key key = key_of(at, "register");
     if (reg == NULL) {
         return dig_yaml_refuse(work->path, key.text, work->error,
                                "missing, expected the register's address, counted from 0");
     }
-    const unsigned last = *reg + words_of(entry->type);
-    if (*reg > 0xFFFF || last > 0x10000) {
+    if (*reg > 0xFFFF || *reg + dig_register_words(entry->type) > 0x10000) {
         return dig_yaml_refuse(work->path, key.text, work->error, "%u, expected 0 … 65535", *reg);
     }
     entry->reg = *reg;
-    const unsigned first =
-        map->registers == 0 || *reg < map->first_register ? *reg : map->first_register;
-    const unsigned old_end = map->first_register + map->registers;
-    const unsigned end     = map->registers == 0 || last > old_end ? last : old_end;
-    if (end - first > DIG_REGISTERS_MAX) {
-        return dig_yaml_refuse(work->path, key.text, work->error,
-                               "%u, expected all registers within a block of %d", *reg,
-                               DIG_REGISTERS_MAX);
-    }
-    map->first_register = first;
-    map->registers      = end - first;
     return DIG_OK;
 }
 
 static enum dig_status read_signal(const struct work *const work, const size_t index,
-                                   const struct signal_text *const text)
+                                   const struct dig_signal_text *const text)
 {
     struct key at;
     (void)snprintf(at.text, sizeof at.text, "signals[%zu]", index);
@@ -355,9 +210,6 @@ static enum dig_status read_signal(const struct work *const work, const size_t i
         if (status == DIG_OK) {
             status = check_unit(work, at.text, (size_t)signal, &entry, scale_given);
         }
-        if (status == DIG_OK && signal < (int)DIG_SIGNALS_NEEDED) {
-            work->map->group[entry.group].needed = true;
-        }
     } else {
         status = find_register(work, at.text, text->reg, &entry);
     }
@@ -367,8 +219,8 @@ static enum dig_status read_signal(const struct work *const work, const size_t i
     return status;
 }
 
-static enum dig_status read_alive(const struct work *const       work,
-                                  const struct alive_text *const text)
+static enum dig_status read_alive(const struct work *const           work,
+                                  const struct dig_alive_text *const text)
 {
     struct dig_map_entry entry  = { .used = true, .type = text->type, .sign = 1.0, .scale = 1.0 };
     enum dig_status      status = work->map->kind == DIG_MAP_CAN
@@ -406,8 +258,8 @@ static enum dig_status find_own(const struct work *const work, const char *const
 }
 
 static enum dig_status read_checksum(const struct work *const work, const char *const at,
-                                     const struct message_text *const text,
-                                     struct dig_map_group *const      group)
+                                     const struct dig_message_text *const text,
+                                     struct dig_map_group *const          group)
 {
     const struct key      key = key_of(at, "checksum");
     const enum dig_status status =
@@ -430,7 +282,7 @@ static enum dig_status read_checksum(const struct work *const work, const char *
 
 // What is said of a message beyond its signals. It must carry one that is mapped.
 static enum dig_status read_message(const struct work *const work, const size_t index,
-                                    const struct message_text *const text)
+                                    const struct dig_message_text *const text)
 {
     struct key at;
     (void)snprintf(at.text, sizeof at.text, "messages[%zu]", index);
@@ -469,7 +321,8 @@ static enum dig_status read_message(const struct work *const work, const size_t 
 }
 
 // What holds for the map as a whole, whatever its signals are.
-static enum dig_status check_map(const struct work *const work, const struct map_text *const text)
+static enum dig_status check_map(const struct work *const         work,
+                                 const struct dig_map_text *const text)
 {
     if (text->kind == DIG_MAP_CAN && work->dbc == NULL) {
         return dig_yaml_refuse(work->path, "kind", work->error,
@@ -488,11 +341,77 @@ static enum dig_status check_map(const struct work *const work, const struct map
         return dig_yaml_refuse(work->path, "stuck_ms", work->error, "%g, expected 0 … 60000",
                                *text->stuck_ms);
     }
+    if (text->kind == DIG_MAP_CAN && text->blocks_count > 0) {
+        return dig_yaml_refuse(work->path, "blocks", work->error,
+                               "given for can, expected with kind: modbus only");
+    }
     if (text->kind != DIG_MAP_CAN && (text->messages_count > 0 || text->j1939)) {
         return dig_yaml_refuse(work->path, text->j1939 ? "j1939" : "messages", work->error,
                                "given for modbus, expected with kind: can only");
     }
     return DIG_OK;
+}
+
+static enum dig_status read_block(const struct work *const work, const size_t index,
+                                  const struct dig_block_text *const text, const unsigned function,
+                                  struct dig_map_group *const group)
+{
+    const struct {
+        const char *key;
+        double      value, low, high;
+    } ranges[] = {
+        { "register", *text->reg, 0.0, 65535.0 },
+        { "registers", text->registers, 1.0, fmin(DIG_REGISTERS_MAX, 65536.0 - *text->reg) },
+        { "function", text->function, text->function == 0 ? 0.0 : 3.0, 4.0 },
+        { "poll_Hz", text->poll_Hz, fabs(text->poll_Hz) > 0.0 ? 0.01 : 0.0, 1000.0 },
+        { "delay_ms", text->delay_ms, 0.0, 1000.0 },
+    };
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        if (!(ranges[i].value >= ranges[i].low && ranges[i].value <= ranges[i].high)) {
+            struct key at;
+            (void)snprintf(at.text, sizeof at.text, "blocks[%zu].%s", index, ranges[i].key);
+            return dig_yaml_refuse(work->path, at.text, work->error, "%g, expected %g … %g",
+                                   ranges[i].value, ranges[i].low, ranges[i].high);
+        }
+    }
+    *group = (struct dig_map_group){
+        .first_register = *text->reg,
+        .registers      = text->registers,
+        .function       = text->function != 0 ? text->function : function,
+        .poll_s         = text->poll_Hz > 0.0 ? 1.0 / text->poll_Hz : 0.0,
+        .frame          = { .delay_s = text->delay_ms * 1e-3 },
+    };
+    return DIG_OK;
+}
+
+// The blocks as the map names them, with every register in one; else as they are made.
+static enum dig_status read_blocks(const struct work *const         work,
+                                   const struct dig_map_text *const text)
+{
+    struct dig_signal_map *const map      = work->map;
+    const unsigned               function = text->function == 3 ? 3 : 4;
+    if (text->blocks_count == 0) {
+        dig_register_plan(map, function);
+        return DIG_OK;
+    }
+    enum dig_status status = DIG_OK;
+    for (unsigned i = 0; status == DIG_OK && i < text->blocks_count; i++) {
+        status = read_block(work, i, &text->blocks[i], function, &map->group[map->groups++]);
+    }
+    for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
+        if (!dig_register_assign(map, &map->entry[dig_signal_find(text->signals[i].name)])) {
+            struct key at;
+            (void)snprintf(at.text, sizeof at.text, "signals[%u].register", i);
+            status =
+                dig_yaml_refuse(work->path, at.text, work->error,
+                                "%u, expected it within one of the blocks", *text->signals[i].reg);
+        }
+    }
+    if (status == DIG_OK && map->has_alive && !dig_register_assign(map, &map->alive)) {
+        status = dig_yaml_refuse(work->path, "alive.register", work->error,
+                                 "%u, expected it within one of the blocks", map->alive.reg);
+    }
+    return status;
 }
 
 // What the moment needs must be there. A cylinder's force is told by both of its chambers.
@@ -517,7 +436,11 @@ static enum dig_status check_signals(const struct work *const work)
     return DIG_OK;
 }
 
-static enum dig_status read_map(const struct work *const work, const struct map_text *const text)
+// Polls follow each other, and values are interpolated to one time: blocks may lie this far apart.
+static const double coherent_polls_s = 0.2;
+
+static enum dig_status read_map(const struct work *const         work,
+                                const struct dig_map_text *const text)
 {
     struct dig_signal_map *const map    = work->map;
     enum dig_status              status = check_map(work, text);
@@ -525,11 +448,12 @@ static enum dig_status read_map(const struct work *const work, const struct map_
         return status;
     }
     map->kind           = text->kind;
-    map->function       = text->function == 3 ? 3 : 4;
     map->low_word_first = text->low_word_first;
     map->j1939          = text->j1939;
     map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
-    map->coherent_s     = text->coherent_ms > 0.0 ? text->coherent_ms * 1e-3 : 6e-3;
+    map->coherent_s     = text->coherent_ms > 0.0     ? text->coherent_ms * 1e-3
+                          : text->kind == DIG_MAP_CAN ? 6e-3
+                                                      : coherent_polls_s;
 
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         status = read_signal(work, i, &text->signals[i]);
@@ -540,6 +464,14 @@ static enum dig_status read_map(const struct work *const work, const struct map_
     for (unsigned i = 0; status == DIG_OK && i < text->messages_count; i++) {
         status = read_message(work, i, &text->messages[i]);
     }
+    if (status == DIG_OK && map->kind == DIG_MAP_MODBUS) {
+        status = read_blocks(work, text);
+    }
+    for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS_NEEDED; i++) {
+        if (map->entry[i].used) {
+            map->group[map->entry[i].group].needed = true;
+        }
+    }
     return status == DIG_OK ? check_signals(work) : status;
 }
 
@@ -548,14 +480,14 @@ enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc
 {
     assert(path != NULL && map != NULL);
     cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
+    enum dig_status status = dig_yaml_load(path, &dig_map_schema, &data, error);
     if (status != DIG_OK) {
         return status;
     }
     struct dig_signal_map loaded = { 0 };
     const struct work     work   = { .path = path, .dbc = dbc, .map = &loaded, .error = error };
-    status                       = read_map(&work, (const struct map_text *)data);
-    dig_yaml_free(&schema, data);
+    status                       = read_map(&work, (const struct dig_map_text *)data);
+    dig_yaml_free(&dig_map_schema, data);
     if (status == DIG_OK) {
         *map = loaded;
     }

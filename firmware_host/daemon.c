@@ -97,13 +97,11 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         settings.max_rate[i] = l->map.entry[i].max_rate;
     }
-    if (l->map.kind == DIG_MAP_CAN) {
-        settings.coherent_s = l->map.coherent_s;
-        settings.groups     = (unsigned)l->map.groups;
-        for (size_t g = 0; g < l->map.groups; g++) {
-            settings.needed[g] = l->map.group[g].needed;
-            settings.frame[g]  = l->map.group[g].frame;
-        }
+    settings.coherent_s = l->map.coherent_s;
+    settings.groups     = (unsigned)l->map.groups;
+    for (size_t g = 0; g < l->map.groups; g++) {
+        settings.needed[g] = l->map.group[g].needed;
+        settings.frame[g]  = l->map.group[g].frame;
     }
     return settings;
 }

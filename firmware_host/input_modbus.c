@@ -1,5 +1,6 @@
-// Modbus TCP and RTU through libmodbus: the block of registers the map names, polled. Only
-// functions 3 and 4, which read; no call of this file can write.
+// Modbus TCP and RTU through libmodbus: the blocks of registers the map names, each polled at its
+// own rate, one request at a time: the one that is due longest. Only functions 3 and 4, which read;
+// no call of this file can write.
 
 #include "firmware_host/input.h"
 #include "firmware_host/signal_map.h"
@@ -14,13 +15,15 @@
 #define NS_PER_S       1000000000LL
 #define RESPONSE_us    200000 // a server that is slower than this is taken for gone
 #define FAILURES_BORNE 5
+#define SPARED_ns      NS_PER_S // between polls of a block that can be done without and fails
 
 struct modbus_source {
     struct dig_modbus_address    address;
     const struct dig_signal_map *map;
     modbus_t                    *bus;
-    int64_t                      next_ns;  // when the next poll is due
-    int                          failures; // in a row
+    // of each block
+    int64_t next_ns[DIG_GROUPS_MAX];  // when the next poll is due
+    int     failures[DIG_GROUPS_MAX]; // in a row
 };
 
 static enum dig_status refuse(const struct dig_input *const input, const char *const what,
@@ -47,56 +50,85 @@ static enum dig_status open_modbus(struct dig_input *const input, struct dig_err
         s->bus = NULL;
         return status;
     }
-    s->next_ns  = dig_input_now_ns();
-    s->failures = 0;
+    const int64_t now_ns = dig_input_now_ns();
+    for (size_t g = 0; g < s->map->groups; g++) {
+        s->next_ns[g]  = now_ns;
+        s->failures[g] = 0;
+    }
     return DIG_OK;
 }
 
 // A poll that failed. A frame that did not survive the wire, a refusal or a late answer is borne a
-// few times; a connection that broke is not.
-static enum dig_status bear(struct dig_input *const input, struct dig_error *const error)
+// few times, and for ever of a block whose signals are optional: it is only asked for less often. A
+// connection that broke is not borne.
+static enum dig_status bear(struct dig_input *const input, const size_t block,
+                            struct dig_error *const error)
 {
-    struct modbus_source *const s     = input->source;
-    const bool                  borne = errno > MODBUS_ENOBASE || errno == ETIMEDOUT;
-    if (errno > MODBUS_ENOBASE) {
+    struct modbus_source *const       s     = input->source;
+    const struct dig_map_group *const group = &s->map->group[block];
+    const int                         why   = errno;
+    const bool                        borne = why > MODBUS_ENOBASE || why == ETIMEDOUT;
+    if (why > MODBUS_ENOBASE) {
         atomic_fetch_add(&input->malformed, 1);
-    } else if (errno == ETIMEDOUT) {
+    } else if (why == ETIMEDOUT) {
         atomic_fetch_add(&input->timeouts, 1);
     }
-    if (borne && ++s->failures < FAILURES_BORNE) {
+    const bool few = ++s->failures[block] < FAILURES_BORNE;
+    if (borne && (few || !group->needed)) {
         (void)modbus_flush(s->bus);
+        s->next_ns[block] += few ? 0 : SPARED_ns;
         return DIG_OK;
     }
-    return refuse(input, "no good answer", error);
+    return dig_error_set(error, DIG_EIO, "%s: registers %u … %u: no good answer: %s", input->name,
+                         group->first_register, group->first_register + group->registers - 1,
+                         modbus_strerror(why));
+}
+
+// The block that is due longest.
+static size_t due(const struct modbus_source *const s)
+{
+    size_t block = 0;
+    for (size_t g = 1; g < s->map->groups; g++) {
+        block = s->next_ns[g] < s->next_ns[block] ? g : block;
+    }
+    return block;
+}
+
+static int ask(const struct modbus_source *const s, const size_t block,
+               uint16_t registers[const DIG_REGISTERS_MAX])
+{
+    const struct dig_map_group *const group = &s->map->group[block];
+    const int                         first = (int)group->first_register;
+    const int                         count = (int)group->registers;
+    return group->function == 3 ? modbus_read_registers(s->bus, first, count, registers)
+                                : modbus_read_input_registers(s->bus, first, count, registers);
 }
 
 static enum dig_status read_modbus(struct dig_input *const input, struct dig_error *const error)
 {
-    struct modbus_source *const        s      = input->source;
-    const struct dig_signal_map *const map    = s->map;
-    const int64_t                      now_ns = dig_input_now_ns();
-    if (s->next_ns > now_ns) {
-        dig_input_pause(input, s->next_ns - now_ns);
+    struct modbus_source *const       s      = input->source;
+    const size_t                      block  = due(s);
+    const struct dig_map_group *const group  = &s->map->group[block];
+    int64_t *const                    next   = &s->next_ns[block];
+    const int64_t                     now_ns = dig_input_now_ns();
+    if (*next > now_ns) {
+        dig_input_pause(input, *next - now_ns);
     }
     // A late poll shifts the ones after it: two polls on each other's heels say nothing new.
-    const int64_t period_ns = (int64_t)(s->address.poll_s * (double)NS_PER_S);
-    s->next_ns              = (now_ns > s->next_ns + period_ns ? now_ns : s->next_ns) + period_ns;
+    const double  poll_s    = group->poll_s > 0.0 ? group->poll_s : s->address.poll_s;
+    const int64_t period_ns = (int64_t)(poll_s * (double)NS_PER_S);
+    *next                   = (now_ns > *next + period_ns ? now_ns : *next) + period_ns;
 
-    uint16_t  registers[DIG_REGISTERS_MAX];
-    const int first = (int)map->first_register;
-    const int count = (int)map->registers;
-    const int got   = map->function == 3
-                          ? modbus_read_registers(s->bus, first, count, registers)
-                          : modbus_read_input_registers(s->bus, first, count, registers);
-    if (got == count) {
-        struct dig_reading reading;
-        dig_signal_map_registers(map, registers, dig_input_now_ns(), &reading);
-        atomic_fetch_add(&input->frames, 1);
-        dig_input_give(input, &reading);
-        s->failures = 0;
-        return DIG_OK;
+    uint16_t registers[DIG_REGISTERS_MAX];
+    if (ask(s, block, registers) != (int)group->registers) {
+        return bear(input, block, error);
     }
-    return bear(input, error);
+    struct dig_reading reading;
+    dig_signal_map_registers(s->map, (unsigned)block, registers, dig_input_now_ns(), &reading);
+    atomic_fetch_add(&input->frames, 1);
+    dig_input_give(input, &reading);
+    s->failures[block] = 0;
+    return DIG_OK;
 }
 
 static void close_modbus(struct dig_input *const input)
@@ -119,7 +151,7 @@ enum dig_status dig_input_modbus_create(struct dig_input *const                i
                                         const struct dig_signal_map *const     map)
 {
     assert(input != NULL && address != NULL && map != NULL);
-    if (map->kind != DIG_MAP_MODBUS || !(address->poll_s > 0.0)) {
+    if (map->kind != DIG_MAP_MODBUS || map->groups == 0 || !(address->poll_s > 0.0)) {
         return DIG_EINVAL;
     }
     struct modbus_source *const s = calloc(1, sizeof *s);

@@ -91,7 +91,7 @@ enum dig_status dig_signal_map_frame(const struct dig_signal_map *const map, con
 static uint64_t raw_of(const struct dig_signal_map *const map,
                        const struct dig_map_entry *const entry, const uint16_t registers[])
 {
-    const size_t at = entry->reg - map->first_register;
+    const size_t at = entry->reg - map->group[entry->group].first_register;
     if (entry->type == DIG_REGISTER_UINT16 || entry->type == DIG_REGISTER_INT16) {
         return registers[at];
     }
@@ -117,19 +117,20 @@ static double physical_of(const enum dig_register_type type, const uint64_t raw)
     return (double)raw;
 }
 
-void dig_signal_map_registers(const struct dig_signal_map *const map, const uint16_t registers[],
-                              const int64_t time_ns, struct dig_reading *const reading)
+void dig_signal_map_registers(const struct dig_signal_map *const map, const unsigned group,
+                              const uint16_t registers[], const int64_t time_ns,
+                              struct dig_reading *const reading)
 {
-    assert(map != NULL && map->kind == DIG_MAP_MODBUS && reading != NULL);
-    struct dig_reading out = { .time_ns = time_ns };
+    assert(map != NULL && map->kind == DIG_MAP_MODBUS && group < map->groups && reading != NULL);
+    struct dig_reading out = { .time_ns = time_ns, .group = group };
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         const struct dig_map_entry *const entry = &map->entry[i];
-        if (entry->used) {
+        if (entry->used && entry->group == group) {
             const uint64_t raw = raw_of(map, entry, registers);
             decode(entry, raw, physical_of(entry->type, raw), &out.state[i], &out.value[i]);
         }
     }
-    if (map->has_alive) {
+    if (map->has_alive && map->alive.group == group) {
         out.has_alive = true;
         out.alive     = raw_of(map, &map->alive, registers);
     }

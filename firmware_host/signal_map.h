@@ -35,7 +35,7 @@ enum dig_register_type {
 
 struct dig_map_entry {
     bool                   used;
-    unsigned               group; // CAN: index into dig_signal_map.group
+    unsigned               group; // index into dig_signal_map.group
     struct dig_dbc_signal  can;
     unsigned               reg; // Modbus: first register
     enum dig_register_type type;
@@ -45,16 +45,23 @@ struct dig_map_entry {
     uint64_t               not_available_raw[DIG_NOT_AVAILABLE_MAX];
 };
 
-/// A CAN message that is listened to.
+/// What comes together: a CAN message that is listened to, or a block of Modbus registers that is
+/// asked for.
 struct dig_map_group {
-    uint32_t                  id;
-    bool                      extended, needed; // needed: carries a signal a wrench needs
-    unsigned                  bytes;
-    char                      name[DIG_DBC_NAME_SIZE];
+    bool                      needed; // carries a signal that force or moment need
     struct dig_frame_settings frame;
-    struct dig_dbc_signal     counter; // where frame.counter_mod > 0
-    enum dig_checksum         checksum;
-    struct dig_dbc_signal     checksum_at;
+    // CAN
+    uint32_t              id;
+    bool                  extended;
+    unsigned              bytes;
+    char                  name[DIG_DBC_NAME_SIZE];
+    struct dig_dbc_signal counter; // where frame.counter_mod > 0
+    enum dig_checksum     checksum;
+    struct dig_dbc_signal checksum_at;
+    // Modbus
+    unsigned first_register, registers;
+    unsigned function; // 4 input registers, 3 holding
+    double   poll_s;   // between two requests; 0: as the input says
 };
 
 struct dig_signal_map {
@@ -68,9 +75,7 @@ struct dig_signal_map {
     bool                 j1939;
     size_t               groups;
     struct dig_map_group group[DIG_GROUPS_MAX];
-    unsigned             first_register, registers; // Modbus: the block that is polled
-    unsigned             function;                  // Modbus: 4 input registers, 3 holding
-    bool                 low_word_first;            // Modbus: of 32-bit values
+    bool                 low_word_first; // Modbus: of 32-bit values
 };
 
 /// Reads and checks. dbc is needed for kind: can and ignored otherwise; NULL refuses such a map.
@@ -91,8 +96,9 @@ DIG_MUST_CHECK enum dig_status dig_signal_map_frame(const struct dig_signal_map 
                                                     const uint8_t data[], int64_t time_ns,
                                                     struct dig_reading *reading);
 
-/// Decodes the polled block: map->registers registers from map->first_register on.
-void dig_signal_map_registers(const struct dig_signal_map *map, const uint16_t registers[],
-                              int64_t time_ns, struct dig_reading *reading);
+/// Decodes one block of a Modbus map: what a request for its registers brought.
+void dig_signal_map_registers(const struct dig_signal_map *map, unsigned group,
+                              const uint16_t registers[], int64_t time_ns,
+                              struct dig_reading *reading);
 
 #endif // DIG_FIRMWARE_HOST_SIGNAL_MAP_H

@@ -4,7 +4,7 @@
 #include "firmware_host/input.h"
 #include "firmware_host/signal_map.h"
 
-#include "tests/testlib.h"
+#include "tests/scratch.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -19,13 +19,18 @@
 
 #define MS 1000000LL
 
-// A server of twelve input registers that counts what it is asked for.
+// Where the test's registers stand once more.
+#define FAR 1000
+
+// A server of twelve input registers, here and far off, that counts what it is asked for.
 struct server {
     int               listener, port;
     modbus_mapping_t *mapping;
     atomic_bool       stop;
-    atomic_bool       hang_up; // end the connection instead of answering
-    atomic_int        refuse;  // answer so many requests with an exception
+    atomic_bool       hang_up;          // end the connection instead of answering
+    atomic_int        refuse;           // answer so many requests with an exception
+    atomic_int        refused;          // requests for this register get an exception; 0: none
+    atomic_int        first, registers; // of the last request
     atomic_int        reads, writes, connections;
     pthread_t         thread;
 };
@@ -43,7 +48,13 @@ static void answer(struct server *const s, modbus_t *const bus)
         if (atomic_load(&s->hang_up)) {
             return;
         }
-        if (atomic_load(&s->refuse) > 0) {
+        const uint8_t *const asked = query + modbus_get_header_length(bus) + 1;
+        const int            first = asked[0] << 8 | asked[1];
+        atomic_store(&s->first, first);
+        atomic_store(&s->registers, asked[2] << 8 | asked[3]);
+        if (first > 0 && first == atomic_load(&s->refused)) {
+            (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS);
+        } else if (atomic_load(&s->refuse) > 0) {
             atomic_fetch_sub(&s->refuse, 1);
             (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
         } else {
@@ -91,9 +102,10 @@ static void server_start(struct server *const s)
 {
     static const uint16_t block[12] = { 0,    2856, 55076, 56552, 0,    8400,
                                         1000, 1000, 4200,  1000,  2000, 450 };
-    s->mapping                      = modbus_mapping_new(0, 0, 12, 12);
+    s->mapping                      = modbus_mapping_new(0, 0, FAR + 12, FAR + 12);
     assert_non_null(s->mapping);
     memcpy(s->mapping->tab_input_registers, block, sizeof block);
+    memcpy(s->mapping->tab_input_registers + FAR, block, sizeof block);
     assert_int_equal(listen(s->listener, 4), 0);
     assert_int_equal(pthread_create(&s->thread, NULL, serve, s), 0);
 }
@@ -124,13 +136,13 @@ static void *client_main(void *const context)
     return NULL;
 }
 
-static void client_start(struct client *const c, const int port)
+static void client_start_with(struct client *const c, const int port, const char *const map,
+                              const double poll_s)
 {
     const struct dig_modbus_address address = {
-        .host = "127.0.0.1", .port = port, .unit = 1, .poll_s = 0.005
+        .host = "127.0.0.1", .port = port, .unit = 1, .poll_s = poll_s
     };
-    assert_int_equal(dig_signal_map_read("config/signals/modbus_default.yaml", NULL, &c->map, NULL),
-                     DIG_OK);
+    assert_int_equal(dig_signal_map_read(map, NULL, &c->map, NULL), DIG_OK);
     assert_int_equal(dig_input_modbus_create(&c->input, &address, &c->map), DIG_OK);
     dig_ring_init(&c->readings, sizeof c->reading_memory[0], 256, c->reading_memory);
     dig_latest_init(&c->notes, sizeof c->note_memory[0], c->note_memory);
@@ -138,6 +150,11 @@ static void client_start(struct client *const c, const int port)
     c->input.notes    = &c->notes;
     c->input.stop     = &c->stop;
     assert_int_equal(pthread_create(&c->thread, NULL, client_main, c), 0);
+}
+
+static void client_start(struct client *const c, const int port)
+{
+    client_start_with(c, port, "config/signals/modbus_default.yaml", 0.005);
 }
 
 static void client_stop(struct client *const c)
@@ -269,6 +286,93 @@ static void a_refusal_is_counted_and_borne(void **state)
     server_stop(&s);
 }
 
+// Angles here, pressures far off at a fifth of the rate, the oil's temperature once in a while.
+static const char far_map[] =
+    "kind: modbus\n"
+    "blocks:\n"
+    "  - {register: 0, registers: 4}\n"
+    "  - {register: 1009, registers: 2, poll_Hz: 10}\n"
+    "  - {register: 1011, registers: 1, poll_Hz: 2}\n"
+    "alive: {register: 0}\n"
+    "signals:\n"
+    "  - {name: boom_rad, register: 1, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+    "  - {name: arm_rad, register: 2, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+    "  - {name: bucket_rad, register: 3, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+    "  - {name: bucket_head_Pa, register: 1009, scale: 1e3, min: -1, max: 4.0e7}\n"
+    "  - {name: bucket_rod_Pa, register: 1010, scale: 1e3, min: -1, max: 4.0e7}\n"
+    "  - {name: temperature_degC, register: 1011, scale: 0.1, min: -60, max: 150}\n";
+
+// Takes readings until so many of a block came; how many of each came meanwhile.
+static void count_blocks(struct client *const c, const unsigned block, const int until,
+                         int came[const 3])
+{
+    struct dig_reading reading;
+    while (came[block] < until) {
+        assert_true(next_reading(c, &reading));
+        assert_in_range(reading.group, 0, 2);
+        assert_true(came[reading.group]++ < 2000);
+        if (reading.group == 1) {
+            assert_close(reading.value[DIG_SIGNAL_BUCKET_HEAD_Pa], 1e6, 1e-6);
+            assert_int_equal(reading.state[DIG_SIGNAL_BOOM_rad], DIG_READING_ABSENT);
+        }
+        assert_int_equal(reading.has_alive, reading.group == 0);
+    }
+}
+
+static void blocks_that_lie_apart_are_asked_for_each_at_its_rate(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
+    int came[3] = { 0 };
+    count_blocks(&c, 1, 10, came);
+    print_message("blocks at 50, 10, 2 Hz: %d, %d, %d readings\n", came[0], came[1], came[2]);
+    assert_true(came[0] > 2 * came[1]); // five times as many, were it not for a busy machine
+    assert_in_range(came[2], 1, came[1] / 2);
+    client_stop(&c);
+    server_stop(&s);
+    const int first = atomic_load(&s.first);
+    const int last  = atomic_load(&s.registers);
+    assert_true((first == 0 && last == 4) || (first == 1009 && last == 2) ||
+                (first == 1011 && last == 1));
+    assert_int_equal(atomic_load(&s.writes), 0);
+    assert_int_equal(atomic_load(&s.connections), 1);
+}
+
+static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    atomic_store(&s.refused, 1011); // the temperature
+    client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
+    int came[3] = { 0 };
+    while (atomic_load(&c.input.malformed) < 6) {
+        count_blocks(&c, 1, came[1] + 1, came);
+    }
+    assert_int_equal(came[2], 0);
+    assert_int_equal(atomic_load(&s.connections), 1);
+
+    struct dig_note note;
+    (void)dig_latest_take(&c.notes, &note);
+    atomic_store(&s.refused, 1009); // the pressures
+    assert_true(next_note(&c, &note));
+    assert_non_null(
+        strstr(note.text, "registers 1009 … 1010: no good answer: Illegal data address"));
+    atomic_store(&s.refused, 0);
+    count_blocks(&c, 2, 1, came); // all is well again
+    client_stop(&c);
+    server_stop(&s);
+    assert_true(atomic_load(&c.input.reconnects) >= 1);
+}
+
 static void what_cannot_be_polled_is_refused(void **state)
 {
     (void)state;
@@ -289,6 +393,8 @@ int main(void)
         cmocka_unit_test(a_server_that_comes_late_is_found_and_said),
         cmocka_unit_test(a_connection_that_breaks_is_made_anew),
         cmocka_unit_test(a_refusal_is_counted_and_borne),
+        cmocka_unit_test(blocks_that_lie_apart_are_asked_for_each_at_its_rate),
+        cmocka_unit_test(a_block_that_is_refused_is_done_without_or_ends_the_connection),
         cmocka_unit_test(what_cannot_be_polled_is_refused),
     };
     return cmocka_run_group_tests_name("input_modbus", tests, NULL, NULL);

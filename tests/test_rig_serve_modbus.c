@@ -82,10 +82,19 @@ static void input_and_holding_registers_read_the_same_board(void **state)
     dig_rig_board_write(&rig.board, newer, false);
     assert_int_equal(modbus_read_input_registers(client, 5, 1, found), 1);
     assert_int_equal(found[0], 777);
+
+    // They stand once more far off, and nothing between.
+    assert_int_equal(modbus_read_input_registers(client, DIG_RIG_FAR + 4, 8, found), 8);
+    assert_memory_equal(found, newer + 4, 8 * sizeof newer[0]);
+    assert_int_equal(modbus_read_input_registers(client, DIG_RIG_FAR - 1, 2, found), -1);
+    assert_int_equal(errno, EMBXILADD);
+    assert_int_equal(modbus_read_input_registers(client, DIG_RIG_FAR + 11, 2, found), -1);
+    assert_int_equal(errno, EMBXILADD);
     leave(client);
     stop(&rig);
     assert_int_equal(rig.requests.served[3], 1);
-    assert_int_equal(rig.requests.served[4], 2);
+    assert_int_equal(rig.requests.served[4], 3);
+    assert_int_equal(rig.requests.refused[4], 2);
 }
 
 static void every_write_is_refused_with_exception_1_and_counted(void **state)

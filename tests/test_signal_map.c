@@ -152,13 +152,15 @@ static void golden_register_block_becomes_si(void **state)
 {
     (void)state;
     const struct dig_signal_map map = modbus_map("config/signals/modbus_default.yaml");
-    assert_int_equal(map.function, 4);
-    assert_int_equal(map.first_register, 0);
-    assert_int_equal(map.registers, 12);
+    assert_int_equal(map.groups, 1);
+    assert_int_equal(map.group[0].function, 4);
+    assert_int_equal(map.group[0].first_register, 0);
+    assert_int_equal(map.group[0].registers, 12);
+    assert_true(map.group[0].needed);
     const uint16_t     block[12] = { 0xFFFF, 0x0B28, 0xD724, 0x8000, 0xFFF6, 8400,
                                      0xFFFF, 60000,  0,      1,      40000,  451 };
     struct dig_reading r;
-    dig_signal_map_registers(&map, block, 5, &r);
+    dig_signal_map_registers(&map, 0, block, 5, &r);
     assert_true(r.has_alive);
     assert_int_equal(r.alive, 0xFFFF);
     assert_close(r.value[DIG_SIGNAL_BOOM_rad], 0.2856, 1e-12);
@@ -195,14 +197,15 @@ static void wide_registers_signs_and_offsets_are_applied(void **state)
 {
     (void)state;
     const struct dig_signal_map map = modbus_map(scratch_write("wide.yaml", wide_map));
-    assert_int_equal(map.function, 3);
-    assert_int_equal(map.first_register, 10);
-    assert_int_equal(map.registers, 12);
+    assert_int_equal(map.groups, 1);
+    assert_int_equal(map.group[0].function, 3);
+    assert_int_equal(map.group[0].first_register, 10);
+    assert_int_equal(map.group[0].registers, 12);
     uint16_t block[12] = {
         0x0000, 0x3F40, 0xBDC0, 0xFFF0, 500, 0x1200, 0x007A, 1000, 2, 3, 100, 5
     };
     struct dig_reading r;
-    dig_signal_map_registers(&map, block, 0, &r);
+    dig_signal_map_registers(&map, 0, block, 0, &r);
     assert_close(r.value[DIG_SIGNAL_BOOM_rad], -1.0, 1e-12);
     assert_close(r.value[DIG_SIGNAL_ARM_rad], -1.0, 1e-12);
     assert_close(r.value[DIG_SIGNAL_BUCKET_rad], 0.5, 1e-12);
@@ -212,7 +215,7 @@ static void wide_registers_signs_and_offsets_are_applied(void **state)
     assert_false(r.has_alive);
 
     block[1] = 0x7FC0; // a float's NaN
-    dig_signal_map_registers(&map, block, 0, &r);
+    dig_signal_map_registers(&map, 0, block, 0, &r);
     assert_int_equal(r.state[DIG_SIGNAL_BOOM_rad], DIG_READING_NAN);
 }
 
@@ -234,7 +237,7 @@ static void a_machine_with_the_buckets_pressures_alone_can_be_mapped(void **stat
     assert_false(map.entry[DIG_SIGNAL_BOOM_HEAD_Pa].used);
     const uint16_t     block[] = { 1, 1, 1, 5000, 6000 };
     struct dig_reading r;
-    dig_signal_map_registers(&map, block, 5, &r);
+    dig_signal_map_registers(&map, 0, block, 5, &r);
     assert_int_equal(r.state[DIG_SIGNAL_BUCKET_ROD_Pa], DIG_READING_OK);
     assert_int_equal(r.state[DIG_SIGNAL_ARM_ROD_Pa], DIG_READING_ABSENT);
 
@@ -272,8 +275,27 @@ static void defects_are_refused_with_file_line_and_key(void **state)
           "bad.yaml:3: signals[0].sign: 2, expected 1 or -1" },
         { "kind: modbus\nsignals:\n  - {name: boom_rad, register: 65536, min: 0, max: 1}\n",
           "bad.yaml:3: signals[0].register: 65536, expected 0" },
-        { "kind: modbus\nsignals:\n  - {name: boom_rad, register: 900, min: 0, max: 1}\n",
-          "expected all registers within a block of 125" },
+        { "kind: modbus\nblocks: [{register: 0, registers: 13}]\nsignals:\n"
+          "  - {name: boom_rad, register: 900, min: 0, max: 1}\n",
+          "bad.yaml:4: signals[0].register: 900, expected it within one of the blocks" },
+        { "kind: modbus\nblocks: [{register: 10, registers: 6}, {register: 1, registers: 1}]\n"
+          "signals:\n  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
+          "signals[3].register: 15, expected it within" }, // its second word is not
+        { "kind: modbus\nalive: {register: 9}\nblocks: [{register: 10, registers: 20}]\n"
+          "signals:\n  - {name: boom_rad, register: 10, min: 0, max: 1}\n",
+          "alive.register: 9, expected it within one of the blocks" },
+        { "kind: modbus\nblocks: [{register: 0, registers: 126}]\nsignals:\n"
+          "  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
+          "bad.yaml:2: blocks[0].registers: 126, expected 1 … 125" },
+        { "kind: modbus\nblocks: [{register: 65530, registers: 7}]\nsignals:\n"
+          "  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
+          "blocks[0].registers: 7, expected 1 … 6" },
+        { "kind: modbus\nblocks: [{register: 1, registers: 7, function: 6}]\nsignals:\n"
+          "  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
+          "blocks[0].function: 6, expected 3 … 4" },
+        { "kind: modbus\nblocks: [{register: 1, registers: 7, poll_Hz: -1}]\nsignals:\n"
+          "  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
+          "blocks[0].poll_Hz: -1, expected 0.01 … 1000" },
         { "kind: modbus\nfunction: 6\nsignals:\n  - {name: boom_rad, register: 1, min: 0, max: "
           "1}\n",
           "bad.yaml:2: function: 6, expected 4" },
@@ -298,6 +320,66 @@ static void defects_are_refused_with_file_line_and_key(void **state)
         }
         assert_int_equal(map.groups, 42);
     }
+}
+
+// Registers far apart are asked for in as few requests as need be, or as the map says.
+static void registers_far_apart_come_in_blocks(void **state)
+{
+    (void)state;
+    static const char far[] =
+        "kind: modbus\n%s"
+        "alive: {register: 4000}\n"
+        "signals:\n"
+        "  - {name: pitch_rad, register: 900, min: -2, max: 2}\n"
+        "  - {name: arm_rad, register: 12, min: -2, max: 2}\n"
+        "  - {name: boom_rad, register: 10, min: -2, max: 2}\n"
+        "  - {name: bucket_rad, register: 136, min: -2, max: 2}\n"
+        "  - {name: bucket_head_Pa, register: 134, min: -1, max: 4.0e7}\n"
+        "  - {name: bucket_rod_Pa, register: 133, type: uint32, min: 0, max: 4.0e9}\n";
+    char text[1024];
+    (void)snprintf(text, sizeof text, far, "");
+    // 10 … 134 is one request and no more.
+    const struct dig_signal_map made = modbus_map(scratch_write("far.yaml", text));
+    assert_int_equal(made.groups, 4);
+    static const struct {
+        unsigned first, registers;
+        bool     needed;
+    } expected[] = { { 10, 125, true }, { 136, 1, true }, { 900, 1, false }, { 4000, 1, false } };
+    for (size_t g = 0; g < made.groups; g++) {
+        assert_int_equal(made.group[g].first_register, expected[g].first);
+        assert_int_equal(made.group[g].registers, expected[g].registers);
+        assert_int_equal(made.group[g].needed, expected[g].needed);
+        assert_int_equal(made.group[g].function, 4);
+    }
+    assert_int_equal(made.alive.group, 3);
+
+    (void)snprintf(text, sizeof text, far,
+                   "blocks:\n"
+                   "  - {register: 4000, registers: 2, poll_Hz: 5, function: 3, delay_ms: 20}\n"
+                   "  - {register: 10, registers: 3}\n"
+                   "  - {register: 130, registers: 10, poll_Hz: 50}\n"
+                   "  - {register: 900, registers: 1, poll_Hz: 1}\n");
+    const struct dig_signal_map named = modbus_map(scratch_write("far.yaml", text));
+    assert_int_equal(named.groups, 4);
+    assert_int_equal(named.group[0].function, 3);
+    assert_int_equal(named.group[1].function, 4);
+    assert_close(named.group[0].poll_s, 0.2, 1e-12);
+    assert_close(named.group[0].frame.delay_s, 0.02, 1e-12);
+    assert_close(named.group[1].poll_s, 0.0, 0.0);
+    assert_true(named.group[1].needed && named.group[2].needed);
+    assert_false(named.group[0].needed || named.group[3].needed);
+
+    uint16_t           block[10] = { [3] = 1, [4] = 2, [6] = 1 };
+    struct dig_reading r;
+    dig_signal_map_registers(&named, 2, block, 7, &r);
+    assert_int_equal(r.group, 2);
+    assert_close(r.value[DIG_SIGNAL_BUCKET_ROD_Pa], 65538.0, 0.0);
+    assert_close(r.value[DIG_SIGNAL_BUCKET_rad], 1.0, 0.0);
+    assert_int_equal(r.state[DIG_SIGNAL_BOOM_rad], DIG_READING_ABSENT);
+    assert_false(r.has_alive);
+    dig_signal_map_registers(&named, 0, block, 7, &r);
+    assert_true(r.has_alive);
+    assert_int_equal(r.state[DIG_SIGNAL_BUCKET_rad], DIG_READING_ABSENT);
 }
 
 // A CAN map with one thing wrong in its first entry.
@@ -348,6 +430,7 @@ int main(void)
         cmocka_unit_test(golden_register_block_becomes_si),
         cmocka_unit_test(wide_registers_signs_and_offsets_are_applied),
         cmocka_unit_test(a_machine_with_the_buckets_pressures_alone_can_be_mapped),
+        cmocka_unit_test(registers_far_apart_come_in_blocks),
         cmocka_unit_test(defects_are_refused_with_file_line_and_key),
         cmocka_unit_test(can_entries_must_fit_the_dbc),
     };

@@ -24,4 +24,22 @@ check "health names the trouble" grep -q '^health waiting_for_bus .*refused' "$w
 check "only functions that read were asked for" \
     eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/rig.json" &&
           grep -q "\"modbus_refused\": {}" "$work/rig.json"'
+
+# Pressures in another block of registers, at half the rate.
+config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_blocks.yaml}}" \
+    "time_scale: 4"
+log blocks
+start "$work/blocks.log" "$BIN/digsightd" -c "$work/blocks.yaml"
+daemon=$started
+"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed 4 --json \
+    >"$work/blocks.json" 2>"$work/blocks.err"
+stop "$daemon"
+read_log blocks
+check "registers far apart are asked for in blocks and identify the gravel" identified "$work/blocks.txt"
+check "and in no others" \
+    eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/blocks.json" && grep -q "\"modbus_refused\": {}" "$work/blocks.json"'
+# Angles at 400, pressures at 200 requests a second: a sample for each of the pressures.
+served=$(sed -nE 's/.*"modbus_served": \{"4": ([0-9]+)\}.*/\1/p' "$work/blocks.json")
+check "a sample comes of the slower block, not of every request" \
+    within "$(last samples "$work/blocks.txt" 2)" $((served / 5)) $((served / 2))
 finish

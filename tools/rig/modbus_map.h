@@ -6,6 +6,8 @@
 //    5..10  boom head, boom rod, arm head, arm rod, bucket head, bucket rod
 //                                       uint16  1e3 Pa/bit     0xFFFF
 //   11      oil temperature             int16   0.1 degC/bit   0x8000
+//
+// The same twelve stand once more from register 1000 on, as on a gateway whose blocks lie apart.
 
 #ifndef DIG_TOOLS_RIG_MODBUS_MAP_H
 #define DIG_TOOLS_RIG_MODBUS_MAP_H
@@ -15,6 +17,7 @@
 #include <stdint.h>
 
 #define DIG_RIG_REGISTERS 12
+#define DIG_RIG_FAR       1000
 
 /// Values are rounded to the nearest bit; beyond the register they stand at its end short of "not
 /// available".

@@ -3,6 +3,7 @@
 #include "tools/rig/wire.h"
 
 #include <arpa/inet.h>
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -103,6 +104,18 @@ static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request
     return false;
 }
 
+// What libmodbus replies when the first register asked for is this one.
+static int reply(struct dig_rig_modbus *const server, const uint8_t request[], const int length,
+                 const int header, const int first)
+{
+    uint8_t near[MODBUS_TCP_MAX_ADU_LENGTH];
+    assert(length <= (int)sizeof near);
+    memcpy(near, request, (size_t)length);
+    near[header + 1] = (uint8_t)(first >> 8);
+    near[header + 2] = (uint8_t)(first & 0xFF);
+    return modbus_reply(server->context, near, length, server->map);
+}
+
 // One request: data for a read, exception 1 for anything else. False: the connection is to end.
 static bool answer(struct dig_rig_modbus *const server, const uint8_t request[], const int length)
 {
@@ -130,12 +143,13 @@ static bool answer(struct dig_rig_modbus *const server, const uint8_t request[],
     }
     memcpy(server->map->tab_input_registers, server->map->tab_registers,
            sizeof server->map->tab_registers[0] * DIG_RIG_REGISTERS);
-    const int       first = request[header + 1] << 8 | request[header + 2];
+    const int       asked = request[header + 1] << 8 | request[header + 2];
+    const int       first = asked >= DIG_RIG_FAR ? asked - DIG_RIG_FAR : asked;
     const int       count = request[header + 3] << 8 | request[header + 4];
     const bool      fits  = count >= 1 && first + count <= DIG_RIG_REGISTERS;
     uint64_t *const tally = fits ? server->requests.served : server->requests.refused;
     tally[function]++;
-    return modbus_reply(server->context, request, length, server->map) > 0;
+    return reply(server, request, length, header, fits ? first : asked) > 0;
 }
 
 static void drop_client(struct dig_rig_modbus *const server, const int index)
