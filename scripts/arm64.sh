@@ -42,7 +42,8 @@ tests=("$@")
 [ $# -gt 0 ] || for t in tests/test_*.c; do tests+=("$(basename "$t" .c)"); done
 targets=()
 for t in "${tests[@]}"; do targets+=("$build/tests/$t"); done
-make --no-print-directory -j "$(nproc)" BUILD="$build" CC="$tuple-gcc --sysroot=$PWD/$root" AR=$tuple-ar all "${targets[@]}"
+# Debian 12's cross compiler (12.2) breaks down vectorizing a sum; loops that ask for it are vectorized all the same.
+make --no-print-directory -j "$(nproc)" BUILD="$build" CC="$tuple-gcc --sysroot=$PWD/$root" CFLAGS="-O2 -g -fno-tree-loop-vectorize" AR=$tuple-ar all "${targets[@]}"
 
 # Each test behind a line that runs it under qemu.
 mkdir -p "$build/run"
