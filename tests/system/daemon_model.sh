@@ -26,13 +26,13 @@ JSON
 
 input="{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}"
 # The bias that is learnt in free air would take off what the model is for: it is off. The machine stands still in
-# the air for four seconds of the clock first, and the daemon finds it there.
+# the air for ten seconds of the clock first, and the daemon finds it there.
 run() { # NAME MORE: the digs over the bus; mean moment of the first six seconds, in the air
     config "$1" "$input" "estimator: {air_bias_s: 0}
 $2"
     log "$1"
     start "$work/rig.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$work/true.yaml" \
-        --modbus-tcp "127.0.0.1:$port" --speed 2 --start-delay 4
+        --modbus-tcp "127.0.0.1:$port" --speed 2 --start-delay 10
     rig=$started
     wait_for 5 grep -q "serving Modbus" "$work/rig.err"
     start "$work/$1.log" "$BIN/digsightd" -c "$work/$1.yaml"
