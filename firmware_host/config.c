@@ -83,7 +83,7 @@ static enum dig_status take_text(const struct work *const work, const char *cons
 
 // A file's name as seen from the configuration's folder.
 static enum dig_status take_path(const struct work *const work, const char *const key,
-                                 const char *const from, struct dig_path *const to)
+                                 const char *const from, struct dig_file_name *const to)
 {
     const char *const slash  = strrchr(work->path, '/');
     const int         folder = from[0] == '/' || slash == NULL ? 0 : (int)(slash + 1 - work->path);
@@ -291,6 +291,7 @@ static enum dig_status take_match(const struct work *const           work,
     };
     const struct number number[] = {
         { "match.least_path", text->least_path, 0.01, 1.0, &config->match_least_path },
+        { "match.early_path", text->early_path, 0.1, 1.0, &config->match_early_path },
         { "match.expires_h", text->expires_h, 0.01, 1000.0, &expires_h },
         { "match.drift_floors", text->drift_floors, 1.0, 1000.0, &config->drift_floors },
     };
@@ -379,6 +380,7 @@ static struct dig_config defaults(void)
         .estimator         = dig_estimator_settings_default(),
         .match_evaluations = 2000,
         .match_least_path  = 0.6,
+        .match_early_path  = 0.3,
         .match_expires_s   = 12.0 * 3600.0,
         .drift_floors      = 3.0,
         .estimate_every    = 1,

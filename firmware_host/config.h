@@ -21,20 +21,20 @@ enum dig_input_kind {
     DIG_INPUT_REPLAY,
 };
 
-struct dig_path {
+struct dig_file_name {
     char text[PATH_MAX];
 };
 
 struct dig_config {
-    struct dig_path table, machine;
-    struct dig_path model;     // what the closed loop found; "": none
-    char            scene[65]; // the scene the table must be of: its name or its hash; "": any
+    struct dig_file_name table, machine;
+    struct dig_file_name model;     // what the closed loop found; "": none
+    char                 scene[65]; // the scene the table must be of: its name or its hash; "": any
 
     enum dig_input_kind       kind;
     char                      can_interface[16];
-    struct dig_path           dbc, map;
+    struct dig_file_name      dbc, map;
     struct dig_modbus_address modbus;
-    struct dig_path           replay;
+    struct dig_file_name      replay;
     double                    replay_speed;
 
     double                        tick_s;
@@ -45,11 +45,12 @@ struct dig_config {
     struct dig_estimator_settings estimator;
     int                           match_evaluations;
     double                        match_least_path; // of a dig's path that identifies
-    struct dig_path               match_state; // where the gravel known is kept; "": nowhere
-    double                        match_expires_s;
-    double                        drift_floors;
-    size_t                        identify_trajectories; // 0: all whose name begins with "simple"
-    char                          identify_trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
+    double match_early_path;          // after which a dig is matched while it goes on; 1: never
+    struct dig_file_name match_state; // where the gravel known is kept; "": nowhere
+    double               match_expires_s;
+    double               drift_floors;
+    size_t               identify_trajectories; // 0: all whose name begins with "simple"
+    char                 identify_trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
     int    estimate_every; // of the samples and estimates, one in so many is published
     double prediction_s;   // between predictions
 };

@@ -75,6 +75,7 @@ static const cyaml_schema_field_t match_fields[] = {
     WHOLE(match_text, max_evaluations),
     TEXT(match_text, state, OPTIONAL),
     NUMBER(match_text, least_path),
+    NUMBER(match_text, early_path),
     NUMBER(match_text, expires_h),
     NUMBER(match_text, drift_floors),
     CYAML_FIELD_END,

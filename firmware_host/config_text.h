@@ -47,6 +47,7 @@ struct dig_estimator_text {
 struct dig_match_text {
     int    *max_evaluations;
     double *least_path;
+    double *early_path;
     char   *state;
     double *expires_h, *drift_floors;
 };

@@ -19,6 +19,7 @@
 #define RECORDS     4096
 #define DIGS        4 // memory for finished digs: one in the tick's hands, the others on the way
 #define RESULTS     16
+#define ESTIMATES   4096 // seconds of them, for a matcher that is at work
 #define STACK_BYTES ((size_t)512 * 1024)
 #define LINE        512
 
@@ -27,6 +28,7 @@ struct handoff_memory {
     struct dig_reading    readings[READINGS];
     struct dig_record     records[RECORDS];
     struct dig_raw       *digs[DIGS], *spares[DIGS];
+    struct dig_estimate   estimates[ESTIMATES];
     struct dig_fit_result results[RESULTS];
     struct dig_offer      offer[3], table[3];
     struct dig_table_news tables[3];
@@ -44,7 +46,8 @@ struct dig_daemon {
     struct dig_loop       loop;
     struct dig_fit        fit;
     struct dig_publisher  publisher;
-    struct dig_ring       readings, records, digs, spares, results;
+    struct dig_early      early;
+    struct dig_ring       readings, records, digs, spares, estimates, results;
     struct dig_latest     offer, table, tables, outlook, pulse, input_notes, fit_notes;
     atomic_llong          publish_generation;
     struct handoff_memory memory;
@@ -114,6 +117,7 @@ static void connect_threads(struct dig_daemon *const d)
     // NOLINTNEXTLINE(bugprone-sizeof-expression): the memory itself is handed over, by pointer
     dig_ring_init(&d->digs, sizeof m->digs[0], DIGS, m->digs);
     dig_ring_init(&d->results, sizeof m->results[0], RESULTS, m->results);
+    dig_ring_init(&d->estimates, sizeof m->estimates[0], ESTIMATES, m->estimates);
     // NOLINTNEXTLINE(bugprone-sizeof-expression): as above
     dig_ring_init(&d->spares, sizeof m->spares[0], DIGS, m->spares);
     dig_latest_init(&d->offer, sizeof m->offer[0], m->offer);
@@ -137,13 +141,16 @@ static void connect_threads(struct dig_daemon *const d)
         .ahead_s      = 0.5,
         .set          = d->loaded.set,
     };
-    const struct dig_loop_ports ports = { &d->readings, &d->offer, &d->table,   &d->spares,
-                                          &d->records,  &d->digs,  &d->outlook, &d->pulse };
+    const struct dig_loop_ports ports = { &d->readings, &d->offer,   &d->table,
+                                          &d->spares,   &d->records, &d->digs,
+                                          &d->outlook,  &d->pulse,   &d->estimates };
     dig_loop_init(&d->loop, &settings, &ports, d->estimator);
     for (size_t i = 0; i < DIGS; i++) {
         (void)dig_ring_push(&d->spares, &d->raw[i]);
     }
 
+    d->early.estimates = &d->estimates;
+    dig_early_forget(&d->early, d->loaded.set);
     atomic_store(&d->publish_generation, 1);
     d->fit = (struct dig_fit){
         .config_path = d->path,
@@ -155,6 +162,7 @@ static void connect_threads(struct dig_daemon *const d)
         .known_settings     = { config->match_expires_s, config->drift_floors },
         .digs               = &d->digs,
         .spares             = &d->spares,
+        .early              = &d->early,
         .offer              = &d->offer,
         .table              = &d->table,
         .results            = &d->results,

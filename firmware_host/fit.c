@@ -27,27 +27,33 @@ static void note_dig(struct dig_fit *const fit, const struct dig_observation *co
     note(fit, text);
 }
 
-// Tells tick and publisher what is known now.
-static void tell(struct dig_fit *const fit)
+// To the tick: what is predicted from.
+static void offer(struct dig_fit *const fit, const struct dig_known *const k)
 {
-    struct dig_offer *const       next = &fit->next;
-    const struct dig_known *const k    = &fit->known;
-    next->set                          = fit->set;
-    next->generation                   = fit->generation;
-    next->known                        = k->valid;
-    next->outside                      = k->match.outside;
-    next->dig_count                    = k->match.dig_count;
-    next->expires_ns                   = k->any ? k->expires_ns : 0;
+    struct dig_offer *const next = &fit->next;
+    next->set                    = fit->set;
+    next->generation             = fit->generation;
+    next->known                  = k->valid;
+    next->outside                = k->match.outside;
+    next->dig_count              = k->match.dig_count;
+    next->expires_ns             = k->any ? k->expires_ns : 0;
     dig_forecast_make(fit->set, fit->lambda, &k->match, &next->forecast);
 
     // Until the tick has the table, what belongs to it goes with it.
     const bool adopted = atomic_load(fit->tick_generation) == fit->generation;
     dig_latest_put(adopted ? fit->offer : fit->table, next);
+}
+
+// Tells tick and publisher what is known now.
+static void tell(struct dig_fit *const fit)
+{
+    const struct dig_known *const k = &fit->known;
+    offer(fit, k);
     if (k->any) {
         struct dig_fit_result result = { .known = *k };
-        const int             hint =
-            k->valid ? dig_known_hint(fit->set, &next->forecast, fit->lambda, &result.hint_J_per_kg)
-                                 : -1;
+        const int hint = k->valid ? dig_known_hint(fit->set, &fit->next.forecast, fit->lambda,
+                                                   &result.hint_J_per_kg)
+                                  : -1;
         if (hint >= 0) {
             (void)snprintf(result.hint_trajectory, sizeof result.hint_trajectory, "%s",
                            fit->set->trajectory[hint].name);
@@ -135,6 +141,7 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
         note_dig(fit, dig, "nearest entry only", status);
     }
     fit->pool  = pool;
+    fit->hunch = (struct dig_known){ .any = false };
     fit->known = dig_known_of(fit->set, &match, dig, dig_input_now_ns(), &fit->known_settings);
     if (kinship == DIG_KIN) {
         fit->known.drift = judged.drift;
@@ -142,6 +149,37 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
     tell(fit);
     keep(fit);
     atomic_fetch_add(&fit->matches, 1);
+}
+
+// The dig going on, by itself: an interval as wide as part of a path leaves it, or nothing.
+static void match_early(struct dig_fit *const fit, const struct dig_observation *const dig)
+{
+    struct dig_match match;
+    if (dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match) != DIG_OK ||
+        dig_fit_refine(fit->set, dig, fit->config->match_evaluations, &match) != DIG_OK ||
+        match.samples == 0) {
+        return;
+    }
+    const struct dig_known_settings settings = { .expires_s = DIG_EARLY_s };
+    fit->hunch          = dig_known_of(fit->set, &match, dig, dig_input_now_ns(), &settings);
+    fit->hunch.going_on = true;
+    if (!fit->known.valid) {
+        offer(fit, &fit->hunch);
+    }
+    const struct dig_fit_result result = { .known = fit->hunch };
+    (void)dig_ring_push(fit->results, &result);
+}
+
+// The dig is over and was not matched: what it told is taken back.
+static void end_hunch(struct dig_fit *const fit)
+{
+    struct dig_fit_result result = { .known = fit->hunch };
+    fit->hunch                   = (struct dig_known){ .any = false };
+    tell(fit);
+    if (!fit->known.any) {
+        dig_known_end(&result.known, "the simple dig was broken off");
+        (void)dig_ring_push(fit->results, &result);
+    }
 }
 
 void dig_fit_take(struct dig_fit *const fit, const struct dig_observation *const dig)
@@ -205,6 +243,9 @@ static void reload(struct dig_fit *const fit)
     fit->set      = set;
     fit->generation++;
     fit->lambda = fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    if (fit->early != NULL) {
+        dig_early_forget(fit->early, set);
+    }
     if (!has_same_digs(fit->retiring, set)) {
         fit->pool.digs = 0;
     }
@@ -261,14 +302,21 @@ bool dig_fit_once(struct dig_fit *const fit)
     if (dig_known_age(&fit->known, dig_input_now_ns())) {
         tell(fit);
     }
+    struct dig_observation dig;
+    if (fit->early != NULL &&
+        dig_early_look(fit->early, fit->set, fit->lambda, fit->config, &dig)) {
+        match_early(fit, &dig);
+    }
     const bool any = dig_ring_pop(fit->digs, &raw);
     if (any) {
-        struct dig_observation dig;
         if (dig_raw_observe(fit->set, &fit->config->estimator, raw, &dig) == DIG_OK) {
             dig_fit_take(fit, &dig);
         }
         (void)dig_ring_push(fit->spares, &raw);
         atomic_fetch_add(&fit->seen, 1);
+    }
+    if (fit->early != NULL && fit->hunch.any && !fit->early->shadow.on) {
+        end_hunch(fit);
     }
     atomic_store(&fit->busy, false);
     return any;

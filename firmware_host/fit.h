@@ -7,6 +7,7 @@
 
 #include "estimator/match.h"
 #include "firmware_host/config.h"
+#include "firmware_host/early.h"
 #include "firmware_host/known.h"
 #include "firmware_host/loop.h"
 
@@ -36,6 +37,7 @@ struct dig_fit {
     struct dig_known_settings known_settings;
     struct dig_ring          *digs;    // in:  struct dig_raw *
     struct dig_ring          *spares;  // out: the same memory, back
+    struct dig_early         *early;   // in:  the dig going on; NULL: digs are matched when over
     struct dig_latest        *offer;   // out: struct dig_offer, to the tick
     struct dig_latest        *table;   // out: struct dig_offer of another table, to the tick
     struct dig_ring          *results; // out: struct dig_fit_result, to the publisher
@@ -52,8 +54,9 @@ struct dig_fit {
 
     // the thread's own
     struct dig_known known;
-    struct dig_pool  pool; // the digs it is known from; none: restored without them
-    struct dig_offer next; // what is offered
+    struct dig_known hunch; // of the dig going on
+    struct dig_pool  pool;  // the digs it is known from; none: restored without them
+    struct dig_offer next;  // what is offered
 };
 
 /// Takes up what the state file knows, if there is one, and offers it. Before the thread starts.
@@ -65,8 +68,9 @@ void dig_fit_restore(struct dig_fit *fit);
 /// when it is of another (dig_known_judge).
 void dig_fit_take(struct dig_fit *fit, const struct dig_observation *dig);
 
-/// One turn: a dig that waits in the ring, a reload asked for, what is too old. True when there was
-/// a dig. Digs of trajectories that do not identify are compared with what was expected of them.
+/// One turn: a dig that waits in the ring, the dig going on, a reload asked for, what is too old.
+/// True when a dig was taken. What the dig going on tells (a hunch) is published; it is predicted
+/// from only while nothing else is known; nothing of it is kept, and it ends with the dig.
 bool dig_fit_once(struct dig_fit *fit);
 
 /// The thread: a turn every 20 ms until *stop.

@@ -42,9 +42,11 @@ struct dig_known dig_known_of(const struct dig_curve_set *const   set,
     return known;
 }
 
-static void end(struct dig_known *const known, const char *const why)
+void dig_known_end(struct dig_known *const known, const char *const why)
 {
+    assert(known != NULL && why != NULL);
     known->valid       = false;
+    known->going_on    = false;
     known->match.valid = false;
     (void)snprintf(known->wanted, sizeof known->wanted, "%s: dig a simple dig", why);
 }
@@ -118,7 +120,7 @@ bool dig_known_watch(struct dig_known *const known, const struct dig_observation
         return false;
     }
     if (known->differed >= DIG_DRIFT_DIGS) {
-        end(known, "the ground has changed");
+        dig_known_end(known, "the ground has changed");
     }
     return true;
 }
@@ -129,7 +131,7 @@ bool dig_known_age(struct dig_known *const known, const int64_t now_ns)
     if (!known->valid || now_ns < known->expires_ns) {
         return false;
     }
-    end(known, "the gravel known is too old");
+    dig_known_end(known, "the gravel known is too old");
     return true;
 }
 

@@ -36,6 +36,7 @@ struct dig_known {
     int               differed;            // digs in a row that did
     char              wanted[96];          // what is to be done, for people; "" nothing
     double            path_measured;       // share of that dig's path; NaN: not known any more
+    bool              going_on;            // that dig is not over
 };
 
 /// What is known from a match of digs of which dig is the youngest.
@@ -64,6 +65,9 @@ enum dig_kinship dig_known_judge(struct dig_known *known, const struct dig_obser
 bool dig_known_watch(struct dig_known *known, const struct dig_observation *dig,
                      const struct dig_expected       *expected,
                      const struct dig_known_settings *settings);
+
+/// It is known no longer, and why; a simple dig is asked for.
+void dig_known_end(struct dig_known *known, const char *why);
 
 /// True when it expired just now.
 bool dig_known_age(struct dig_known *known, int64_t now_ns);

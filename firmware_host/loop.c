@@ -39,8 +39,9 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(seconds * (double)NS_PER_S);
 }
 
-// One assembled sample: through the estimator if it tells the moment, out in any case.
-static void take_sample(struct dig_loop *const loop, const struct dig_sample *const sample,
+// One assembled sample: through the estimator if it tells the moment, out in any case. True when
+// there is an estimate of it.
+static bool take_sample(struct dig_loop *const loop, const struct dig_sample *const sample,
                         const int64_t arrived_ns, const int64_t now_ns)
 {
     struct dig_record record = { .sample     = *sample,
@@ -54,6 +55,7 @@ static void take_sample(struct dig_loop *const loop, const struct dig_sample *co
         record.has_estimate = true;
     }
     loop->pulse.lost += dig_ring_push(loop->ports.records, &record) ? 0 : 1;
+    return record.has_estimate;
 }
 
 // Digs that ended leave, memory for the next comes in. The ring has room for all memory there is.
@@ -65,6 +67,14 @@ static void exchange_digs(struct dig_loop *const loop)
     }
     if (dig_estimator_wants_raw(loop->estimator) && dig_ring_pop(loop->ports.spares, &raw)) {
         dig_estimator_lend(loop->estimator, raw);
+    }
+}
+
+// Behind the dig it may have ended: who finds the end here finds the dig there.
+static void share_estimate(struct dig_loop *const loop)
+{
+    if (loop->ports.estimates != NULL) {
+        (void)dig_ring_push(loop->ports.estimates, &loop->estimate);
     }
 }
 
@@ -183,8 +193,11 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
          i++) {
         struct dig_sample sample;
         if (dig_assembler_take(&loop->assembler, &reading, &sample)) {
-            take_sample(loop, &sample, reading.time_ns, now_ns);
+            const bool estimated = take_sample(loop, &sample, reading.time_ns, now_ns);
             exchange_digs(loop);
+            if (estimated) {
+                share_estimate(loop);
+            }
         }
     }
     exchange_digs(loop);

@@ -85,6 +85,9 @@ struct dig_loop_ports {
     struct dig_ring   *digs;     // out: struct dig_raw *, finished digs
     struct dig_latest *outlook;  // out: struct dig_outlook
     struct dig_latest *pulse;    // out: struct dig_pulse
+    // out: struct dig_estimate, each one, for who looks at the dig going on; what does not fit is
+    // dropped, as less is seen then and nothing wrong. NULL: no one does
+    struct dig_ring *estimates;
 };
 
 struct dig_loop_settings {

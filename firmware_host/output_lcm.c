@@ -202,6 +202,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .hint_J_per_kg         = result->hint_J_per_kg,
         .digs                  = (int32_t)m->digs,
         .path_measured         = k->path_measured,
+        .going_on              = k->going_on ? 1 : 0,
         .advice                = advice(),
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));

@@ -136,11 +136,25 @@ static void say_known(const struct dig_publisher *const p)
         m->outside ? "; OUTSIDE the table: none of its gravels" : "");
 }
 
+// Of a dig that goes on: told once, and for a while.
+static void publish_hunch(struct dig_publisher *const p, const struct dig_fit_result *const hunch)
+{
+    if (p->output != NULL) {
+        check_sent(p, dig_output_match(p->output, hunch));
+    }
+}
+
 static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
 {
     bool                  news   = false;
     struct dig_fit_result before = p->result;
-    while (dig_ring_pop(p->results, &p->result)) {
+    struct dig_fit_result next;
+    while (dig_ring_pop(p->results, &next)) {
+        if (next.known.going_on) {
+            publish_hunch(p, &next);
+            continue;
+        }
+        p->result = next;
         // A drift that was watched is no news for a person.
         const bool same = p->any_result && p->result.known.time_ns == before.known.time_ns &&
                           p->result.known.valid == before.known.valid;

@@ -53,6 +53,7 @@ static void the_example_of_the_formats_shows_the_defaults(void **state)
     assert_string_equal(example.lcm_url, minimal.lcm_url);
     assert_int_equal(example.match_evaluations, minimal.match_evaluations);
     assert_close(example.match_least_path, minimal.match_least_path, 0.0);
+    assert_close(example.match_early_path, minimal.match_early_path, 0.0);
     assert_int_equal(example.estimate_every, minimal.estimate_every);
     assert_close(example.prediction_s, minimal.prediction_s, 1e-15);
     assert_close(example.estimator.tick_s, minimal.estimator.tick_s, 0.0);

@@ -158,6 +158,47 @@ static void ninety_per_cent_of_gravels_lie_in_their_interval(void **state)
     made_table_destroy(set);
 }
 
+// So do they when only part of a path was dug, in an interval as wide as that leaves it.
+static void of_part_of_a_path_less_is_told_and_as_rightly(void **state)
+{
+    (void)state;
+    const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
+    struct dig_curve_set *const set = made_table(&one);
+    const int                   trials   = getenv("DIG_TEST_QUICK") != NULL ? 60 : 200;
+    static const double         until[]  = { 1.0, 0.6, 0.3 };
+    uint64_t                    seed     = 7;
+    int                         in[3][2] = { { 0 } };
+    double                      width[3] = { 0.0 };
+    for (int trial = 0; trial < trials; trial++) {
+        struct dig_gravel planted = random_gravel(&seed);
+        planted.value[2]          = 2500;
+        struct dig_observation o  = made_observation(&planted, MADE_ACTUAL, 0.0);
+        made_disturb(&o, 0.1, &seed);
+        for (int u = 0; u < 3; u++) {
+            o.last                       = until[u];
+            const struct dig_match match = fit(set, &o, 100);
+            width[u] += (match.high.value[0] - match.low.value[0]) / trials;
+            for (int a = 0; a < 2; a++) {
+                in[u][a] += planted.value[a] >= match.low.value[a] &&
+                                    planted.value[a] <= match.high.value[a]
+                                ? 1
+                                : 0;
+            }
+        }
+    }
+    for (int u = 0; u < 3; u++) {
+        print_message("%.1f of the path: %.3f and %.3f in the interval, %.3f wide\n", until[u],
+                      (double)in[u][0] / trials, (double)in[u][1] / trials, width[u]);
+        for (int a = 0; a < 2; a++) {
+            // Not fewer than chance allows; a few more, for the floor under the spread.
+            const double share = (double)in[u][a] / trials;
+            assert_true(share > 0.9 - 3.0 * sqrt(0.9 * 0.1 / trials) && share < 0.98);
+        }
+    }
+    assert_true(width[1] > width[0] && width[2] > 1.2 * width[0]);
+    made_table_destroy(set);
+}
+
 static void between_the_grid_points_a_dig_is_judged_again(void **state)
 {
     (void)state;
@@ -220,6 +261,7 @@ int main(void)
         cmocka_unit_test(a_hole_is_gone_round),
         cmocka_unit_test(what_cannot_be_told_apart_has_a_wide_interval),
         cmocka_unit_test(ninety_per_cent_of_gravels_lie_in_their_interval),
+        cmocka_unit_test(of_part_of_a_path_less_is_told_and_as_rightly),
         cmocka_unit_test(between_the_grid_points_a_dig_is_judged_again),
         cmocka_unit_test(scattered_entries_keep_their_nearest),
         cmocka_unit_test(refusals_leave_the_match_alone),

@@ -56,7 +56,8 @@ struct bench {
     struct dig_curve              curve[GRAVELS * DIG_TRAJECTORY_MAX];
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
-    struct dig_ring               readings, records, digs, spares;
+    struct dig_ring               readings, records, digs, spares, estimates;
+    struct dig_estimate           estimate_memory[8];
     struct dig_latest             offer, table, outlook, pulse;
     struct dig_reading            reading_memory[1024];
     struct dig_record             record_memory[1024];
@@ -119,6 +120,7 @@ static struct bench *bench_create(void)
     dig_ring_init(&b->records, sizeof b->record_memory[0], 1024, b->record_memory);
     dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
     dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
+    dig_ring_init(&b->estimates, sizeof b->estimate_memory[0], 8, b->estimate_memory);
     for (int i = 0; i < 2; i++) {
         b->raw[i] = calloc(1, dig_raw_size());
         assert_non_null(b->raw[i]);
@@ -140,8 +142,9 @@ static struct bench *bench_create(void)
         .ahead_s      = 0.5,
         .set          = &b->set,
     };
-    const struct dig_loop_ports ports = { &b->readings, &b->offer, &b->table,   &b->spares,
-                                          &b->records,  &b->digs,  &b->outlook, &b->pulse };
+    const struct dig_loop_ports ports = { &b->readings, &b->offer,   &b->table,
+                                          &b->spares,   &b->records, &b->digs,
+                                          &b->outlook,  &b->pulse,   &b->estimates };
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     return b;
 }
@@ -210,6 +213,31 @@ static void a_whole_sample_becomes_an_estimate(void **state)
     assert_true(pulse.fresh);
     assert_int_equal(pulse.ticks, 1);
     assert_int_equal(pulse.missing, 0);
+    bench_destroy(b);
+}
+
+// For who looks at the dig going on; when he does not keep up, nothing is counted as lost.
+static void each_estimate_is_shared_and_none_waited_for(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    struct dig_estimate estimate;
+    for (int64_t i = 0; i < 11; i++) {
+        struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        if (i == 3) {
+            r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
+        }
+        assert_true(dig_ring_push(&b->readings, &r));
+        dig_loop_tick(&b->loop, 1001 * MS + i * 5 * MS);
+    }
+    for (int64_t i = 0; i < 9; i++) {
+        if (i != 3) {
+            assert_true(dig_ring_pop(&b->estimates, &estimate));
+            assert_true(estimate.time_ns == 1000 * MS + i * 5 * MS);
+        }
+    }
+    assert_false(dig_ring_pop(&b->estimates, &estimate));
+    assert_int_equal(pulse_of(b).lost, 0);
     bench_destroy(b);
 }
 
@@ -457,6 +485,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_sample_becomes_an_estimate),
+        cmocka_unit_test(each_estimate_is_shared_and_none_waited_for),
         cmocka_unit_test(a_sample_with_a_hole_is_passed_on_without_an_estimate),
         cmocka_unit_test(without_a_pressure_of_the_arms_the_moment_is_told_and_no_force),
         cmocka_unit_test(silence_is_missing_after_the_stale_time_only),

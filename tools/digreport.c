@@ -142,7 +142,7 @@ static void take_match(void *const context, const int64_t time_us, const digsigh
 {
     (void)time_us;
     struct said *const said = context;
-    if (!m->valid || said->predicted) {
+    if (!m->valid || m->going_on || said->predicted) {
         return; // a later match is of a later dig
     }
     said->matched     = true;

@@ -31,10 +31,12 @@ struct bench {
     struct dig_machine_recording recording;
     struct dig_estimator        *estimator;
     struct dig_config            config;
-    struct dig_ring              readings, records, digs, spares, results;
+    struct dig_ring              readings, records, digs, spares, results, estimates;
     struct dig_latest            offer, table, tables, outlook, pulse, notes;
     struct dig_reading           reading_memory[RING];
     struct dig_record            record_memory[RING];
+    struct dig_estimate          estimate_memory[RING];
+    struct dig_early             early;
     struct dig_raw              *raw[2], *dig_memory[4], *spare_memory[4];
     struct dig_fit_result        result_memory[4];
     struct dig_offer             offer_memory[3], table_memory[3];
@@ -86,6 +88,7 @@ static void connect(struct bench *const b)
     dig_ring_init(&b->records, sizeof b->record_memory[0], RING, b->record_memory);
     dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
     dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
+    dig_ring_init(&b->estimates, sizeof b->estimate_memory[0], RING, b->estimate_memory);
     dig_ring_init(&b->results, sizeof b->result_memory[0], 4, b->result_memory);
     dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
     dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
@@ -105,13 +108,16 @@ static void connect(struct bench *const b)
         .ahead_s      = 0.5,
         .set          = b->set,
     };
-    const struct dig_loop_ports ports = { &b->readings, &b->offer, &b->table,   &b->spares,
-                                          &b->records,  &b->digs,  &b->outlook, &b->pulse };
+    const struct dig_loop_ports ports = { &b->readings, &b->offer,   &b->table,
+                                          &b->spares,   &b->records, &b->digs,
+                                          &b->outlook,  &b->pulse,   &b->estimates };
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     for (int i = 0; i < 2; i++) {
         b->raw[i] = calloc(1, dig_raw_size());
         (void)dig_ring_push(&b->spares, &b->raw[i]);
     }
+    b->early.estimates = &b->estimates;
+    dig_early_forget(&b->early, b->set);
     b->fit = (struct dig_fit){
         .config             = &b->config,
         .machine            = &b->machine,
@@ -121,6 +127,7 @@ static void connect(struct bench *const b)
         .known_settings     = { 1e9, 3.0 },
         .digs               = &b->digs,
         .spares             = &b->spares,
+        .early              = &b->early,
         .offer              = &b->offer,
         .table              = &b->table,
         .results            = &b->results,
@@ -145,6 +152,8 @@ static struct bench *create(char *argv[])
     settings.tick_s                        = 1e-9 * (double)STEP_ns;
     b->config.estimator                    = settings;
     b->config.match_evaluations            = 200;
+    b->config.match_early_path             = 0.3;
+    b->config.match_least_path             = 0.6;
     b->estimator                           = calloc(1, dig_estimator_size());
     if (b->estimator == NULL ||
         dig_estimator_init(b->estimator, &b->machine, b->set, &settings) != DIG_OK) {

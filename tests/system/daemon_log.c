@@ -2,7 +2,7 @@
 //   daemon_log LOG.lcm
 //   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING"
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
-//   RESTORED DRIFT "WANTED" DIGS PATH_MEASURED
+//   RESTORED DRIFT "WANTED" DIGS PATH_MEASURED GOING_ON
 //   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT "REASON"
 //   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
 //   RECONNECTS
@@ -36,11 +36,11 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
     (void)context;
     (void)time_us;
     (void)printf("match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f %d %.3f "
-                 "\"%s\" %d %.3f\n",
+                 "\"%s\" %d %.3f %d\n",
                  m->valid, m->outside, m->dig_count, name(m->trajectory), m->friction,
                  m->friction_low, m->friction_high, m->rolling, m->rolling_low, m->rolling_high,
                  m->density_kgpm3, m->density_low_kgpm3, m->density_high_kgpm3, m->distance,
-                 m->restored, m->drift, m->wanted, m->digs, m->path_measured);
+                 m->restored, m->drift, m->wanted, m->digs, m->path_measured, m->going_on);
 }
 
 static void prediction(void *const context, const int64_t time_us,

@@ -20,6 +20,12 @@ rows=$(($(grep -vc '^#' "$work/run.csv") - 1))
 check "the lines of the recording are published as samples" \
     within "$(last samples "$work/csv.txt" 2)" $((rows * 98 / 100)) "$rows"
 check "the gravel is identified from the simple dig" identified "$work/csv.txt"
+# going_on, at a share of the path: wide, never wrong, and before the dig is over.
+check "the simple dig is matched while it goes on" \
+    awk '$1 == "match" && $NF && $2 { n++; if ($7 > .5 || $8 < .5 || $10 > .4 || $11 < .4 || $13 > 2200 || $14 < 2200) bad++ }
+         END { exit !(n >= 3 && !bad) }' "$work/csv.txt"
+check "first with about a third of its path" \
+    within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.45
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
@@ -39,8 +45,8 @@ config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {s
 log thrice
 "$BIN/digsightd" -c "$work/thrice.yaml" 2>"$work/daemon.log"
 read_log thrice
-check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 1) } END { print n }' "$work/thrice.txt")" = 3 ]
-check "which narrows the interval" awk '$1 == "match" { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
+check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 2) } END { print n }' "$work/thrice.txt")" = 3 ]
+check "which narrows the interval" awk '$1 == "match" && !$NF { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
 check "and keeps the gravel" identified "$work/thrice.txt"
 check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json")" = 3 ]
 
