@@ -28,6 +28,11 @@ unpack_root() {
         $(awk '$1 == "arm64-root" { print $2 }' scripts/packages.txt) >>"$apt/log" 2>&1 || return 1
     local deb
     for deb in "$apt"/cache/archives/*.deb; do dpkg-deb -x "$deb" "$root"; done
+    # Links that begin at the system's root are to begin at this one.
+    local link
+    find "$root" -lname '/*' | while read -r link; do
+        ln -sfn "$PWD/$root$(readlink "$link")" "$link"
+    done
     rm -rf "$apt/cache/archives"
     touch "$root/.complete"
 }
