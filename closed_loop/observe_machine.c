@@ -36,6 +36,7 @@ static enum dig_status drive(struct dig_estimator *const               estimator
 }
 
 static enum dig_status observe(const struct dig_machine *const           machine,
+                               const struct dig_correction *const        correction,
                                const struct dig_curve_set *const         set,
                                const struct dig_machine_recording *const recording,
                                struct dig_estimator *const               estimator,
@@ -43,6 +44,9 @@ static enum dig_status observe(const struct dig_machine *const           machine
 {
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     enum dig_status status = dig_estimator_init(estimator, machine, set, &settings);
+    if (status == DIG_OK && correction != NULL) {
+        status = dig_estimator_correct(estimator, correction);
+    }
     if (status != DIG_OK) {
         return dig_error_set(error, status, "machine %s: %s", machine->name,
                              dig_status_str(status));
@@ -60,6 +64,7 @@ static enum dig_status observe(const struct dig_machine *const           machine
 }
 
 enum dig_status dig_observe_machine(const struct dig_machine *const           machine,
+                                    const struct dig_correction *const        correction,
                                     const struct dig_curve_set *const         set,
                                     const struct dig_machine_recording *const recording,
                                     struct dig_observed_digs *const           digs,
@@ -70,8 +75,9 @@ enum dig_status dig_observe_machine(const struct dig_machine *const           ma
     if (estimator == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    struct dig_observed_digs found  = { .digs = 0 };
-    const enum dig_status    status = observe(machine, set, recording, estimator, &found, error);
+    struct dig_observed_digs found = { .digs = 0 };
+    const enum dig_status    status =
+        observe(machine, correction, set, recording, estimator, &found, error);
     free(estimator);
     if (status != DIG_OK) {
         dig_observed_digs_finish(&found);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/machine.h"
 #include "core/recording.h"
+#include "estimator/correction.h"
 #include "estimator/estimator.h"
 
 #include <stddef.h>
@@ -24,17 +25,17 @@ struct dig_observed_digs {
 };
 
 /// Every dig of the recording that followed a trajectory of the set, with the settings a daemon has
-/// by default, the machine as its file says and lambda = machine's tooth length / table's.
-/// Incomplete samples are passed over. A dig that the recording breaks off is none.
+/// by default, the machine as its file says (correction NULL) or as corrected, and lambda =
+/// machine's tooth length / table's. Samples that do not tell the moment are passed over. A dig
+/// that the recording breaks off is none.
 ///
 /// DIG_ENOMATCH: no such dig; *error says how many there were. DIG_EINVAL, DIG_EUNREACHABLE: the
 /// machine fails its check. DIG_ENOMEM. Writes on success only; free with
 /// dig_observed_digs_finish(). About a microsecond a sample.
-DIG_MUST_CHECK enum dig_status dig_observe_machine(const struct dig_machine           *machine,
-                                                   const struct dig_curve_set         *set,
-                                                   const struct dig_machine_recording *recording,
-                                                   struct dig_observed_digs           *digs,
-                                                   struct dig_error                   *error);
+DIG_MUST_CHECK enum dig_status
+dig_observe_machine(const struct dig_machine *machine, const struct dig_correction *correction,
+                    const struct dig_curve_set *set, const struct dig_machine_recording *recording,
+                    struct dig_observed_digs *digs, struct dig_error *error);
 
 /// NULL and a zeroed struct are allowed.
 void dig_observed_digs_finish(struct dig_observed_digs *digs);

@@ -106,7 +106,8 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
         status = check_scene(path, &l.config, &l.machine, l.set, error);
     }
     if (status == DIG_OK && l.config.model.text[0] != '\0') {
-        status = dig_load_model(&l.config, &l.machine, l.set, &l.correction, &l.corrects, error);
+        status = dig_load_model(l.config.model.text, l.config.table.text, &l.machine, l.set,
+                                &l.correction, &l.corrects, error);
     }
     if (status != DIG_OK) {
         dig_loaded_finish(&l);
@@ -128,7 +129,8 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
     if (status == DIG_OK && config.model.text[0] != '\0') {
         struct dig_correction unused; // the machine is fixed at start
         bool                  corrects;
-        status = dig_load_model(&config, machine, loaded, &unused, &corrects, error);
+        status = dig_load_model(config.model.text, config.table.text, machine, loaded, &unused,
+                                &corrects, error);
     }
     if (status != DIG_OK) {
         dig_curve_set_destroy(loaded);

@@ -35,26 +35,25 @@ static bool needs_curves(const struct dig_model *const model)
 }
 
 // Every curve of *set with the model's effects in it; the table is read once more, as it is.
-static enum dig_status change_curves(const struct dig_config *const config,
-                                     const struct dig_model *const  model,
+static enum dig_status change_curves(const char *const model_path, const char *const table_path,
+                                     const struct dig_model *const model,
                                      struct dig_curve_set *const set, struct dig_error *const error)
 {
     struct dig_curve_set  *plain   = NULL;
     struct dig_effect_set *effects = NULL;
-    enum dig_status        status  = dig_table_load(config->table.text, &plain, error);
+    enum dig_status        status  = dig_table_load(table_path, &plain, error);
     if (status == DIG_OK &&
         (plain->entries != set->entries || strcmp(plain->scene_hash, set->scene_hash) != 0)) {
-        status = dig_error_set(error, DIG_EINVAL, "%s: it changed while it was read",
-                               config->table.text);
+        status = dig_error_set(error, DIG_EINVAL, "%s: it changed while it was read", table_path);
     }
     if (status == DIG_OK && model->effects_table[0] != '\0') {
         char path[DIG_MODEL_PATH_SIZE];
-        look_beside(config->table.text, model->effects_table, sizeof path, path);
+        look_beside(table_path, model->effects_table, sizeof path, path);
         status = dig_effects_load(path, plain, &effects, error);
     }
     if (status == DIG_OK && dig_effects_apply(plain, effects, model, set) != DIG_OK) {
         status =
-            dig_yaml_refuse(config->model.text, "effects", error,
+            dig_yaml_refuse(model_path, "effects", error,
                             "an effect of the soil that no table at hand tells, or a parameter "
                             "it does not have; expected those of the table of effects");
     }
@@ -63,43 +62,42 @@ static enum dig_status change_curves(const struct dig_config *const config,
     return status;
 }
 
-static enum dig_status check(const struct dig_config *const    config,
+static enum dig_status check(const char *const path, const char *const table_path,
                              const struct dig_model *const     model,
                              const struct dig_machine *const   machine,
                              const struct dig_curve_set *const set,
                              struct dig_correction *const correction, struct dig_error *const error)
 {
-    const char *const path = config->model.text;
     if (strcmp(model->scene_hash, set->scene_hash) != 0) {
         return dig_yaml_refuse(path, "scene_hash", error, "%.12s…, but %s is of scene %.12s…",
-                               model->scene_hash, config->table.text, set->scene_hash);
+                               model->scene_hash, table_path, set->scene_hash);
     }
     if (dig_effects_correction(model, correction) != DIG_OK ||
-        dig_correction_check(machine, correction) != DIG_OK) {
+        (machine != NULL && dig_correction_check(machine, correction) != DIG_OK)) {
         return dig_yaml_refuse(path, "effects", error,
                                "the machine %s cannot be so, expected parameters of the catalogue "
                                "with which its linkages still close",
-                               machine->name);
+                               machine != NULL ? machine->name : "of the model");
     }
     return DIG_OK;
 }
 
-enum dig_status dig_load_model(const struct dig_config *const  config,
+enum dig_status dig_load_model(const char *const model_path, const char *const table_path,
                                const struct dig_machine *const machine,
                                struct dig_curve_set *const     set,
                                struct dig_correction *const correction, bool *const corrects,
                                struct dig_error *const error)
 {
-    assert(config != NULL && machine != NULL && set != NULL);
+    assert(model_path != NULL && table_path != NULL && set != NULL);
     assert(correction != NULL && corrects != NULL);
     struct dig_model      model  = { .effects = 0 };
     struct dig_correction found  = { .delay_s = 0.0 };
-    enum dig_status       status = dig_model_read(config->model.text, &model, error);
+    enum dig_status       status = dig_model_read(model_path, &model, error);
     if (status == DIG_OK) {
-        status = check(config, &model, machine, set, &found, error);
+        status = check(model_path, table_path, &model, machine, set, &found, error);
     }
     if (status == DIG_OK && needs_curves(&model)) {
-        status = change_curves(config, &model, set, error);
+        status = change_curves(model_path, table_path, &model, set, error);
     }
     if (status == DIG_OK) {
         *corrects   = !dig_correction_is_none(&found);

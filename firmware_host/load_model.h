@@ -5,18 +5,19 @@
 #define DIG_FIRMWARE_HOST_LOAD_MODEL_H
 
 #include "core/curve.h"
+#include "core/error.h"
 #include "core/machine.h"
 #include "estimator/correction.h"
-#include "firmware_host/config.h"
 
 #include <stdbool.h>
 
-/// Reads config->model and changes the curves of *set; corrects: the model names effects of the
-/// machine. Its table of effects is looked for beside config->table first, then where the model
-/// says. DIG_EINVAL, DIG_EIO, DIG_ESCHEMA with the file and what was expected: also a model of
-/// another scene, an effect no table at hand tells, or a correction the machine cannot have; then
-/// *set may be half changed and nothing else is written.
-DIG_MUST_CHECK enum dig_status dig_load_model(const struct dig_config  *config,
+/// Reads the model file and changes the curves of *set, which was loaded from the table; corrects:
+/// the model names effects of the machine, which may be NULL where none is at hand. Its table of
+/// effects is looked for beside the table first, then where the model says. DIG_EINVAL, DIG_EIO,
+/// DIG_ESCHEMA with the file and what was expected: also a model of another scene, an effect no
+/// table at hand tells, or a correction the machine cannot have; then *set may be half changed and
+/// nothing else is written.
+DIG_MUST_CHECK enum dig_status dig_load_model(const char *model_path, const char *table_path,
                                               const struct dig_machine *machine,
                                               struct dig_curve_set     *set,
                                               struct dig_correction *correction, bool *corrects,

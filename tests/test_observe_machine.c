@@ -110,7 +110,7 @@ static void every_dig_is_found_and_resists_as_the_force_recording_says(void **st
     struct dig_machine_recording r     = record();
     struct dig_observed_digs     digs  = { .digs = 0 };
     struct dig_error             error = { "" };
-    if (dig_observe_machine(&machine, set, &r, &digs, &error) != DIG_OK) {
+    if (dig_observe_machine(&machine, NULL, set, &r, &digs, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     expect_both(&digs);
@@ -121,7 +121,7 @@ static void every_dig_is_found_and_resists_as_the_force_recording_says(void **st
         r.row[i].valid[DIG_SIGNAL_BUCKET_HEAD_Pa] = false;
         r.row[i].value[DIG_SIGNAL_BUCKET_HEAD_Pa] = 0.0;
     }
-    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_OK);
+    assert_int_equal(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), DIG_OK);
     expect_both(&digs);
     dig_observed_digs_finish(&digs);
     dig_machine_recording_finish(&r);
@@ -136,7 +136,7 @@ static void a_dig_with_a_gap_is_seen_but_not_observed(void **state)
     for (size_t i = r.rows * 6 / 10; i < r.rows * 7 / 10; i++) {
         r.row[i].valid[DIG_SIGNAL_ARM_rad] = false;
     }
-    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, NULL), DIG_OK);
+    assert_int_equal(dig_observe_machine(&machine, NULL, set, &r, &digs, NULL), DIG_OK);
     assert_int_equal(digs.seen, DIGS);
     assert_int_equal(digs.digs, 1);
     assert_int_equal(digs.dig[0].trajectory, direct[0].trajectory);
@@ -153,18 +153,18 @@ static void without_a_dig_it_is_refused_and_nothing_written(void **state)
     struct dig_error             error;
 
     r.rows = 200; // air
-    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_ENOMATCH);
+    assert_int_equal(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), DIG_ENOMATCH);
     assert_non_null(strstr(error.text, "digs in it: 0"));
 
     // Broken off within the first dig: it has not ended.
     r.rows = rows / 4;
-    assert_int_equal(dig_observe_machine(&machine, set, &r, &digs, &error), DIG_ENOMATCH);
+    assert_int_equal(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), DIG_ENOMATCH);
     assert_int_equal(digs.seen, 42);
     assert_null(digs.dig);
 
     struct dig_machine broken = machine;
     broken.link[0].length_m   = -1.0;
-    assert_int_equal(dig_observe_machine(&broken, set, &r, &digs, &error), DIG_EINVAL);
+    assert_int_equal(dig_observe_machine(&broken, NULL, set, &r, &digs, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, machine.name));
     assert_int_equal(digs.seen, 42);
     dig_machine_recording_finish(&r);

@@ -3,19 +3,26 @@
 
 #include "tables/load.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/recording.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static enum dig_status run(const struct digloop_options *const options,
-                           const struct dig_curve_set *const set, struct dig_error *const error)
+                           struct dig_curve_set *const set, struct dig_error *const error)
 {
+    struct digloop_machine machine;
+    const enum dig_status  status           = digloop_load_machine(options, set, &machine, error);
+    const struct digloop_machine *const any = options->machine != NULL ? &machine : NULL;
+    if (status != DIG_OK) {
+        return status;
+    }
     if (strcmp(options->command, "identify") == 0) {
-        return digloop_identify(options, set, error);
+        return digloop_identify(options, set, any, error);
     }
     if (strcmp(options->command, "predict") == 0) {
-        return digloop_predict(options, set, error);
+        return digloop_predict(options, set, any, error);
     }
     if (strcmp(options->command, "design") == 0) {
         return digloop_design(options, set, error);

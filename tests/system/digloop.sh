@@ -71,6 +71,33 @@ check "a prediction is as wrong against the machine recording as against the for
     awk -v a="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_force.json")" \
         -v b="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_machine.json")" \
         'BEGIN { exit !(a > 0 && b > 0 && (a - b) ^ 2 < 0.02 ^ 2) }'
+# A machine whose bucket is 250 kg heavier than its file says, and a model that says so.
+awk '/^[a-z]/ { part = $1 } part == "bucket:" && $1 == "mass_kg:" { $0 = "  mass_kg: " $2 + 250 } { print }' \
+    "$machine" >"$work/heavy.yaml"
+model() { # SCENE_HASH
+    cat <<JSON
+{"version": 1, "table": "rig.sqlite", "effects_table": "", "scene_hash": "$1",
+ "gravel": {"friction": 0.5, "rolling": 0.5, "density_kgpm3": 2500},
+ "low": {"friction": 0.4, "rolling": 0.4, "density_kgpm3": 2000},
+ "high": {"friction": 0.6, "rolling": 0.6, "density_kgpm3": 3000}, "provenance": "digloop.sh",
+ "effects": [{"name": "bucket_weight", "probability": 1, "parameters": [
+   {"name": "mass_kg", "value": 250, "low": 250, "high": 250}]}]}
+JSON
+}
+hash=$(sed -nE 's/.*"scene_hash": "([0-9a-f]{64})".*/\1/p' "$work/force.json")
+model "$hash" >"$work/model.json"
+model "${hash//[0-9]/f}" >"$work/elsewhere.json"
+"$BIN/digrig" record "$reference"__simpleA.csv --machine "$work/heavy.yaml" -o "$work/heavy.csv" 2>"$work/err"
+error_of() { # RECORDING OPTION…: of the prediction for simpleA
+    "$BIN/digloop" predict "$table" --identified "$work/force.json" --trajectory simpleA --measured "$@" --json |
+        sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p'
+}
+errors="$(error_of "$reference"__simpleA.csv) $(error_of "$work/heavy.csv" --machine "$machine" --model "$work/model.json")
+    $(error_of "$work/heavy.csv" --machine "$machine")"
+check "a model takes off a recording what it says of the machine" \
+    awk -v e="$errors" 'BEGIN { exit !(split(e, x, " ") == 3 && (x[1] - x[2]) ^ 2 < 0.02 ^ 2 && x[3] > x[2] + 0.04) }'
+check "a model of another scene is refused" refuses "elsewhere.json" "scene_hash" -- \
+    "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$machine" --model "$work/elsewhere.json"
 check "digs along two trajectories are not pooled" refuses "different trajectories" "--trajectory" -- \
     "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$machine"
 check "without its machine a machine recording is refused" refuses "run.csv" "--machine" -- \

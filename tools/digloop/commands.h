@@ -17,7 +17,7 @@ struct digloop_options {
     const char *command, *table;
     int         recordings; // or campaign folders: what stands after the table
     char      **recording;
-    const char *machine, *trajectory;            // identify, predict
+    const char *machine, *model, *trajectory;    // identify, predict
     const char *identified, *out, *measured;     // predict
     const char *effects, *json_out, *html, *add; // trace
     bool        json;
@@ -33,11 +33,15 @@ DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_opti
                                                        const struct dig_curve_set   *set,
                                                        int *trajectory, struct dig_error *error);
 
+struct digloop_machine; // tools/digloop/recording.h; NULL: no --machine
+
 DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_options *options,
                                                 const struct dig_curve_set   *set,
+                                                const struct digloop_machine *machine,
                                                 struct dig_error             *error);
 DIG_MUST_CHECK enum dig_status digloop_predict(const struct digloop_options *options,
                                                const struct dig_curve_set   *set,
+                                               const struct digloop_machine *machine,
                                                struct dig_error             *error);
 DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *options,
                                              const struct dig_curve_set   *set,

@@ -33,7 +33,7 @@ static enum dig_status add(struct pool *const pool, const struct dig_observed_di
 
 static enum dig_status collect(const struct digloop_options *const options,
                                const struct dig_curve_set *const   set,
-                               const struct dig_machine *const machine, const int trajectory,
+                               const struct digloop_machine *const machine, const int trajectory,
                                struct pool *const pool, struct dig_error *const error)
 {
     enum dig_status status = DIG_OK;
@@ -51,24 +51,20 @@ static enum dig_status collect(const struct digloop_options *const options,
 // The mean of all digs, and how many there were.
 static enum dig_status observe_all(const struct digloop_options *const options,
                                    const struct dig_curve_set *const   set,
+                                   const struct digloop_machine *const machine,
                                    struct dig_observation *const mean, size_t *const digs,
                                    struct dig_error *const error)
 {
-    struct dig_machine machine;
-    int                trajectory = -1;
-    enum dig_status    status     = DIG_OK;
+    int             trajectory = -1;
+    enum dig_status status     = DIG_OK;
     if (options->trajectory != NULL) {
         status = digloop_find_trajectory(options, set, &trajectory, error);
-    }
-    if (status == DIG_OK && options->machine != NULL) {
-        status = digloop_load_machine(options->machine, options->table, set, &machine, error);
     }
     if (status != DIG_OK) {
         return status;
     }
     struct pool pool = { .digs = 0 };
-    status =
-        collect(options, set, options->machine != NULL ? &machine : NULL, trajectory, &pool, error);
+    status           = collect(options, set, machine, trajectory, &pool, error);
     if (status == DIG_OK) {
         struct dig_error why = { "" };
         status               = dig_observe_mean(pool.digs, pool.dig, mean, &why);
@@ -96,12 +92,13 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
 
 enum dig_status digloop_identify(const struct digloop_options *const options,
                                  const struct dig_curve_set *const   set,
+                                 const struct digloop_machine *const machine,
                                  struct dig_error *const             error)
 {
     struct dig_observation observation = { .trajectory = 0 };
     struct dig_match       match;
     size_t                 digs   = 0;
-    enum dig_status        status = observe_all(options, set, &observation, &digs, error);
+    enum dig_status        status = observe_all(options, set, machine, &observation, &digs, error);
     if (status != DIG_OK) {
         return status;
     }

@@ -10,16 +10,18 @@ static const char help[] =
     "traces what a model lacks.\n"
     "\n"
     "usage:\n"
-    "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--trajectory NAME]\n"
-    "                   [--json]\n"
+    "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--model MODEL.json]\n"
+    "                   [--trajectory NAME] [--json]\n"
     "      which gravel: all digs of the recordings along one trajectory, pooled. A recording is "
     "a\n"
     "      force recording, or with --machine a machine recording or an LCM log of the daemon,\n"
     "      which may hold several digs: --trajectory takes those along one\n"
     "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
-    "                  [-o CURVE.csv] [--measured RECORDING [--machine MACHINE.yaml]] [--json]\n"
+    "                  [-o CURVE.csv] [--measured RECORDING [--machine MACHINE.yaml]]\n"
+    "                  [--model MODEL.json] [--json]\n"
     "      what that gravel will resist along another trajectory, at the table's scale; with digs\n"
     "      measured, how wrong that was: relative Euclidean norm of the moment, +-0.16 s\n"
+    "      --model, here and above: table and machine with the effects that a trace has added\n"
     "  digloop trace TABLE.sqlite CAMPAIGN/ [--effects EFFECTS.sqlite]\n"
     "                [--json OUT.json] [--html OUT.html] [--add MODEL.json]\n"
     "      what the table lacks: the residual of a campaign's digs, the effect it traces to, the\n"
@@ -60,7 +62,7 @@ static bool has_predict_options(const struct digloop_options *const o)
 // What reads digs of its own takes.
 static bool has_dig_options(const struct digloop_options *const o)
 {
-    return o->trajectory != NULL || o->machine != NULL;
+    return o->trajectory != NULL || o->machine != NULL || o->model != NULL;
 }
 
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
@@ -109,6 +111,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         IDENTIFIED = 256,
         TRAJECTORY,
         MACHINE,
+        MODEL,
         MEASURED,
         EFFECTS,
         JSON,
@@ -121,6 +124,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         { "identified", required_argument, NULL, IDENTIFIED },
         { "trajectory", required_argument, NULL, TRAJECTORY },
         { "machine", required_argument, NULL, MACHINE },
+        { "model", required_argument, NULL, MODEL },
         { "measured", required_argument, NULL, MEASURED },
         { "effects", required_argument, NULL, EFFECTS },
         { "json", is_trace(argc, argv) ? required_argument : no_argument, NULL, JSON },
@@ -137,6 +141,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         case IDENTIFIED: o.identified = optarg; break;
         case TRAJECTORY: o.trajectory = optarg; break;
         case MACHINE: o.machine = optarg; break;
+        case MODEL: o.model = optarg; break;
         case 'o': o.out = optarg; break;
         case MEASURED: o.measured = optarg; break;
         case EFFECTS: o.effects = optarg; break;

@@ -81,20 +81,14 @@ static void put_array(FILE *const to, const char *const name, const float curve[
 
 // How wrong the predicted curve is against the digs measured along its trajectory.
 static enum dig_status score_measured(const struct digloop_options *const options,
-                                      const struct dig_curve_set *const set, const int t,
+                                      const struct dig_curve_set *const   set,
+                                      const struct digloop_machine *const machine, const int t,
                                       const struct dig_curve *const curve,
                                       struct dig_score *const score, struct dig_error *const error)
 {
-    struct dig_machine       machine;
-    struct dig_observed_digs seen   = { .digs = 0 };
-    enum dig_status          status = DIG_OK;
-    if (options->machine != NULL) {
-        status = digloop_load_machine(options->machine, options->table, set, &machine, error);
-    }
-    if (status == DIG_OK) {
-        status = digloop_read_digs(options->measured, options->machine != NULL ? &machine : NULL,
-                                   set, t, &seen, error);
-    }
+    struct dig_observed_digs seen = { .digs = 0 };
+    const enum dig_status    status =
+        digloop_read_digs(options->measured, machine, set, t, &seen, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -114,6 +108,7 @@ static enum dig_status score_measured(const struct digloop_options *const option
 
 enum dig_status digloop_predict(const struct digloop_options *const options,
                                 const struct dig_curve_set *const   set,
+                                const struct digloop_machine *const machine,
                                 struct dig_error *const             error)
 {
     assert(options->identified != NULL && options->trajectory != NULL);
@@ -147,7 +142,7 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
     }
     struct dig_score score = { 0 };
     if (status == DIG_OK && options->measured != NULL) {
-        status = score_measured(options, set, t, &curve, &score, error);
+        status = score_measured(options, set, machine, t, &curve, &score, error);
     }
     if (status == DIG_OK && options->json) {
         (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",

@@ -6,6 +6,7 @@
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
+#include "firmware_host/load_model.h"
 
 #include <assert.h>
 #include <math.h>
@@ -67,27 +68,48 @@ enum dig_status digloop_read_machine(const char *const                   path,
     return DIG_OK;
 }
 
-enum dig_status digloop_load_machine(const char *const path, const char *const table,
-                                     const struct dig_curve_set *const set,
-                                     struct dig_machine *const         machine,
-                                     struct dig_error *const           error)
+// A machine whose bucket is of the shape of the table's.
+static enum dig_status load_machine(const struct digloop_options *const options,
+                                    const struct dig_curve_set *const   set,
+                                    struct dig_machine *const           machine,
+                                    struct dig_error *const             error)
 {
-    assert(path != NULL && table != NULL && set != NULL && machine != NULL);
-    struct dig_machine    read;
-    const enum dig_status status = dig_machine_read(path, &read, error);
+    const enum dig_status status = dig_machine_read(options->machine, machine, error);
     if (status != DIG_OK) {
         return status;
     }
-    const double shape = read.bucket_width_m / read.link[DIG_JOINT_BUCKET].length_m;
+    const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
     const double scene = set->bucket_width_m / set->tooth_m;
     if (!(fabs(shape / scene - 1.0) <= similar)) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in %s "
                              "is %.3f times; expected the same shape within %.0f %%",
-                             path, shape, set->scene_name, table, scene, 100.0 * similar);
+                             options->machine, shape, set->scene_name, options->table, scene,
+                             100.0 * similar);
     }
-    *machine = read;
     return DIG_OK;
+}
+
+enum dig_status digloop_load_machine(const struct digloop_options *const options,
+                                     struct dig_curve_set *const         set,
+                                     struct digloop_machine *const       machine,
+                                     struct dig_error *const             error)
+{
+    assert(options != NULL && set != NULL && machine != NULL);
+    struct digloop_machine loaded = { .corrects = false };
+    const bool             any    = options->machine != NULL;
+    enum dig_status        status = DIG_OK;
+    if (any) {
+        status = load_machine(options, set, &loaded.machine, error);
+    }
+    if (status == DIG_OK && options->model != NULL) {
+        status = dig_load_model(options->model, options->table, any ? &loaded.machine : NULL, set,
+                                &loaded.correction, &loaded.corrects, error);
+    }
+    if (status == DIG_OK) {
+        *machine = loaded;
+    }
+    return status;
 }
 
 // The one dig of a force recording.
@@ -113,10 +135,11 @@ static enum dig_status read_force(const char *const path, const struct dig_curve
     return DIG_OK;
 }
 
-static enum dig_status read_samples(const char *const path, const struct dig_machine *const machine,
-                                    const struct dig_curve_set *const set,
-                                    struct dig_observed_digs *const   digs,
-                                    struct dig_error *const           error)
+static enum dig_status read_samples(const char *const                   path,
+                                    const struct digloop_machine *const machine,
+                                    const struct dig_curve_set *const   set,
+                                    struct dig_observed_digs *const     digs,
+                                    struct dig_error *const             error)
 {
     if (machine == NULL) {
         return dig_error_set(error, DIG_EINVAL,
@@ -125,10 +148,12 @@ static enum dig_status read_samples(const char *const path, const struct dig_mac
                              path);
     }
     struct dig_machine_recording recording = { .rows = 0 };
-    enum dig_status              status    = digloop_read_machine(path, machine, &recording, error);
+    enum dig_status status = digloop_read_machine(path, &machine->machine, &recording, error);
     if (status == DIG_OK) {
         struct dig_error why = { "" };
-        status               = dig_observe_machine(machine, set, &recording, digs, &why);
+        status =
+            dig_observe_machine(&machine->machine, machine->corrects ? &machine->correction : NULL,
+                                set, &recording, digs, &why);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", path, why.text);
         }
@@ -137,7 +162,8 @@ static enum dig_status read_samples(const char *const path, const struct dig_mac
     return status;
 }
 
-enum dig_status digloop_read_digs(const char *const path, const struct dig_machine *const machine,
+enum dig_status digloop_read_digs(const char *const                   path,
+                                  const struct digloop_machine *const machine,
                                   const struct dig_curve_set *const set, const int trajectory,
                                   struct dig_observed_digs *const digs,
                                   struct dig_error *const         error)

@@ -9,12 +9,20 @@
 #include "core/error.h"
 #include "core/machine.h"
 #include "core/recording.h"
+#include "tools/digloop/commands.h"
 
 #include <stdbool.h>
 
 /// False for a machine recording and an LCM log; true for all else: reading it as a force recording
 /// says what is wrong with it.
 bool digloop_is_force_recording(const char *path);
+
+/// The machine of --machine, and what the model of --model says of it.
+struct digloop_machine {
+    struct dig_machine    machine;
+    bool                  corrects;
+    struct dig_correction correction;
+};
 
 /// A machine recording or an LCM log of the daemon. Refuses pressures that were cut off: what is
 /// missing there would be taken for the soil's.
@@ -23,18 +31,20 @@ DIG_MUST_CHECK enum dig_status digloop_read_machine(const char                  
                                                     struct dig_machine_recording *recording,
                                                     struct dig_error             *error);
 
-/// The machine of --machine. Refuses a bucket whose shape is not that of the table's scene.
-DIG_MUST_CHECK enum dig_status digloop_load_machine(const char *path, const char *table,
-                                                    const struct dig_curve_set *set,
-                                                    struct dig_machine         *machine,
-                                                    struct dig_error           *error);
+/// Reads --machine, where given, into *machine and takes --model, where given, into it and into the
+/// curves of the set. Refuses a bucket whose shape is not that of the table's scene, and what
+/// dig_load_model() does.
+DIG_MUST_CHECK enum dig_status digloop_load_machine(const struct digloop_options *options,
+                                                    struct dig_curve_set         *set,
+                                                    struct digloop_machine       *machine,
+                                                    struct dig_error             *error);
 
 /// The digs of a file: one of a force recording, all that followed a trajectory of a machine's.
 /// trajectory: only those along it, or -1. DIG_ENOMATCH names the file when there is none;
 /// DIG_EINVAL for a machine's recording without a machine (NULL). Free with
 /// dig_observed_digs_finish().
-DIG_MUST_CHECK enum dig_status digloop_read_digs(const char                 *path,
-                                                 const struct dig_machine   *machine,
+DIG_MUST_CHECK enum dig_status digloop_read_digs(const char                   *path,
+                                                 const struct digloop_machine *machine,
                                                  const struct dig_curve_set *set, int trajectory,
                                                  struct dig_observed_digs *digs,
                                                  struct dig_error         *error);
