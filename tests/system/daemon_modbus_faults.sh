@@ -31,7 +31,7 @@ wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
 ) &
 tables=$!
 # Digs: lost answers, exceptions, answers 30 ms late, a server that goes away in the middle, nothing.
-serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
+serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 6 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
     --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[3]}" 'BEGIN { print c + 3 }'):4"
 wait "$tables"
 stop "$daemon"
@@ -58,9 +58,12 @@ series 2
 log gone
 start "$work/gone.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started
-start "$work/rig1.err" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --modbus-tcp "127.0.0.1:$port"
+# It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
+start "$work/rig1.err" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --modbus-tcp "127.0.0.1:$port" \
+    --start-delay 6
 first=$started
-sleep "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print (c + 4) / speed }')"
+wait_for 30 grep -q "serving" "$work/rig1.err"
+sleep "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
 stop "$first" KILL
 check "a server that went away is said" wait_for 5 grep -q "127.0.0.1:$port: " "$work/gone.log"
 serve_series gone --modbus-tcp "127.0.0.1:$port"
