@@ -169,7 +169,7 @@ rig() { # KEY: a number of the rig's counts
 # once; it has to be told before two seconds of wrong estimates are published.
 judge() { # NAME [BLIND]
     local late_s
-    late_s=$(awk -v ms="$(rig_late_ms)" -v speed="$speed" 'BEGIN { print ms > 0 ? 1e-3 * ms * speed : 0 }')
+    late_s=$(awk -v ms="$(rig_late_ms)" -v speed="$speed" 'BEGIN { print 1e-3 * ms * speed }')
     "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 "$late_s" >"$work/$1.judged" 2>"$work/$1.err"
     sed 's/^/      /' "$work/$1.judged"
     judged=$work/$1.judged
