@@ -22,6 +22,7 @@ static const double discrepancy = 0.05;
 static const double unlikeness = 0.2;
 
 static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
+static const size_t least_order = 4;    // digs that can show a trend: two that differ are none
 static const double sigmas_90   = 1.645;
 static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
 
@@ -59,6 +60,9 @@ bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct d
     if (!differs_by_dig(effect)) {
         return true;
     }
+    if (effect == DIG_EFFECT_WEAR && batch->digs < least_order) {
+        return false;
+    }
     double least = INFINITY;
     double most  = -INFINITY;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -66,7 +70,10 @@ bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct d
         least              = fmin(least, share);
         most               = fmax(most, share);
     }
-    return most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
+    // Ground dug before differs from the table's even where all digs are of the same pass.
+    return effect == DIG_EFFECT_COMPACTION
+               ? most > 0.5
+               : most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
 }
 
 void dig_hypothesis_features(const struct dig_soil *const       soil,
@@ -170,14 +177,14 @@ static void residual(void *const context, const double x[], double r[])
     (void)(p->differs ? means_and_digs(p, x, r) : means_alone(p, x, r));
 }
 
-// How much larger an effect makes a dig than it would be plain, in the batch's units squared.
-static double effect_squares(const struct problem *const p, const size_t g, const double x[])
+// How much larger the effects make a dig than it would be plain, in the batch's units squared.
+static double effect_squares(const struct problem *const p, const size_t g,
+                             const struct dig_measured *const dig, const double x[])
 {
-    const struct dig_measured *const dig = first_of(p->batch, g);
-    double                           with[DIG_FEATURES];
-    double                           plain[DIG_FEATURES];
-    double                           amplitude[DIG_FORCE_CHANNELS];
-    double                           y[DIG_FEATURES];
+    double with[DIG_FEATURES];
+    double plain[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+    double y[DIG_FEATURES];
     model_of(p, g, dig, x, with);
     dig_surface_features(p->soil->surface, (size_t)dig->trajectory, x, plain, amplitude);
     dig_batch_whiten(&p->batch->group[g], plain, y);
@@ -188,18 +195,33 @@ static double effect_squares(const struct problem *const p, const size_t g, cons
     return sum;
 }
 
-// v of each group at x.
+// What the effects bring along for one dig of a group: of templates, and what they may be unlike.
+static double noise_of_dig(const struct problem *const p, const size_t g,
+                           const struct dig_measured *const dig, const double x[])
+{
+    double feature[DIG_FEATURES];
+    double of_templates;
+    dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &of_templates);
+    return of_templates + unlikeness * unlikeness * effect_squares(p, g, dig, x) /
+                              (double)p->batch->group[g].features;
+}
+
+// v of each group at x. Digs that an effect makes differ share what it brings along on average.
 static void weigh(struct problem *const p, const double x[], double noise[])
 {
     for (size_t g = 0; g < p->batch->groups; g++) {
         const struct dig_batch_group *const group = &p->batch->group[g];
-        double                              feature[DIG_FEATURES];
-        double                              of_templates;
-        dig_hypothesis_features(p->soil, p->hypothesis, x, first_of(p->batch, g), feature,
-                                &of_templates);
-        noise[g] = discrepancy + dig_surface_noise(p->soil->surface, group->trajectory, x) +
-                   of_templates +
-                   unlikeness * unlikeness * effect_squares(p, g, x) / (double)group->features;
+        double                              own   = 0.0;
+        for (size_t i = 0; p->differs && i < p->batch->digs; i++) {
+            if (p->batch->dig[i].group == g) {
+                own += noise_of_dig(p, g, &p->batch->measured[p->batch->dig[i].measured], x) /
+                       (double)group->digs;
+            }
+        }
+        if (!p->differs && p->hypothesis->effects > 0) {
+            own = noise_of_dig(p, g, first_of(p->batch, g), x);
+        }
+        noise[g] = discrepancy + dig_surface_noise(p->soil->surface, group->trajectory, x) + own;
         p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + noise[g]);
     }
 }

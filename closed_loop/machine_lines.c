@@ -10,12 +10,19 @@
 // A payload of one segment beside the common one: this share of the common one's scale.
 static const double own_share = 0.5;
 
-// Of what is explained in a row so much may be wrong: an effect has never quite the form of its
-// formula, and where it is strong that is more than the sensors' noise.
-static const double form_share = 0.08;
-
-// And where it comes or goes at once, as friction does when a rod turns about, so much of the step.
-static const double step_share = 0.35;
+// How far an effect may be from the form of its formula, which where it is strong is more than the
+// sensors' noise: a share of what it explains of a row, and of the step where it comes or goes
+// within a block, as friction does when a rod turns about. A constant error of a sensor, a mass
+// that is part of the bucket and a delay are what their formulas say; what rubs, spills or is made
+// otherwise than drawn is not.
+static const struct {
+    double share, step;
+} form[DIG_MACHINE_EFFECTS] = {
+    [DIG_EFFECT_CYLINDER_FRICTION] = { 0.08, 0.35 }, [DIG_EFFECT_PRESSURE_OFFSET] = { 0.02, 0.02 },
+    [DIG_EFFECT_BUCKET_WEIGHT] = { 0.02, 0.02 },     [DIG_EFFECT_BUCKET_INERTIA] = { 0.08, 0.35 },
+    [DIG_EFFECT_PAYLOAD] = { 0.08, 0.35 },           [DIG_EFFECT_LINKAGE_GEOMETRY] = { 0.08, 0.35 },
+    [DIG_EFFECT_SENSOR_DELAY] = { 0.08, 0.35 },
+};
 
 // Step of the differences, in scales.
 static const double step = 0.05;
@@ -278,48 +285,63 @@ double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
     return rest2;
 }
 
-// What may be wrong with the form of what is explained of a row, in its sigmas: rows of a joint
-// follow each other every DIG_JOINTS rows at most.
-static double form_of(const struct dig_air *const air, const double explained[], const size_t r)
+// Adds what may be wrong with the form of what an effect explains of every row, in its sigmas: rows
+// of a joint follow each other every DIG_JOINTS rows at most.
+static void add_form(const struct dig_air *const air, const enum dig_effect_id effect,
+                     const double explained[], double wrong[])
 {
-    const double here = fabs(explained[r]);
-    double       most = here;
-    for (size_t back = 1; back <= DIG_JOINTS; back++) {
-        if (back <= r && air->row[r - back].joint == air->row[r].joint &&
-            air->row[r - back].segment == air->row[r].segment) {
-            most = fmax(most, fabs(explained[r - back]));
+    for (size_t r = 0; r < air->rows; r++) {
+        const double here = fabs(explained[r]);
+        double       most = here;
+        for (size_t back = 1; back <= DIG_JOINTS; back++) {
+            if (back <= r && air->row[r - back].joint == air->row[r].joint &&
+                air->row[r - back].segment == air->row[r].segment) {
+                most = fmax(most, fabs(explained[r - back]));
+            }
+            if (r + back < air->rows && air->row[r + back].joint == air->row[r].joint &&
+                air->row[r + back].segment == air->row[r].segment) {
+                most = fmax(most, fabs(explained[r + back]));
+            }
         }
-        if (r + back < air->rows && air->row[r + back].joint == air->row[r].joint &&
-            air->row[r + back].segment == air->row[r].segment) {
-            most = fmax(most, fabs(explained[r + back]));
-        }
+        wrong[r] += form[effect].share * here + form[effect].step * (most - here);
     }
-    return form_share * here + step_share * (most - here);
 }
 
-// Chi-squared of sums over one segment and joint each: what is slow shows here best. explained:
-// what the values took of each row.
+// Chi-squared of sums over one segment and joint each: what is slow shows here best.
 static double slow_rest2(const struct dig_lines *const lines, const double rest[],
-                         const double explained[])
+                         const double wrong[])
 {
     double sum = 0.0;
     for (size_t s = 0; s < lines->air->segments; s++) {
         const struct dig_air_segment *const segment = &lines->air->segment[s];
 
         double of[DIG_JOINTS]    = { 0.0 };
-        double form[DIG_JOINTS]  = { 0.0 };
+        double off[DIG_JOINTS]   = { 0.0 };
         double count[DIG_JOINTS] = { 0.0 };
         for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
             const enum dig_joint j = lines->air->row[r].joint;
             of[j] += rest[r];
-            form[j] += form_of(lines->air, explained, r);
+            off[j] += wrong[r];
             count[j] += 1.0;
         }
         for (int j = 0; j < DIG_JOINTS; j++) {
-            sum += count[j] > 0.0 ? of[j] * of[j] / (count[j] + form[j] * form[j]) : 0.0;
+            sum += count[j] > 0.0 ? of[j] * of[j] / (count[j] + off[j] * off[j]) : 0.0;
         }
     }
     return sum;
+}
+
+// The values without those of one effect; false when it has none.
+static bool leave_out(const struct dig_lines *const lines, const enum dig_effect_id effect,
+                      double at[])
+{
+    bool any = false;
+    for (size_t c = 0; c < lines->columns; c++) {
+        const bool mine = lines->column[c].effect == effect;
+        any             = any || (mine && fabs(lines->at[c]) > 0.0);
+        at[c]           = mine ? 0.0 : lines->at[c];
+    }
+    return any;
 }
 
 enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slow)
@@ -328,26 +350,35 @@ enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slo
     const size_t                 rows = lines->air->rows + 1;
     struct dig_correction *const correction =
         malloc((lines->air->segments + 1) * sizeof *correction);
-    double *const none = calloc(lines->columns, sizeof *none);
-    double *const rest = malloc(2 * rows * sizeof *rest);
-    if (correction == NULL || none == NULL || rest == NULL) {
+    double *const at   = malloc((lines->columns + 1) * sizeof *at);
+    double *const rest = calloc(3 * rows, sizeof *rest);
+    if (correction == NULL || at == NULL || rest == NULL) {
         free(correction);
-        free(none);
+        free(at);
         free(rest);
         return DIG_ENOMEM;
     }
     double *const explained = rest + rows;
-    correct(lines, none, correction);
-    dig_air_rest(lines->air, correction, false, explained);
+    double *const wrong     = rest + 2 * rows;
     correct(lines, lines->at, correction);
     dig_air_rest(lines->air, correction, false, rest);
-    for (size_t r = 0; r < lines->air->rows; r++) {
-        explained[r] -= rest[r];
-        lines->trust[r] = 1.0 / hypot(1.0, form_of(lines->air, explained, r));
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        const enum dig_effect_id effect = (enum dig_effect_id)e;
+        if (leave_out(lines, effect, at)) {
+            correct(lines, at, correction);
+            dig_air_rest(lines->air, correction, false, explained);
+            for (size_t r = 0; r < lines->air->rows; r++) {
+                explained[r] -= rest[r];
+            }
+            add_form(lines->air, effect, explained, wrong);
+        }
     }
-    *slow = slow_rest2(lines, rest, explained);
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        lines->trust[r] = 1.0 / hypot(1.0, wrong[r]);
+    }
+    *slow = slow_rest2(lines, rest, wrong);
     free(correction);
-    free(none);
+    free(at);
     free(rest);
     return DIG_OK;
 }

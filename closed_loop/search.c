@@ -17,6 +17,10 @@ static const double least_share = 0.75;
 static const double most_left   = 2.0;
 static const double much_left   = 4.0;
 
+// What is significant and that nothing explains, with a name or without, is taken for chance unless
+// it is so much rarer than the level.
+static const double rarer = 0.01;
+
 // Log evidence by which one answer must lead, and within which two are not told apart.
 static const double lead       = 3.0;
 static const double told_apart = 6.0;
@@ -147,6 +151,7 @@ static enum dig_status decide_whether(struct context *const c)
                              dig_null_p(&c->plain_null, 2, statistic.gain));
     c->s->p_complete  = 1.0 - (1.0 - p) * (1.0 - p);
     c->s->significant = c->s->p_complete < c->false_alarm;
+    c->s->plain_fit   = dig_null_p(&c->plain_null, 0, left_of(c, &c->s->plain));
     for (size_t i = 0; i < c->s->rivals; i++) {
         c->s->rival_fit[i] = dig_null_p(&c->plain_null, 0, left_of(c, &c->s->rival[i]));
     }
@@ -321,22 +326,34 @@ static bool is_outside(const struct context *const c)
            (p >= least_fit || share_of(c, &c->s->beyond) >= least_share);
 }
 
-// Single effects whose evidence is next to that of the one chosen.
+static bool is_near_chosen(const struct context *const c, const size_t rival)
+{
+    const double evidence = evidence_of(c, &c->s->chosen, 1);
+    return c->s->log_evidence[rival] > fmax(evidence - told_apart, 0.0) &&
+           !holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
+}
+
+// Where evidence is not decisive: fits at least half as likely, and has less evidence only for the
+// noise that few beds of it bring along.
+static bool is_as_likely(const struct context *const c, const size_t rival)
+{
+    const double fit = dig_null_p(&c->plain_null, 0, left_of(c, &c->s->chosen));
+    return evidence_of(c, &c->s->chosen, 1) < 2.0 * told_apart && c->s->plain_fit < least_fit &&
+           c->s->rival_fit[rival] >= fmax(0.5 * fit, least_fit) && !is_near_chosen(c, rival) &&
+           !holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
+}
+
+// Single effects that the digs cannot tell from the one chosen, in the order of their evidence.
 static void find_set(struct context *const c)
 {
-    struct dig_candidate_set *const set      = &c->s->set[0];
-    const struct dig_fitted *const  chosen   = &c->s->chosen;
-    const double                    evidence = evidence_of(c, chosen, 1);
-    set->effects                             = 0;
-    set->effect[set->effects++]              = chosen->hypothesis.effect[0];
-    bool taken[DIG_NULL_RIVALS]              = { false };
+    struct dig_candidate_set *const set = &c->s->set[0];
+    set->effects                        = 0;
+    set->effect[set->effects++]         = c->s->chosen.hypothesis.effect[0];
+    bool taken[DIG_NULL_RIVALS]         = { false };
     for (size_t turn = 0; turn < 2; turn++) {
         size_t next = c->s->rivals;
         for (size_t i = 0; i < c->s->rivals; i++) {
-            const bool is_near = c->s->log_evidence[i] > evidence - told_apart &&
-                                 c->s->log_evidence[i] > 0.0 &&
-                                 !holds(&chosen->hypothesis, c->single[i].effect[0]);
-            if (is_near && !taken[i] &&
+            if ((is_near_chosen(c, i) || is_as_likely(c, i)) && !taken[i] &&
                 (next == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[next])) {
                 next = i;
             }
@@ -360,7 +377,9 @@ static void set_probabilities(struct context *const c)
         double with    = exp(0.0);
         double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
         for (size_t i = 0; i < c->s->rivals; i++) {
-            const double weight = exp(temper * (c->s->log_evidence[i] - evidence));
+            // What fits as well may be what is there, whatever its noise costs.
+            const double ahead  = c->s->log_evidence[i] - evidence;
+            const double weight = exp(temper * (single && is_as_likely(c, i) ? 0.0 : ahead));
             const bool   same   = c->single[i].effect[0] == chosen->hypothesis.effect[e];
             with += same && !single ? weight : 0.0;
             without += same ? 0.0 : weight;
@@ -433,6 +452,12 @@ enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_s
         return status;
     }
     search->outside = is_outside(&c);
+    if (search->unlisted && !search->outside && search->without_name.functions == 0 &&
+        best_evidence(search) <= 0.0 && search->p_complete > rarer * false_alarm) {
+        search->unlisted    = false;
+        search->significant = false;
+        return DIG_OK;
+    }
     if (search->outside) {
         search->chosen   = search->beyond;
         search->unlisted = false;

@@ -27,6 +27,7 @@ struct dig_search {
     struct dig_fitted rival[DIG_NULL_RIVALS];
     double            log_evidence[DIG_NULL_RIVALS];
     double            rival_fit[DIG_NULL_RIVALS]; // p
+    double            plain_fit;                  // p of plain
     double            inclusion[DIG_NULL_RIVALS];
     double            probability[DIG_HYPOTHESIS_EFFECTS]; // of chosen's effects
 

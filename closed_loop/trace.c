@@ -250,7 +250,10 @@ static enum dig_status fill_verdict(const struct dig_tracing *const         t,
         if (trace->unlisted == NULL) {
             return DIG_ENOMEM;
         }
-        dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
+        // A machine that is not understood may do otherwise to the next dig.
+        if (of_soil && !air->unexplained) {
+            dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
+        }
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
                        of_soil ? s->without_name.depends_on : "the machine's motion in free air");
         trace->seen_in[trace->effects]  = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
@@ -368,6 +371,44 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
     return status;
 }
 
+// Digs that are like the table's as they were measured, and like nothing once what free air names
+// is taken off: what it names is not what is there.
+static enum dig_status doubt_air(struct dig_machine_side *const         machine,
+                                 const struct dig_trace_settings *const settings, const size_t digs,
+                                 struct dig_measured measured[], struct work *const w,
+                                 struct dig_error *const error)
+{
+    struct dig_batch *const  batch  = malloc(sizeof *batch);
+    struct dig_search *const search = malloc(sizeof *search);
+    enum dig_status          status = DIG_ENOMEM;
+    if (batch != NULL && search != NULL) {
+        struct dig_fitted raw;
+        *batch  = *w->batch;
+        *search = *w->search;
+        status  = dig_machine_side_apply(machine, 0, w->air->effect, measured);
+        if (status == DIG_OK) {
+            status = make_batch(w, digs, measured, &raw, error);
+        }
+        if (status == DIG_OK) {
+            status = dig_search_run(w->batch, w->soil, settings->false_alarm / 2.0,
+                                    settings->bootstraps, settings->seed, w->search);
+        }
+    }
+    if (status == DIG_OK && (!w->search->significant ||
+                             w->search->plain.squares < search->plain.squares - clearly_less)) {
+        w->air->unexplained = true;
+        w->air->effects     = 0;
+        w->air->sets        = 0;
+    } else if (status == DIG_OK) {
+        *w->batch  = *batch;
+        *w->search = *search;
+        status     = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
+    }
+    free(batch);
+    free(search);
+    return status;
+}
+
 static enum dig_status run(const struct dig_curve_set *const set, const char *const table,
                            const struct dig_effect_set *const     effects,
                            const struct dig_trace_settings *const settings,
@@ -396,6 +437,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
+    }
+    if (status == DIG_OK && w->air->effects > 0 && w->search->significant && w->search->unlisted) {
+        status = doubt_air(machine, settings, digs, measured, w, error);
     }
     // Nothing was found: nothing changes.
     if (status == DIG_OK && !w->search->significant && w->air->effects == 0) {

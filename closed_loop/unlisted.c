@@ -278,25 +278,90 @@ static double credible(const struct dig_batch *const batch, const struct dig_soi
     return squares > expected ? 1.0 - expected / squares : 0.0;
 }
 
+// What is left of a dig's curves.
+static void left_of(const struct dig_soil *const soil, const struct dig_fitted *const fitted,
+                    const struct dig_measured *const dig,
+                    double                           left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number, dig, curve);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            left[c][k] = dig->value[c][k] - dig->machine[c][k] - curve[c][k];
+        }
+    }
+}
+
+// The mean of what is left of a group's digs.
+static void mean_left(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                      const struct dig_fitted *const fitted, const size_t g,
+                      double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    memset(mean, 0, DIG_FORCE_CHANNELS * sizeof mean[0]);
+    for (size_t i = 0; i < batch->digs; i++) {
+        double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        left_of(soil, fitted, &batch->measured[batch->dig[i].measured], left);
+        for (size_t c = 0; batch->dig[i].group == g && c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                mean[c][k] += left[c][k] / (double)batch->group[g].digs;
+            }
+        }
+    }
+}
+
+// What is gained, in squares of the moment, when each dig of a group is predicted from the others'
+// residuals.
+static double gain_of(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                      const struct dig_fitted *const fitted, const size_t g)
+{
+    const double by = credible(batch, soil, fitted, g);
+    const double n  = (double)batch->group[g].digs;
+    double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double       gain = 0.0;
+    mean_left(batch, soil, fitted, g, mean);
+    for (size_t i = 0; n > 1.0 && i < batch->digs; i++) {
+        double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        if (batch->dig[i].group != g) {
+            continue;
+        }
+        left_of(soil, fitted, &batch->measured[batch->dig[i].measured], left);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double own    = left[DIG_CHANNEL_MY_Nm][k];
+            const double others = (n * mean[DIG_CHANNEL_MY_Nm][k] - own) / (n - 1.0);
+            gain += own * own - pow(own - by * others, 2.0);
+        }
+    }
+    return gain;
+}
+
+// Whether a trajectory's mean residual is worth taking off. Digs that differ from each other rather
+// than from the table are made worse by it; of a dig alone the other trajectories tell.
+static void choose_groups(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                          const struct dig_fitted *const fitted, bool helps[DIG_TRAJECTORY_MAX])
+{
+    bool all = true;
+    for (size_t g = 0; g < batch->groups; g++) {
+        helps[g] = batch->group[g].digs < 2 || gain_of(batch, soil, fitted, g) > 0.0;
+        all      = all && helps[g];
+    }
+    for (size_t g = 0; g < batch->groups; g++) {
+        helps[g] = helps[g] && (all || batch->group[g].digs > 1);
+    }
+}
+
 void dig_unlisted_correct(const struct dig_batch *const batch, const struct dig_soil *const soil,
                           const struct dig_fitted *const   fitted,
                           struct dig_model_unlisted *const share)
 {
+    bool helps[DIG_TRAJECTORY_MAX] = { false };
     memset(share->share, 0, sizeof share->share);
+    choose_groups(batch, soil, fitted, helps);
     for (size_t g = 0; g < batch->groups; g++) {
         const size_t t  = batch->group[g].trajectory;
-        const double by = credible(batch, soil, fitted, g);
+        const double by = helps[g] ? credible(batch, soil, fitted, g) : 0.0;
         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
-        for (size_t i = 0; i < batch->digs; i++) {
-            const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
-            for (size_t c = 0; batch->dig[i].group == g && c < DIG_FORCE_CHANNELS; c++) {
-                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                    mean[c][k] +=
-                        (dig->value[c][k] - dig->machine[c][k]) / (double)batch->group[g].digs;
-                }
-            }
-        }
+        double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        mean_left(batch, soil, fitted, g, mean);
         dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number, first_of(batch, g), curve);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             double squares = 0.0;
@@ -304,8 +369,7 @@ void dig_unlisted_correct(const struct dig_batch *const batch, const struct dig_
                 squares += curve[c][k] * curve[c][k] / DIG_CURVE_POINTS;
             }
             for (size_t k = 0; first_of(batch, g)->measured[c] && k < DIG_CURVE_POINTS; k++) {
-                share->share[t][c][k] =
-                    (float)(by * (mean[c][k] - curve[c][k]) / fmax(sqrt(squares), 1e-12));
+                share->share[t][c][k] = (float)(by * mean[c][k] / fmax(sqrt(squares), 1e-12));
             }
         }
     }

@@ -1,0 +1,99 @@
+#include "closed_loop/unlisted.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 7 };
+
+static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
+static struct made_world         world;
+static struct dig_soil          *soil;
+static struct dig_batch         *batch;
+static struct dig_measured      *measured;
+static struct dig_model_unlisted share;
+
+static int make(void **state)
+{
+    (void)state;
+    world    = made_world(5);
+    measured = calloc(DIGS, sizeof *measured);
+    batch    = malloc(sizeof *batch);
+    return dig_soil_create(world.surface, world.effects, &soil);
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    free(batch);
+    free(measured);
+    made_world_finish(&world);
+    return 0;
+}
+
+// Six simple digs with a dip of these magnitudes, and one real one with the first's; corrected
+// beside the gravel that they are of. Returns the root mean square of the share along a trajectory.
+static double correct(const double magnitude[2], const enum made_trajectory along)
+{
+    const enum dig_effect_id dip  = DIG_EFFECT_UNLISTED;
+    uint64_t                 seed = 11;
+    bool                     take[DIGS];
+    double                   place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        const bool simple = i + 1 < DIGS;
+        measured[i]       = made_dig(&gravel, simple ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &dip,
+                                     &magnitude[simple ? i % 2 : 0], &seed);
+        take[i]           = true;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    struct dig_fitted plain = { .hypothesis = { .effects = 0 } };
+    memcpy(plain.number, place, sizeof place);
+    for (size_t g = 0; g < batch->groups; g++) {
+        plain.noise[g] = 0.1;
+    }
+    dig_unlisted_correct(batch, soil, &plain, &share);
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += pow((double)share.share[along][DIG_CHANNEL_MY_Nm][k], 2.0) / DIG_CURVE_POINTS;
+    }
+    return sqrt(sum);
+}
+
+static void what_all_digs_show_is_corrected(void **state)
+{
+    (void)state;
+    double dip = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        dip += pow(made_effect(DIG_EFFECT_UNLISTED, MADE_SIMPLE_A, DIG_CHANNEL_MY_Nm,
+                               (double)k / (DIG_CURVE_POINTS - 1)),
+                   2.0) /
+               DIG_CURVE_POINTS;
+    }
+    const double same[2] = { 1.0, 1.0 };
+    assert_close(correct(same, MADE_SIMPLE_A) / sqrt(dip), 1.0, 0.25);
+    assert_true(correct(same, MADE_ACTUAL) > 0.3 * sqrt(dip));
+}
+
+// Large in every dig and different in each: the mean of the others makes each worse, and of the
+// real dig alone nobody knows.
+static void digs_that_differ_from_each_other_are_left_alone(void **state)
+{
+    (void)state;
+    const double against[2] = { 2.0, -2.0 };
+    assert_close(correct(against, MADE_SIMPLE_A), 0.0, 1e-9);
+    assert_close(correct(against, MADE_ACTUAL), 0.0, 1e-9);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_all_digs_show_is_corrected),
+        cmocka_unit_test(digs_that_differ_from_each_other_are_left_alone),
+    };
+    return cmocka_run_group_tests_name("unlisted", tests, make, clean);
+}
