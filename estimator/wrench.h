@@ -29,8 +29,8 @@
 /// front is placed all the same. A missing pitch counts as 0. Without the boom's or the arm's
 /// pressures the force is not told; the moment and its sigma are what they are with them.
 ///
-/// DIG_ESTALE: an angle or a pressure of the bucket's is missing. DIG_EINVAL: a number that is not finite. Then nothing is
-/// written. Constant time: seven solutions of the balance.
+/// DIG_ESTALE: an angle or a pressure of the bucket's is missing. DIG_EINVAL: a number that is not
+/// finite. Then nothing is written. Constant time: seven solutions of the balance.
 ///
 /// sigma: pressures through the exact linear dependence, angles through central differences over
 /// one sigma of the angle, all errors independent; near a toggle or a stretched arm it grows as the
