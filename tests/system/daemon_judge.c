@@ -10,9 +10,9 @@
 //
 // An estimate said to be valid is wrong when no moment that was there at that pose of the bucket,
 // within 1.5 s + LATE_s of it (machine time: the clocks are brought together by the pose, and a bus
-// that is late is no lie; LATE_s says by how much it was), is within 5 sigma. A match said to be valid and not outside is wrong when an
-// axis' interval, widened by half, misses the truth; a prediction when its peak is off the truth's
-// by more than a third.
+// that is late is no lie; LATE_s says by how much it was), is within 5 sigma. A match said to be
+// valid and not outside is wrong when an axis' interval, widened by half, misses the truth; a
+// prediction when its peak is off the truth's by more than a third.
 
 #include "files/lcm_log.h"
 
@@ -167,9 +167,8 @@ int main(const int argc, char *argv[])
     };
     struct dig_error error = { "" };
     if (j == NULL || (argc != 7 && argc != 9) || read_truth(argv[2], j) != 0) {
-        (void)fprintf(
-            stderr,
-            "usage: daemon_judge LOG.lcm TRUTH.csv FRICTION ROLLING DENSITY LATE_s [FROM_s LENGTH_s]\n");
+        (void)fprintf(stderr, "usage: daemon_judge LOG.lcm TRUTH.csv FRICTION ROLLING DENSITY "
+                              "LATE_s [FROM_s LENGTH_s]\n");
         return 2;
     }
     for (int a = 0; a < 3; a++) {
@@ -191,7 +190,7 @@ int main(const int argc, char *argv[])
         const double near = sigmas_off(j, i, shift_s, NEAR_s);
         const double off =
             near > 5.0 && j->late_s > 0.0 ? sigmas_off(j, i, shift_s, NEAR_s + j->late_s) : near;
-        const int    d    = (j->dig[i] + 1) % DIGS;
+        const int d       = (j->dig[i] + 1) % DIGS;
         digs              = j->dig[i] > digs ? j->dig[i] : digs;
         const double at_s = j->seen[i].t_s - shift_s;
         within += off > 5.0 && at_s >= from_s && at_s < from_s + length_s ? 1 : 0;
