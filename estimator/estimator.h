@@ -34,6 +34,7 @@ struct dig_wrench {
     // The part of sigma_My that does not average down over many samples (quantisation of a signal
     // that stands still); included in sigma_My_Nm.
     double slow_sigma_My_Nm;
+    double slow_sigma_Fx_N, slow_sigma_Fz_N; // the same of the forces
 };
 
 enum dig_dig_phase { DIG_PHASE_AIR, DIG_PHASE_CONTACT, DIG_PHASE_DIG, DIG_PHASE_EXIT };
@@ -58,6 +59,9 @@ struct dig_observation {
     double   first, last;                 // progress range that was measured
     double   moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
     double   sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
+    bool     forces;                      // Fx and Fz were measured, too, as far as the moment
+    double   force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double   force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
 };
 
 #define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
@@ -70,9 +74,12 @@ struct dig_match {
     size_t            digs;      // pooled
     int               nearest;   // entry of the table
     double            nearest_distance;
-    struct dig_gravel gravel; // between the grid points
+    struct dig_gravel gravel; // between the grid points: of the smallest distance, or, where forces
+                              // were measured, the most probable
     double            distance;
     struct dig_gravel mean, low, high; // posterior mean and 5 %, 95 % of each axis
+    struct dig_gravel mode;            // where the posterior is highest
+    bool              forces;          // the posterior is of moment and forces
     double            noise_floor;     // expected distance of another packing of the same gravel
     bool              outside;         // distance says: none of the table's gravels
     double            outside_floors;  // distance > this many noise floors is outside

@@ -205,6 +205,16 @@ static enum dig_status improve(struct problem *const problem, const double start
     return DIG_OK;
 }
 
+// Of every dig.
+static bool has_forces(const struct dig_pool_sums *const sums)
+{
+    bool has = true;
+    for (size_t g = 0; g < sums->groups; g++) {
+        has = has && sums->group[g].forces;
+    }
+    return has;
+}
+
 static enum dig_status refine(const struct dig_curve_set *const set,
                               const struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
@@ -238,11 +248,19 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.gravel = gravel_of(&problem, x);
     }
 
-    const struct dig_distance at_best = distance_at(&problem, &refined.gravel);
+    // How far the table is, its nearest gravel says; which gravel it is, all that was measured.
+    struct dig_distance at_best = distance_at(&problem, &refined.gravel);
+    if (at_best.distance < no_curve) {
+        refined.outside = at_best.distance > match->outside_floors * at_best.noise_floor;
+    }
+    if (judged == DIG_OK && has_forces(sums)) {
+        refined.gravel = refined.mode;
+        refined.forces = true;
+        at_best        = distance_at(&problem, &refined.gravel);
+    }
     if (at_best.distance < no_curve) {
         refined.distance    = at_best.distance;
         refined.noise_floor = at_best.noise_floor;
-        refined.outside     = at_best.distance > match->outside_floors * at_best.noise_floor;
     }
 
     // The smallest distance and the posterior weigh errors differently; an interval that left out

@@ -28,6 +28,13 @@ enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
             !(observation->sigma_Nm[k] >= 0.0 && isfinite(observation->sigma_Nm[k]))) {
             return DIG_EINVAL;
         }
+        for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+            if (!isfinite(observation->force_N[c][k]) ||
+                !(observation->force_sigma_N[c][k] >= 0.0 &&
+                  isfinite(observation->force_sigma_N[c][k]))) {
+                return DIG_EINVAL;
+            }
+        }
         sum += is_measured(observation, k) ? pow(observation->moment_Nm[k], 2.0) : 0.0;
     }
     return sum > 0.0 && isfinite(sum) ? DIG_OK : DIG_EINVAL;
@@ -135,6 +142,7 @@ enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, co
         .gravel           = set->gravel[nearest],
         .distance         = best.distance,
         .mean             = set->gravel[nearest],
+        .mode             = set->gravel[nearest],
         .low              = set->gravel[nearest],
         .high             = set->gravel[nearest],
         .noise_floor      = best.noise_floor,

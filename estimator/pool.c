@@ -22,7 +22,7 @@ static struct dig_pooled *group_of(struct dig_pool_sums *const sums, const size_
     }
     if (g == sums->groups) {
         assert(g < DIG_TRAJECTORY_MAX);
-        sums->group[g] = (struct dig_pooled){ .trajectory = trajectory };
+        sums->group[g] = (struct dig_pooled){ .trajectory = trajectory, .forces = true };
         sums->groups++;
     }
     return &sums->group[g];
@@ -31,6 +31,7 @@ static struct dig_pooled *group_of(struct dig_pool_sums *const sums, const size_
 // Mean and sum of squares about it, updated by one value (Welford 1962).
 static void add(struct dig_pooled *const group, const struct dig_observation *const dig)
 {
+    group->forces = group->forces && dig->forces;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = (double)k / (DIG_CURVE_POINTS - 1);
         if (at < dig->first || at > dig->last) {
@@ -44,6 +45,12 @@ static void add(struct dig_pooled *const group, const struct dig_observation *co
         group->sigma2_Nm2[k] += (sigma2 - group->sigma2_Nm2[k]) / group->count[k];
         group->scatter_Nm2 += off * (value - group->mean_Nm[k]);
         group->whole_Nm2 += value * value;
+        for (size_t c = 0; group->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+            const double share  = 1.0 / group->count[k];
+            const double force2 = dig->force_sigma_N[c][k] * dig->force_sigma_N[c][k];
+            group->force_N[c][k] += share * (dig->force_N[c][k] - group->force_N[c][k]);
+            group->force_sigma2_N2[c][k] += share * (force2 - group->force_sigma2_N2[c][k]);
+        }
     }
 }
 

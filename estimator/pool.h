@@ -24,8 +24,13 @@ struct dig_pooled {
     double count[DIG_CURVE_POINTS];      // digs that measured the point
     double mean_Nm[DIG_CURVE_POINTS];    // of them; 0 where there is none
     double sigma2_Nm2[DIG_CURVE_POINTS]; // mean square of their sigmas
-    double scatter_Nm2;                  // squares of moment less mean, over digs and points
-    double whole_Nm2;                    // squares of the moments, over digs and points
+    // Means of the forces, Fx and Fz, and mean squares of their sigmas; only when every dig has
+    // them.
+    bool   forces;
+    double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double force_sigma2_N2[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double scatter_Nm2; // squares of moment less mean, over digs and points
+    double whole_Nm2;   // squares of the moments, over digs and points
 };
 
 /// The same along each trajectory that was dug.

@@ -21,14 +21,16 @@ static const double least_d = 1e-60;
 // Of the digs along one trajectory.
 struct likelihood {
     const struct dig_pooled *group;
-    double                   effective; // independent errors along the dig
-    double                   relative2; // pooled (sd / mean)^2 of the trajectory
-    size_t                   from, end; // first point measured, and behind the last
-    double                   points;    // measured
+    size_t                   channels;                      // the moment alone, or with both forces
+    double                   effective;                     // independent errors along the dig
+    double                   relative2[DIG_FORCE_CHANNELS]; // pooled (sd / mean)^2
+    size_t                   from, end;                     // points: the first, behind the last
+    double                   points;                        // measured
 };
 
 // Squared spread of one dig relative to the mean, over all entries of the trajectory.
-static double pooled_relative2(const struct dig_curve_set *const set, const size_t trajectory)
+static double pooled_relative2(const struct dig_curve_set *const set, const size_t trajectory,
+                               const size_t channel)
 {
     double sd2   = 0.0;
     double mean2 = 0.0;
@@ -43,8 +45,8 @@ static double pooled_relative2(const struct dig_curve_set *const set, const size
         double entry_sd2   = 0.0;
         double entry_mean2 = 0.0;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            entry_sd2 += pow((double)curve->sd[DIG_CHANNEL_MY_Nm][k], 2.0);
-            entry_mean2 += pow((double)curve->mean[DIG_CHANNEL_MY_Nm][k], 2.0);
+            entry_sd2 += pow((double)curve->sd[channel][k], 2.0);
+            entry_mean2 += pow((double)curve->mean[channel][k], 2.0);
         }
         if (entry_mean2 > 0.0) {
             sd2 += entry_sd2 / entry_mean2;
@@ -54,20 +56,38 @@ static double pooled_relative2(const struct dig_curve_set *const set, const size
     return mean2 > 0.0 ? sd2 / mean2 : 0.0;
 }
 
-static double log_likelihood(const struct likelihood *const l, const struct dig_cell *const cell)
+// Mean and variance of one dig at each point, of one channel at one gravel.
+struct channel_curve {
+    double mean[DIG_CURVE_POINTS];
+    double spread2[DIG_CURVE_POINTS];
+};
+
+static void make_curve(const struct likelihood *const l, const struct dig_cell *const cell,
+                       const size_t channel, struct channel_curve *const curve)
 {
     const double own    = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
     const double shared = pooled_weight / (pooled_weight + own);
-
-    double mean_Nm[DIG_CURVE_POINTS];
-    double sd_Nm[DIG_CURVE_POINTS];
-    dig_cell_blend(cell, DIG_CHANNEL_MY_Nm, mean_Nm, sd_Nm);
+    dig_cell_blend(cell, (enum dig_channel)channel, curve->mean, curve->spread2);
 
     double mean2 = 0.0;
     for (size_t k = l->from; k < l->end; k++) {
-        mean2 += l->group->count[k] > 0.0 ? mean_Nm[k] * mean_Nm[k] : 0.0;
+        mean2 += l->group->count[k] > 0.0 ? curve->mean[k] * curve->mean[k] : 0.0;
     }
-    const double floor2 = least_spread * least_spread * l->relative2 * mean2 / l->points;
+    const double relative2 = l->relative2[channel];
+    const double floor2    = least_spread * least_spread * relative2 * mean2 / l->points;
+    for (size_t k = l->from; k < l->end; k++) {
+        const double sd      = curve->spread2[k];
+        const double pooled2 = relative2 * curve->mean[k] * curve->mean[k];
+        curve->spread2[k]    = (1.0 - shared) * sd * sd + shared * pooled2 + floor2;
+    }
+}
+
+// The moment alone.
+static double log_likelihood_of_moment(const struct likelihood *const l,
+                                       const struct dig_cell *const   cell)
+{
+    struct channel_curve moment;
+    make_curve(l, cell, DIG_CHANNEL_MY_Nm, &moment);
 
     // A logarithm is dear: one of a few variances' product.
     double sum     = 0.0;
@@ -77,11 +97,9 @@ static double log_likelihood(const struct likelihood *const l, const struct dig_
         if (!(n > 0.0)) {
             continue;
         }
-        const double pooled2 = l->relative2 * mean_Nm[k] * mean_Nm[k];
-        const double spread2 = (1.0 - shared) * sd_Nm[k] * sd_Nm[k] + shared * pooled2 + floor2;
-        const double d =
-            spread2 * (1.0 / n + cell->inverse_packings) + l->group->sigma2_Nm2[k] / n + least_d;
-        const double miss = l->group->mean_Nm[k] - mean_Nm[k];
+        const double d = moment.spread2[k] * (1.0 / n + cell->inverse_packings) +
+                         l->group->sigma2_Nm2[k] / n + least_d;
+        const double miss = l->group->mean_Nm[k] - moment.mean[k];
         sum += miss * miss / d;
         product *= d;
         if (k % 4 == 3) {
@@ -92,6 +110,64 @@ static double log_likelihood(const struct likelihood *const l, const struct dig_
     return -0.5 * l->effective * (sum + log(product)) / l->points;
 }
 
+// Moment and forces of one point: their misses, the variances of the digs' spread, and of the
+// measurement, about a mean. Returns miss' D^-1 miss, and det D.
+static double joint2(const double miss[DIG_FORCE_CHANNELS], const double spread2[],
+                     const double sigma2[], double *const determinant)
+{
+    double s[DIG_FORCE_CHANNELS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        s[c] = sqrt(spread2[c]);
+    }
+    const double d00 = spread2[0] + sigma2[0];
+    const double d11 = spread2[1] + sigma2[1];
+    const double d22 = spread2[2] + sigma2[2];
+    const double d01 = DIG_POSTERIOR_MY_FX * s[0] * s[1];
+    const double d02 = DIG_POSTERIOR_MY_FZ * s[0] * s[2];
+    const double d12 = DIG_POSTERIOR_FX_FZ * s[1] * s[2];
+
+    // Cholesky's square-free form: D = L diag(e) L'.
+    const double l10 = d01 / d00;
+    const double l20 = d02 / d00;
+    const double e1  = d11 - l10 * d01;
+    const double l21 = (d12 - l20 * d01) / e1;
+    const double e2  = d22 - l20 * d02 - l21 * l21 * e1;
+    const double y1  = miss[1] - l10 * miss[0];
+    const double y2  = miss[2] - l20 * miss[0] - l21 * y1;
+    *determinant     = d00 * e1 * e2;
+    return miss[0] * miss[0] / d00 + y1 * y1 / e1 + y2 * y2 / e2;
+}
+
+static double log_likelihood_of_all(const struct likelihood *const l,
+                                    const struct dig_cell *const   cell)
+{
+    const struct dig_pooled *const group = l->group;
+    struct channel_curve           curve[DIG_FORCE_CHANNELS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        make_curve(l, cell, c, &curve[c]);
+    }
+    double sum = 0.0;
+    for (size_t k = l->from; k < l->end; k++) {
+        const double n = group->count[k];
+        if (!(n > 0.0)) {
+            continue;
+        }
+        const double widened   = 1.0 / n + cell->inverse_packings;
+        const double miss[]    = { group->mean_Nm[k] - curve[0].mean[k],
+                                   group->force_N[0][k] - curve[1].mean[k],
+                                   group->force_N[1][k] - curve[2].mean[k] };
+        const double spread2[] = { widened * curve[0].spread2[k] + least_d,
+                                   widened * curve[1].spread2[k] + least_d,
+                                   widened * curve[2].spread2[k] + least_d };
+        const double sigma2[]  = { group->sigma2_Nm2[k] / n, group->force_sigma2_N2[0][k] / n,
+                                   group->force_sigma2_N2[1][k] / n };
+        double       determinant;
+        sum += joint2(miss, spread2, sigma2, &determinant);
+        sum += log(determinant);
+    }
+    return -0.5 * l->effective * sum / l->points;
+}
+
 static struct likelihood likelihood_of(const struct dig_curve_set *const set,
                                        const struct dig_pooled *const    group)
 {
@@ -99,9 +175,12 @@ static struct likelihood likelihood_of(const struct dig_curve_set *const set,
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
     const double correlation_m = DIG_POSTERIOR_CORRELATION * set->tooth_m;
 
-    struct likelihood l = { .group     = group,
-                            .relative2 = pooled_relative2(set, group->trajectory),
-                            .from      = DIG_CURVE_POINTS };
+    struct likelihood l = { .group    = group,
+                            .channels = group->forces ? DIG_FORCE_CHANNELS : 1,
+                            .from     = DIG_CURVE_POINTS };
+    for (size_t c = 0; c < l.channels; c++) {
+        l.relative2[c] = pooled_relative2(set, group->trajectory, c);
+    }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         if (group->count[k] > 0.0) {
             l.from = k < l.from ? k : l.from;
@@ -125,7 +204,8 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
         if (dig_cell_find(set, gravel, l[g].group->trajectory, &cell) != DIG_OK) {
             return -INFINITY;
         }
-        sum += log_likelihood(&l[g], &cell);
+        sum += l[g].channels == 1 ? log_likelihood_of_moment(&l[g], &cell)
+                                  : log_likelihood_of_all(&l[g], &cell);
     }
     return sum;
 }
@@ -163,6 +243,20 @@ static struct dig_gravel gravel_at(const struct dig_curve_set *const set,
     for (int a = 0; a < DIG_AXES; a++) {
         const double position = ((double)index_on(fine, point, a) + 0.5) / (double)fine->count[a];
         gravel.value[a]       = dig_axis_value(set, (enum dig_axis)a, position);
+    }
+    return gravel;
+}
+
+// The same of the most probable point; what piles up at an end of an axis belongs there.
+static struct dig_gravel mode_at(const struct dig_curve_set *const set,
+                                 const struct fine *const fine, const size_t point)
+{
+    struct dig_gravel gravel = gravel_at(set, fine, point);
+    for (int a = 0; a < DIG_AXES; a++) {
+        const size_t index = index_on(fine, point, a);
+        if (index == 0 || index + 1 == fine->count[a]) {
+            gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, index == 0 ? 0.0 : 1.0);
+        }
     }
     return gravel;
 }
@@ -228,6 +322,10 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
         return DIG_ENOMATCH;
     }
 
+    size_t mode = 0;
+    for (size_t i = 1; i < fine.all; i++) {
+        mode = weight[i] > weight[mode] ? i : mode;
+    }
     double sum = 0.0;
     for (size_t i = 0; i < fine.all; i++) {
         weight[i] = exp(weight[i] - most);
@@ -243,6 +341,7 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
 
     match->mean = mean;
+    match->mode = mode_at(set, &fine, mode);
     for (int a = 0; a < DIG_AXES; a++) {
         const enum dig_axis axis = (enum dig_axis)a;
         match->low.value[a]      = dig_axis_value(set, axis, quantile(&fine, a, weight, 0.05));

@@ -17,6 +17,11 @@
 // table's error is common to all. How the digs scatter about their mean is not used: it would tell
 // gravels apart by their spreads, which the table knows too badly for that. Trajectories are
 // independent: their logarithms add.
+//
+// Where every dig along a trajectory measured the forces too, m, t are vectors (My, Fx, Fz) and D
+// is the matrix of their three spreads with the correlation that packings show, plus sigmas^2 / n:
+// (m - t)' D^-1 (m - t) + log det D in place of the above. A gravel that resists alike may push
+// otherwise.
 
 #ifndef DIG_ESTIMATOR_POSTERIOR_H
 #define DIG_ESTIMATOR_POSTERIOR_H
@@ -30,9 +35,15 @@
 /// residuals falls to one half after 0.05 to 0.11 tooth lengths and to nothing after 0.2 to 0.25.
 #define DIG_POSTERIOR_CORRELATION 0.25
 
-/// Fills mean, low, high and the samples of *match. DIG_ENOMATCH when the table has no complete
-/// cell for the trajectories that were dug; then *match is unchanged. About 8000 evaluations a
-/// trajectory; 130 kB of stack.
+/// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
+/// each of three gravels and two trajectories (tables/rig.sqlite; tests/test_posterior.c).
+#define DIG_POSTERIOR_MY_FX (-0.93)
+#define DIG_POSTERIOR_MY_FZ 0.55
+#define DIG_POSTERIOR_FX_FZ (-0.39)
+
+/// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
+/// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
+/// evaluations a trajectory; 130 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
                                                   const struct dig_pool_sums *sums,
                                                   struct dig_match           *match);

@@ -28,7 +28,7 @@ void dig_raw_touch(struct dig_raw *raw, const struct dig_path_point *point);
 struct dig_path_point dig_raw_point(const struct dig_curve_set *set, double lambda, double pin_X_m,
                                     double pin_Z_m, double phi_rad);
 
-/// One moment of the machine, rig scale and rig time, into the window.
+/// One wrench of the machine, rig scale and rig time, into the window.
 void dig_raw_add(struct dig_raw *raw, double lambda, int64_t time_ns,
                  const struct dig_wrench *wrench, double bias_Nm,
                  const struct dig_path_point *point);

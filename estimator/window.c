@@ -84,15 +84,14 @@ static void sort_by_time(const size_t count, struct dig_window_sample sample[])
     }
 }
 
-// In the order of time, and what is smoothed as arrays of its own.
+// In the order of time.
 static void settle(struct dig_window *const window)
 {
     if (window->stride > 1) {
         sort_by_time(window->count, window->sample);
     }
     for (size_t i = 0; i < window->count; i++) {
-        window->time_s[i]    = window->sample[i].time_s;
-        window->moment_Nm[i] = window->sample[i].moment_Nm;
+        window->time_s[i] = window->sample[i].time_s;
     }
 }
 
@@ -169,6 +168,101 @@ static bool has_hole(const struct dig_window *const window, const struct range r
     return false;
 }
 
+// Where on the path a point of the grid was first reached: between a sample and the next.
+struct spot {
+    bool   measured;
+    size_t sample;
+    double share; // of the next
+};
+
+static size_t find_spots(const struct dig_window *const window, const struct range range,
+                         const double first, const double last, struct spot spot[])
+{
+    size_t i      = range.first;
+    size_t points = 0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        spot[k]         = (struct spot){ .measured = false };
+        if (at < first || at > last) {
+            continue;
+        }
+        while (i + 2 < range.end && window->progress[i + 1] < at) {
+            i++;
+        }
+        const double span = window->progress[i + 1] - window->progress[i];
+        const double f = span > 0.0 ? fmin(fmax((at - window->progress[i]) / span, 0.0), 1.0) : 0.0;
+        spot[k]        = (struct spot){ true, i, f };
+        points++;
+    }
+    return points;
+}
+
+// Smooths what lies in window->value and reads it off.
+static void read_off(struct dig_window *const window, const struct range range, const double half_s,
+                     const struct spot spot[], double out[DIG_CURVE_POINTS])
+{
+    dig_curve_smooth(range.end - range.first, &window->time_s[range.first],
+                     &window->value[range.first], half_s, &window->smooth[range.first]);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const size_t i = spot[k].sample;
+        out[k]         = spot[k].measured ? window->smooth[i] +
+                                        spot[k].share * (window->smooth[i + 1] - window->smooth[i])
+                                          : 0.0;
+    }
+}
+
+// Of a sample's sigma, what smoothing leaves: white noise averages, the slow part does not.
+static double smoothed_sigma(const struct dig_window *const window, const struct range range,
+                             const size_t i, const double half_s, const double sigma,
+                             const double slow)
+{
+    const double fast = fmax(sigma * sigma - slow * slow, 0.0);
+    return sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
+}
+
+static void read_moment(struct dig_window *const window, const struct range range,
+                        const double half_s, const struct spot spot[],
+                        struct dig_observation *const observation)
+{
+    for (size_t i = range.first; i < range.end; i++) {
+        window->value[i] = window->sample[i].moment_Nm;
+    }
+    read_off(window, range, half_s, spot, observation->moment_Nm);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const struct dig_window_sample *const at = &window->sample[spot[k].sample];
+
+        observation->sigma_Nm[k] = spot[k].measured
+                                       ? smoothed_sigma(window, range, spot[k].sample, half_s,
+                                                        (double)at->sigma_Nm, (double)at->slow_Nm)
+                                       : 0.0;
+    }
+}
+
+static void read_forces(struct dig_window *const window, const struct range range,
+                        const double half_s, const struct spot spot[],
+                        struct dig_observation *const observation)
+{
+    observation->forces = true;
+    for (size_t i = range.first; i < range.end; i++) {
+        observation->forces = observation->forces && window->sample[i].has_forces;
+    }
+    for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+        for (size_t i = range.first; i < range.end; i++) {
+            window->value[i] = (double)window->sample[i].force_N[c];
+        }
+        read_off(window, range, half_s, spot, observation->force_N[c]);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const struct dig_window_sample *const at = &window->sample[spot[k].sample];
+
+            observation->force_sigma_N[c][k] =
+                spot[k].measured
+                    ? smoothed_sigma(window, range, spot[k].sample, half_s,
+                                     (double)at->force_sigma_N[c], (double)at->force_slow_N[c])
+                    : 0.0;
+        }
+    }
+}
+
 enum dig_status dig_window_observe(struct dig_window *const      window,
                                    const struct dig_route *const route,
                                    const struct dig_track *const track, const double limit_m,
@@ -181,41 +275,14 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     if (range.end < range.first + 3 || has_hole(window, range, half_s)) {
         return DIG_ENOMATCH;
     }
-    const size_t n = range.end - range.first;
-    dig_curve_smooth(n, &window->time_s[range.first], &window->moment_Nm[range.first], half_s,
-                     &window->smooth_Nm[range.first]);
-
-    const double first                       = window->progress[range.first];
-    const double last                        = told_until(window, range, half_s);
-    double       moment_Nm[DIG_CURVE_POINTS] = { 0 };
-    double       sigma_Nm[DIG_CURVE_POINTS]  = { 0 };
-    size_t       i                           = range.first;
-    size_t       points                      = 0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double at = (double)k / (DIG_CURVE_POINTS - 1);
-        if (at < first || at > last) {
-            continue;
-        }
-        while (i + 2 < range.end && window->progress[i + 1] < at) {
-            i++;
-        }
-        const double span = window->progress[i + 1] - window->progress[i];
-        const double f = span > 0.0 ? fmin(fmax((at - window->progress[i]) / span, 0.0), 1.0) : 0.0;
-        const double slow = (double)window->sample[i].slow_Nm;
-        const double fast = fmax(pow((double)window->sample[i].sigma_Nm, 2.0) - slow * slow, 0.0);
-
-        moment_Nm[k] = window->smooth_Nm[i] + f * (window->smooth_Nm[i + 1] - window->smooth_Nm[i]);
-        sigma_Nm[k]  = sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
-        points++;
-    }
-    if (points < 2) {
+    const double first = window->progress[range.first];
+    const double last  = told_until(window, range, half_s);
+    struct spot  spot[DIG_CURVE_POINTS];
+    if (find_spots(window, range, first, last, spot) < 2) {
         return DIG_ENOMATCH;
     }
-
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        observation->moment_Nm[k] = moment_Nm[k];
-        observation->sigma_Nm[k]  = sigma_Nm[k];
-    }
+    read_moment(window, range, half_s, spot, observation);
+    read_forces(window, range, half_s, spot, observation);
     observation->first      = first;
     observation->last       = last;
     observation->off_path_m = track->rms_m;

@@ -21,6 +21,10 @@ struct dig_window_sample {
     double                moment_Nm;
     struct dig_path_point pose;
     float                 sigma_Nm, slow_Nm;
+    bool                  has_forces;
+    float                 force_N[DIG_FORCE_CHANNELS - 1]; // Fx, Fz
+    float                 force_sigma_N[DIG_FORCE_CHANNELS - 1];
+    float                 force_slow_N[DIG_FORCE_CHANNELS - 1];
 };
 
 /// Zeroed: closed and empty, stride 0 counts as 1.
@@ -35,9 +39,9 @@ struct dig_window {
     struct dig_window_sample sample[DIG_WINDOW_MAX];
     // filled by dig_window_observe()
     double time_s[DIG_WINDOW_MAX];
-    double moment_Nm[DIG_WINDOW_MAX];
+    double value[DIG_WINDOW_MAX]; // of one channel after the other
     double progress[DIG_WINDOW_MAX];
-    double smooth_Nm[DIG_WINDOW_MAX];
+    double smooth[DIG_WINDOW_MAX];
 };
 
 /// Remembers or keeps a sample. Constant time.
@@ -53,7 +57,7 @@ void dig_window_close(struct dig_window *window);
 /// DIG_CURVE_POINTS of progress where the furthest progress so far first reached them: a pause or a
 /// step back changes nothing. A sample farther than limit_m from the route moves no progress.
 /// sigma: white noise averages over the smoothing, the slow part does not. Of a dig that goes on,
-/// only what is half_s old is told.
+/// only what is half_s old is told. Forces are told where all samples of the dig have them.
 ///
 /// DIG_ENOMATCH when fewer than two points of the grid were reached, or samples are missing for
 /// longer than half_s of rig time: what was not measured is not made up. Uses the window's own

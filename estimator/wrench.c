@@ -109,6 +109,9 @@ static struct dig_wrench finish(const struct dig_balance *const balance,
         w.Fz_N       = balance->part[DIG_PART_FZ];
         w.sigma_Fx_N = sqrt(variance->all[DIG_PART_FX]);
         w.sigma_Fz_N = sqrt(variance->all[DIG_PART_FZ]);
+
+        w.slow_sigma_Fx_N = sqrt(variance->slow[DIG_PART_FX]);
+        w.slow_sigma_Fz_N = sqrt(variance->slow[DIG_PART_FZ]);
     }
     return w;
 }

@@ -120,19 +120,20 @@ static void say_known(const struct dig_publisher *const p)
         say(p, "no gravel known: %s", k->wanted);
         return;
     }
-    char digs[48] = "";
+    char        digs[48] = "";
+    const char *forces   = m->forces ? ", of moment and forces" : "";
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
     }
     say(p,
         "%s %u (%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
-        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s",
+        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s",
         k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory,
         m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
         m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
         m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
         m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
-        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, digs,
+        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, forces, digs,
         m->outside ? "; OUTSIDE the table: none of its gravels" : "");
 }
 

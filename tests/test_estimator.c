@@ -309,6 +309,23 @@ static double observation_error(const struct bench *const b, const double stretc
     return sqrt(miss / whole);
 }
 
+// The family's forces are -8 and 5 times its moment; so must those observed be, everywhere.
+static double worst_force(const struct bench *const b)
+{
+    static const double by[]  = { -8.0, 5.0 };
+    double              worst = 0.0;
+    for (int c = 0; c < 2; c++) {
+        double largest = 0.0, off = 0.0;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double expected_N = by[c] * b->observation.moment_Nm[k];
+            largest                 = fmax(largest, fabs(expected_N));
+            off                     = fmax(off, fabs(b->observation.force_N[c][k] - expected_N));
+        }
+        worst = fmax(worst, off / largest);
+    }
+    return worst;
+}
+
 static void every_kind_of_dig_is_observed_as_it_was(void **state)
 {
     (void)state;
@@ -357,6 +374,9 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         assert_int_equal(b->observation.trajectory, cases[i].drive.which);
         assert_int_equal(b->observation.dig_count, 1);
         assert_true(error < cases[i].error);
+        print_message("              forces within %.4f\n", worst_force(b));
+        assert_true(b->observation.forces);
+        assert_true(worst_force(b) < (cases[i].drive.sensors ? 0.1 : 0.001));
         assert_close(b->observation.first, 0.0, 0.0);
         assert_close(b->observation.last, cases[i].drive.until, 0.03);
         assert_true(b->observation.off_path_m < 0.001);

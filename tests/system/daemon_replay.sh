@@ -23,9 +23,9 @@ check "the gravel is identified from the simple dig" identified "$work/csv.txt"
 # going_on, at a share of the path: wide, never wrong, and before the dig is over.
 check "the simple dig is matched while it goes on" \
     awk '$1 == "match" && $NF && $2 { n++; if ($7 > .5 || $8 < .5 || $10 > .4 || $11 < .4 || $13 > 2200 || $14 < 2200) bad++ }
-         END { exit !(n >= 3 && !bad) }' "$work/csv.txt"
-check "first with about a third of its path" \
-    within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.45
+         END { exit !(n >= 1 && !bad) }' "$work/csv.txt"
+check "and that before most of it is dug" \
+    within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.8
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]

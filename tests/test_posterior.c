@@ -1,0 +1,337 @@
+// Tests for estimator/posterior.c: what the forces add to the moment
+
+#include "estimator/posterior.h"
+
+#include "closed_loop/observe.h"
+#include "estimator/interpolate.h"
+#include "estimator/match.h"
+#include "files/recording_csv.h"
+#include "tables/derive.h"
+#include "tables/load.h"
+#include "tables/store.h"
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHANNELS = DIG_FORCE_CHANNELS, PACKINGS = 3, MANY = 8, MOST = 16 };
+static const double              scatter = 0.1;
+static const struct made_options flat    = { .relative_sd = 0.1,
+                                             .packings    = PACKINGS,
+                                             .one_density = true };
+
+// Runs of one gravel along one trajectory after the other, and what they say of correlation.
+struct beds {
+    const struct dig_curve_set *set;
+    struct dig_run_origin       origin;
+    size_t                      digs;
+    double                      curve[MOST][DIG_CHANNELS][DIG_CURVE_POINTS];
+    double                      sum[CHANNELS][CHANNELS], points;
+};
+
+// Mean over points of the correlation of what digs are off their mean.
+static void close_gravel(struct beds *const b)
+{
+    for (int k = 0; b->digs >= MANY && k < DIG_CURVE_POINTS; k++) {
+        double product[CHANNELS][CHANNELS] = { { 0.0 } }, mean[CHANNELS] = { 0.0 };
+        for (size_t d = 0; d < b->digs; d++) {
+            for (int c = 0; c < CHANNELS; c++) {
+                mean[c] += b->curve[d][c][k] / (double)b->digs;
+            }
+        }
+        for (size_t d = 0; d < b->digs; d++) {
+            for (int c = 0; c < CHANNELS; c++) {
+                for (int o = 0; o < CHANNELS; o++) {
+                    product[c][o] += (b->curve[d][c][k] - mean[c]) * (b->curve[d][o][k] - mean[o]);
+                }
+            }
+        }
+        if (product[0][0] > 1e-12 && product[1][1] > 1e-9 && product[2][2] > 1e-9) {
+            for (int c = 0; c < CHANNELS; c++) {
+                for (int o = 0; o < CHANNELS; o++) {
+                    b->sum[c][o] += product[c][o] / sqrt(product[c][c] * product[o][o]);
+                }
+            }
+            b->points += 1.0;
+        }
+    }
+    b->digs = 0;
+}
+
+static enum dig_status take_run(void *const context, const struct dig_run *const run,
+                                struct dig_error *const error)
+{
+    (void)error;
+    struct beds *const b = context;
+    if (run->origin.trajectory != b->origin.trajectory ||
+        memcmp(&run->origin.gravel, &b->origin.gravel, sizeof run->origin.gravel) != 0) {
+        close_gravel(b);
+        b->origin = run->origin;
+    }
+    if (b->digs < MOST && run->origin.effect[0] == '\0') {
+        assert_int_equal(dig_derive_run(&b->set->trajectory[run->origin.trajectory],
+                                        b->set->tooth_m, b->set->smooth_half_s, run->windows,
+                                        run->first_s, run->step_s, run->value, b->curve[b->digs]),
+                         DIG_OK);
+        b->digs++;
+    }
+    return DIG_OK;
+}
+
+static void errors_of_moment_and_forces_go_together_as_packings_show(void **state)
+{
+    (void)state;
+    static const char     table[] = "tables/rig.sqlite";
+    struct dig_store     *store   = NULL;
+    struct dig_curve_set *set     = NULL;
+    struct beds *const    b       = calloc(1, sizeof *b);
+    assert_int_equal(dig_table_load(table, &set, NULL), DIG_OK);
+    assert_int_equal(dig_store_open(table, &store, NULL), DIG_OK);
+    b->set                               = set;
+    const struct dig_run_visitor visitor = { take_run, b };
+    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
+    close_gravel(b);
+    const double My_Fx = b->sum[0][1] / b->points;
+    const double My_Fz = b->sum[0][2] / b->points;
+    const double Fx_Fz = b->sum[1][2] / b->points;
+    print_message("over %.0f points: My, Fx %.3f; My, Fz %.3f; Fx, Fz %.3f\n", b->points, My_Fx,
+                  My_Fz, Fx_Fz);
+    assert_close(My_Fx, DIG_POSTERIOR_MY_FX, 0.03);
+    assert_close(My_Fz, DIG_POSTERIOR_MY_FZ, 0.06);
+    assert_close(Fx_Fz, DIG_POSTERIOR_FX_FZ, 0.06);
+    dig_store_close(store);
+    dig_curve_set_destroy(set);
+    free(b);
+}
+
+// Forces that tell what the moment does not: Fx of friction alone, Fz of rolling friction alone.
+static double force_N(const struct dig_gravel *const gravel, const int force, const int point)
+{
+    const double p = point / (double)(DIG_CURVE_POINTS - 1);
+    return force == 0 ? -8.0 * (0.5 + gravel->value[DIG_AXIS_FRICTION]) * (0.2 + p)
+                      : 5.0 * (0.5 + gravel->value[DIG_AXIS_ROLLING]) * (1.2 - p);
+}
+
+static struct dig_curve_set *table_with_forces(void)
+{
+    struct dig_curve_set *const set = made_table(&flat);
+    for (size_t e = 0; e < set->entries; e++) {
+        for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
+            struct dig_curve *const curve = &set->curve[e * MADE_TRAJECTORIES + t];
+            for (int force = 0; force < 2; force++) {
+                for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                    const double mean         = force_N(&set->gravel[e], force, k);
+                    curve->mean[1 + force][k] = (float)mean;
+                    curve->sd[1 + force][k]   = (float)(scatter * fabs(mean));
+                }
+            }
+        }
+    }
+    return set;
+}
+
+// Errors of one dig relative to its mean, standard normal at each point, correlated along the dig
+// and between channels.
+static void draw(double error[CHANNELS][DIG_CURVE_POINTS], uint64_t *const seed)
+{
+    struct dig_observation one[CHANNELS];
+    for (int c = 0; c < CHANNELS; c++) {
+        one[c] = (struct dig_observation){ .trajectory = MADE_ACTUAL };
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            one[c].moment_Nm[k] = 1.0;
+        }
+        made_disturb(&one[c], 1.0, seed);
+    }
+    // Of channel c given those before it, regressed by hand.
+    const double r01 = DIG_POSTERIOR_MY_FX, r02 = DIG_POSTERIOR_MY_FZ, r12 = DIG_POSTERIOR_FX_FZ;
+    const double left1 = sqrt(1.0 - r01 * r01);
+    const double b1    = (r12 - r01 * r02) / left1;
+    const double left2 = sqrt(1.0 - r02 * r02 - b1 * b1);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double z0 = one[0].moment_Nm[k] - 1.0, z1 = one[1].moment_Nm[k] - 1.0,
+                     z2 = one[2].moment_Nm[k] - 1.0;
+        error[0][k]     = z0;
+        error[1][k]     = r01 * z0 + left1 * z1;
+        error[2][k]     = r02 * z0 + b1 * z1 + left2 * z2;
+    }
+}
+
+// Digs share what the table is wrong by.
+static void dig_there(const struct dig_gravel *const gravel, const size_t digs,
+                      struct dig_observation dig[], uint64_t *const seed)
+{
+    double shared[CHANNELS][DIG_CURVE_POINTS], own[CHANNELS][DIG_CURVE_POINTS];
+    draw(shared, seed);
+    for (size_t d = 0; d < digs; d++) {
+        draw(own, seed);
+        dig[d]        = made_observation(gravel, MADE_ACTUAL, 0.0);
+        dig[d].forces = true;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double off = shared[0][k] / sqrt(PACKINGS) + own[0][k];
+            dig[d].moment_Nm[k] *= 1.0 + scatter * off;
+            for (int force = 0; force < 2; force++) {
+                // The spread is of the mean's size; the sign of the error is the channel's own.
+                const double mean = force_N(gravel, force, k);
+                dig[d].force_N[force][k] =
+                    mean + scatter * fabs(mean) *
+                               (shared[1 + force][k] / sqrt(PACKINGS) + own[1 + force][k]);
+            }
+        }
+    }
+}
+
+static struct dig_match fit(const struct dig_curve_set *const set, const size_t digs,
+                            const struct dig_observation dig[])
+{
+    struct dig_match match;
+    assert_int_equal(dig_match_nearest_pool(set, digs, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine_pool(set, digs, dig, 100, &match), DIG_OK);
+    return match;
+}
+
+static void forces_tell_more_and_never_too_much(void **state)
+{
+    (void)state;
+    enum { STEPS = 3 };
+    static const size_t         digs[STEPS]     = { 1, 1, 4 };
+    struct dig_curve_set *const set             = table_with_forces();
+    const int                   trials          = getenv("DIG_TEST_QUICK") != NULL ? 60 : 150;
+    uint64_t                    seed            = 31;
+    int                         in[STEPS][2]    = { { 0 } };
+    double                      width[STEPS][2] = { { 0.0 } };
+    for (int trial = 0; trial < trials; trial++) {
+        const struct dig_gravel gravel = { { 0.3 + 0.6 * model_uniform(&seed),
+                                             0.1 + 0.9 * model_uniform(&seed), 2500 } };
+        struct dig_observation  dig[4];
+        dig_there(&gravel, 4, dig, &seed);
+        for (int s = 0; s < STEPS; s++) {
+            dig[0].forces            = s > 0;
+            const struct dig_match m = fit(set, digs[s], dig);
+            assert_true(m.forces == (s > 0));
+            for (int a = 0; a < 2; a++) {
+                const double v = gravel.value[a];
+                in[s][a] += v >= m.low.value[a] && v <= m.high.value[a] ? 1 : 0;
+                width[s][a] += (m.high.value[a] - m.low.value[a]) / trials;
+            }
+        }
+    }
+    for (int s = 0; s < STEPS; s++) {
+        for (int a = 0; a < 2; a++) {
+            const double share = (double)in[s][a] / trials;
+            print_message("%zu digs, %s, axis %d: %.3f in the interval, mean width %.3f\n", digs[s],
+                          s > 0 ? "moment and forces" : "moment alone", a, share, width[s][a]);
+            // Not fewer than chance allows; a few more, for the floor under the spread.
+            assert_true(share > 0.9 - 3.0 * sqrt(0.9 * 0.1 / trials) && share < 0.985);
+        }
+    }
+    assert_true(width[1][0] < 0.8 * width[0][0] && width[1][1] < 0.5 * width[0][1]);
+    assert_true(width[2][0] < width[1][0] && width[2][1] < width[1][1]);
+    made_table_destroy(set);
+}
+
+// One dig without forces, and the moment alone is compared: as if none had them.
+static void forces_count_only_where_every_dig_has_them(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set  = table_with_forces();
+    uint64_t                    seed = 8;
+    struct dig_observation      dig[3];
+    dig_there(&(struct dig_gravel){ { 0.6, 0.5, 2500 } }, 3, dig, &seed);
+    dig[1].forces                = false;
+    const struct dig_match mixed = fit(set, 3, dig);
+    dig[0].forces = dig[2].forces = false;
+    const struct dig_match none   = fit(set, 3, dig);
+    assert_false(mixed.forces);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(mixed.low.value[a], none.low.value[a], 0.0);
+        assert_close(mixed.high.value[a], none.high.value[a], 0.0);
+    }
+
+    dig[0].forces        = true;
+    dig[0].force_N[1][7] = NAN;
+    struct dig_match match;
+    assert_int_equal(dig_match_nearest(set, &dig[0], 2.5, &match), DIG_EINVAL);
+    dig[0].force_N[1][7]       = 0.0;
+    dig[0].force_sigma_N[0][7] = -1.0;
+    assert_int_equal(dig_match_nearest(set, &dig[0], 2.5, &match), DIG_EINVAL);
+    made_table_destroy(set);
+}
+
+// Digs of LIGGGHTS, all packings of a gravel together; off: how far the posterior's mean is from
+// the truth, axis by axis, as a share of the axis.
+static void add_reference(const struct dig_curve_set *const set, const char *const trajectory,
+                          const double both, const int packings, const bool forces,
+                          double off[DIG_AXES])
+{
+    struct dig_observation dig[DIG_POOL_MAX] = { { 0 } };
+    for (int p = 0; p < packings; p++) {
+        char                 path[128], seed[16] = "";
+        struct dig_recording recording;
+        struct dig_observed  seen;
+        if (p > 0) {
+            (void)snprintf(seed, sizeof seed, "_seed%d", p + 1);
+        }
+        (void)snprintf(path, sizeof path, "tests/data/reference/mu%.1f_mur%.1f_rho2500%s__%s.csv",
+                       both, both, seed, trajectory);
+        assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+        assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
+        dig_recording_finish(&recording);
+        dig[p].trajectory = seen.trajectory;
+        dig[p].last       = 1.0;
+        dig[p].forces     = forces;
+        memcpy(dig[p].moment_Nm, seen.value[0], sizeof dig[p].moment_Nm);
+        memcpy(dig[p].force_N, seen.value[1], sizeof dig[p].force_N);
+    }
+    const struct dig_match m = fit(set, (size_t)packings, dig);
+    print_message("%.1f/%.1f/2500 %-8s %s: %.2f (%.2f to %.2f), %.2f (%.2f to %.2f), %.0f (%.0f to "
+                  "%.0f)\n",
+                  both, both, trajectory, forces ? "moment and forces" : "moment alone     ",
+                  m.mean.value[0], m.low.value[0], m.high.value[0], m.mean.value[1], m.low.value[1],
+                  m.high.value[1], m.mean.value[2], m.low.value[2], m.high.value[2]);
+    const double truth[] = { both, both, 2500.0 };
+    for (int a = 0; a < DIG_AXES; a++) {
+        off[a] += fabs(dig_axis_position(set, (enum dig_axis)a, m.mean.value[a]) -
+                       dig_axis_position(set, (enum dig_axis)a, truth[a]));
+    }
+}
+
+// Density and friction, which the moment cannot tell apart, the forces can: on digs of another
+// code, which had no part in anything here.
+static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
+{
+    (void)state;
+    struct dig_curve_set *set = NULL;
+    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
+    static const struct {
+        double both;
+        int    packings;
+    } gravels[]             = { { 0.3, 4 }, { 0.5, 5 }, { 0.9, 4 } };
+    double off[2][DIG_AXES] = { { 0.0 } };
+    for (int forces = 0; forces < 2; forces++) {
+        for (int g = 0; g < 3; g++) {
+            add_reference(set, "simpleA", gravels[g].both, gravels[g].packings, forces == 1,
+                          off[forces]);
+            add_reference(set, "actual", gravels[g].both, gravels[g].packings, forces == 1,
+                          off[forces]);
+        }
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        print_message("axis %d: off by %.3f of it with the moment, %.3f with forces\n", a,
+                      off[0][a] / 6.0, off[1][a] / 6.0);
+        assert_true(off[1][a] < 0.5 * off[0][a]);
+    }
+    dig_curve_set_destroy(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_of_moment_and_forces_go_together_as_packings_show),
+        cmocka_unit_test(forces_tell_more_and_never_too_much),
+        cmocka_unit_test(forces_tell_the_family_apart_on_digs_of_liggghts),
+        cmocka_unit_test(forces_count_only_where_every_dig_has_them),
+    };
+    return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);
+}
