@@ -1,6 +1,7 @@
 #include "closed_loop/soil.h"
 
 #include "closed_loop/dense.h"
+#include "estimator/effects/effect.h"
 #include "estimator/effects/template.h"
 
 #include <assert.h>
@@ -252,6 +253,24 @@ static enum dig_status fit_all(struct dig_soil *const soil, const struct dig_eff
     return DIG_OK;
 }
 
+static void fill_speeds(struct dig_soil *const soil)
+{
+    const struct dig_curve_set *const set = soil->surface->set;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        double speed[DIG_CURVE_POINTS];
+        dig_effect_speeds(set, t, speed);
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            size_t from;
+            size_t to;
+            dig_feature_bin(b, &from, &to);
+            for (size_t k = from; k < to; k++) {
+                soil->speed[t][k] = log(speed[k]);
+                soil->bin_speed[t][b] += soil->speed[t][k] / (double)(to - from);
+            }
+        }
+    }
+}
+
 enum dig_status dig_soil_create(const struct dig_surface *const    surface,
                                 const struct dig_effect_set *const effects,
                                 struct dig_soil **const            soil)
@@ -266,6 +285,7 @@ enum dig_status dig_soil_create(const struct dig_surface *const    surface,
         return DIG_ENOMEM;
     }
     made->surface = surface;
+    fill_speeds(made);
     for (int e = 0; e < DIG_EFFECTS; e++) {
         made->absent[e] = dig_template_absent((enum dig_effect_id)e);
     }
@@ -300,10 +320,12 @@ double dig_soil_share(const enum dig_effect_id effect, const struct dig_measured
     return effect == DIG_EFFECT_COMPACTION ? (double)dig->pass - 1.0 : 1.0;
 }
 
-// What a reduced form adds, as a share of the plain dig.
-static double factor_of(const enum dig_effect_id effect, const double u, const double share)
+// What a reduced form adds, as a share of the plain dig, where the tooth has this speed (its log).
+static double factor_of(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                        const double u, const double share, const double speed)
 {
-    return effect == DIG_EFFECT_RATE_DEPENDENCE ? expm1(u * share) : u * share;
+    return effect == DIG_EFFECT_RATE_DEPENDENCE ? expm1(u * (share + soil->along * speed))
+                                                : u * share;
 }
 
 // The terms of a template at a place, u scaled to the gravel's density.
@@ -327,9 +349,11 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
                   double *const noise)
 {
     if (has_factor(effect)) {
-        const double factor = factor_of(effect, u, share);
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            feature[f] += factor * plain[f];
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            const double factor = factor_of(soil, effect, u, share, soil->bin_speed[trajectory][b]);
+            for (size_t f = b; f < DIG_FEATURES; f += DIG_FEATURE_BINS) {
+                feature[f] += factor * plain[f];
+            }
         }
         return;
     }
@@ -362,7 +386,10 @@ void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect
     }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            double sum = has_factor(effect) ? factor_of(effect, u, share) * plain[c][k] : 0.0;
+            double sum =
+                has_factor(effect)
+                    ? factor_of(soil, effect, u, share, soil->speed[trajectory][k]) * plain[c][k]
+                    : 0.0;
             for (size_t i = 0; !has_factor(effect) && i < template->terms; i++) {
                 sum += term[i] * template->curve[i][c][k] * amplitude[c];
             }

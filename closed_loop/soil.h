@@ -8,7 +8,8 @@
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
 // density; s = log(amplitude of My / density), -1 … 1 over the base gravels; terms for which the
 // beds are too few are left out. Two effects have a reduced form instead, a factor on the plain dig
-// (estimator/effects/): rate_dependence pace^u, wear 1 + u order. Compaction acts pass - 1 fold.
+// (estimator/effects/): rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts
+// pass - 1 fold.
 
 #ifndef DIG_CLOSED_LOOP_SOIL_H
 #define DIG_CLOSED_LOOP_SOIL_H
@@ -36,6 +37,12 @@ struct dig_soil {
     double                    absent[DIG_EFFECTS];
     double                    scale[DIG_EFFECTS];                  // magnitude - absent at u = 1
     double                    low[DIG_EFFECTS], high[DIG_EFFECTS]; // of u
+    // Of rate_dependence: log of the tooth's speed along a trajectory, over bins and points, and
+    // whether the ground feels that (1) or the pace of a dig alone (0).
+    double along;
+    double bin_speed[DIG_TRAJECTORY_MAX][DIG_FEATURE_BINS];
+    double speed[DIG_TRAJECTORY_MAX][DIG_CURVE_POINTS];
+
     struct dig_soil_template template[DIG_EFFECTS][DIG_TRAJECTORY_MAX];
 };
 

@@ -371,6 +371,28 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
     return status;
 }
 
+// Whether ground that depends on the rate feels the speed of the tooth or the pace of the dig: what
+// the digs are liker to, refitted with either.
+static void choose_rate(struct work *const w)
+{
+    static const struct dig_hypothesis rate = { .effects = 1,
+                                                .effect  = { DIG_EFFECT_RATE_DEPENDENCE } };
+    assert(w->soil != NULL);
+    if (!dig_hypothesis_possible(w->batch, w->soil, DIG_EFFECT_RATE_DEPENDENCE)) {
+        return;
+    }
+    double misfit[2];
+    for (int along = 0; along < 2; along++) {
+        struct dig_fitted fitted;
+        double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        memcpy(start, w->before.number, DIG_AXES * sizeof start[0]);
+        w->soil->along = (double)along;
+        dig_hypothesis_fit(w->batch, w->soil, &rate, start, true, &fitted);
+        misfit[along] = fitted.misfit;
+    }
+    w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;
+}
+
 // Digs that are like the table's as they were measured, and like nothing once what free air names
 // is taken off: what it names is not what is there.
 static enum dig_status doubt_air(struct dig_machine_side *const         machine,
@@ -434,6 +456,7 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         }
     }
     if (status == DIG_OK) {
+        choose_rate(w);
         const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);

@@ -257,10 +257,10 @@ static void reduced_forms_grow_as_they_say(void **state)
         .trajectory = MADE_ACTUAL, .pass = 3, .order = 4, .pace = 4.0
     };
     struct dig_template t;
-    const double        plain = made_moment_Nm(&base[0], MADE_ACTUAL, 100.0 / 255.0, 0.0);
-    const double        half  = 0.5;
-    assert_int_equal(dig_effect_add(dig_effect_of(DIG_EFFECT_RATE_DEPENDENCE), w->plain, NULL,
-                                    &half, &base[0], &dig, &t),
+    const double        plain   = made_moment_Nm(&base[0], MADE_ACTUAL, 100.0 / 255.0, 0.0);
+    const double        half[2] = { 0.5, 0.0 };
+    assert_int_equal(dig_effect_add(dig_effect_of(DIG_EFFECT_RATE_DEPENDENCE), w->plain, NULL, half,
+                                    &base[0], &dig, &t),
                      DIG_OK);
     assert_close(t.delta[0][100], plain, 1e-5);
     const double compaction[2] = { 0.0, 0.25 };
@@ -275,6 +275,28 @@ static void reduced_forms_grow_as_they_say(void **state)
     free_world(w);
 }
 
+// simpleA drags its tooth at 46.3 mm/s and lifts it at 91.5 mm/s, both far from where they change.
+static void ground_may_feel_the_tooths_own_speed(void **state)
+{
+    (void)state;
+    struct world *const         w        = make_world();
+    const struct dig_effect_dig dig      = { .trajectory = MADE_SIMPLE_A, .pass = 1, .pace = 2.0 };
+    const double                along[2] = { 0.5, 1.0 };
+    struct dig_template         t;
+    double                      speed[DIG_CURVE_POINTS];
+    dig_effect_speeds(w->plain, MADE_SIMPLE_A, speed);
+    assert_close(speed[250] / speed[120], 91.5 / 46.3, 1e-3);
+    assert_close(speed[100] / speed[120], 1.0, 1e-3);
+    assert_int_equal(dig_effect_add(dig_effect_of(DIG_EFFECT_RATE_DEPENDENCE), w->plain, NULL,
+                                    along, &base[0], &dig, &t),
+                     DIG_OK);
+    const double drag = made_moment_Nm(&base[0], MADE_SIMPLE_A, 120.0 / 255.0, 0.0);
+    const double lift = made_moment_Nm(&base[0], MADE_SIMPLE_A, 250.0 / 255.0, 0.0);
+    assert_close((1.0 + t.delta[0][250] / lift) / (1.0 + t.delta[0][120] / drag), sqrt(91.5 / 46.3),
+                 2e-3);
+    free_world(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -285,6 +307,7 @@ int main(void)
         cmocka_unit_test(values_go_by_name_and_strangers_are_refused),
         cmocka_unit_test(a_model_changes_the_tables_curves),
         cmocka_unit_test(reduced_forms_grow_as_they_say),
+        cmocka_unit_test(ground_may_feel_the_tooths_own_speed),
     };
     return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
 }

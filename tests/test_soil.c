@@ -114,6 +114,34 @@ static void features_are_those_of_the_curve(void **state)
     }
 }
 
+// Over a bin the factor is that of its mean speed: 1 % of the dig's size for a strong dependence.
+static void the_tooths_speed_tells_features_as_it_tells_the_curve(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.5, 0.7, 3000 } };
+    double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+    double noise = 0.0, of_curve[DIG_FEATURES];
+    double bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    soil->along = 1.0;
+    plain_at(&gravel, MADE_ACTUAL, place, plain, size);
+    memcpy(with, plain, sizeof with);
+    dig_soil_add(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0, plain, size, with,
+                 &noise);
+    dig_surface_curve(world.surface, MADE_ACTUAL, place, bare);
+    memcpy(curve, bare, sizeof curve);
+    dig_soil_add_curve(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0,
+                       (const double(*)[DIG_CURVE_POINTS])bare, curve);
+    soil->along = 0.0;
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
+    double most = 0.0;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        assert_close(with[f], of_curve[f], 0.01 * size[f / DIG_FEATURE_BINS]);
+        most = fmax(most, fabs(with[f] - plain[f]) / size[f / DIG_FEATURE_BINS]);
+    }
+    assert_true(most > 0.05);
+}
+
 static void digs_differ_by_pass_pace_and_order(void **state)
 {
     (void)state;
@@ -151,6 +179,7 @@ int main(void)
         cmocka_unit_test(a_template_gives_back_what_was_put_in),
         cmocka_unit_test(an_effect_that_is_absent_adds_nothing),
         cmocka_unit_test(features_are_those_of_the_curve),
+        cmocka_unit_test(the_tooths_speed_tells_features_as_it_tells_the_curve),
         cmocka_unit_test(digs_differ_by_pass_pace_and_order),
         cmocka_unit_test(another_scene_is_refused_and_writes_nothing),
         cmocka_unit_test(without_beds_only_the_reduced_forms_are_known),

@@ -115,7 +115,13 @@ enum dig_status dig_effect_add(const struct dig_effect *const     effect,
         if (status != DIG_OK) {
             return status;
         }
-        effect->reduce(value, dig, &curve, sum.delta);
+        double                speed[DIG_CURVE_POINTS];
+        struct dig_effect_dig along = *dig;
+        if (along.speed == NULL) {
+            dig_effect_speeds(plain, dig->trajectory, speed);
+            along.speed = speed;
+        }
+        effect->reduce(value, &along, &curve, sum.delta);
     }
     *added = sum;
     return DIG_OK;

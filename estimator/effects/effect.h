@@ -38,6 +38,8 @@ struct dig_effect_dig {
     unsigned pass;  // how often the place was dug, from 1
     size_t   order; // how many digs the tooth has done before
     double   pace;  // duration of the table's trajectory / of this dig, at rig scale
+
+    const double *speed; // [DIG_CURVE_POINTS], dig_effect_speeds(); NULL: dig_effect_add() asks
 };
 
 struct dig_effect {
@@ -59,6 +61,11 @@ struct dig_effect {
     /// Of the soil: the template's magnitude in this dig. NULL: parameter 0 as it stands.
     double (*magnitude)(const double value[], const struct dig_effect_dig *dig);
 };
+
+/// Speed of the tooth along a trajectory, smoothed as curves are, over the mean of all of the
+/// set's.
+void dig_effect_speeds(const struct dig_curve_set *set, size_t trajectory,
+                       double speed[DIG_CURVE_POINTS]);
 
 /// The effect of that id; NULL for DIG_EFFECT_UNLISTED.
 const struct dig_effect *dig_effect_of(enum dig_effect_id id);

@@ -1,17 +1,70 @@
 // Ground that resists more when it is dug faster. Reduced form, no bed needed: every channel grows
-// as pace^exponent, pace 1 being the table's own; so it shows only over digs of different pace.
+// as (pace speed^along)^exponent. pace 1 is the table's own; speed is that of the tooth at this
+// point of the path, over the mean of the table's trajectories: along 1 is ground that feels the
+// tooth's own speed, along 0 one that feels how fast the whole dig is. It shows only over digs of
+// different pace.
 
 #include "estimator/effects/list.h"
 
+#include <assert.h>
 #include <math.h>
+
+enum { EXPONENT, ALONG, PARAMETERS };
+
+static const double half_s = 0.16; // curves are smoothed over as much
+static const double step_s = 0.01;
+
+// Over the mean: where it turns about, the tooth stands still for a moment.
+static const double least_speed = 0.1;
+
+// Way of the tooth from time to time, step by step.
+static double way_m(const struct dig_trajectory *const t, const double tooth_m, const double from_s,
+                    const int steps)
+{
+    double sum = 0.0;
+    for (int i = 0; i < steps; i++) {
+        const struct dig_pose a = dig_trajectory_pose(t, from_s + (double)i * step_s);
+        const struct dig_pose b = dig_trajectory_pose(t, from_s + (double)(i + 1) * step_s);
+
+        const double x_m = b.x_m - a.x_m + tooth_m * (sin(b.theta_rad) - sin(a.theta_rad));
+        const double z_m = b.z_m - a.z_m - tooth_m * (cos(b.theta_rad) - cos(a.theta_rad));
+        sum += hypot(x_m, z_m);
+    }
+    return sum;
+}
+
+void dig_effect_speeds(const struct dig_curve_set *const set, const size_t trajectory,
+                       double speed[DIG_CURVE_POINTS])
+{
+    assert(set != NULL && trajectory < set->trajectories && speed != NULL);
+    double all_m = 0.0;
+    double all_s = 0.0;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        const double duration_s = dig_trajectory_duration_s(&set->trajectory[t]);
+        const int    steps      = (int)(duration_s / step_s);
+        all_m += way_m(&set->trajectory[t], set->tooth_m, 0.0, steps);
+        all_s += step_s * (double)steps;
+    }
+    const struct dig_trajectory *const t     = &set->trajectory[trajectory];
+    const double                       end_s = dig_trajectory_duration_s(t);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at_s =
+            dig_trajectory_time_s(t, set->tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
+        const double from_s = fmax(at_s - half_s, 0.0);
+        const int    steps  = (int)fmax((fmin(at_s + half_s, end_s) - from_s) / step_s, 1.0);
+        const double mps    = way_m(t, set->tooth_m, from_s, steps) / ((double)steps * step_s);
+        speed[k]            = fmax(mps / (all_m / all_s), least_speed);
+    }
+}
 
 static void reduce(const double value[], const struct dig_effect_dig *const dig,
                    const struct dig_curve *const plain,
                    double                        delta[DIG_CHANNELS][DIG_CURVE_POINTS])
 {
-    const double share = pow(dig->pace, value[0]) - 1.0;
-    for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double speed = dig->speed != NULL ? pow(dig->speed[k], value[ALONG]) : 1.0;
+        const double share = pow(dig->pace * speed, value[EXPONENT]) - 1.0;
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             delta[c][k] += share * (double)plain->mean[c][k];
         }
     }
@@ -21,7 +74,10 @@ const struct dig_effect dig_effect_rate_dependence = {
     .id         = DIG_EFFECT_RATE_DEPENDENCE,
     .summary    = "ground that resists more when dug faster",
     .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
-    .parameters = 1,
-    .parameter  = { { "exponent", 0.0, -2.0, 2.0, 0.3 } },
-    .reduce     = reduce,
+    .parameters = PARAMETERS,
+    .parameter  = {
+        [EXPONENT] = { "exponent", 0.0, -2.0, 2.0, 0.3 },
+        [ALONG]    = { "along", 0.0, 0.0, 1.0, 1.0 },
+    },
+    .reduce = reduce,
 };
