@@ -62,14 +62,14 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set   *s
 
 /// The same of several digs of one ground (1 to DIG_POOL_MAX, youngest last): the entry that is
 /// nearest to all, the root mean square of their distances. An entry that lacks a trajectory that
-/// was dug is passed over. 50 kB of stack.
+/// was dug is passed over. 120 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_match_nearest_pool(const struct dig_curve_set *set, size_t digs,
                                                       const struct dig_observation dig[],
                                                       double                       outside_floors,
                                                       struct dig_match            *match);
 
 /// From a nearest match on between the grid points, and the posterior of the gravel (low and high
-/// widened where needed to hold the gravel of the smallest distance); judges again whether the
+/// widened where needed to hold the gravel told); judges again by the smallest distance whether the
 /// gravel is outside the table. Allocates (in NLopt); never call it in the tick. At most
 /// max_evaluations of the distance, then the posterior on a fixed grid: some ten milliseconds and
 /// 250 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;

@@ -19,8 +19,8 @@
 #define RECORDS     4096
 #define DIGS        4 // memory for finished digs: one in the tick's hands, the others on the way
 #define RESULTS     16
-#define ESTIMATES   4096 // seconds of them, for a matcher that is at work
-#define STACK_BYTES ((size_t)512 * 1024)
+#define ESTIMATES   4096                  // seconds of them, for a matcher that is at work
+#define STACK_BYTES ((size_t)1024 * 1024) // the matcher needs a third of it
 #define LINE        512
 
 /// Bytes behind the handoffs, in one block with everything else the threads touch.
