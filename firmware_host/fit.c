@@ -196,7 +196,7 @@ static void end_hunch(struct dig_fit *const fit)
     fit->hunch                   = (struct dig_known){ .any = false };
     tell(fit);
     if (!fit->known.any) {
-        dig_known_end(&result.known, "the simple dig was broken off");
+        dig_known_end(&result.known, "the simple dig cannot be matched");
         (void)dig_ring_push(fit->results, &result);
     }
 }

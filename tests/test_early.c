@@ -221,7 +221,7 @@ static void a_dig_broken_off_takes_it_back(void **state)
         end_dig(b, MADE_SIMPLE_A, lost == 0);
         assert_int_equal(results(b, &first, &last), 1);
         assert_true(!last.valid && !last.going_on);
-        assert_string_equal(last.wanted, "the simple dig was broken off: dig a simple dig");
+        assert_string_equal(last.wanted, "the simple dig cannot be matched: dig a simple dig");
         const struct dig_offer *const offer = dig_latest_look(&b->offer);
         assert_non_null(offer);
         assert_false(offer->known);
