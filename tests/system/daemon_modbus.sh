@@ -10,7 +10,8 @@ start "$work/daemon.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started
 check "a bus that is absent is said" wait_for 5 grep -q "waiting for bus" "$work/daemon.log"
 check "and why" grep -q "127.0.0.1:$port.*refused" "$work/daemon.log"
-"$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
+# It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
+"$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" --start-delay 6 \
     --modbus-tcp "127.0.0.1:$port" --speed 4 --json >"$work/rig.json" 2>"$work/rig.err"
 check "a bus that appears later is found" grep -q "running" "$work/daemon.log"
 check "a bus that goes away is said" wait_for 5 eval '[ "$(grep -c "waiting for bus" "$work/daemon.log")" -ge 2 ]'
@@ -31,7 +32,7 @@ config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz
 log blocks
 start "$work/blocks.log" "$BIN/digsightd" -c "$work/blocks.yaml"
 daemon=$started
-"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed 4 --json \
+"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed 4 --json --start-delay 6 \
     >"$work/blocks.json" 2>"$work/blocks.err"
 stop "$daemon"
 read_log blocks

@@ -11,7 +11,7 @@ wait_for 5 test -e "$work/rig" -a -e "$work/controller"
 log rtu
 start "$work/daemon.log" "$BIN/digsightd" -c "$work/rtu.yaml"
 daemon=$started
-"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-rtu "$work/rig:115200" --speed 4 \
+"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-rtu "$work/rig:115200" --speed 4 --start-delay 6 \
     --json >"$work/rig.json" 2>"$work/rig.err"
 check "the rig served to its end" [ $? = 0 ]
 stop "$daemon"
