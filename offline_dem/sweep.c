@@ -1,7 +1,6 @@
 #include "offline_dem/sweep.h"
 
 #include "offline_dem/variant.h"
-#include "offline_dem/watched_pour.h"
 #include "offline_dem/worker.h"
 
 #include <assert.h>
@@ -21,7 +20,7 @@ struct dig_engine dig_engine_kernel(void)
     return (struct dig_engine){
         .name       = "kernel",
         .version    = DIG_VERSION "+" DIG_NUMERICS,
-        .pour       = dig_bed_pour_watched,
+        .pour       = dig_bed_pour,
         .dig        = dig_dig_run,
         .bed_finish = dig_bed_finish,
         .vary       = dig_variant_make,

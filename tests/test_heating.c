@@ -4,16 +4,16 @@
 
 #include "offline_dem/dig.h"
 #include "offline_dem/heating.h"
-#include "offline_dem/watched_pour.h"
 
 #define WATCH_s  0.06
 #define SETTLE_s 0.3
 
 static struct dig_bed poured;
 
-static struct dig_scene small_scene(const double step_s)
+static int pour(void **state)
 {
-    return (struct dig_scene){
+    (void)state;
+    const struct dig_scene scene = {
         .name         = "small",
         .bucket       = { .points  = 5,
                           .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
@@ -23,7 +23,7 @@ static struct dig_scene small_scene(const double step_s)
         .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
         .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
         .gravity_mps2 = GRAVITY,
-        .time_step_s  = step_s,
+        .time_step_s  = STEP_s,
         .output_s     = 0.005,
         .trajectories = 1,
         .trajectory   = { { .name      = "scratch",
@@ -32,14 +32,7 @@ static struct dig_scene small_scene(const double step_s)
                             .phases    = 1,
                             .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
     };
-}
-
-static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
-
-static int pour(void **state)
-{
-    (void)state;
-    const struct dig_scene scene = small_scene(STEP_s);
+    const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     return dig_bed_pour(&scene, &gravel, 3, NULL, &poured, NULL);
 }
 
@@ -118,31 +111,12 @@ static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
     dig_world_finish(&world);
 }
 
-static void a_scene_whose_step_heats_is_refused_by_name(void **state)
-{
-    (void)state;
-    struct dig_scene scene = small_scene(1.2e-4);
-    struct dig_error error = { "" };
-    struct dig_bed   bed   = { 0 };
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_EINVAL);
-    assert_non_null(
-        strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving, expected"));
-    assert_null(bed.x_m);
-
-    scene = small_scene(STEP_s);
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
-    assert_int_equal(bed.grains, poured.grains);
-    assert_memory_equal(bed.x_m, poured.x_m, bed.grains * sizeof *bed.x_m);
-    dig_bed_finish(&bed);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_safe_step_leaves_a_resting_bed_alone),
         cmocka_unit_test(a_step_that_heats_is_noticed),
         cmocka_unit_test(a_bed_that_comes_to_rest_does_not_count),
-        cmocka_unit_test(a_scene_whose_step_heats_is_refused_by_name),
         cmocka_unit_test(a_step_that_explodes_is_an_error_and_writes_nothing),
     };
     return cmocka_run_group_tests(tests, pour, empty);
