@@ -22,7 +22,7 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
     made.parameter[0].value = dig_soil_magnitude(soil, id, fitted->number[n]);
     made.parameter[0].low   = dig_soil_magnitude(soil, id, fitted->low[n]);
     made.parameter[0].high  = dig_soil_magnitude(soil, id, fitted->high[n]);
-    if (id == DIG_EFFECT_RATE_DEPENDENCE) {
+    if (known != NULL && id == DIG_EFFECT_RATE_DEPENDENCE) {
         struct dig_model_parameter *const along = &made.parameter[made.parameters++];
         (void)snprintf(along->name, sizeof along->name, "%s", known->parameter[1].name);
         along->value = soil->along;
