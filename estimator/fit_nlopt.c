@@ -279,7 +279,7 @@ enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const
 {
     assert(set != NULL && dig != NULL && match != NULL);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
-        max_evaluations < 1 || digs < 1 || digs > DIG_POOL_MAX) {
+        max_evaluations < 1 || digs < 1) {
         return DIG_EINVAL;
     }
     for (size_t d = 0; d < digs; d++) {

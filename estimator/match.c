@@ -109,7 +109,7 @@ enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, co
                                        const double outside_floors, struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
-    if (digs < 1 || digs > DIG_POOL_MAX || !(outside_floors > 0.0)) {
+    if (digs < 1 || !(outside_floors > 0.0)) {
         return DIG_EINVAL;
     }
     for (size_t d = 0; d < digs; d++) {

@@ -60,9 +60,9 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set   *s
                                                  const struct dig_observation *observation,
                                                  double outside_floors, struct dig_match *match);
 
-/// The same of several digs of one ground (1 to DIG_POOL_MAX, youngest last): the entry that is
-/// nearest to all, the root mean square of their distances. An entry that lacks a trajectory that
-/// was dug is passed over. 120 kB of stack.
+/// The same of several digs of one ground (1 or more, youngest last): the entry that is nearest to
+/// all, the root mean square of their distances. An entry that lacks a trajectory that was dug is
+/// passed over. 120 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_match_nearest_pool(const struct dig_curve_set *set, size_t digs,
                                                       const struct dig_observation dig[],
                                                       double                       outside_floors,

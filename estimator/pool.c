@@ -57,7 +57,7 @@ static void add(struct dig_pooled *const group, const struct dig_observation *co
 void dig_pool_sum(const size_t digs, const struct dig_observation dig[],
                   struct dig_pool_sums *const sums)
 {
-    assert(digs > 0 && digs <= DIG_POOL_MAX && dig != NULL && sums != NULL);
+    assert(digs > 0 && dig != NULL && sums != NULL);
     sums->digs      = digs;
     sums->dig_count = dig[digs - 1].dig_count;
     sums->groups    = 0;

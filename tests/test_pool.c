@@ -194,17 +194,32 @@ static void trajectories_add_up(void **state)
     made_table_destroy(set);
 }
 
+// Who has more digs than a pool keeps may match them all.
+static void twice_the_digs_of_a_pool_add_up(void **state)
+{
+    (void)state;
+    enum { MANY = 2 * DIG_POOL_MAX };
+    struct dig_curve_set *const set    = made_table(&flat);
+    uint64_t                    seed   = 5;
+    const struct dig_gravel     gravel = { { 0.62, 0.4, 2500 } };
+    struct dig_observation      dig[MANY];
+    dig_there(&gravel, MADE_SIMPLE_A, MANY, dig, &seed);
+    const struct dig_match half = fit(set, DIG_POOL_MAX, dig, 1), all = fit(set, MANY, dig, 1);
+    assert_int_equal(all.dig_count, MANY);
+    assert_true(all.high.value[0] - all.low.value[0] < half.high.value[0] - half.low.value[0]);
+    made_table_destroy(set);
+}
+
 static void refusals_write_nothing(void **state)
 {
     (void)state;
     struct dig_curve_set *const set = made_table(&flat);
-    struct dig_observation      dig[DIG_POOL_MAX + 1];
-    for (int d = 0; d <= DIG_POOL_MAX; d++) {
+    struct dig_observation      dig[3];
+    for (int d = 0; d < 3; d++) {
         dig[d] = made_observation(&set->gravel[3], MADE_SIMPLE_A, 0.0);
     }
     struct dig_match match = { .nearest = 42 };
     assert_int_equal(dig_match_nearest_pool(set, 0, dig, 2.5, &match), DIG_EINVAL);
-    assert_int_equal(dig_match_nearest_pool(set, DIG_POOL_MAX + 1, dig, 2.5, &match), DIG_EINVAL);
     dig[2].moment_Nm[9] = NAN;
     assert_int_equal(dig_match_nearest_pool(set, 3, dig, 2.5, &match), DIG_EINVAL);
     assert_int_equal(match.nearest, 42);
@@ -213,7 +228,6 @@ static void refusals_write_nothing(void **state)
     struct dig_match before;
     memcpy(&before, &match, sizeof before);
     assert_int_equal(dig_fit_refine_pool(set, 0, dig, 10, &match), DIG_EINVAL);
-    assert_int_equal(dig_fit_refine_pool(set, DIG_POOL_MAX + 1, dig, 10, &match), DIG_EINVAL);
     assert_int_equal(dig_fit_refine_pool(set, 3, dig, 10, &match), DIG_EINVAL);
     assert_memory_equal(&match, &before, sizeof match);
     made_table_destroy(set);
@@ -227,6 +241,7 @@ int main(void)
         cmocka_unit_test(a_gravel_without_one_of_the_trajectories_is_passed_over),
         cmocka_unit_test(more_digs_tell_more_and_never_too_much),
         cmocka_unit_test(trajectories_add_up),
+        cmocka_unit_test(twice_the_digs_of_a_pool_add_up),
         cmocka_unit_test(refusals_write_nothing),
     };
     return cmocka_run_group_tests_name("pool", tests, NULL, NULL);
