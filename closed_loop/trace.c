@@ -142,6 +142,15 @@ static enum dig_status make_batch(const struct work *const w, const size_t digs,
                                "the digs of one trajectory have too little measured in common");
 }
 
+// What free air shows has no name that also fits the digs.
+static void give_up_air(struct dig_machine_finding *const air)
+{
+    air->unexplained = true;
+    air->effects     = 0;
+    air->sets        = 0;
+}
+
+// A correction that leaves a dig untold (a cylinder at its stop, a bucket off its path) is none.
 static enum dig_status trace_machine(struct dig_machine_side *const         machine,
                                      const struct dig_trace_settings *const settings,
                                      struct work *const w, struct dig_measured measured[])
@@ -150,6 +159,10 @@ static enum dig_status trace_machine(struct dig_machine_side *const         mach
         dig_machine_side_trace(machine, settings->false_alarm / 2.0, settings->seed, w->air);
     if (status == DIG_OK && w->air->effects > 0) {
         status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
+    }
+    if (status == DIG_ENOMATCH) {
+        give_up_air(w->air);
+        status = dig_machine_side_apply(machine, 0, w->air->effect, measured);
     }
     return status;
 }
@@ -183,6 +196,10 @@ static enum dig_status choose_in_soil(struct dig_machine_side *const machine, co
                                           .parameters  = c->parameters };
         memcpy(other.parameter, c->parameter, sizeof other.parameter);
         status = dig_machine_side_apply(machine, 1, &other, measured);
+        if (status == DIG_ENOMATCH) {
+            status = DIG_OK;
+            continue;
+        }
         if (status == DIG_OK) {
             status = make_batch(w, digs, measured, plain, error);
         }
@@ -418,9 +435,7 @@ static enum dig_status doubt_air(struct dig_machine_side *const         machine,
     }
     if (status == DIG_OK && (!w->search->significant ||
                              w->search->plain.squares < search->plain.squares - clearly_less)) {
-        w->air->unexplained = true;
-        w->air->effects     = 0;
-        w->air->sets        = 0;
+        give_up_air(w->air);
     } else if (status == DIG_OK) {
         *w->batch  = *batch;
         *w->search = *search;

@@ -21,11 +21,6 @@ bool dig_correction_is_none(const struct dig_correction *const correction)
     return none;
 }
 
-static void add(struct dig_vec2 *const to, const struct dig_vec2 more)
-{
-    *to = dig_vec2_add_scaled(*to, 1.0, more);
-}
-
 // The centre of mass moves; the inertia about it is the file's and what the burden says.
 static void add_burden(struct dig_link *const link, const struct dig_burden *const burden)
 {
@@ -35,6 +30,22 @@ static void add_burden(struct dig_link *const link, const struct dig_burden *con
     link->inertia_kgm2 += burden->inertia_kgm2;
 }
 
+// sign 1: as it is; -1: as the file has it.
+static void move_pins(struct dig_machine *const machine, const double sign,
+                      const struct dig_correction *const by)
+{
+    struct dig_four_bar *const bar = &machine->four_bar;
+    bar->rocker_m += sign * by->rocker_m;
+    bar->link_m += sign * by->link_m;
+    bar->rocker_pin_m = dig_vec2_add_scaled(bar->rocker_pin_m, sign, by->rocker_pin_m);
+    bar->ear_m        = dig_vec2_add_scaled(bar->ear_m, sign, by->ear_m);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_cylinder *const cylinder = &machine->cylinder[j];
+        cylinder->base_m = dig_vec2_add_scaled(cylinder->base_m, sign, by->base_m[j]);
+        cylinder->eye_m  = dig_vec2_add_scaled(cylinder->eye_m, sign, by->eye_m[j]);
+    }
+}
+
 struct dig_machine dig_correction_machine(const struct dig_machine *const    machine,
                                           const struct dig_correction *const correction)
 {
@@ -42,16 +53,28 @@ struct dig_machine dig_correction_machine(const struct dig_machine *const    mac
     struct dig_machine made = *machine;
     add_burden(&made.link[DIG_JOINT_BUCKET], &correction->bucket);
     add_burden(&made.link[DIG_JOINT_BUCKET], &correction->payload);
-
-    made.four_bar.rocker_m += correction->rocker_m;
-    made.four_bar.link_m += correction->link_m;
-    add(&made.four_bar.rocker_pin_m, correction->rocker_pin_m);
-    add(&made.four_bar.ear_m, correction->ear_m);
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        add(&made.cylinder[j].base_m, correction->base_m[j]);
-        add(&made.cylinder[j].eye_m, correction->eye_m[j]);
-    }
+    move_pins(&made, 1.0, correction);
     return made;
+}
+
+bool dig_correction_is_geometric(const struct dig_correction *const correction)
+{
+    assert(correction != NULL);
+    double moved_m = fabs(correction->rocker_m) + fabs(correction->link_m) +
+                     dig_vec2_norm(correction->rocker_pin_m) + dig_vec2_norm(correction->ear_m);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        moved_m += dig_vec2_norm(correction->base_m[j]) + dig_vec2_norm(correction->eye_m[j]);
+    }
+    return moved_m > 0.0;
+}
+
+struct dig_machine dig_correction_drawn(const struct dig_machine *const    corrected,
+                                        const struct dig_correction *const correction)
+{
+    assert(corrected != NULL && correction != NULL);
+    struct dig_machine drawn = *corrected;
+    move_pins(&drawn, -1.0, correction);
+    return drawn;
 }
 
 enum dig_status dig_correction_check(const struct dig_machine *const    machine,

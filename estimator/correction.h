@@ -64,4 +64,12 @@ DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    
 struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
                                           const struct dig_correction *correction);
 
+/// True when it moves a pin or makes a bar longer or shorter.
+bool dig_correction_is_geometric(const struct dig_correction *correction);
+
+/// Of a machine that dig_correction_machine() made: with the geometry of its file again, for the
+/// file's lengths of a cylinder at its stops hold there.
+struct dig_machine dig_correction_drawn(const struct dig_machine    *corrected,
+                                        const struct dig_correction *correction);
+
 #endif // DIG_ESTIMATOR_CORRECTION_H

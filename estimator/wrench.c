@@ -85,6 +85,21 @@ static void add_rate_variance(const struct dig_machine *const  machine,
     }
 }
 
+// Pin to pin as the file draws the linkages: its lengths at the stops were taken there, and pins
+// that are elsewhere leave the angles of the stops where they are.
+static void draw_lengths(const struct dig_machine *const    corrected,
+                         const struct dig_correction *const correction,
+                         const struct dig_readings *const readings, struct dig_balance *const b)
+{
+    const struct dig_machine drawn = dig_correction_drawn(corrected, correction);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_lever lever;
+        if (dig_lever_solve(&drawn, (enum dig_joint)j, readings->joint_rad[j], &lever) == DIG_OK) {
+            b->lever[j].length_m = lever.length_m;
+        }
+    }
+}
+
 // A stop carries load past the pressures; a valve lets oil past them.
 static bool is_trusted(const struct dig_machine *const  machine,
                        const struct dig_readings *const readings,
@@ -139,6 +154,9 @@ static enum dig_status solve(const struct dig_machine *const    machine,
         add_rate_variance(machine, &placed, &readings, &balance, &variance);
     }
 
+    if (correction != NULL && dig_correction_is_geometric(correction)) {
+        draw_lengths(machine, correction, &readings, &balance);
+    }
     const bool bucket = is_trusted(machine, &readings, &balance, DIG_JOINT_BUCKET);
     const bool others = is_trusted(machine, &readings, &balance, DIG_JOINT_BOOM) &&
                         is_trusted(machine, &readings, &balance, DIG_JOINT_ARM);

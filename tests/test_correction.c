@@ -118,6 +118,32 @@ static void another_bucket_payload_and_linkage_are_taken_off(void **state)
     expect_load(&file, &c, &sample, &still, 0.5);
 }
 
+// A base pin that is not where the file has it makes every length another one. Where the drive
+// meets its stops is known by the lengths as the file draws them, before and after.
+static void moved_pins_leave_the_stops_where_they_are(void **state)
+{
+    (void)state;
+    struct dig_machine          machine = model_machine();
+    const double                zero[3] = { 0.0 };
+    const struct dig_correction moved   = { .base_m[DIG_JOINT_ARM] = { 0.0, 0.06 } };
+    const struct dig_sample     sample  = sample_of(&machine, zero);
+    struct dig_lever            lever;
+    assert_int_equal(dig_lever_solve(&machine, DIG_JOINT_ARM, pose[DIG_JOINT_ARM], &lever), DIG_OK);
+    struct dig_cylinder *const arm = &machine.cylinder[DIG_JOINT_ARM];
+    for (int at_stop = 0; at_stop <= 1; at_stop++) {
+        const double      clear_m = (at_stop ? 0.5 : 2.0) * DIG_CYLINDER_STOP_MARGIN_m;
+        struct dig_wrench w;
+        struct dig_front  front;
+        arm->min_length_m                  = lever.length_m - clear_m;
+        arm->max_length_m                  = lever.length_m + clear_m;
+        const struct dig_machine corrected = dig_correction_machine(&machine, &moved);
+        assert_int_equal(dig_wrench_correct(&corrected, &moved, &sample, &still, &w, &front),
+                         DIG_OK);
+        assert_true(w.moment_valid);
+        assert_int_equal(w.force_valid, !at_stop);
+    }
+}
+
 static void friction_is_taken_off_in_both_directions(void **state)
 {
     (void)state;
@@ -195,6 +221,7 @@ int main(void)
         cmocka_unit_test(nothing_corrected_at_rest_is_the_plain_wrench),
         cmocka_unit_test(offsets_and_gains_are_taken_off),
         cmocka_unit_test(another_bucket_payload_and_linkage_are_taken_off),
+        cmocka_unit_test(moved_pins_leave_the_stops_where_they_are),
         cmocka_unit_test(friction_is_taken_off_in_both_directions),
         cmocka_unit_test(noise_of_the_rates_widens_sigma),
         cmocka_unit_test(what_cannot_be_is_refused),
