@@ -216,12 +216,13 @@ static bool has_forces(const struct dig_pool_sums *const sums)
 }
 
 static enum dig_status refine(const struct dig_curve_set *const set,
+                              const struct dig_summary *const   summary,
                               const struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
 {
     // A table of scattered points has no cell to be unsure in: the nearest entry stands.
     struct dig_match      refined = *match;
-    const enum dig_status judged  = dig_posterior_fill(set, sums, &refined);
+    const enum dig_status judged  = dig_posterior_fill(set, summary, sums, &refined);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -273,11 +274,11 @@ static enum dig_status refine(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const size_t digs,
-                                    const struct dig_observation dig[], const int max_evaluations,
-                                    struct dig_match *const match)
+static enum dig_status check_and_refine(const struct dig_curve_set *const set,
+                                        const struct dig_summary *const summary, const size_t digs,
+                                        const struct dig_observation dig[],
+                                        const int max_evaluations, struct dig_match *const match)
 {
-    assert(set != NULL && dig != NULL && match != NULL);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
         max_evaluations < 1 || digs < 1) {
         return DIG_EINVAL;
@@ -289,7 +290,23 @@ enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    return refine(set, &sums, max_evaluations, match);
+    return refine(set, summary, &sums, max_evaluations, match);
+}
+
+enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const size_t digs,
+                                    const struct dig_observation dig[], const int max_evaluations,
+                                    struct dig_match *const match)
+{
+    assert(set != NULL && dig != NULL && match != NULL);
+    return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
+}
+
+enum dig_status dig_fit_refine_by(const struct dig_summary *const summary, const size_t digs,
+                                  const struct dig_observation dig[], const int max_evaluations,
+                                  struct dig_match *const match)
+{
+    assert(summary != NULL && dig != NULL && match != NULL);
+    return check_and_refine(summary->set, summary, digs, dig, max_evaluations, match);
 }
 
 enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,

@@ -1,6 +1,7 @@
 #include "estimator/match.h"
 
 #include "estimator/interpolate.h"
+#include "estimator/nearest.h"
 #include "estimator/pool.h"
 
 #include <assert.h>
@@ -104,11 +105,28 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
     return dig_misfit_distance(&all);
 }
 
-enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,
-                                       const struct dig_observation dig[],
-                                       const double outside_floors, struct dig_match *const match)
+// The entry nearest to all digs, the first of several; -1: none.
+static int look_at_all(const struct dig_curve_set *const set,
+                       const struct dig_pool_sums *const sums)
 {
-    assert(set != NULL && dig != NULL && match != NULL);
+    int    nearest = -1;
+    double least   = INFINITY;
+    for (size_t e = 0; e < set->entries; e++) {
+        const double distance = entry_distance(set, e, sums).distance;
+        if (distance < least) {
+            least   = distance;
+            nearest = (int)e;
+        }
+    }
+    return nearest;
+}
+
+// By the summary, if there is one.
+static enum dig_status find(const struct dig_curve_set *const set,
+                            const struct dig_summary *const summary, const size_t digs,
+                            const struct dig_observation dig[], const double outside_floors,
+                            struct dig_match *const match)
+{
     if (digs < 1 || !(outside_floors > 0.0)) {
         return DIG_EINVAL;
     }
@@ -120,18 +138,12 @@ enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, co
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
 
-    int                 nearest = -1;
-    struct dig_distance best    = { .distance = INFINITY };
-    for (size_t e = 0; e < set->entries; e++) {
-        const struct dig_distance distance = entry_distance(set, e, &sums);
-        if (distance.distance < best.distance) {
-            best    = distance;
-            nearest = (int)e;
-        }
-    }
+    const int nearest =
+        summary != NULL ? dig_nearest_find(summary, &sums) : look_at_all(set, &sums);
     if (nearest < 0) {
         return DIG_ENOMATCH;
     }
+    const struct dig_distance best = entry_distance(set, (size_t)nearest, &sums);
 
     *match = (struct dig_match){
         .valid            = true,
@@ -150,6 +162,22 @@ enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, co
         .outside_floors   = outside_floors,
     };
     return DIG_OK;
+}
+
+enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,
+                                       const struct dig_observation dig[],
+                                       const double outside_floors, struct dig_match *const match)
+{
+    assert(set != NULL && dig != NULL && match != NULL);
+    return find(set, NULL, digs, dig, outside_floors, match);
+}
+
+enum dig_status dig_match_nearest_by(const struct dig_summary *const summary, const size_t digs,
+                                     const struct dig_observation dig[],
+                                     const double outside_floors, struct dig_match *const match)
+{
+    assert(summary != NULL && dig != NULL && match != NULL);
+    return find(summary->set, summary, digs, dig, outside_floors, match);
 }
 
 enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,

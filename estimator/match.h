@@ -34,8 +34,9 @@ static inline struct dig_distance dig_misfit_distance(const struct dig_misfit *c
                                   .noise_floor = sqrt(sum->floor2_Nm2 / sum->whole2_Nm2) };
 }
 
-struct dig_cell;   // estimator/interpolate.h
-struct dig_pooled; // estimator/pool.h
+struct dig_cell;    // estimator/interpolate.h
+struct dig_pooled;  // estimator/pool.h
+struct dig_summary; // estimator/summary.h
 
 /// Over the points measured, each dig by itself: pooling changes neither distance nor floor but
 /// for what chance does to them.
@@ -68,6 +69,11 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest_pool(const struct dig_curve_set
                                                       double                       outside_floors,
                                                       struct dig_match            *match);
 
+/// The same of a table that was summed up, the very same answer sooner (estimator/nearest.h).
+DIG_MUST_CHECK enum dig_status dig_match_nearest_by(const struct dig_summary *summary, size_t digs,
+                                                    const struct dig_observation dig[],
+                                                    double outside_floors, struct dig_match *match);
+
 /// From a nearest match on between the grid points, and the posterior of the gravel (low and high
 /// widened where needed to hold the gravel told); judges again by the smallest distance whether the
 /// gravel is outside the table. Allocates (in NLopt); never call it in the tick. At most
@@ -82,6 +88,11 @@ DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set   *set,
 DIG_MUST_CHECK enum dig_status dig_fit_refine_pool(const struct dig_curve_set *set, size_t digs,
                                                    const struct dig_observation dig[],
                                                    int max_evaluations, struct dig_match *match);
+
+/// The same, by a summary.
+DIG_MUST_CHECK enum dig_status dig_fit_refine_by(const struct dig_summary *summary, size_t digs,
+                                                 const struct dig_observation dig[],
+                                                 int max_evaluations, struct dig_match *match);
 
 /// The curve predicted for one trajectory at the match, rig scale: mean and 1 sigma of one dig, the
 /// spread between packings and the uncertainty of the gravel taken together. A match that was not

@@ -28,34 +28,6 @@ struct likelihood {
     double                   points;                        // measured
 };
 
-// Squared spread of one dig relative to the mean, over all entries of the trajectory.
-static double pooled_relative2(const struct dig_curve_set *const set, const size_t trajectory,
-                               const size_t channel)
-{
-    double sd2   = 0.0;
-    double mean2 = 0.0;
-    for (size_t e = 0; e < set->entries; e++) {
-        const size_t slot = e * set->trajectories + trajectory;
-        if (set->packings[slot] <= 0) {
-            continue;
-        }
-        const struct dig_curve *const curve = &set->curve[slot];
-
-        // Each entry counts alike, however hard it resists.
-        double entry_sd2   = 0.0;
-        double entry_mean2 = 0.0;
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            entry_sd2 += pow((double)curve->sd[channel][k], 2.0);
-            entry_mean2 += pow((double)curve->mean[channel][k], 2.0);
-        }
-        if (entry_mean2 > 0.0) {
-            sd2 += entry_sd2 / entry_mean2;
-            mean2 += 1.0;
-        }
-    }
-    return mean2 > 0.0 ? sd2 / mean2 : 0.0;
-}
-
 // Mean and variance of one dig at each point, of one channel at one gravel.
 struct channel_curve {
     double mean[DIG_CURVE_POINTS];
@@ -169,6 +141,7 @@ static double log_likelihood_of_all(const struct likelihood *const l,
 }
 
 static struct likelihood likelihood_of(const struct dig_curve_set *const set,
+                                       const struct dig_summary *const   summary,
                                        const struct dig_pooled *const    group)
 {
     const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
@@ -179,7 +152,9 @@ static struct likelihood likelihood_of(const struct dig_curve_set *const set,
                             .channels = group->forces ? DIG_FORCE_CHANNELS : 1,
                             .from     = DIG_CURVE_POINTS };
     for (size_t c = 0; c < l.channels; c++) {
-        l.relative2[c] = pooled_relative2(set, group->trajectory, c);
+        l.relative2[c] = summary != NULL
+                             ? summary->relative2[group->trajectory][c]
+                             : dig_summary_relative2(set, group->trajectory, (enum dig_channel)c);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         if (group->count[k] > 0.0) {
@@ -296,6 +271,7 @@ static void draw_samples(const struct dig_curve_set *const set, const struct fin
 }
 
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
+                                   const struct dig_summary *const   summary,
                                    const struct dig_pool_sums *const sums,
                                    struct dig_match *const           match)
 {
@@ -307,7 +283,7 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
     struct likelihood l[DIG_TRAJECTORY_MAX];
     for (size_t g = 0; g < sums->groups; g++) {
-        l[g] = likelihood_of(set, &sums->group[g]);
+        l[g] = likelihood_of(set, summary, &sums->group[g]);
     }
     const struct fine fine = make_fine(set);
 

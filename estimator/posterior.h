@@ -29,6 +29,7 @@
 #include "core/curve.h"
 #include "estimator/estimator.h"
 #include "estimator/pool.h"
+#include "estimator/summary.h"
 
 /// Path over which errors of a dig are correlated (equivalent width), in bucket lengths. Measured
 /// on 26 LIGGGHTS digs of three gravels over 4 to 5 packings: autocorrelation of the normalised
@@ -43,8 +44,10 @@
 
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
 /// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
-/// evaluations a trajectory; 130 kB of stack.
+/// evaluations a trajectory; 130 kB of stack. Without a summary of the set (NULL) every curve is
+/// looked at once more.
 DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
+                                                  const struct dig_summary   *summary,
                                                   const struct dig_pool_sums *sums,
                                                   struct dig_match           *match);
 

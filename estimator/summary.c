@@ -1,0 +1,75 @@
+#include "estimator/summary.h"
+
+#include <assert.h>
+#include <math.h>
+
+double dig_summary_relative2(const struct dig_curve_set *const set, const size_t trajectory,
+                             const enum dig_channel channel)
+{
+    assert(set != NULL && trajectory < set->trajectories);
+    double sum     = 0.0;
+    double entries = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * set->trajectories + trajectory;
+        if (set->packings[slot] <= 0) {
+            continue;
+        }
+        const struct dig_curve *const curve = &set->curve[slot];
+
+        // Each entry counts alike, however hard it resists.
+        double sd2   = 0.0;
+        double mean2 = 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd2 += pow((double)curve->sd[channel][k], 2.0);
+            mean2 += pow((double)curve->mean[channel][k], 2.0);
+        }
+        if (mean2 > 0.0) {
+            sum += sd2 / mean2;
+            entries += 1.0;
+        }
+    }
+    return entries > 0.0 ? sum / entries : 0.0;
+}
+
+static struct dig_outline outline_of(const struct dig_curve *const curve)
+{
+    struct dig_outline outline;
+    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < DIG_OUTLINE_POINTS; i++) {
+            sum += (double)curve->mean[DIG_CHANNEL_MY_Nm][b * DIG_OUTLINE_POINTS + i];
+        }
+        outline.moment_Nm[b] = (float)(sum / DIG_OUTLINE_POINTS);
+    }
+    return outline;
+}
+
+static struct dig_outline outline_of_none(void)
+{
+    struct dig_outline outline;
+    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+        outline.moment_Nm[b] = NAN;
+    }
+    return outline;
+}
+
+size_t dig_summary_outlines(const struct dig_curve_set *const set)
+{
+    assert(set != NULL);
+    return set->entries * set->trajectories;
+}
+
+void dig_summary_make(const struct dig_curve_set *const set, struct dig_outline outline[],
+                      struct dig_summary *const summary)
+{
+    assert(set != NULL && outline != NULL && summary != NULL);
+    for (size_t slot = 0; slot < dig_summary_outlines(set); slot++) {
+        outline[slot] = set->packings[slot] > 0 ? outline_of(&set->curve[slot]) : outline_of_none();
+    }
+    *summary = (struct dig_summary){ .set = set, .outline = outline };
+    for (size_t t = 0; t < set->trajectories; t++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            summary->relative2[t][c] = dig_summary_relative2(set, t, (enum dig_channel)c);
+        }
+    }
+}
