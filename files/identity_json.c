@@ -25,27 +25,46 @@ static void put_named(FILE *const to, const char *const name, const struct dig_g
 
 static void put_numbers(FILE *const to, const char *const name, const double number[])
 {
-    (void)fprintf(to, ",\n   \"%s\": [", name);
+    (void)fprintf(to, "\n   \"%s\": [", name);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         (void)fprintf(to, "%s%.7g", k == 0 ? "" : k % 16 == 0 ? ",\n    " : ", ", number[k]);
     }
     (void)fputs("]", to);
 }
 
+static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
+{
+    (void)fputs(",\n   \"force\": {", to);
+    put_numbers(to, "x_N", dig->force_N[0]);
+    (void)fputs(",", to);
+    put_numbers(to, "z_N", dig->force_N[1]);
+    (void)fputs(",", to);
+    put_numbers(to, "sigma_x_N", dig->force_sigma_N[0]);
+    (void)fputs(",", to);
+    put_numbers(to, "sigma_z_N", dig->force_sigma_N[1]);
+    (void)fputs("}", to);
+}
+
 static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
 {
-    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g", dig->trajectory,
+    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g,", dig->trajectory,
                   dig->first, dig->last);
     put_numbers(to, "moment_Nm", dig->moment_Nm);
+    (void)fputs(",", to);
     put_numbers(to, "sigma_Nm", dig->sigma_Nm);
+    if (dig->forces) {
+        put_forces(to, dig);
+    }
     (void)fputs("}", to);
 }
 
 void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
 {
     assert(to != NULL && identity != NULL);
-    (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu,\n ",
-                  identity->scene_hash, identity->trajectory, identity->digs);
+    (void)fprintf(
+        to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu, \"forces\": %s,\n ",
+        identity->scene_hash, identity->trajectory, identity->digs,
+        identity->forces ? "true" : "false");
     put_named(to, "gravel", &identity->gravel);
     put_named(to, "mean", &identity->mean);
     put_named(to, "low", &identity->low);
@@ -74,18 +93,32 @@ struct gravel_text {
     double friction, rolling, density_kgpm3;
 };
 
+struct force_text {
+    double x_N[DIG_CURVE_POINTS], z_N[DIG_CURVE_POINTS];
+    double sigma_x_N[DIG_CURVE_POINTS], sigma_z_N[DIG_CURVE_POINTS];
+};
+
+struct dig_text {
+    char               trajectory[DIG_NAME_SIZE];
+    double             first, last;
+    double             moment_Nm[DIG_CURVE_POINTS];
+    double             sigma_Nm[DIG_CURVE_POINTS];
+    struct force_text *force; // NULL: not measured
+};
+
 struct identity_text {
     char               scene_hash[65];
     char               trajectory[DIG_NAME_SIZE];
     uint32_t           digs;
+    bool               forces;
     struct gravel_text gravel, mean, low, high, nearest;
     double             distance, nearest_distance, noise_floor;
     bool               outside;
     struct gravel_text samples[DIG_IDENTITY_SAMPLES_MAX];
     uint32_t           samples_count;
 
-    struct dig_identity_dig recorded[DIG_IDENTITY_DIGS_MAX];
-    uint32_t                recorded_count;
+    struct dig_text recorded[DIG_IDENTITY_DIGS_MAX];
+    uint32_t        recorded_count;
 };
 
 static const cyaml_schema_field_t gravel_fields[] = {
@@ -100,19 +133,29 @@ static const cyaml_schema_value_t sample = { CYAML_VALUE_MAPPING(REQUIRED, struc
 
 static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
 
-static const cyaml_schema_field_t dig_fields[] = {
-    CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_identity_dig, trajectory, 1),
-    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_identity_dig, first),
-    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_identity_dig, last),
-    CYAML_FIELD_SEQUENCE_FIXED("moment_Nm", REQUIRED, struct dig_identity_dig, moment_Nm, &number,
-                               DIG_CURVE_POINTS),
-    CYAML_FIELD_SEQUENCE_FIXED("sigma_Nm", REQUIRED, struct dig_identity_dig, sigma_Nm, &number,
-                               DIG_CURVE_POINTS),
+#define NUMBERS(name, type)                                                                        \
+    CYAML_FIELD_SEQUENCE_FIXED(#name, REQUIRED, type, name, &number, DIG_CURVE_POINTS)
+
+static const cyaml_schema_field_t force_fields[] = {
+    NUMBERS(x_N, struct force_text),
+    NUMBERS(z_N, struct force_text),
+    NUMBERS(sigma_x_N, struct force_text),
+    NUMBERS(sigma_z_N, struct force_text),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t recorded = { CYAML_VALUE_MAPPING(
-    REQUIRED, struct dig_identity_dig, dig_fields) };
+static const cyaml_schema_field_t dig_fields[] = {
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_text, trajectory, 1),
+    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_text, first),
+    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, last),
+    NUMBERS(moment_Nm, struct dig_text),
+    NUMBERS(sigma_Nm, struct dig_text),
+    CYAML_FIELD_MAPPING_PTR("force", CYAML_FLAG_OPTIONAL, struct dig_text, force, force_fields),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t recorded = { CYAML_VALUE_MAPPING(REQUIRED, struct dig_text,
+                                                                   dig_fields) };
 
 #define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
 
@@ -120,6 +163,7 @@ static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_STRING("scene_hash", REQUIRED, struct identity_text, scene_hash, 64),
     CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, trajectory, 1),
     CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, digs),
+    CYAML_FIELD_BOOL("forces", CYAML_FLAG_OPTIONAL, struct identity_text, forces),
     GRAVEL(gravel),
     GRAVEL(mean),
     GRAVEL(low),
@@ -151,13 +195,37 @@ static bool is_gravel(const struct dig_gravel *const g)
            g->value[DIG_AXIS_DENSITY_kgpm3] > 0.0;
 }
 
-static bool is_dig(const struct dig_identity_dig *const dig)
+static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DIG_CURVE_POINTS])
 {
-    bool is = dig->first >= 0.0 && dig->last > dig->first && dig->last <= 1.0;
+    bool is = true;
     for (size_t k = 0; is && k < DIG_CURVE_POINTS; k++) {
-        is = isfinite(dig->moment_Nm[k]) && isfinite(dig->sigma_Nm[k]) && dig->sigma_Nm[k] >= 0.0;
+        is = isfinite(value[k]) && isfinite(sigma[k]) && sigma[k] >= 0.0;
     }
     return is;
+}
+
+static bool is_dig(const struct dig_identity_dig *const dig)
+{
+    return dig->first >= 0.0 && dig->last > dig->first && dig->last <= 1.0 &&
+           is_curve(dig->moment_Nm, dig->sigma_Nm) &&
+           is_curve(dig->force_N[0], dig->force_sigma_N[0]) &&
+           is_curve(dig->force_N[1], dig->force_sigma_N[1]);
+}
+
+static void take_dig(const struct dig_text *const text, struct dig_identity_dig *const dig)
+{
+    *dig = (struct dig_identity_dig){ .first  = text->first,
+                                      .last   = text->last,
+                                      .forces = text->force != NULL };
+    memcpy(dig->trajectory, text->trajectory, sizeof dig->trajectory);
+    memcpy(dig->moment_Nm, text->moment_Nm, sizeof dig->moment_Nm);
+    memcpy(dig->sigma_Nm, text->sigma_Nm, sizeof dig->sigma_Nm);
+    if (text->force != NULL) {
+        memcpy(dig->force_N[0], text->force->x_N, sizeof dig->force_N[0]);
+        memcpy(dig->force_N[1], text->force->z_N, sizeof dig->force_N[1]);
+        memcpy(dig->force_sigma_N[0], text->force->sigma_x_N, sizeof dig->force_sigma_N[0]);
+        memcpy(dig->force_sigma_N[1], text->force->sigma_z_N, sizeof dig->force_sigma_N[1]);
+    }
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
@@ -173,6 +241,7 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     const struct identity_text *const text = data;
     struct dig_identity               read = {
                       .digs             = text->digs,
+                      .forces           = text->forces,
                       .gravel           = gravel_of(&text->gravel),
                       .mean             = gravel_of(&text->mean),
                       .low              = gravel_of(&text->low),
@@ -197,12 +266,12 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
         }
     }
     for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
-        read.recording[i] = text->recorded[i];
+        take_dig(&text->recorded[i], &read.recording[i]);
         if (!is_dig(&read.recording[i])) {
             status =
                 dig_yaml_refuse(path, "recorded", error,
                                 "the %zu-th is no dig, expected 0 <= first < last <= 1, finite "
-                                "moments, sigmas >= 0",
+                                "moments and forces, sigmas >= 0",
                                 i + 1);
         }
     }

@@ -20,12 +20,16 @@ struct dig_identity_dig {
     double first, last; // progress that was measured
     double moment_Nm[DIG_CURVE_POINTS];
     double sigma_Nm[DIG_CURVE_POINTS];
+    bool   forces; // the forces were measured, too: Fx and Fz, below; else 0
+    double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
 };
 
 struct dig_identity {
     char              scene_hash[65];            // of the table it was identified with
     char              trajectory[DIG_NAME_SIZE]; // of the dig it was identified on
-    size_t            digs;                      // how many of them were pooled
+    size_t            digs;                      // how many were pooled
+    bool              forces;                    // they told moment and forces; else the moment
     struct dig_gravel gravel;                    // between the grid points
     struct dig_gravel mean, low, high;           // posterior mean and 5 %, 95 % of each axis
     struct dig_gravel nearest;                   // entry of the table

@@ -1,5 +1,6 @@
 #include "firmware_host/fit.h"
 
+#include "estimator/doubt.h"
 #include "firmware_host/load.h"
 #include "tables/load.h"
 
@@ -10,10 +11,6 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-
-// What the links' inertia may add to a force that was told without it, per kilogram of them: a
-// bucket gathers and loses speed at the corners of its path (docs/numerics/estimator.md).
-static const double unmodelled_mps2 = 0.1;
 
 static void note(struct dig_fit *const fit, const char *const text)
 {
@@ -110,18 +107,10 @@ static enum dig_status match_pool(const struct dig_fit *const fit, struct dig_po
     return dig_match_nearest(fit->set, pool->dig, floors, match);
 }
 
-// The balance that tells forces is quasi-static; the moment about the bucket's pin hardly minds.
-static void doubt_forces(const struct dig_fit *const fit, struct dig_observation *const dig)
+static void doubt(const struct dig_fit *const fit, struct dig_observation *const dig)
 {
-    double mass_kg = 0.0;
-    for (int j = 0; fit->machine != NULL && j < DIG_JOINTS; j++) {
-        mass_kg += fit->machine->link[j].mass_kg;
-    }
-    const double doubt_N = unmodelled_mps2 * mass_kg / pow(fit->lambda, 3.0);
-    for (int c = 0; dig->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            dig->force_sigma_N[c][k] = hypot(dig->force_sigma_N[c][k], doubt_N);
-        }
+    if (fit->machine != NULL) {
+        dig_doubt_forces(fit->machine, fit->lambda, dig);
     }
 }
 
@@ -324,13 +313,13 @@ bool dig_fit_once(struct dig_fit *const fit)
     struct dig_observation dig;
     if (fit->early != NULL &&
         dig_early_look(fit->early, fit->set, fit->lambda, fit->config, &dig)) {
-        doubt_forces(fit, &dig);
+        doubt(fit, &dig);
         match_early(fit, &dig);
     }
     const bool any = dig_ring_pop(fit->digs, &raw);
     if (any) {
         if (dig_raw_observe(fit->set, &fit->config->estimator, raw, &dig) == DIG_OK) {
-            doubt_forces(fit, &dig);
+            doubt(fit, &dig);
             dig_fit_take(fit, &dig);
         }
         (void)dig_ring_push(fit->spares, &raw);

@@ -1,9 +1,11 @@
 #!/bin/bash
 # How right a table is on digs of another code: every LIGGGHTS gravel of tests/data/reference is
-# identified from its simpleA dig, its actual dig is predicted and compared. One line a case.
+# identified from its simpleA dig, its actual dig is predicted and compared. One line a case; then the
+# packings of one gravel pooled, each of their actual digs predicted. All by moment and forces, and again
+# by the moment alone, as where the bucket's cylinder only is measured.
 #   BIN=build/bin scripts/evaluate.sh [TABLE.sqlite]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite}
+bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=tests/data/reference
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -12,19 +14,39 @@ field() { # KEY AXIS: a number of one of the identity's gravels
 }
 one() { sed -nE "s/.*\"$1\": ([a-z0-9.e+-]+).*/\1/p" "$2" | head -n 1; }
 
-printf '%-30s %22s %22s %6s %6s\n' "true gravel (packing)" identified nearest error floor
-for simple in tests/data/reference/*__simpleA.csv; do
-    case=${simple%__simpleA.csv}
-    "$bin/digloop" identify "$table" "$simple" --json >"$work/id.json"
-    "$bin/digloop" predict "$table" --identified "$work/id.json" --trajectory actual \
-        --measured "${case}__actual.csv" --json >"$work/next.json"
-    printf '%-30s %6.2f %6.2f %7.0f %8.1f %6.1f %6.0f %6.3f %6.3f %s\n' "$(basename "$case")" \
+# Identifies a gravel from the simple dig of each packing together, and predicts the actual dig of each:
+# the mean of errors and noise floors. The line goes to standard output and to $work/lines.
+judge() { # NAME PACKING…
+    local name=$1 packing
+    shift
+    # shellcheck disable=SC2086 # options are words
+    "$bin/digloop" identify "$table" "${@/%/__simpleA.csv}" $options --json >"$work/id.json"
+    for packing in "$@"; do
+        "$bin/digloop" predict "$table" --identified "$work/id.json" --trajectory actual \
+            --measured "${packing}__actual.csv" --json >"$work/next.json"
+        echo "$(one error "$work/next.json") $(one noise_floor "$work/next.json")"
+    done | awk '{ e += $1; f += $2 } END { printf "%.3f %.3f\n", e / NR, f / NR }' >"$work/errors"
+    printf '%-30s %6.2f %6.2f %7.0f %8.1f %6.1f %6.0f %6.3f %6.3f %s\n' "$name" \
         "$(field gravel friction)" "$(field gravel rolling)" "$(field gravel density_kgpm3)" \
         "$(field nearest friction)" "$(field nearest rolling)" "$(field nearest density_kgpm3)" \
-        "$(one error "$work/next.json")" "$(one noise_floor "$work/next.json")" \
-        "$([ "$(one outside "$work/id.json")" = true ] && echo outside || true)" | tee -a "$work/all"
+        $(cat "$work/errors") "$([ "$(one outside "$work/id.json")" = true ] && echo outside || true)" | tee -a "$work/lines"
+}
+
+for options in "" "--moment-alone"; do
+    printf '%-30s %22s %22s %6s %6s\n' "$([ -z "$options" ] && echo moment and forces || echo moment alone)" \
+        "identified" "nearest" error floor
+    : >"$work/lines"
+    for simple in "$data"/*__simpleA.csv; do
+        judge "$(basename "${simple%__simpleA.csv}")" "${simple%__simpleA.csv}"
+    done
+    sort -k8 -n "$work/lines" | awk '{ e[NR] = $8; f[NR] = $9; s += $8; r += ($8 / $9) ^ 2 } END {
+        median = NR % 2 ? e[(NR + 1) / 2] : (e[NR / 2] + e[NR / 2 + 1]) / 2
+        for (i = 1; i <= NR; i++) sum += f[i]
+        printf "median error %.3f, mean %.3f, largest %.3f, mean noise floor %.3f, error / floor %.2f (rms) over %d digs\n",
+            median, s / NR, e[NR], sum / NR, sqrt(r / NR), NR }'
+    for second in "$data"/*_seed2__simpleA.csv; do
+        gravel=${second%_seed2__simpleA.csv}
+        packings=("$gravel"__simpleA.csv "$gravel"_seed*__simpleA.csv)
+        judge "$(basename "$gravel"), ${#packings[@]} digs" "${packings[@]%__simpleA.csv}"
+    done
 done
-sort -k8 -n "$work/all" | awk '{ e[NR] = $8; f[NR] = $9 } END {
-    median = NR % 2 ? e[(NR + 1) / 2] : (e[NR / 2] + e[NR / 2 + 1]) / 2
-    for (i = 1; i <= NR; i++) sum += f[i]
-    printf "median error %.3f, mean noise floor %.3f over %d digs\n", median, sum / NR, NR }'

@@ -9,6 +9,7 @@ static struct dig_identity example(void)
     struct dig_identity id = {
         .trajectory       = "simpleA",
         .digs             = 3,
+        .forces           = true,
         .gravel           = { { 0.512345, 0.4, 2345.6 } },
         .mean             = { { 0.52, 0.41, 2300.0 } },
         .low              = { { 0.4, 0.3, 2000.0 } },
@@ -31,6 +32,11 @@ static struct dig_identity example(void)
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
             dig->moment_Nm[k] = 0.001 * k * (1 + i);
             dig->sigma_Nm[k]  = 0.75;
+            for (int c = 0; i == 1 && c < 2; c++) {
+                dig->forces              = true;
+                dig->force_N[c][k]       = (c == 0 ? -0.25 : 0.125) * k;
+                dig->force_sigma_N[c][k] = 0.375 + c;
+            }
         }
     }
     return id;
@@ -72,13 +78,30 @@ static void what_was_written_is_read_back(void **state)
         assert_close(back.recording[1].moment_Nm[k], 0.002 * k, 1e-7);
         assert_close(back.recording[0].sigma_Nm[k], 0.75, 0.0);
     }
+    assert_true(back.forces && !back.recording[0].forces && back.recording[1].forces);
+    assert_memory_equal(back.recording[1].force_N, id.recording[1].force_N,
+                        sizeof id.recording[1].force_N);
+    assert_memory_equal(back.recording[1].force_sigma_N, id.recording[1].force_sigma_N,
+                        sizeof id.recording[1].force_sigma_N);
+}
+
+// Of 0.1.0: without a word of forces.
+static void what_was_written_before_forces_is_read(void **state)
+{
+    (void)state;
+    struct dig_identity read  = { .forces = true };
+    struct dig_error    error = { "" };
+    if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_true(read.digs > 0 && !read.forces);
 }
 
 // Each defect names the file and the key, and leaves what was there.
 static void defects_are_refused_by_name(void **state)
 {
     (void)state;
-    static char               good[32768];
+    static char               good[65536];
     const struct dig_identity id   = example();
     FILE *const               file = tmpfile();
     dig_identity_write(file, &id);
@@ -100,9 +123,14 @@ static void defects_are_refused_by_name(void **state)
         { "0.75, 0.75", "0.75, -0.75", "recorded" },
         { "0.75, 0.75", "0.75", "sigma_Nm" },
         { "0.75, 0.75", "0.75, 0.75, 0.75", "sigma_Nm" },
+        { "\"forces\": true", "\"forces\": 3", "forces" },
+        { "0.375, 0.375", "0.375, nan", "sigma_x_N" },
+        { "0.375, 0.375", "0.375", "sigma_x_N" },
+        { "1.375, 1.375", "1.375, -1.375", "recorded" },
+        { "\"z_N\"", "\"y_N\"", "y_N" },
     };
     for (size_t i = 0; i < sizeof defect / sizeof defect[0]; i++) {
-        static char       bad[32768];
+        static char       bad[65536];
         const char *const at = strstr(good, defect[i].was);
         assert_non_null(at);
         (void)snprintf(bad, sizeof bad, "%.*s%s%s", (int)(at - good), good, defect[i].is,
@@ -127,6 +155,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_written_is_read_back),
+        cmocka_unit_test(what_was_written_before_forces_is_read),
         cmocka_unit_test(defects_are_refused_by_name),
     };
     return cmocka_run_group_tests_name("identity_json", tests, scratch_setup, scratch_teardown);

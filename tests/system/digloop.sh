@@ -18,6 +18,10 @@ check() { # SENTENCE COMMAND…
     fi
 }
 
+within() { # VALUE LOW HIGH
+    awk -v v="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(v != "" && v >= low && v <= high) }'
+}
+
 # Exit status 2, a message that holds every word, and no output file.
 refuses() { # WORDS… -- COMMAND…
     local words=() word
@@ -36,13 +40,23 @@ refuses() { # WORDS… -- COMMAND…
     >"$work/id.json" 2>"$work/err"
 check "digs of LIGGGHTS are identified" [ $? = 0 ]
 check "as gravel of the table" grep -q '"outside": false' "$work/id.json"
-check "pooled" grep -q '"digs": 5' "$work/id.json"
+check "pooled, by moment and forces" grep -q '"digs": 5, "forces": true' "$work/id.json"
 "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv" >"$work/out"
 check "another dig is predicted" [ $? = 0 ]
 check "as a force recording that can be read again" \
     eval '[ "$(head -n 1 "$work/next.csv")" = "$(grep -v "^#" '"$reference"'__actual.csv | head -n 1)" ]'
 "$BIN/digloop" identify "$table" "$work/next.csv" >"$work/out" 2>&1
 check "the predicted dig is a dig of the table" [ $? = 0 ]
+
+one=("$reference"__simpleA.csv)
+"$BIN/digloop" identify "$table" "${one[@]}" >"$work/all.txt"
+"$BIN/digloop" identify "$table" "${one[@]}" --moment-alone >"$work/moment.txt"
+check "what was measured is said" grep -q "^  1 dig (simpleA): moment and forces$" "$work/all.txt"
+check "forces are left out where that is asked for" grep -q "^  1 dig (simpleA): moment alone$" "$work/moment.txt"
+width() { # FILE: of the density's 90 % interval
+    sed -nE 's/.*density_kgpm3.*90 %: ([0-9.e+]+) to ([0-9.e+]+) .*/\1 \2/p' "$1" | awk '{ print $2 - $1 }'
+}
+check "and tell the density, which the moment hardly does" within "$(width "$work/all.txt")" 1 "$(width "$work/moment.txt")"
 
 # The same digs through a machine: joint angles and pressures with the bus' steps and noise.
 machine=config/machines/zx200_trench.yaml
@@ -60,7 +74,11 @@ agrees() { # A B: A's mean lies within B's 90 % interval, on every axis
 "$BIN/digloop" identify "$table" "$reference"{,_seed2}__simpleA.csv --json >"$work/force.json" 2>"$work/err"
 check "digs are found in a machine recording and identified" eval '"$BIN/digloop" identify "$table" "$work/run.csv" \
     --machine "$machine" --trajectory simpleA --json >"$work/machine.json" 2>"$work/err"'
-check "both of the trajectory asked for" grep -q '"digs": 2' "$work/machine.json"
+check "both of the trajectory asked for, by moment and forces" grep -q '"digs": 2, "forces": true' "$work/machine.json"
+grep -v '^#' "$work/run.csv" | cut -d, -f1-4,9- >"$work/bucket.csv"
+"$BIN/digloop" identify "$table" "$work/run.csv" "$work/bucket.csv" --machine "$machine" --trajectory simpleA >"$work/out" 2>"$work/err"
+check "digs that lack the forces leave the moment to all" \
+    grep -q "^  4 digs (simpleA): moment alone; forces in 2 of them$" "$work/out"
 check "as the gravel that the force recordings say" agrees "$work/machine.json" "$work/force.json"
 check "and the other way round" agrees "$work/force.json" "$work/machine.json"
 "$BIN/digloop" predict "$table" --identified "$work/force.json" --trajectory actual --measured "$reference"__actual.csv --json \

@@ -20,6 +20,7 @@ struct digloop_options {
     const char *machine, *model, *trajectory;    // identify, predict
     const char *identified, *out, *measured;     // predict
     const char *effects, *json_out, *html, *add; // trace
+    bool        moment_alone;                    // identify
     bool        json;
 };
 

@@ -1,4 +1,3 @@
-#include "closed_loop/observe.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
 #include "tools/digloop/commands.h"
@@ -45,37 +44,104 @@ static enum dig_status collect(const struct digloop_options *const options,
         }
         dig_observed_digs_finish(&digs);
     }
+    if (status == DIG_OK && pool->dig == NULL) {
+        (void)dig_error_set(error, DIG_EINVAL, "no recording, expected one or more");
+        return DIG_EINVAL;
+    }
     return status;
 }
 
-// The mean of all digs, and how many there were.
+// Which trajectories identify in a daemon that is not told others.
+static bool is_simple(const struct dig_trajectory *const t)
+{
+    return strncmp(t->name, "simple", 6) == 0;
+}
+
+// Digs along several trajectories are of one ground when each is one that identifies: an actual dig
+// among them would predict itself.
+static enum dig_status check_along(const struct dig_curve_set *const set,
+                                   const struct pool *const pool, struct dig_error *const error)
+{
+    const int first = pool->dig[0].trajectory;
+    bool      same = true, simple = true;
+    for (size_t d = 0; d < pool->digs; d++) {
+        same   = same && pool->dig[d].trajectory == first;
+        simple = simple && is_simple(&set->trajectory[pool->dig[d].trajectory]);
+    }
+    return same || simple
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "recordings of different trajectories, expected digs along one, or "
+                               "along those that begin with \"simple\"; --trajectory NAME takes "
+                               "those along one");
+}
+
 static enum dig_status observe_all(const struct digloop_options *const options,
                                    const struct dig_curve_set *const   set,
                                    const struct digloop_machine *const machine,
-                                   struct dig_observation *const mean, size_t *const digs,
-                                   struct dig_error *const error)
+                                   struct pool *const pool, struct dig_error *const error)
 {
     int             trajectory = -1;
     enum dig_status status     = DIG_OK;
     if (options->trajectory != NULL) {
         status = digloop_find_trajectory(options, set, &trajectory, error);
     }
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct pool pool = { .digs = 0 };
-    status           = collect(options, set, machine, trajectory, &pool, error);
     if (status == DIG_OK) {
-        struct dig_error why = { "" };
-        status               = dig_observe_mean(pool.digs, pool.dig, mean, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s; --trajectory NAME takes those along one",
-                                why.text);
+        status = collect(options, set, machine, trajectory, pool, error);
+    }
+    if (status == DIG_OK) {
+        status = check_along(set, pool, error);
+    }
+    for (size_t d = 0; status == DIG_OK && d < pool->digs; d++) {
+        pool->dig[d].forces = pool->dig[d].forces && !options->moment_alone;
+    }
+    return status;
+}
+
+static enum dig_status match_all(const struct digloop_options *const options,
+                                 const struct dig_curve_set *const   set,
+                                 const struct pool *const pool, struct dig_match *const match,
+                                 struct dig_error *const error)
+{
+    enum dig_status status =
+        dig_match_nearest_pool(set, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
+    if (status == DIG_ENOMATCH) {
+        return dig_error_set(error, status, "%s: holds no gravel with a curve along %s%s",
+                             options->table,
+                             set->trajectory[pool->dig[pool->digs - 1].trajectory].name,
+                             pool->digs > 1 ? " and all else that was dug" : "");
+    }
+    if (status == DIG_OK) {
+        status = dig_fit_refine_pool(set, pool->digs, pool->dig, EVALUATIONS, match);
+    }
+    return status == DIG_OK
+               ? DIG_OK
+               : dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+}
+
+// "3 digs (simpleA): moment and forces"; and why not the forces, where some have them.
+static void show_measured(const struct dig_curve_set *const set, const struct pool *const pool,
+                          const bool forces, FILE *const to)
+{
+    (void)fprintf(to, "  %zu dig%s (", pool->digs, pool->digs == 1 ? "" : "s");
+    for (size_t t = 0, named = 0; t < set->trajectories; t++) {
+        bool dug = false;
+        for (size_t d = 0; d < pool->digs; d++) {
+            dug = dug || (size_t)pool->dig[d].trajectory == t;
+        }
+        if (dug) {
+            (void)fprintf(to, "%s%s", named++ > 0 ? ", " : "", set->trajectory[t].name);
         }
     }
-    *digs = pool.digs;
-    free(pool.dig);
-    return status;
+    size_t with = 0;
+    for (size_t d = 0; d < pool->digs; d++) {
+        with += pool->dig[d].forces ? 1 : 0;
+    }
+    (void)fputs(forces ? "): moment and forces" : "): moment alone", to);
+    if (!forces && with > 0) {
+        (void)fprintf(to, "; forces in %zu of them", with);
+    }
+    (void)fputs("\n", to);
 }
 
 static void show_identity(const struct dig_identity *const id, FILE *const to)
@@ -90,52 +156,52 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
                   id->outside ? "; OUTSIDE: none of the table's gravels" : "");
 }
 
+static struct dig_identity identity_of(const struct dig_curve_set *const   set,
+                                       const struct dig_observation *const youngest,
+                                       const struct dig_match *const       match)
+{
+    struct dig_identity id = {
+        .digs             = match->digs,
+        .forces           = match->forces,
+        .gravel           = match->gravel,
+        .mean             = match->mean,
+        .low              = match->low,
+        .high             = match->high,
+        .nearest          = set->gravel[match->nearest],
+        .distance         = match->distance,
+        .nearest_distance = match->nearest_distance,
+        .noise_floor      = match->noise_floor,
+        .outside          = match->outside,
+        .samples          = match->samples,
+    };
+    _Static_assert(DIG_MATCH_SAMPLES <= DIG_IDENTITY_SAMPLES_MAX, "the posterior must fit");
+    memcpy(id.sample, match->sample, match->samples * sizeof match->sample[0]);
+    (void)snprintf(id.scene_hash, sizeof id.scene_hash, "%s", set->scene_hash);
+    (void)snprintf(id.trajectory, sizeof id.trajectory, "%s",
+                   set->trajectory[youngest->trajectory].name);
+    return id;
+}
+
 enum dig_status digloop_identify(const struct digloop_options *const options,
                                  const struct dig_curve_set *const   set,
                                  const struct digloop_machine *const machine,
                                  struct dig_error *const             error)
 {
-    struct dig_observation observation = { .trajectory = 0 };
-    struct dig_match       match;
-    size_t                 digs   = 0;
-    enum dig_status        status = observe_all(options, set, machine, &observation, &digs, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = dig_match_nearest(set, &observation, OUTSIDE_FLOORS, &match);
-    if (status == DIG_ENOMATCH) {
-        return dig_error_set(error, status, "%s: holds no curve along %s, expected one or more",
-                             options->table, set->trajectory[observation.trajectory].name);
+    struct pool      pool = { .digs = 0 };
+    struct dig_match match;
+    enum dig_status  status = observe_all(options, set, machine, &pool, error);
+    if (status == DIG_OK) {
+        status = match_all(options, set, &pool, &match, error);
     }
     if (status == DIG_OK) {
-        status = dig_fit_refine(set, &observation, EVALUATIONS, &match);
+        const struct dig_identity id = identity_of(set, &pool.dig[pool.digs - 1], &match);
+        if (options->json) {
+            dig_identity_write(stdout, &id);
+        } else {
+            show_measured(set, &pool, match.forces, stdout);
+            show_identity(&id, stdout);
+        }
     }
-    if (status != DIG_OK) {
-        return dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
-    }
-
-    struct dig_identity id = {
-        .digs             = digs,
-        .gravel           = match.gravel,
-        .mean             = match.mean,
-        .low              = match.low,
-        .high             = match.high,
-        .nearest          = set->gravel[match.nearest],
-        .distance         = match.distance,
-        .nearest_distance = match.nearest_distance,
-        .noise_floor      = match.noise_floor,
-        .outside          = match.outside,
-        .samples          = match.samples,
-    };
-    _Static_assert(DIG_MATCH_SAMPLES <= DIG_IDENTITY_SAMPLES_MAX, "the posterior must fit");
-    memcpy(id.sample, match.sample, match.samples * sizeof match.sample[0]);
-    (void)snprintf(id.scene_hash, sizeof id.scene_hash, "%s", set->scene_hash);
-    (void)snprintf(id.trajectory, sizeof id.trajectory, "%s",
-                   set->trajectory[observation.trajectory].name);
-    if (options->json) {
-        dig_identity_write(stdout, &id);
-    } else {
-        show_identity(&id, stdout);
-    }
-    return DIG_OK;
+    free(pool.dig);
+    return status;
 }

@@ -11,11 +11,12 @@ static const char help[] =
     "\n"
     "usage:\n"
     "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--model MODEL.json]\n"
-    "                   [--trajectory NAME] [--json]\n"
-    "      which gravel: all digs of the recordings along one trajectory, pooled. A recording is "
-    "a\n"
-    "      force recording, or with --machine a machine recording or an LCM log of the daemon,\n"
-    "      which may hold several digs: --trajectory takes those along one\n"
+    "                   [--trajectory NAME] [--moment-alone] [--json]\n"
+    "      which gravel: all digs of the recordings matched together, by moment and forces where\n"
+    "      every dig has them, else by the moment alone, as --moment-alone does in any case. A\n"
+    "      recording is a force recording, or with --machine a machine recording or an LCM log of\n"
+    "      the daemon, which may hold several digs. They are to be along one trajectory, or along\n"
+    "      such as begin with \"simple\"; --trajectory takes those along one\n"
     "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
     "                  [-o CURVE.csv] [--measured RECORDING [--machine MACHINE.yaml]]\n"
     "                  [--model MODEL.json] [--json]\n"
@@ -67,6 +68,9 @@ static bool has_dig_options(const struct digloop_options *const o)
 
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
 {
+    if (o->moment_alone && strcmp(o->command, "identify") != 0) {
+        return dig_error_set(error, DIG_EINVAL, "--moment-alone: expected with identify only");
+    }
     if (strcmp(o->command, "identify") == 0) {
         return o->recordings >= 1 && o->recordings <= DIGLOOP_RECORDINGS_MAX &&
                        !has_predict_options(o) && !has_trace_options(o)
@@ -112,6 +116,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         TRAJECTORY,
         MACHINE,
         MODEL,
+        MOMENT_ALONE,
         MEASURED,
         EFFECTS,
         JSON,
@@ -125,6 +130,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         { "trajectory", required_argument, NULL, TRAJECTORY },
         { "machine", required_argument, NULL, MACHINE },
         { "model", required_argument, NULL, MODEL },
+        { "moment-alone", no_argument, NULL, MOMENT_ALONE },
         { "measured", required_argument, NULL, MEASURED },
         { "effects", required_argument, NULL, EFFECTS },
         { "json", is_trace(argc, argv) ? required_argument : no_argument, NULL, JSON },
@@ -142,6 +148,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         case TRAJECTORY: o.trajectory = optarg; break;
         case MACHINE: o.machine = optarg; break;
         case MODEL: o.model = optarg; break;
+        case MOMENT_ALONE: o.moment_alone = true; break;
         case 'o': o.out = optarg; break;
         case MEASURED: o.measured = optarg; break;
         case EFFECTS: o.effects = optarg; break;

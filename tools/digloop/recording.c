@@ -3,6 +3,7 @@
 #include "closed_loop/clipped.h"
 #include "closed_loop/observe.h"
 #include "core/sample.h"
+#include "estimator/doubt.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -112,6 +113,31 @@ enum dig_status digloop_load_machine(const struct digloop_options *const options
     return status;
 }
 
+// Moment and forces, as a sensor of all three gives them: without a sigma of its own.
+static enum dig_status observe_force(const struct dig_curve_set *const set,
+                                     const struct dig_recording *const recording,
+                                     struct dig_observation *const     dig,
+                                     struct dig_error *const           error)
+{
+    struct dig_observed   seen;
+    const enum dig_status status = dig_observe_dig(set, recording, &seen, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    *dig = (struct dig_observation){
+        .dig_count  = 1,
+        .trajectory = seen.trajectory,
+        .off_path_m = seen.off_path_m,
+        .first      = 0.0,
+        .last       = 1.0,
+        .forces     = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
+    };
+    memcpy(dig->moment_Nm, seen.value[DIG_CHANNEL_MY_Nm], sizeof dig->moment_Nm);
+    memcpy(dig->force_N[0], seen.value[DIG_CHANNEL_FX_N], sizeof dig->force_N[0]);
+    memcpy(dig->force_N[1], seen.value[DIG_CHANNEL_FZ_N], sizeof dig->force_N[1]);
+    return DIG_OK;
+}
+
 // The one dig of a force recording.
 static enum dig_status read_force(const char *const path, const struct dig_curve_set *const set,
                                   struct dig_observed_digs *const digs,
@@ -124,8 +150,8 @@ static enum dig_status read_force(const char *const path, const struct dig_curve
     }
     struct dig_error              why = { "" };
     struct dig_observation *const dig = calloc(1, sizeof *dig);
-    status = dig != NULL ? dig_observe_recording(set, &recording, dig, &why)
-                         : dig_error_set(&why, DIG_ENOMEM, "out of memory");
+    status                            = dig != NULL ? observe_force(set, &recording, dig, &why)
+                                                    : dig_error_set(&why, DIG_ENOMEM, "out of memory");
     dig_recording_finish(&recording);
     if (status != DIG_OK) {
         free(dig);
@@ -159,6 +185,10 @@ static enum dig_status read_samples(const char *const                   path,
         }
     }
     dig_machine_recording_finish(&recording);
+    const double lambda = machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    for (size_t i = 0; status == DIG_OK && i < digs->digs; i++) {
+        dig_doubt_forces(&machine->machine, lambda, &digs->dig[i]);
+    }
     return status;
 }
 
