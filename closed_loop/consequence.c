@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -127,6 +128,51 @@ double dig_consequence_size(const struct dig_batch *const  batch,
         }
     }
     return added > 0.0 && floor > 0.0 ? sqrt(least_left(&m, fitted->number) / floor) : 0.0;
+}
+
+// The fit without one of its effects, the others as they are.
+static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const size_t e)
+{
+    struct dig_fitted less = *chosen;
+    size_t            n    = 0;
+    for (size_t i = 0; i < chosen->hypothesis.effects; i++) {
+        if (i != e) {
+            less.hypothesis.effect[n] = chosen->hypothesis.effect[i];
+            less.number[DIG_AXES + n] = chosen->number[DIG_AXES + i];
+            n++;
+        }
+    }
+    less.hypothesis.effects = n;
+    return less;
+}
+
+enum dig_status dig_consequence_of_soil(const struct dig_batch *const  batch,
+                                        const struct dig_soil *const   soil,
+                                        const struct dig_fitted *const chosen, const size_t e,
+                                        const double noise[], double *const size)
+{
+    assert(batch != NULL && soil != NULL && chosen != NULL && noise != NULL && size != NULL);
+    struct dig_measured *const added = calloc(DIG_MEASURED_MAX, sizeof *added);
+    if (added == NULL) {
+        return DIG_ENOMEM;
+    }
+    struct dig_fitted less = leave_out(chosen, e);
+    memcpy(less.noise, noise, sizeof less.noise);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const size_t m = batch->dig[i].measured;
+        double       with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double       without[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        added[m] = batch->measured[m];
+        dig_hypothesis_curve(soil, &chosen->hypothesis, chosen->number, &added[m], with);
+        dig_hypothesis_curve(soil, &less.hypothesis, less.number, &added[m], without);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            added[m].machine[DIG_CHANNEL_MY_Nm][k] =
+                with[DIG_CHANNEL_MY_Nm][k] - without[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    *size = dig_consequence_size(batch, &less, added);
+    free(added);
+    return DIG_OK;
 }
 
 double dig_consequence_chance(const double size)

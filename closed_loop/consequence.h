@@ -1,4 +1,4 @@
-// How much of an effect of the machine reaches what the campaign is about: the moment of the digs.
+// How much of an effect reaches what the campaign is about: the moment of the digs.
 
 #ifndef DIG_CLOSED_LOOP_CONSEQUENCE_H
 #define DIG_CLOSED_LOOP_CONSEQUENCE_H
@@ -14,6 +14,13 @@
 /// Milliseconds.
 double dig_consequence_size(const struct dig_batch *batch, const struct dig_fitted *fitted,
                             const struct dig_measured measured[]);
+
+/// The same of effect number e that chosen was fitted with; noise[]: what the digs of a trajectory
+/// share without it (of the plain fit). DIG_ENOMEM leaves *size as it was.
+DIG_MUST_CHECK enum dig_status dig_consequence_of_soil(const struct dig_batch  *batch,
+                                                       const struct dig_soil   *soil,
+                                                       const struct dig_fitted *chosen, size_t e,
+                                                       const double noise[], double *size);
 
 /// The chance that an effect of this size is no smaller than the floor, which is known to a
 /// quarter.

@@ -2,8 +2,8 @@
 
 #include "closed_loop/consequence.h"
 #include "closed_loop/judge.h"
-#include "closed_loop/machine_side.h"
 #include "closed_loop/trace_parts.h"
+#include "closed_loop/trace_work.h"
 
 #include <assert.h>
 #include <math.h>
@@ -13,13 +13,6 @@
 
 // Share of the scatter of one dig below which a change of the prediction is not made.
 static const double matters = 0.15;
-
-// Of -2 log likelihood of the soil, for which the air's first choice is given up.
-static const double clearly_less = 12.0;
-
-// Probability of an effect of the machine that is seen in free air and too small to be seen in
-// soil.
-static const double unconfirmed = 0.5;
 
 struct dig_trace_settings dig_trace_settings_default(void)
 {
@@ -35,20 +28,7 @@ void dig_trace_finish(struct dig_trace *const trace)
     }
 }
 
-// Everything that a trace needs memory for.
-struct work {
-    struct dig_surface         *surface;
-    struct dig_scatter         *scatter;
-    struct dig_soil            *soil;
-    struct dig_batch           *batch;
-    struct dig_search          *search;
-    struct dig_machine_finding *air;
-    struct dig_fitted           before;
-    bool                        fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
-    double                      size[DIG_MODEL_EFFECTS_MAX]; // of air's effects, in the soil
-};
-
-static void finish(struct work *const w)
+static void finish(struct dig_trace_work *const w)
 {
     free(w->surface);
     dig_scatter_destroy(w->scatter);
@@ -64,8 +44,8 @@ static enum dig_status out_of_memory(struct dig_error *const error)
 }
 
 static enum dig_status prepare(const struct dig_curve_set *const set, const char *const table,
-                               const struct dig_effect_set *const effects, struct work *const w,
-                               struct dig_error *const error)
+                               const struct dig_effect_set *const effects,
+                               struct dig_trace_work *const w, struct dig_error *const error)
 {
     w->surface = calloc(1, sizeof *w->surface);
     w->batch   = calloc(1, sizeof *w->batch);
@@ -94,8 +74,8 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
 }
 
 static enum dig_status check_digs(const struct dig_curve_set *const set, const size_t digs,
-                                  const struct dig_measured measured[], struct work *const w,
-                                  struct dig_error *const error)
+                                  const struct dig_measured    measured[],
+                                  struct dig_trace_work *const w, struct dig_error *const error)
 {
     size_t fits = 0;
     if (digs > DIG_MEASURED_MAX) {
@@ -120,10 +100,9 @@ static enum dig_status check_digs(const struct dig_curve_set *const set, const s
                                      fits);
 }
 
-// The batch of the digs to fit to, its scatter that of the gravel it turns out to be.
-static enum dig_status make_batch(const struct work *const w, const size_t digs,
-                                  const struct dig_measured measured[],
-                                  struct dig_fitted *const plain, struct dig_error *const error)
+enum dig_status dig_trace_batch(const struct dig_trace_work *const w, const size_t digs,
+                                const struct dig_measured measured[],
+                                struct dig_fitted *const plain, struct dig_error *const error)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -140,103 +119,6 @@ static enum dig_status make_batch(const struct work *const w, const size_t digs,
                ? status
                : dig_error_set(error, DIG_EINVAL,
                                "the digs of one trajectory have too little measured in common");
-}
-
-// What free air shows has no name that also fits the digs.
-static void give_up_air(struct dig_machine_finding *const air)
-{
-    air->unexplained = true;
-    air->effects     = 0;
-    air->sets        = 0;
-}
-
-// A correction that leaves a dig untold (a cylinder at its stop, a bucket off its path) is none.
-static enum dig_status trace_machine(struct dig_machine_side *const         machine,
-                                     const struct dig_trace_settings *const settings,
-                                     struct work *const w, struct dig_measured measured[])
-{
-    enum dig_status status =
-        dig_machine_side_trace(machine, settings->false_alarm / 2.0, settings->seed, w->air);
-    if (status == DIG_OK && w->air->effects > 0) {
-        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
-    }
-    if (status == DIG_ENOMATCH) {
-        give_up_air(w->air);
-        status = dig_machine_side_apply(machine, 0, w->air->effect, measured);
-    }
-    return status;
-}
-
-static bool is_in(const struct dig_candidate_set *const set, const enum dig_effect_id effect)
-{
-    bool found = false;
-    for (size_t e = 0; e < set->effects; e++) {
-        found = found || set->effect[e] == effect;
-    }
-    return found;
-}
-
-// Of the machine's effects that free air cannot tell apart, the one that leaves least in the soil
-// is kept. Leaves the batch and *plain with it.
-static enum dig_status choose_in_soil(struct dig_machine_side *const machine, const size_t digs,
-                                      struct dig_measured measured[], struct work *const w,
-                                      struct dig_fitted *const plain, struct dig_error *const error)
-{
-    struct dig_machine_finding *const air    = w->air;
-    enum dig_status                   status = make_batch(w, digs, measured, plain, error);
-    const struct dig_model_effect     first  = air->effect[0];
-    double                            least  = plain->misfit - clearly_less;
-    for (size_t i = 0; air->effects == 1 && air->sets > 0 && i < air->candidates; i++) {
-        const struct dig_candidate *const c = &air->candidate[i];
-        if (status != DIG_OK || c->effect == first.effect || !is_in(&air->set[0], c->effect)) {
-            continue;
-        }
-        struct dig_model_effect other = { .effect      = c->effect,
-                                          .probability = first.probability,
-                                          .parameters  = c->parameters };
-        memcpy(other.parameter, c->parameter, sizeof other.parameter);
-        status = dig_machine_side_apply(machine, 1, &other, measured);
-        if (status == DIG_ENOMATCH) {
-            status = DIG_OK;
-            continue;
-        }
-        if (status == DIG_OK) {
-            status = make_batch(w, digs, measured, plain, error);
-        }
-        if (status == DIG_OK && plain->misfit < least) {
-            least          = plain->misfit;
-            air->effect[0] = other;
-        }
-    }
-    if (status == DIG_OK) {
-        status = dig_machine_side_apply(machine, air->effects, air->effect, measured);
-    }
-    return status == DIG_OK ? make_batch(w, digs, measured, plain, error) : status;
-}
-
-// Free air may show what the soil hides: an effect of the machine that a gravel of the table could
-// stand in for is named, but the digs do not confirm it, and no more than even odds are claimed.
-static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, const size_t digs,
-                                     const struct dig_measured measured[], struct work *const w,
-                                     const struct dig_fitted *const plain)
-{
-    struct dig_measured *const alone = malloc(digs * sizeof *alone);
-    if (alone == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_status status = DIG_OK;
-    memcpy(alone, measured, digs * sizeof *alone);
-    for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
-        struct dig_model_effect *const effect = &w->air->effect[e];
-
-        status = dig_machine_side_apply(machine, 1, effect, alone);
-        if (status == DIG_OK) {
-            w->size[e] = dig_consequence_size(w->batch, plain, alone);
-            effect->probability *= fmax(dig_consequence_chance(w->size[e]), unconfirmed);
-        }
-    }
-    free(alone);
-    return status;
 }
 
 static struct dig_gravel gravel_at(const struct dig_surface *const surface, const double number[])
@@ -334,7 +216,7 @@ static void drop_what_does_not_matter(const struct dig_tracing *const t,
     }
 }
 
-static void fill_errors(const struct dig_tracing *const t, const struct work *const w,
+static void fill_errors(const struct dig_tracing *const t, const struct dig_trace_work *const w,
                         struct dig_trace *const trace)
 {
     bool any = false;
@@ -351,7 +233,7 @@ static void fill_errors(const struct dig_tracing *const t, const struct work *co
 }
 
 // Where nothing better is to be said: why a probability stops at one half.
-static void advise_on_size(const struct work *const w, struct dig_trace *const trace)
+static void advise_on_size(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
     for (size_t e = 0; e < w->air->effects && trace->advice[0] == '\0'; e++) {
         if (w->size[e] < 1.0) {
@@ -363,7 +245,8 @@ static void advise_on_size(const struct work *const w, struct dig_trace *const t
     }
 }
 
-static enum dig_status report(const struct dig_tracing *const t, const struct work *const w,
+static enum dig_status report(const struct dig_tracing *const      t,
+                              const struct dig_trace_work *const   w,
                               const struct dig_machine_side *const machine,
                               struct dig_trace *const              trace)
 {
@@ -390,7 +273,7 @@ static enum dig_status report(const struct dig_tracing *const t, const struct wo
 
 // Whether ground that depends on the rate feels the speed of the tooth or the pace of the dig: what
 // the digs are liker to, refitted with either.
-static void choose_rate(struct work *const w)
+static void choose_rate(struct dig_trace_work *const w)
 {
     static const struct dig_hypothesis rate = { .effects = 1,
                                                 .effect  = { DIG_EFFECT_RATE_DEPENDENCE } };
@@ -410,39 +293,18 @@ static void choose_rate(struct work *const w)
     w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;
 }
 
-// Digs that are like the table's as they were measured, and like nothing once what free air names
-// is taken off: what it names is not what is there.
-static enum dig_status doubt_air(struct dig_machine_side *const         machine,
-                                 const struct dig_trace_settings *const settings, const size_t digs,
-                                 struct dig_measured measured[], struct work *const w,
-                                 struct dig_error *const error)
+// An effect of the soil that another gravel of the table could stand in for: see weigh_in_soil().
+static enum dig_status weigh_soil(struct dig_trace_work *const w)
 {
-    struct dig_batch *const  batch  = malloc(sizeof *batch);
-    struct dig_search *const search = malloc(sizeof *search);
-    enum dig_status          status = DIG_ENOMEM;
-    if (batch != NULL && search != NULL) {
-        struct dig_fitted raw;
-        *batch  = *w->batch;
-        *search = *w->search;
-        status  = dig_machine_side_apply(machine, 0, w->air->effect, measured);
-        if (status == DIG_OK) {
-            status = make_batch(w, digs, measured, &raw, error);
-        }
-        if (status == DIG_OK) {
-            status = dig_search_run(w->batch, w->soil, settings->false_alarm / 2.0,
-                                    settings->bootstraps, settings->seed, w->search);
-        }
+    struct dig_search *const s      = w->search;
+    enum dig_status          status = DIG_OK;
+    for (size_t e = 0;
+         s->significant && !s->unlisted && e < s->chosen.hypothesis.effects && status == DIG_OK;
+         e++) {
+        double size = 0.0;
+        status = dig_consequence_of_soil(w->batch, w->soil, &s->chosen, e, s->plain.noise, &size);
+        s->probability[e] *= fmax(dig_consequence_chance(size), DIG_TRACE_UNCONFIRMED);
     }
-    if (status == DIG_OK && (!w->search->significant ||
-                             w->search->plain.squares < search->plain.squares - clearly_less)) {
-        give_up_air(w->air);
-    } else if (status == DIG_OK) {
-        *w->batch  = *batch;
-        *w->search = *search;
-        status     = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
-    }
-    free(batch);
-    free(search);
     return status;
 }
 
@@ -450,7 +312,7 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
                            const struct dig_effect_set *const     effects,
                            const struct dig_trace_settings *const settings,
                            struct dig_machine_side *const machine, const size_t digs,
-                           struct dig_measured measured[], struct work *const w,
+                           struct dig_measured measured[], struct dig_trace_work *const w,
                            struct dig_trace *const trace, struct dig_error *const error)
 {
     enum dig_status status = prepare(set, table, effects, w, error);
@@ -458,17 +320,11 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = check_digs(set, digs, measured, w, error);
     }
     if (status == DIG_OK) {
-        status = make_batch(w, digs, measured, &w->before, error);
+        status = dig_trace_batch(w, digs, measured, &w->before, error);
     }
     struct dig_fitted plain = w->before;
     if (status == DIG_OK && machine != NULL) {
-        status = trace_machine(machine, settings, w, measured);
-        if (status == DIG_OK && w->air->effects > 0) {
-            status = choose_in_soil(machine, digs, measured, w, &plain, error);
-        }
-        if (status == DIG_OK) {
-            status = weigh_in_soil(machine, digs, measured, w, &plain);
-        }
+        status = dig_trace_air(machine, settings, digs, measured, w, &plain, error);
     }
     if (status == DIG_OK) {
         choose_rate(w);
@@ -477,7 +333,10 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
                                 w->search);
     }
     if (status == DIG_OK && w->air->effects > 0 && w->search->significant && w->search->unlisted) {
-        status = doubt_air(machine, settings, digs, measured, w, error);
+        status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
+    }
+    if (status == DIG_OK) {
+        status = weigh_soil(w);
     }
     // Nothing was found: nothing changes.
     if (status == DIG_OK && !w->search->significant && w->air->effects == 0) {
@@ -496,9 +355,9 @@ enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char 
                               struct dig_error *const error)
 {
     assert(set != NULL && settings != NULL && measured != NULL && trace != NULL);
-    struct dig_error  why  = { "" };
-    struct work       w    = { .surface = NULL };
-    struct dig_trace *made = calloc(1, sizeof *made);
+    struct dig_error      why  = { "" };
+    struct dig_trace_work w    = { .surface = NULL };
+    struct dig_trace     *made = calloc(1, sizeof *made);
     if (made == NULL) {
         return out_of_memory(error);
     }

@@ -1,0 +1,47 @@
+// What trace.c and trace_air.c work on together. Internal to them.
+
+#ifndef DIG_CLOSED_LOOP_TRACE_WORK_H
+#define DIG_CLOSED_LOOP_TRACE_WORK_H
+
+#include "closed_loop/machine_side.h"
+#include "closed_loop/search.h"
+#include "closed_loop/trace.h"
+
+/// Probability that is left to an effect too small for the digs to confirm it.
+#define DIG_TRACE_UNCONFIRMED 0.5
+
+/// Everything that a trace needs memory for.
+struct dig_trace_work {
+    struct dig_surface         *surface;
+    struct dig_scatter         *scatter;
+    struct dig_soil            *soil;
+    struct dig_batch           *batch;
+    struct dig_search          *search;
+    struct dig_machine_finding *air;
+    struct dig_fitted           before;
+    bool                        fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
+    double                      size[DIG_MODEL_EFFECTS_MAX]; // of air's effects, in the soil
+};
+
+/// The batch of the digs to fit to, its scatter that of the gravel it turns out to be (*plain).
+DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w, size_t digs,
+                                               const struct dig_measured measured[],
+                                               struct dig_fitted *plain, struct dig_error *error);
+
+/// Finds what free air shows of the machine and takes it off the digs: leaves measured[].machine,
+/// the batch and *plain with it, and the effects' probabilities weighed by what the soil shows of
+/// them.
+DIG_MUST_CHECK enum dig_status dig_trace_air(struct dig_machine_side         *machine,
+                                             const struct dig_trace_settings *settings, size_t digs,
+                                             struct dig_measured    measured[],
+                                             struct dig_trace_work *w, struct dig_fitted *plain,
+                                             struct dig_error *error);
+
+/// After the search: gives up what free air named where the digs are liker to the table's without.
+DIG_MUST_CHECK enum dig_status dig_trace_doubt_air(struct dig_machine_side         *machine,
+                                                   const struct dig_trace_settings *settings,
+                                                   size_t digs, struct dig_measured measured[],
+                                                   struct dig_trace_work *w,
+                                                   struct dig_error      *error);
+
+#endif // DIG_CLOSED_LOOP_TRACE_WORK_H
