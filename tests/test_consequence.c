@@ -119,6 +119,31 @@ static void what_another_gravel_does_is_no_size(void **state)
     assert_true(dig_consequence_size(batch, &at, measured) > 3.0);
 }
 
+static double size_of(const double layer, const double cohesion)
+{
+    struct dig_fitted chosen = plain;
+    double            size   = -1.0;
+    chosen.hypothesis =
+        (struct dig_hypothesis){ .effects = 2,
+                                 .effect  = { DIG_EFFECT_COHESION, DIG_EFFECT_LAYERING } };
+    chosen.number[DIG_AXES]     = cohesion;
+    chosen.number[DIG_AXES + 1] = layer;
+    assert_int_equal(dig_consequence_of_soil(batch, soil, &chosen, 1, plain.noise, &size), DIG_OK);
+    return size;
+}
+
+// The layer of the made world is a bump that no gravel has: it counts in proportion, and by itself.
+static void an_effect_of_the_soil_counts_by_itself(void **state)
+{
+    (void)state;
+    const double size = size_of(0.05, 0.0);
+    assert_close(size_of(0.0, 0.0), 0.0, 1e-12);
+    assert_close(size_of(0.0, 1.0), 0.0, 1e-12);
+    assert_true(size > 0.0);
+    assert_close(size_of(0.1, 0.0), 2.0 * size, 0.1 * size);
+    assert_close(size_of(0.05, 1.0), size, 1e-9);
+}
+
 static void at_the_floor_the_odds_are_even(void **state)
 {
     (void)state;
@@ -133,6 +158,7 @@ int main(void)
         cmocka_unit_test(without_the_machine_there_is_no_size),
         cmocka_unit_test(what_no_gravel_does_counts_in_floors),
         cmocka_unit_test(what_another_gravel_does_is_no_size),
+        cmocka_unit_test(an_effect_of_the_soil_counts_by_itself),
         cmocka_unit_test(at_the_floor_the_odds_are_even),
     };
     return cmocka_run_group_tests_name("consequence", tests, make, clean);
