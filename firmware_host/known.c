@@ -145,8 +145,13 @@ static void put_pool(const struct dig_curve_set *const set, const struct dig_poo
         memcpy(to->trajectory, set->trajectory[dig->trajectory].name, sizeof to->trajectory);
         memcpy(to->moment_Nm, dig->moment_Nm, sizeof to->moment_Nm);
         memcpy(to->sigma_Nm, dig->sigma_Nm, sizeof to->sigma_Nm);
-        to->first = dig->first;
-        to->last  = dig->last;
+        to->first  = dig->first;
+        to->last   = dig->last;
+        to->forces = dig->forces;
+        if (dig->forces) {
+            memcpy(to->force_N, dig->force_N, sizeof to->force_N);
+            memcpy(to->force_sigma_N, dig->force_sigma_N, sizeof to->force_sigma_N);
+        }
     }
 }
 
@@ -160,6 +165,7 @@ enum dig_status dig_known_write(const char *const path, const struct dig_known *
     const struct dig_match *const m        = &known->match;
     struct dig_identity           identity = {
                   .digs             = m->digs,
+                  .forces           = m->forces,
                   .gravel           = m->gravel,
                   .mean             = m->mean,
                   .low              = m->low,
@@ -264,8 +270,11 @@ static void take_pool(const struct dig_curve_set *const set,
         }
         memcpy(dig.moment_Nm, from->moment_Nm, sizeof dig.moment_Nm);
         memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
-        dig.first = from->first;
-        dig.last  = from->last;
+        memcpy(dig.force_N, from->force_N, sizeof dig.force_N);
+        memcpy(dig.force_sigma_N, from->force_sigma_N, sizeof dig.force_sigma_N);
+        dig.first  = from->first;
+        dig.last   = from->last;
+        dig.forces = from->forces;
         if (dig_observation_check(set, &dig) != DIG_OK) {
             pool->digs = 0;
             return;
@@ -300,6 +309,7 @@ enum dig_status dig_known_read(const char *const path, const struct dig_curve_se
     };
     struct dig_match *const m = &read.match;
     m->digs                   = i.digs;
+    m->forces                 = i.forces;
     m->valid                  = true;
     m->gravel                 = i.gravel;
     m->mean                   = i.mean;

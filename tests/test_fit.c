@@ -466,6 +466,84 @@ static void the_digs_of_a_ground_survive_too(void **state)
     free(b);
 }
 
+// Forces that tell the gravels apart otherwise than the moment does.
+static void give_forces(struct bench *const b)
+{
+    for (int g = 0; g < GRAVELS; g++) {
+        struct dig_curve *const curve = &b->curve[g * TRAJECTORIES];
+        for (int c = 0; c < 2; c++) {
+            for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+                curve->mean[1 + c][p] = (float)((c == 0 ? -3.0 : 2.0) * moment_Nm(GRAVELS - g, p));
+                curve->sd[1 + c][p]   = 0.03F;
+            }
+        }
+    }
+}
+
+// A dig in one of the gravels, with its forces.
+static void dig_with_forces_in(struct bench *const b, const int gravel, const double factor)
+{
+    struct dig_observation dig = { .dig_count = 5, .last = 1.0, .forces = true };
+    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+        dig.moment_Nm[p] = factor * moment_Nm(gravel, p);
+        dig.sigma_Nm[p]  = 0.005;
+        for (int c = 0; c < 2; c++) {
+            dig.force_N[c][p]       = (double)b->curve[gravel * TRAJECTORIES].mean[1 + c][p];
+            dig.force_sigma_N[c][p] = 0.02 + 0.001 * c;
+        }
+    }
+    dig_fit_take(&b->fit, &dig);
+}
+
+// What comes after a restart is matched with the forces of what was before it.
+static void the_forces_of_a_ground_survive_too(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create(), *const again = bench_create();
+    for (int i = 0; i < 2; i++) {
+        struct bench *const one = i == 0 ? b : again;
+        give_forces(one);
+        (void)snprintf(one->config.match_state.text, sizeof one->config.match_state.text, "%s",
+                       scratch_path("forces.json"));
+        (void)strcpy(one->set.scene_hash,
+                     "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
+    }
+    for (int i = 0; i < 8; i++) {
+        dig_with_forces_in(b, 5, 1.0 + 0.001 * i);
+    }
+    assert_true(b->fit.known.match.forces);
+    dig_fit_restore(&again->fit);
+    assert_true(again->fit.known.restored && again->fit.known.match.forces);
+    assert_int_equal(again->fit.pool.digs, 8);
+    for (int d = 0; d < 8; d++) {
+        const struct dig_observation *const was = &b->fit.pool.dig[d],
+                                            *is = &again->fit.pool.dig[d];
+        assert_true(is->forces);
+        for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+            for (int c = 0; c < 2; c++) {
+                assert_close(is->force_N[c][p], was->force_N[c][p],
+                             1e-6 * fabs(was->force_N[c][p]));
+                assert_close(is->force_sigma_N[c][p], 0.02 + 0.001 * c, 1e-9);
+            }
+        }
+    }
+    dig_with_forces_in(b, 5, 1.0);
+    dig_with_forces_in(again, 5, 1.0);
+    assert_true(again->fit.known.match.forces && again->fit.known.match.digs == 8);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(again->fit.known.match.low.value[a], b->fit.known.match.low.value[a],
+                     1e-5 * b->fit.known.match.low.value[a]);
+        assert_close(again->fit.known.match.high.value[a], b->fit.known.match.high.value[a],
+                     1e-5 * b->fit.known.match.high.value[a]);
+    }
+
+    // A dig that lacks them leaves the moment to the pool.
+    dig_in(again, 5, 0, 1.0);
+    assert_false(again->fit.known.match.forces);
+    free(b);
+    free(again);
+}
+
 static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **state)
 {
     (void)state;
@@ -518,6 +596,7 @@ int main(void)
         cmocka_unit_test(a_gravel_that_is_too_old_is_no_longer_known),
         cmocka_unit_test(what_is_known_survives_in_its_file),
         cmocka_unit_test(the_digs_of_a_ground_survive_too),
+        cmocka_unit_test(the_forces_of_a_ground_survive_too),
         cmocka_unit_test(a_file_that_cannot_be_written_is_said_and_the_match_stands),
         cmocka_unit_test(the_hint_is_the_dig_that_carries_for_the_least_energy),
     };
