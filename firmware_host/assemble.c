@@ -107,14 +107,68 @@ static const struct dig_past_reading *past_of(const struct dig_assembler *const 
                : NULL;
 }
 
-// Every needed group came since the last sample, and they belong together: *time_ns is the moment
-// all of them reach.
+// The cycle a group comes in: as it is said, or the shortest of those remembered, so that a silence
+// among them does not count.
+static int64_t cycle_ns(const struct dig_assembler *const a, const unsigned group)
+{
+    const struct dig_past_reading *younger     = past_of(a, group, 0);
+    int64_t                        shortest_ns = INT64_MAX;
+    for (size_t n = 1; younger != NULL && n < DIG_HISTORY; n++) {
+        const struct dig_past_reading *const older = past_of(a, group, n);
+        if (older != NULL && younger->time_ns - older->time_ns < shortest_ns) {
+            shortest_ns = younger->time_ns - older->time_ns;
+        }
+        younger = older;
+    }
+    const int64_t said_ns = ns(a->settings.frame[group].cycle_s);
+    return shortest_ns == INT64_MAX || shortest_ns < said_ns ? said_ns : shortest_ns;
+}
+
+// A group that can be done without, and that does not come while the others do. The clock alone
+// would not tell: after a pause of the whole bus the others may only be the first.
+static bool is_silent(const struct dig_assembler *const a, const unsigned group,
+                      const int64_t now_ns)
+{
+    if (!a->settings.spared[group] || a->beats - a->beat_of[group] < DIG_SILENT_CYCLES) {
+        return false;
+    }
+    const struct dig_past_reading *const last     = past_of(a, group, 0);
+    const int64_t                        since_ns = last != NULL ? last->time_ns : a->first_ns;
+    const int64_t                        most_ns  = DIG_SILENT_CYCLES * cycle_ns(a, group);
+    return now_ns - since_ns > (most_ns > ns(DIG_SILENT_s) ? most_ns : ns(DIG_SILENT_s));
+}
+
+// A reading of this group came: counts what silence is measured by, and finds who is silent.
+static void hear(struct dig_assembler *const a, const unsigned group, const int64_t now_ns)
+{
+    unsigned lead = 0;
+    while (lead < a->settings.groups && (!a->settings.needed[lead] || a->settings.spared[lead])) {
+        lead++;
+    }
+    a->beats += group == lead ? 1 : 0;
+    a->beat_of[group] = a->beats;
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        a->silent[g] = is_silent(a, g, now_ns);
+    }
+}
+
+static bool lacks_any(const struct dig_assembler *const a)
+{
+    bool lacks = false;
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        lacks = lacks || a->silent[g];
+    }
+    return lacks;
+}
+
+// Every needed group that speaks came since the last sample, and they belong together: *time_ns is
+// the moment all of them reach.
 static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
 {
     int64_t oldest   = INT64_MAX;
     int64_t youngest = INT64_MIN;
     for (unsigned g = 0; g < a->settings.groups; g++) {
-        if (!a->settings.needed[g]) {
+        if (!a->settings.needed[g] || a->silent[g]) {
             continue;
         }
         const struct dig_past_reading *const last = past_of(a, g, 0);
@@ -158,8 +212,9 @@ static struct dig_sample sample_at(const struct dig_assembler *const a, const in
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         const struct dig_past_reading *const last =
             a->carried[i] ? past_of(a, a->group_of[i], 0) : NULL;
-        const bool old = last == NULL || (i >= DIG_SIGNALS_NEEDED &&
-                                          time_ns - last->time_ns > ns(a->settings.optional_s));
+        const bool old =
+            last == NULL || a->silent[a->group_of[i]] ||
+            (i >= DIG_SIGNALS_NEEDED && time_ns - last->time_ns > ns(a->settings.optional_s));
         if (!old) {
             read_off(a, i, time_ns, &sample);
         }
@@ -206,6 +261,7 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
         return false; // a clock that was set back; samples ascend
     }
     remember(a, reading, time_ns);
+    hear(a, reading->group, time_ns);
     a->fresh[reading->group] = true;
     int64_t due_ns           = 0;
     if (!is_due(a, &due_ns)) {
@@ -225,6 +281,7 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
         a->drops.stuck++;
         return false;
     }
+    a->drops.without_force += lacks_any(a) ? 1 : 0;
     *sample = made;
     return true;
 }

@@ -13,7 +13,8 @@
 // looks like the machine.
 //
 // Signals that no message carries (a machine without pressures of the boom's) are missing from
-// every sample.
+// every sample. A message of the boom's or the arm's pressures alone that does not come is done
+// without in the same way: the samples go on and tell the moment, until it is back.
 //
 // What is dropped, and counted:
 //   * a needed value that is not available, out of range, NaN, or farther from the last one than
@@ -49,6 +50,7 @@ struct dig_assembler_settings {
     bool     repeats;                // an unmoved counter in the only group is a repetition (polls)
     unsigned groups;                 // readings' groups are below this
     bool     needed[DIG_GROUPS_MAX]; // groups that carry needed signals
+    bool     spared[DIG_GROUPS_MAX]; // of them those without which the moment can still be told
     struct dig_frame_settings frame[DIG_GROUPS_MAX];
     double                    max_rate[DIG_SIGNALS]; // SI per second, machine time; 0: any
 };
@@ -58,6 +60,8 @@ struct dig_drops {
     int64_t nan, not_available, out_of_range, frozen, jump, stuck;
     int64_t repeated; // frames
     int64_t missed;   // frames
+    // Not dropped: samples that were made without a spared group, which did not come.
+    int64_t without_force;
 };
 
 /// One message as it came, in machine time.
@@ -78,6 +82,9 @@ struct dig_assembler {
     double                        good[DIG_SIGNALS];     // the last value within max_rate
     int64_t                       good_ns[DIG_SIGNALS];  // machine time; 0: none yet
     bool                          fresh[DIG_GROUPS_MAX]; // came since the last sample
+    size_t                        beats; // readings of the first group that is not spared, ever
+    size_t                        beat_of[DIG_GROUPS_MAX]; // how many when the group came last
+    bool                          silent[DIG_GROUPS_MAX];  // done without
     struct dig_stuck              stuck;
     int64_t                       first_ns; // of the first reading, as it came
     int64_t                       last_ns;  // of the last sample, machine time
@@ -90,7 +97,11 @@ void dig_assembler_init(struct dig_assembler                *assembler,
                         const struct dig_assembler_settings *settings);
 
 /// Takes one reading; true when a sample is due, which is written to *sample then. Signals that
-/// were not available, out of range, NaN or changed too fast are missing from it. Constant time.
+/// were not available, out of range, NaN or changed too fast are missing from it, and those of a
+/// spared group that is silent: for DIG_SILENT_CYCLES of its own cycles and of the others', and
+/// DIG_SILENT_s. Constant time.
+#define DIG_SILENT_CYCLES 3
+#define DIG_SILENT_s      0.1 // machine time
 bool dig_assembler_take(struct dig_assembler *assembler, const struct dig_reading *reading,
                         struct dig_sample *sample);
 

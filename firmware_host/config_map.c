@@ -469,7 +469,10 @@ static enum dig_status read_map(const struct work *const         work,
     }
     for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS_NEEDED; i++) {
         if (map->entry[i].used) {
-            map->group[map->entry[i].group].needed = true;
+            struct dig_map_group *const group = &map->group[map->entry[i].group];
+            group->spared =
+                (group->spared || !group->needed) && !dig_signal_tells_moment((enum dig_signal)i);
+            group->needed = true;
         }
     }
     return status == DIG_OK ? check_signals(work) : status;

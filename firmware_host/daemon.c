@@ -104,6 +104,7 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
     settings.groups     = (unsigned)l->map.groups;
     for (size_t g = 0; g < l->map.groups; g++) {
         settings.needed[g] = l->map.group[g].needed;
+        settings.spared[g] = l->map.group[g].spared;
         settings.frame[g]  = l->map.group[g].frame;
     }
     return settings;

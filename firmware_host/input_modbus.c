@@ -59,8 +59,8 @@ static enum dig_status open_modbus(struct dig_input *const input, struct dig_err
 }
 
 // A poll that failed. A frame that did not survive the wire, a refusal or a late answer is borne a
-// few times, and for ever of a block whose signals are optional: it is only asked for less often. A
-// connection that broke is not borne.
+// few times, and for ever of a block that can be done without (optional signals, or the force's
+// alone): it is only asked for less often. A connection that broke is not borne.
 static enum dig_status bear(struct dig_input *const input, const size_t block,
                             struct dig_error *const error)
 {
@@ -74,7 +74,7 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
         atomic_fetch_add(&input->timeouts, 1);
     }
     const bool few = ++s->failures[block] < FAILURES_BORNE;
-    if (borne && (few || !group->needed)) {
+    if (borne && (few || !group->needed || group->spared)) {
         (void)modbus_flush(s->bus);
         s->next_ns[block] += few ? 0 : SPARED_ns;
         return DIG_OK;

@@ -203,6 +203,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .digs                  = (int32_t)m->digs,
         .path_measured         = k->path_measured,
         .going_on              = k->going_on ? 1 : 0,
+        .forces                = m->forces ? 1 : 0,
         .advice                = advice(),
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
@@ -305,6 +306,7 @@ enum dig_status dig_output_health(struct dig_output *const       output,
               .latency_count         = latency_count,
               .missing_signals       = missing,
               .table                 = table,
+              .without_force         = pulse->drops.without_force,
               .advice                = advice(),
     };
     return sent(digsight_health_t_publish(output->lcm, "DIGSIGHT_HEALTH", &message));

@@ -121,7 +121,7 @@ static void say_known(const struct dig_publisher *const p)
         return;
     }
     char        digs[48] = "";
-    const char *forces   = m->forces ? ", of moment and forces" : "";
+    const char *forces   = m->forces ? ", by moment and forces" : ", by the moment alone";
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
     }
@@ -283,14 +283,15 @@ static void show(struct dig_publisher *const p, const int64_t now_ns)
     p->next_show_ns                     = now_ns + NS_PER_S / 2;
     const struct dig_estimate *const e  = &p->estimate;
     const bool                       on = e->trajectory >= 0 && p->records_seen > 0;
-    char                             gravel[64];
+    char                             gravel[96];
     char                             line[256];
     (void)snprintf(gravel, sizeof gravel, "gravel not known");
     if (p->any_result) {
-        const struct dig_gravel *const g = &p->result.known.match.gravel;
-        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3%s",
+        const struct dig_match *const  m = &p->result.known.match;
+        const struct dig_gravel *const g = &m->gravel;
+        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3 by %s%s",
                        g->value[DIG_AXIS_FRICTION], g->value[DIG_AXIS_ROLLING],
-                       g->value[DIG_AXIS_DENSITY_kgpm3],
+                       g->value[DIG_AXIS_DENSITY_kgpm3], m->forces ? "moment and forces" : "moment",
                        p->result.known.valid ? "" : " (no longer)");
     }
     (void)snprintf(line, sizeof line, "%s | %s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",

@@ -49,6 +49,7 @@ struct dig_map_entry {
 /// asked for.
 struct dig_map_group {
     bool                      needed; // carries a signal that force or moment need
+    bool                      spared; // and none that the moment needs
     struct dig_frame_settings frame;
     // CAN
     uint32_t              id;

@@ -118,6 +118,132 @@ static void nothing_comes_while_one_needed_message_is_missing(void **state)
     assert_true(dig_assembler_take(&a, &back, &s));
 }
 
+// As a machine has it whose boom and arm have a sensor box of their own, in group 3.
+static struct dig_reading force_pressures(const int64_t time_ns, const double level)
+{
+    struct dig_reading r = { .time_ns = time_ns, .group = 3 };
+    for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i <= DIG_SIGNAL_ARM_ROD_Pa; i++) {
+        r.state[i] = DIG_READING_OK;
+        r.value[i] = level;
+    }
+    return r;
+}
+
+static struct dig_reading bucket_pressures(const int64_t time_ns, const double level)
+{
+    struct dig_reading r = { .time_ns = time_ns, .group = 0 };
+    for (int i = DIG_SIGNAL_BUCKET_HEAD_Pa; i <= DIG_SIGNAL_BUCKET_ROD_Pa; i++) {
+        r.state[i] = DIG_READING_OK;
+        r.value[i] = level;
+    }
+    return r;
+}
+
+static struct dig_assembler_settings boxes(void)
+{
+    struct dig_assembler_settings settings = can;
+    settings.has_alive                     = false;
+    settings.groups                        = 4;
+    settings.needed[3]                     = true;
+    settings.spared[3]                     = true;
+    return settings;
+}
+
+// One cycle of all boxes, the force's last; the sample it gives, if any.
+static bool cycle(struct dig_assembler *const a, const int64_t at_ns, const double level,
+                  const bool with_force, struct dig_sample *const sample)
+{
+    const struct dig_reading p = bucket_pressures(at_ns, level), g = angles(at_ns, level),
+                             f = force_pressures(at_ns + MS, level);
+    bool came                  = dig_assembler_take(a, &p, sample);
+    came                       = dig_assembler_take(a, &g, sample) || came;
+    return (with_force && dig_assembler_take(a, &f, sample)) || came;
+}
+
+static void without_the_force_the_moment_goes_on_until_it_is_back(void **state)
+{
+    (void)state;
+    const struct dig_assembler_settings settings = boxes();
+    struct dig_assembler                a;
+    dig_assembler_init(&a, &settings);
+    int came[3] = { 0 }, whole[3] = { 0 };
+    for (int64_t i = 0; i < 300; i++) {
+        const int         part = (int)(i / 100);
+        struct dig_sample s    = { .time_ns = 0 };
+        if (cycle(&a, 1000 * MS + i * 10 * MS, (double)i, part != 1, &s)) {
+            came[part]++;
+            whole[part] += dig_sample_is_complete(&s) ? 1 : 0;
+            assert_true(dig_sample_has_moment(&s));
+            assert_close(s.value[DIG_SIGNAL_BUCKET_HEAD_Pa], (double)i, 1e-9);
+            assert_close(s.value[DIG_SIGNAL_ARM_ROD_Pa],
+                         s.valid[DIG_SIGNAL_ARM_ROD_Pa] ? (double)i : 0.0, 0.11);
+            assert_true(s.valid[DIG_SIGNAL_BOOM_HEAD_Pa] == s.valid[DIG_SIGNAL_ARM_ROD_Pa]);
+        }
+    }
+    assert_true(came[0] == 100 && whole[0] == 100);
+    assert_in_range(came[1], 88, 91); // a tenth of a second of patience
+    assert_int_equal(whole[1], 0);
+    assert_true(came[2] == 100 && whole[2] == 99); // it comes after the first sample is made
+    assert_int_equal(a.drops.without_force, came[1] + 1);
+}
+
+// A message that never came is waited for no longer than one that fell silent.
+static void a_force_that_never_comes_does_not_stop_the_moment(void **state)
+{
+    (void)state;
+    const struct dig_assembler_settings settings = boxes();
+    struct dig_assembler                a;
+    dig_assembler_init(&a, &settings);
+    int came = 0;
+    for (int64_t i = 0; i < 100; i++) {
+        struct dig_sample s;
+        came += cycle(&a, 1000 * MS + i * 10 * MS, 1.0, false, &s) ? 1 : 0;
+    }
+    assert_in_range(came, 88, 91);
+
+    // The moment's own messages are not done without.
+    const struct dig_assembler_settings deaf = boxes();
+    dig_assembler_init(&a, &deaf);
+    for (int64_t i = 0; i < 100; i++) {
+        struct dig_sample        s;
+        const struct dig_reading f = force_pressures(1000 * MS + i * 10 * MS, 1.0),
+                                 g = angles(1000 * MS + i * 10 * MS, 1.0);
+        assert_false(dig_assembler_take(&a, &f, &s));
+        assert_false(dig_assembler_take(&a, &g, &s));
+    }
+    assert_int_equal(a.drops.without_force, 0);
+}
+
+// Neither a lost frame, nor a box slower than the others, nor a pause of the whole bus is a
+// silence.
+static void what_is_only_late_is_waited_for(void **state)
+{
+    (void)state;
+    const struct dig_assembler_settings settings = boxes();
+    struct dig_assembler                a;
+    dig_assembler_init(&a, &settings);
+    int came = 0;
+    for (int64_t i = 0; i < 300; i++) {
+        struct dig_sample s;
+        const int64_t     pause = i < 200 ? 0 : 3000 * MS;
+        came += cycle(&a, 1000 * MS + i * 10 * MS + pause, 1.0, i % 10 != 5, &s) ? 1 : 0;
+    }
+    assert_int_equal(came, 270);
+    assert_int_equal(a.drops.without_force, 0);
+
+    struct dig_assembler_settings slow = boxes();
+    slow.coherent_s                    = 0.012;
+    slow.frame[3].cycle_s              = 0.2;
+    dig_assembler_init(&a, &slow);
+    came = 0;
+    for (int64_t i = 0; i < 300; i++) {
+        struct dig_sample s;
+        came += cycle(&a, 1000 * MS + i * 10 * MS, 1.0, i % 20 == 0, &s) ? 1 : 0;
+    }
+    assert_int_equal(came, 15);
+    assert_int_equal(a.drops.without_force, 0);
+}
+
 static void what_is_no_number_is_missing_and_counted(void **state)
 {
     (void)state;
@@ -348,6 +474,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_of_one_cycle_are_paired_wherever_it_starts),
         cmocka_unit_test(nothing_comes_while_one_needed_message_is_missing),
+        cmocka_unit_test(without_the_force_the_moment_goes_on_until_it_is_back),
+        cmocka_unit_test(a_force_that_never_comes_does_not_stop_the_moment),
+        cmocka_unit_test(what_is_only_late_is_waited_for),
         cmocka_unit_test(what_is_no_number_is_missing_and_counted),
         cmocka_unit_test(an_optional_signal_comes_along_until_it_is_old),
         cmocka_unit_test(a_counter_that_stands_still_stops_samples_until_it_moves),

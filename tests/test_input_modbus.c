@@ -373,6 +373,47 @@ static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void 
     assert_true(atomic_load(&c.input.reconnects) >= 1);
 }
 
+// The boom's pressures tell only the force: while they are refused the rest comes, and they come
+// again when they are not.
+static void a_block_of_force_alone_is_done_without_until_it_is_back(void **state)
+{
+    (void)state;
+    static const char map[] =
+        "kind: modbus\n"
+        "blocks:\n"
+        "  - {register: 0, registers: 6}\n"
+        "  - {register: 1009, registers: 2}\n"
+        "signals:\n"
+        "  - {name: boom_rad, register: 1, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+        "  - {name: arm_rad, register: 2, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+        "  - {name: bucket_rad, register: 3, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+        "  - {name: bucket_head_Pa, register: 4, scale: 1e3, min: -1, max: 4.0e7}\n"
+        "  - {name: bucket_rod_Pa, register: 5, scale: 1e3, min: -1, max: 4.0e7}\n"
+        "  - {name: boom_head_Pa, register: 1009, scale: 1e3, min: -1, max: 4.0e7}\n"
+        "  - {name: boom_rod_Pa, register: 1010, scale: 1e3, min: -1, max: 4.0e7}\n";
+    struct server s = { 0 };
+    s.listener      = listen_on(0, &s.port);
+    server_start(&s);
+    static struct client c;
+    c = (struct client){ 0 };
+    atomic_store(&s.refused, 1009);
+    client_start_with(&c, s.port, scratch_write("force.yaml", map), 0.01);
+    struct dig_reading reading;
+    while (atomic_load(&c.input.malformed) < 7) {
+        assert_true(next_reading(&c, &reading));
+        assert_int_equal(reading.group, 0);
+    }
+    assert_int_equal(atomic_load(&s.connections), 1);
+    atomic_store(&s.refused, 0);
+    do {
+        assert_true(next_reading(&c, &reading));
+    } while (reading.group != 1);
+    assert_close(reading.value[DIG_SIGNAL_BOOM_HEAD_Pa], 1e6, 1e-6);
+    client_stop(&c);
+    server_stop(&s);
+    assert_int_equal(atomic_load(&c.input.reconnects), 0);
+}
+
 static void what_cannot_be_polled_is_refused(void **state)
 {
     (void)state;
@@ -395,6 +436,7 @@ int main(void)
         cmocka_unit_test(a_refusal_is_counted_and_borne),
         cmocka_unit_test(blocks_that_lie_apart_are_asked_for_each_at_its_rate),
         cmocka_unit_test(a_block_that_is_refused_is_done_without_or_ends_the_connection),
+        cmocka_unit_test(a_block_of_force_alone_is_done_without_until_it_is_back),
         cmocka_unit_test(what_cannot_be_polled_is_refused),
     };
     return cmocka_run_group_tests_name("input_modbus", tests, NULL, NULL);

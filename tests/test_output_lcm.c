@@ -207,6 +207,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
                               .high             = { { 0.55, 0.2, 2400 } },
                               .noise_floor      = 0.05,
                               .outside          = true,
+                              .forces           = true,
                               .samples          = 2,
                               .sample           = { { { 0.4, 0.1, 1900 } }, { { 0.5, 0.2, 2100 } } } },
     };
@@ -217,6 +218,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_string_equal(seen.trajectory[1], "simpleA");
     assert_string_equal(seen.trajectory[3], "abc123");
     assert_int_equal(seen.match.outside, 1);
+    assert_int_equal(seen.match.forces, 1);
     assert_close(seen.match.nearest_friction, 0.6, 0.0);
     assert_close(seen.match.nearest_density_kgpm3, 2500, 0.0);
     assert_close(seen.match.friction, 0.5, 0.0);
@@ -298,7 +300,8 @@ static void health_carries_every_counter(void **state)
                                                      .jump          = 15,
                                                      .stuck         = 16,
                                                      .repeated      = 17,
-                                                     .missed        = 18 },
+                                                     .missed        = 18,
+                                                     .without_force = 26 },
                               .digs              = 9 },
          .frames          = 10,
          .malformed       = 11,
@@ -323,7 +326,7 @@ static void health_carries_every_counter(void **state)
     assert_true(m.dropped_jump == 15 && m.dropped_stuck == 16 && m.dropped_repeated == 17);
     assert_true(m.missed == 18 && m.dropped_checksum == 19 && m.error_frames == 20);
     assert_true(m.bus_offs == 21 && m.timeouts == 22 && m.unsent == 23);
-    assert_true(m.reloads == 24 && m.reloads_refused == 25);
+    assert_true(m.reloads == 24 && m.reloads_refused == 25 && m.without_force == 26);
     assert_close(m.worst_tick_cpu_us, 3.5, 0.0);
     assert_close(m.latency_p99_us, 16.0 * pow(2.0, 2.5), 1e-9);
     assert_int_equal(seen.late, 100);

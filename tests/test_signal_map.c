@@ -322,6 +322,35 @@ static void defects_are_refused_with_file_line_and_key(void **state)
     }
 }
 
+// What carries nothing but the force can be done without.
+static void a_block_of_force_alone_is_spared(void **state)
+{
+    (void)state;
+    static const char           text[] = "kind: modbus\n"
+                                         "blocks:\n"
+                                         "  - {register: 0, registers: 4}\n"
+                                         "  - {register: 10, registers: 2}\n"
+                                         "  - {register: 20, registers: 3}\n"
+                                         "  - {register: 30, registers: 1}\n"
+                                         "signals:\n"
+                                         "  - {name: boom_rad, register: 0, min: -2, max: 2}\n"
+                                         "  - {name: arm_rad, register: 1, min: -2, max: 2}\n"
+                                         "  - {name: bucket_rad, register: 2, min: -2, max: 2}\n"
+                                         "  - {name: bucket_head_Pa, register: 3, min: 0, max: 4.0e7}\n"
+                                         "  - {name: boom_head_Pa, register: 10, min: 0, max: 4.0e7}\n"
+                                         "  - {name: boom_rod_Pa, register: 11, min: 0, max: 4.0e7}\n"
+                                         "  - {name: arm_head_Pa, register: 20, min: 0, max: 4.0e7}\n"
+                                         "  - {name: arm_rod_Pa, register: 21, min: 0, max: 4.0e7}\n"
+                                         "  - {name: bucket_rod_Pa, register: 22, min: 0, max: 4.0e7}\n"
+                                         "  - {name: pitch_rad, register: 30, min: -2, max: 2}\n";
+    const struct dig_signal_map map    = modbus_map(scratch_write("spared.yaml", text));
+    assert_int_equal(map.groups, 4);
+    for (size_t g = 0; g < 4; g++) {
+        assert_int_equal(map.group[g].needed, g < 3);
+        assert_int_equal(map.group[g].spared, g == 1); // the arm's come with the bucket's
+    }
+}
+
 // Registers far apart are asked for in as few requests as need be, or as the map says.
 static void registers_far_apart_come_in_blocks(void **state)
 {
@@ -368,6 +397,7 @@ static void registers_far_apart_come_in_blocks(void **state)
     assert_close(named.group[1].poll_s, 0.0, 0.0);
     assert_true(named.group[1].needed && named.group[2].needed);
     assert_false(named.group[0].needed || named.group[3].needed);
+    assert_false(named.group[1].spared || named.group[2].spared || named.group[3].spared);
 
     uint16_t           block[10] = { [3] = 1, [4] = 2, [6] = 1 };
     struct dig_reading r;
@@ -430,6 +460,7 @@ int main(void)
         cmocka_unit_test(golden_register_block_becomes_si),
         cmocka_unit_test(wide_registers_signs_and_offsets_are_applied),
         cmocka_unit_test(a_machine_with_the_buckets_pressures_alone_can_be_mapped),
+        cmocka_unit_test(a_block_of_force_alone_is_spared),
         cmocka_unit_test(registers_far_apart_come_in_blocks),
         cmocka_unit_test(defects_are_refused_with_file_line_and_key),
         cmocka_unit_test(can_entries_must_fit_the_dbc),

@@ -127,7 +127,7 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
 
 // What the daemon said, as far as the report needs it.
 struct said {
-    bool              matched;
+    bool              matched, forces;
     struct dig_gravel gravel, low, high, nearest;
     double            distance;
     uint32_t          matched_dig;
@@ -146,6 +146,7 @@ static void take_match(void *const context, const int64_t time_us, const digsigh
         return; // a later match is of a later dig
     }
     said->matched     = true;
+    said->forces      = m->forces != 0;
     said->matched_dig = (uint32_t)m->dig_count;
     said->gravel      = (struct dig_gravel){ { m->friction, m->rolling, m->density_kgpm3 } };
     said->low = (struct dig_gravel){ { m->friction_low, m->rolling_low, m->density_low_kgpm3 } };
@@ -331,8 +332,9 @@ static enum dig_status fill_run(const struct options *const       options,
     run->distance    = said.distance;
     fill_dig(&run->simple, set, &simple);
     fill_dig(&run->real, set, &real);
-    (void)snprintf(run->dig, sizeof run->dig, "%s identified the gravel, then %s was predicted",
-                   run->simple.trajectory, run->real.trajectory);
+    (void)snprintf(run->dig, sizeof run->dig,
+                   "%s identified the gravel by %s, then %s was predicted", run->simple.trajectory,
+                   said.forces ? "moment and forces" : "moment alone", run->real.trajectory);
 
     struct dig_curve curve;
     if (dig_match_interpolate(set, &said.gravel, (size_t)simple.trajectory, &curve) != DIG_OK) {

@@ -151,6 +151,7 @@ static void fuzz_can(const time_t end)
                                                    .groups     = (unsigned)map.groups };
         for (size_t g = 0; g < map.groups; g++) {
             settings.needed[g] = map.group[g].needed;
+            settings.spared[g] = map.group[g].spared;
             settings.frame[g]  = map.group[g].frame;
         }
         for (size_t i = 0; i < DIG_SIGNALS; i++) {

@@ -190,4 +190,4 @@ judged() { # KIND FIELD [DIG]: a field of the line "all", or of a dig's
 h_state=2 h_frames=4 h_malformed=5 h_nan=6 h_not_available=7 h_out_of_range=8 h_frozen=9 h_missing=10
 h_reconnects=11 h_digs=12 h_matches=13 h_lost=14 h_ticks=15 h_overruns=16 h_worst_us=17 h_checksum=18
 h_repeated=19 h_jump=20 h_stuck=21 h_missed=22 h_error_frames=23 h_bus_offs=24 h_timeouts=25 h_unsent=26
-h_reloads=27 h_reloads_refused=28 h_worst_cpu_us=29 h_p99_us=30
+h_reloads=27 h_reloads_refused=28 h_worst_cpu_us=29 h_p99_us=30 h_without_force=31

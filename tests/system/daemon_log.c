@@ -2,13 +2,13 @@
 //   daemon_log LOG.lcm
 //   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING"
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
-//   RESTORED DRIFT "WANTED" DIGS PATH_MEASURED GOING_ON
+//   RESTORED DRIFT "WANTED" FORCES DIGS PATH_MEASURED GOING_ON
 //   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT "REASON"
 //   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
 //   RECONNECTS
 //          DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
-//          "INPUT" "NOTE" "MISSING"
+//          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   samples N DURATION_s MAX_GAP_s
 
 #include "files/lcm_log.h"
@@ -36,11 +36,12 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
     (void)context;
     (void)time_us;
     (void)printf("match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f %d %.3f "
-                 "\"%s\" %d %.3f %d\n",
+                 "\"%s\" %d %d %.3f %d\n",
                  m->valid, m->outside, m->dig_count, name(m->trajectory), m->friction,
                  m->friction_low, m->friction_high, m->rolling, m->rolling_low, m->rolling_high,
                  m->density_kgpm3, m->density_low_kgpm3, m->density_high_kgpm3, m->distance,
-                 m->restored, m->drift, m->wanted, m->digs, m->path_measured, m->going_on);
+                 m->restored, m->drift, m->wanted, m->forces, m->digs, m->path_measured,
+                 m->going_on);
 }
 
 static void prediction(void *const context, const int64_t time_us,
@@ -75,8 +76,8 @@ static void health(void *const context, const int64_t time_us, const digsight_he
     for (size_t i = 0; i < sizeof more / sizeof more[0]; i++) {
         (void)printf(" %" PRId64, more[i]);
     }
-    (void)printf(" %.1f %.1f \"%s\" \"%s\" \"%s\"\n", m->worst_tick_cpu_us, m->latency_p99_us,
-                 m->input, m->note, m->missing_signals);
+    (void)printf(" %.1f %.1f %" PRId64 " \"%s\" \"%s\" \"%s\"\n", m->worst_tick_cpu_us,
+                 m->latency_p99_us, m->without_force, m->input, m->note, m->missing_signals);
 }
 
 int main(const int argc, char *argv[])

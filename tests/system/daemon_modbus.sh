@@ -43,4 +43,33 @@ check "and in no others" \
 served=$(sed -nE 's/.*"modbus_served": \{"4": ([0-9]+)\}.*/\1/p' "$work/blocks.json")
 check "a sample comes of the slower block, not of every request" \
     within "$(last samples "$work/blocks.txt" 2)" $((served / 5)) $((served / 2))
+
+# Boom's and arm's pressures in a block of their own, refused for the first half of the dig and then there again.
+sed -E -e 's/register: 0, registers: 5/register: 0, registers: 12/' -e 's/register: 1005, registers: 6/register: 1005, registers: 4/' \
+    -e '/registers: 1, poll_Hz: 1/d' -e '/bucket_head_Pa/s/1009/9/' -e '/bucket_rod_Pa/s/1010/10/' \
+    config/signals/modbus_blocks.yaml >"$work/force.map.yaml"
+config force "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: force.map.yaml}}" "time_scale: 4"
+speed=4
+series 1
+log force
+start "$work/rigforce.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed 4 --start-delay 3 \
+    --fault "far@$(awk -v c="${contacts[0]}" 'BEGIN { printf "%.2f:%.2f", c - 3, 9 }')"
+rig=$started
+sleep 0.5
+start "$work/force.log" "$BIN/digsightd" -c "$work/force.yaml"
+daemon=$started
+wait "$rig"
+stop "$daemon"
+read_log force
+f=$work/force.txt
+bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
+check "without the block of the other pressures the moment goes on" \
+    within "$(grep -cF " 0 \"$bare\"" <(grep '^estimate' "$f"))" 200 1e9
+check "and identifies the gravel by itself" eval 'identified "$f" && [ "$(awk '"'"'$1 == "match" { f = $(NF - 3) } END { print f }'"'"' "$f")" = 0 ]'
+check "health names what is missing" grep -q "^health running .*\"$bare\"" "$f"
+check "and counts the samples without" within "$(last health "$f" $h_without_force)" 200 1e9
+check "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
+check "the force is told before and again when the block is back" \
+    awk '$1 == "estimate" { n = split($0, part, "\""); has = $9; if (has != was || !seen) turns = turns has; was = has; seen = 1 }
+         END { exit !(turns ~ /10+1$/) }' "$f"
 finish

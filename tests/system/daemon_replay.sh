@@ -38,6 +38,10 @@ check "health goes from waiting over running to stopping" \
     [ "$(awk '/^health/ && $2 != was { was = $2; print $2 }' "$work/csv.txt" | sort -u | tr '\n' ' ')" = \
       "running stopping waiting_for_bus " ]
 check "nothing was lost" [ "$(last health "$work/csv.txt" $h_lost)" = 0 ]
+forces() { # FILE: whether the last match says that forces were used
+    awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$1"
+}
+check "the match says that it is of moment and forces" [ "$(forces "$work/csv.txt")" = 1 ]
 
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
     -o "$work/thrice.csv" 2>"$work/rig.err"
@@ -49,6 +53,19 @@ check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(N
 check "which narrows the interval" awk '$1 == "match" && !$NF { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
 check "and keeps the gravel" identified "$work/thrice.txt"
 check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json")" = 3 ]
+check "with their forces" [ "$(grep -c '"force": {' "$work/thrice.json")" = 3 ]
+config fourth "{kind: replay, replay: {file: run.csv, speed: 10}}" "match: {state: thrice.json}"
+log fourth
+"$BIN/digsightd" -c "$work/fourth.yaml" 2>"$work/daemon.log"
+read_log fourth
+check "a daemon started anew goes on with them, forces and all" \
+    [ "$(awk '$1 == "match" && $3 == 0 { n = $(NF - 2) } END { print n }' "$work/fourth.txt") $(forces "$work/fourth.txt")" = "4 1" ]
+simpleB=$work/simpleB.csv
+"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" --json >"$work/A.json" 2>"$work/A.err"
+"$BIN/digloop" predict "$work/table.sqlite" --identified "$work/A.json" --trajectory simpleB -o "$simpleB" >"$work/B.txt" 2>&1
+check "digloop matches simple digs along several trajectories together" \
+    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" "$simpleB" |
+          grep -q "^  2 digs (simpleA, simpleB): moment and forces$"'
 
 log again
 "$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
@@ -87,6 +104,7 @@ log bucket
 "$BIN/digsightd" -c "$work/bucket.yaml" 2>"$work/daemon.log"
 read_log bucket
 check "the bucket's pressures alone identify the gravel" identified "$work/bucket.txt"
+check "and the match says so" [ "$(forces "$work/bucket.txt")" = 0 ]
 check "every estimate has the moment and names what is missing of the force" \
     eval '[ "$(grep -c "^estimate" "$work/bucket.txt")" -ge "$((rows * 95 / 100))" ] &&
           ! grep "^estimate" "$work/bucket.txt" | grep -vqF " 0 \"$bare\""'
@@ -102,5 +120,6 @@ check "digloop identifies from such a recording, too" \
 check "digreport finds the dig that identified and the one that was predicted" [ $? = 0 ]
 check "and that the prediction was right" \
     within "$(sed -nE 's/.*"error":([0-9.e-]+),.*/\1/p' "$work/page.json")" 0 0.1
+check "that it identified by moment and forces" grep -q "simpleA identified the gravel by moment and forces, then actual" "$work/report.txt" "$work/page.html"
 check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
 finish

@@ -94,6 +94,7 @@ static struct dig_rig_manner manner_at(const struct dig_rig_buses *const buses, 
         .exception = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_EXCEPTION, time_s),
         .corrupt   = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_CORRUPT, time_s),
         .slow_s    = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_SLOW, time_s),
+        .far       = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR, time_s),
     };
 }
 

@@ -23,6 +23,7 @@ static const struct {
     { "delay", DIG_RIG_FAULT_DELAY, 10.0 },
     { "exception", DIG_RIG_FAULT_EXCEPTION, 1.0 },
     { "slow", DIG_RIG_FAULT_SLOW, 10.0 },
+    { "far", DIG_RIG_FAULT_FAR, 0.0 },
 };
 
 // The number at text, in (0, most]; NULL behind it when it is none.
@@ -70,7 +71,7 @@ enum dig_status dig_rig_fault_parse(const char *const text, struct dig_rig_fault
     }
     return dig_error_set(error, DIG_EINVAL,
                          "fault: \"%s\", expected not-available, nan, frozen, missing, "
-                         "out-of-range, stuck-pressures, stuck-angles, or drop, duplicate, "
+                         "out-of-range, stuck-pressures, stuck-angles, far, or drop, duplicate, "
                          "reorder, corrupt, exception with =SHARE, or delay, slow with =SECONDS; "
                          "then @SECONDS[:DURATION]",
                          text);

@@ -15,6 +15,7 @@
 //   answer delay=0.05@5:2      CAN: frames are held back and sent in bursts, every so many seconds
 //   exception=0.1@5:2   Modbus: that share of requests is answered with exception 6, busy
 //   slow=0.1@5:2        Modbus: every answer comes that many (real) seconds late
+//   far@5:2             Modbus: requests of registers from 1000 on get exception 6
 
 #ifndef DIG_TOOLS_RIG_FAULT_H
 #define DIG_TOOLS_RIG_FAULT_H
@@ -38,7 +39,8 @@ enum dig_rig_fault_kind {
     DIG_RIG_FAULT_CORRUPT,
     DIG_RIG_FAULT_DELAY,
     DIG_RIG_FAULT_EXCEPTION,
-    DIG_RIG_FAULT_SLOW
+    DIG_RIG_FAULT_SLOW,
+    DIG_RIG_FAULT_FAR
 };
 
 struct dig_rig_fault {

@@ -78,7 +78,7 @@ static struct dig_rig_modbus *create(struct dig_rig_board *const board, modbus_t
 }
 
 // What a fault makes of a request: true when it is not to be answered as it should.
-static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[])
+static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[], const bool far)
 {
     const struct dig_rig_manner manner = dig_rig_board_manner(server->board);
     if (manner.slow_s > 0.0) {
@@ -88,7 +88,8 @@ static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request
         server->requests.unanswered++;
         return true;
     }
-    if (manner.exception > 0.0 && dig_rig_wire_random(&server->random) < manner.exception) {
+    if ((manner.far && far) ||
+        (manner.exception > 0.0 && dig_rig_wire_random(&server->random) < manner.exception)) {
         server->requests.excepted++;
         (void)modbus_reply_exception(server->context, request,
                                      MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
@@ -122,16 +123,18 @@ static bool answer(struct dig_rig_modbus *const server, const uint8_t request[],
     const int     header   = modbus_get_header_length(server->context);
     const uint8_t function = request[header];
     const bool    rtu      = server->listening < 0;
+    const bool    reads =
+        function == MODBUS_FC_READ_HOLDING_REGISTERS || function == MODBUS_FC_READ_INPUT_REGISTERS;
+    const int asked = reads ? request[header + 1] << 8 | request[header + 2] : 0;
 
     if (dig_rig_board_read(server->board, server->map->tab_registers)) {
         server->requests.unanswered++;
         return true;
     }
-    if (misbehave(server, request)) {
+    if (misbehave(server, request, asked >= DIG_RIG_FAR)) {
         return true;
     }
-    if (function != MODBUS_FC_READ_HOLDING_REGISTERS &&
-        function != MODBUS_FC_READ_INPUT_REGISTERS) {
+    if (!reads) {
         server->requests.refused[function]++;
         // What libmodbus does not know, it does not know the length of either. Before the reply:
         // the client's next request may come right behind it.
@@ -143,7 +146,6 @@ static bool answer(struct dig_rig_modbus *const server, const uint8_t request[],
     }
     memcpy(server->map->tab_input_registers, server->map->tab_registers,
            sizeof server->map->tab_registers[0] * DIG_RIG_REGISTERS);
-    const int       asked = request[header + 1] << 8 | request[header + 2];
     const int       first = asked >= DIG_RIG_FAR ? asked - DIG_RIG_FAR : asked;
     const int       count = request[header + 3] << 8 | request[header + 4];
     const bool      fits  = count >= 1 && first + count <= DIG_RIG_REGISTERS;
