@@ -257,3 +257,24 @@ enum dig_status dig_batch_make(const struct dig_surface *const surface,
     }
     return status;
 }
+
+void dig_batch_leave_out(const struct dig_batch *const batch, const size_t dig,
+                         struct dig_batch *const others)
+{
+    assert(batch != NULL && others != NULL && dig < batch->digs && batch->digs > 1);
+    const size_t group = batch->dig[dig].group;
+    const bool   alone = batch->group[group].digs == 1;
+    *others            = *batch;
+    others->digs--;
+    memmove(&others->dig[dig], &others->dig[dig + 1], (others->digs - dig) * sizeof others->dig[0]);
+    others->group[group].digs--;
+    if (alone) {
+        others->groups--;
+        memmove(&others->group[group], &others->group[group + 1],
+                (others->groups - group) * sizeof others->group[0]);
+        for (size_t i = 0; i < others->digs; i++) {
+            others->dig[i].group -= others->dig[i].group > group ? 1 : 0;
+        }
+    }
+    dig_batch_summarise(others);
+}

@@ -55,4 +55,8 @@ void dig_batch_whiten(const struct dig_batch_group *group, const double feature[
 /// Recomputes the groups' mean and about after the digs' y were changed.
 void dig_batch_summarise(struct dig_batch *batch);
 
+/// The batch without one of its two or more digs; without its trajectory where that was the only
+/// one along it.
+void dig_batch_leave_out(const struct dig_batch *batch, size_t dig, struct dig_batch *others);
+
 #endif // DIG_CLOSED_LOOP_BATCH_H

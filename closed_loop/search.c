@@ -1,6 +1,7 @@
 #include "closed_loop/search.h"
 
 #include "closed_loop/chance.h"
+#include "closed_loop/confirm.h"
 
 #include <assert.h>
 #include <math.h>
@@ -21,7 +22,8 @@ static const double much_left   = 4.0;
 // it is so much rarer than the level.
 static const double rarer = 0.01;
 
-// Log evidence by which one answer must lead, and within which two are not told apart.
+// Log evidence by which a second effect must lead, and within which two answers are not told apart:
+// an effect from another, or from none.
 static const double lead       = 3.0;
 static const double told_apart = 6.0;
 
@@ -308,7 +310,10 @@ static enum dig_status decide_which(struct context *const c)
         evidence     = evidence_of(c, &pair, 2);
         status       = weigh_chosen(c, &more);
     }
-    if (status == DIG_OK && (evidence < 0.0 || !is_believable(c))) {
+    if (status == DIG_OK) {
+        status = dig_confirm_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen, &c->s->confirmed);
+    }
+    if (status == DIG_OK && (evidence < told_apart || c->s->confirmed < 0.0 || !is_believable(c))) {
         give_up(c);
     }
     return status;
@@ -453,7 +458,7 @@ enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_s
     }
     search->outside = is_outside(&c);
     if (search->unlisted && !search->outside && search->without_name.functions == 0 &&
-        best_evidence(search) <= 0.0 && search->p_complete > rarer * false_alarm) {
+        best_evidence(search) < told_apart && search->p_complete > rarer * false_alarm) {
         search->unlisted    = false;
         search->significant = false;
         return DIG_OK;

@@ -21,6 +21,7 @@ struct dig_search {
     bool              unlisted; // by nothing that has a name
     struct dig_fitted plain, beyond, chosen; // beyond: gravel outside the grid; chosen: in the end
     double            p_fit;                 // of chosen
+    double            confirmed;             // dig_confirm_gain() of chosen, 0: not asked
     struct dig_unlisted without_name;
 
     size_t            rivals; // single effects, as they competed
