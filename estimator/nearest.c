@@ -18,7 +18,7 @@ static const double outline_slack = 1e-6;
 // What was measured along one trajectory, block by block.
 struct measured {
     size_t trajectory;
-    double weight[DIG_OUTLINE_BLOCKS]; // 0: some of the block's points were not measured
+    double weight[DIG_OUTLINE_BLOCKS]; // 0: not all of its points were measured
     double mean_Nm[DIG_OUTLINE_BLOCKS];
 };
 
@@ -59,7 +59,7 @@ static double bound_Nm2(const struct search *const s, const size_t entry)
     for (size_t g = 0; g < s->sums->groups; g++) {
         const struct measured *const m = &s->group[g];
         const float *const           moment_Nm =
-            s->summary->outline[entry * trajectories + m->trajectory].moment_Nm;
+            dig_outline_mean(s->summary, DIG_CHANNEL_MY_Nm, entry * trajectories + m->trajectory);
         for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b += 4) {
             for (size_t i = 0; i < 4; i++) {
                 const double miss = m->mean_Nm[b + i] - (double)moment_Nm[b + i];

@@ -10,7 +10,7 @@
 #include "estimator/summary.h"
 
 /// Index of the entry that dig_match_nearest_pool() finds by looking at all, the first of several
-/// that are equally near; -1: no entry has a finite distance. O(entries): 128 bytes a trajectory of
+/// that are equally near; -1: no entry has a finite distance. O(entries): 64 bytes a trajectory of
 /// each, and all of those curves that the outlines cannot tell from the nearest.
 int dig_nearest_find(const struct dig_summary *summary, const struct dig_pool_sums *sums);
 

@@ -44,8 +44,8 @@
 
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
 /// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
-/// evaluations a trajectory; 130 kB of stack. Without a summary of the set (NULL) every curve is
-/// looked at once more.
+/// evaluations a trajectory; 220 kB of stack. By a summary of the set only those are made that do
+/// not look hopeless by its outlines; without one (NULL) every curve is looked at once more.
 DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
                                                   const struct dig_summary   *summary,
                                                   const struct dig_pool_sums *sums,

@@ -31,40 +31,45 @@ double dig_summary_relative2(const struct dig_curve_set *const set, const size_t
     return entries > 0.0 ? sum / entries : 0.0;
 }
 
-static struct dig_outline outline_of(const struct dig_curve *const curve)
+static void draw(const float of[DIG_CURVE_POINTS], struct dig_outline *const outline)
 {
-    struct dig_outline outline;
     for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
         double sum = 0.0;
         for (size_t i = 0; i < DIG_OUTLINE_POINTS; i++) {
-            sum += (double)curve->mean[DIG_CHANNEL_MY_Nm][b * DIG_OUTLINE_POINTS + i];
+            sum += (double)of[b * DIG_OUTLINE_POINTS + i];
         }
-        outline.moment_Nm[b] = (float)(sum / DIG_OUTLINE_POINTS);
+        outline->block[b] = (float)(sum / DIG_OUTLINE_POINTS);
     }
-    return outline;
 }
 
-static struct dig_outline outline_of_none(void)
+static void draw_none(struct dig_outline *const outline)
 {
-    struct dig_outline outline;
     for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-        outline.moment_Nm[b] = NAN;
+        outline->block[b] = NAN;
     }
-    return outline;
 }
 
 size_t dig_summary_outlines(const struct dig_curve_set *const set)
 {
     assert(set != NULL);
-    return set->entries * set->trajectories;
+    return DIG_OUTLINE_LAYERS * set->entries * set->trajectories;
 }
 
 void dig_summary_make(const struct dig_curve_set *const set, struct dig_outline outline[],
                       struct dig_summary *const summary)
 {
     assert(set != NULL && outline != NULL && summary != NULL);
-    for (size_t slot = 0; slot < dig_summary_outlines(set); slot++) {
-        outline[slot] = set->packings[slot] > 0 ? outline_of(&set->curve[slot]) : outline_of_none();
+    const size_t curves = set->entries * set->trajectories;
+    for (size_t slot = 0; slot < curves; slot++) {
+        for (size_t layer = 0; layer < DIG_OUTLINE_LAYERS; layer++) {
+            struct dig_outline *const     to    = &outline[dig_outline_place(set, layer, slot)];
+            const struct dig_curve *const curve = &set->curve[slot];
+            if (set->packings[slot] > 0) {
+                draw(layer % 2 == 0 ? curve->mean[layer / 2] : curve->sd[layer / 2], to);
+            } else {
+                draw_none(to);
+            }
+        }
     }
     *summary = (struct dig_summary){ .set = set, .outline = outline };
     for (size_t t = 0; t < set->trajectories; t++) {

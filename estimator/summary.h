@@ -1,5 +1,5 @@
-// A table summed up once, when it is loaded, so that no match has to look at every curve of it:
-// the outline of each curve, block by block along the path, and the table's pooled spread.
+// A table summed up once, when it is loaded, so that no match has to look at every curve of it: the
+// outline of each curve, block by block along the path, and the table's pooled spread.
 
 #ifndef DIG_ESTIMATOR_SUMMARY_H
 #define DIG_ESTIMATOR_SUMMARY_H
@@ -8,24 +8,51 @@
 
 #include <stddef.h>
 
-#define DIG_OUTLINE_BLOCKS 32
-#define DIG_OUTLINE_POINTS 8 // of a curve, in a block
+#define DIG_OUTLINE_BLOCKS 16
+#define DIG_OUTLINE_POINTS 16 // of a curve, in a block
 _Static_assert(DIG_OUTLINE_BLOCKS *DIG_OUTLINE_POINTS == DIG_CURVE_POINTS, "all of a curve");
 
-/// Means of the moment over the blocks of one curve; NaN where nothing was dug.
+/// What is outlined of a curve: of each channel the mean, then the standard deviation.
+#define DIG_OUTLINE_LAYERS 6
+_Static_assert(DIG_OUTLINE_LAYERS == 2 * DIG_FORCE_CHANNELS, "two of each channel");
+
+/// Means over the blocks of one curve, one layer of it; NaN where nothing was dug.
 struct dig_outline {
-    float moment_Nm[DIG_OUTLINE_BLOCKS];
+    float block[DIG_OUTLINE_BLOCKS];
 };
 
 /// Read-only once made. It tells of the set as it was then: change a curve, and make it anew.
 struct dig_summary {
     const struct dig_curve_set *set;
-    const struct dig_outline   *outline; // [entries * trajectories], as the set's curves
-    double                      relative2[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
+    // [entries * trajectories] of the moments' means, in the set's order, as who looks for the
+    // nearest reads no more; then the other layers of each curve together.
+    const struct dig_outline *outline;
+    double                    relative2[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
 };
 
-/// Outlines that a summary of the set needs: the caller brings the memory, 128 bytes each.
+/// Outlines that a summary of the set needs: the caller brings the memory, 384 bytes a curve.
 size_t dig_summary_outlines(const struct dig_curve_set *set);
+
+/// Where the outline of a layer of curve [slot] lies.
+static inline size_t dig_outline_place(const struct dig_curve_set *const set, const size_t layer,
+                                       const size_t slot)
+{
+    const size_t curves = set->entries * set->trajectories;
+    return layer == 0 ? slot : curves + slot * (DIG_OUTLINE_LAYERS - 1) + layer - 1;
+}
+
+/// The outline of the set's curve [slot]: of its mean, and of its standard deviation.
+static inline const float *dig_outline_mean(const struct dig_summary *const summary,
+                                            const size_t channel, const size_t slot)
+{
+    return summary->outline[dig_outline_place(summary->set, 2 * channel, slot)].block;
+}
+
+static inline const float *dig_outline_sd(const struct dig_summary *const summary,
+                                          const size_t channel, const size_t slot)
+{
+    return summary->outline[dig_outline_place(summary->set, 2 * channel + 1, slot)].block;
+}
 
 /// Sums the set up; it and the outlines must outlive *summary. Reads every curve once: about a
 /// microsecond each.
