@@ -1,0 +1,273 @@
+// The matcher on a large table: the nearest entry by a summary beside a look at all entries, and
+// the refinement, on this thread's CPU clock.
+//
+//   match TABLE.sqlite POINTS DIGS
+//
+// The table is grown from TABLE's first trajectory: POINTS values of each axis (47: 103823
+// gravels), interpolated, plus the error that a mean of three packings has: the spread that TABLE
+// holds, correlated along the path and between moment and forces, so that neighbours differ as they
+// do in a computed table. Digs are of gravels between the points, with the error of one dig; every
+// second one measured the forces too. Prints
+//   KIND ENTRIES DIGS MEDIAN_ms WORST_ms PLAIN_ms
+// for "nearest", "moment" and "forces" (refined), PLAIN without a summary, then
+//   off SHARE    by what share of an axis an interval's end is off without it, at most
+// Fails when an entry or its distance is not the same to the last bit.
+
+#include "estimator/match.h"
+#include "estimator/interpolate.h"
+#include "estimator/posterior.h"
+#include "estimator/summary.h"
+#include "tables/load.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { PACKINGS = 3, WIDTH = 12, EVALUATIONS = 400, DIGS_MAX = 1000 };
+
+static const double outside_floors = 2.5;
+
+struct times {
+    size_t digs;
+    double ms[DIGS_MAX], plain_ms[DIGS_MAX];
+};
+
+static double cpu_ms(void)
+{
+    struct timespec t;
+    (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static _Noreturn void die(const char *const why)
+{
+    (void)fprintf(stderr, "match: %s\n", why);
+    exit(1);
+}
+
+static void *take(const size_t count, const size_t size)
+{
+    void *const memory = calloc(count, size);
+    if (memory == NULL) {
+        die("no memory");
+    }
+    return memory;
+}
+
+static double uniform(uint64_t *const seed)
+{
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    return (double)(*seed >> 11) * 0x1p-53;
+}
+
+// Of variance 1, a running mean over WIDTH points.
+static void draw(uint64_t *const seed, double out[DIG_CURVE_POINTS])
+{
+    double white[DIG_CURVE_POINTS + WIDTH];
+    for (size_t i = 0; i < DIG_CURVE_POINTS + WIDTH; i++) {
+        white[i] = (uniform(seed) + uniform(seed) - 1.0) * sqrt(6.0 / WIDTH);
+    }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        out[k] = 0.0;
+        for (size_t i = 0; i < WIDTH; i++) {
+            out[k] += white[k + i];
+        }
+    }
+}
+
+// Errors of moment and forces in standard deviations, correlated as packings are.
+static void draw_errors(uint64_t *const seed, double error[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const double l10 = DIG_POSTERIOR_MY_FX, l20 = DIG_POSTERIOR_MY_FZ;
+    const double l11 = sqrt(1.0 - l10 * l10);
+    const double l21 = (DIG_POSTERIOR_FX_FZ - l10 * l20) / l11;
+    const double l22 = sqrt(1.0 - l20 * l20 - l21 * l21);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        draw(seed, error[c]);
+    }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double a = error[0][k], b = error[1][k], c = error[2][k];
+        error[1][k] = l10 * a + l11 * b;
+        error[2][k] = l20 * a + l21 * b + l22 * c;
+    }
+}
+
+static void make_axes(const struct dig_curve_set *const from, const size_t points,
+                      struct dig_curve_set *const set)
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        set->axis_count[a] = points;
+        set->axis[a]       = take(points, sizeof *set->axis[a]);
+        for (size_t i = 0; i < points; i++) {
+            set->axis[a][i] =
+                dig_axis_value(from, (enum dig_axis)a, (double)i / (double)(points - 1));
+        }
+    }
+}
+
+static struct dig_curve_set *grow(const struct dig_curve_set *const from, const size_t points)
+{
+    struct dig_curve_set *const set = take(1, sizeof *set);
+    *set                            = *from;
+    set->trajectories               = 1;
+    set->entries                    = points * points * points;
+    set->gravel                     = take(set->entries, sizeof *set->gravel);
+    set->packings                   = take(set->entries, sizeof *set->packings);
+    set->curve                      = take(set->entries, sizeof *set->curve);
+    set->cell                       = take(set->entries, sizeof *set->cell);
+    make_axes(from, points, set);
+
+    uint64_t seed = 20261122;
+    for (size_t e = 0; e < set->entries; e++) {
+        set->cell[e]     = (int)e;
+        set->packings[e] = PACKINGS;
+        set->gravel[e] =
+            (struct dig_gravel){ { set->axis[0][e / points / points],
+                                   set->axis[1][e / points % points], set->axis[2][e % points] } };
+        double                  error[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        struct dig_curve *const curve = &set->curve[e];
+        if (dig_match_interpolate(from, &set->gravel[e], 0, curve) != DIG_OK) {
+            die("the table has a hole");
+        }
+        draw_errors(&seed, error);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                curve->mean[c][k] += (float)(error[c][k] / sqrt(PACKINGS)) * curve->sd[c][k];
+            }
+        }
+    }
+    return set;
+}
+
+static struct dig_observation dig_somewhere(const struct dig_curve_set *const from,
+                                            const bool forces, uint64_t *const seed)
+{
+    struct dig_gravel gravel;
+    for (int a = 0; a < DIG_AXES; a++) {
+        gravel.value[a] = dig_axis_value(from, (enum dig_axis)a, uniform(seed));
+    }
+    struct dig_curve curve;
+    double           error[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    if (dig_match_interpolate(from, &gravel, 0, &curve) != DIG_OK) {
+        die("the table has a hole");
+    }
+    draw_errors(seed, error);
+    struct dig_observation o = { .trajectory = 0, .last = 1.0, .forces = forces };
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        double value[DIG_FORCE_CHANNELS];
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            value[c] = (double)curve.mean[c][k] + error[c][k] * (double)curve.sd[c][k];
+        }
+        o.moment_Nm[k] = value[0];
+        o.sigma_Nm[k]  = 0.01 * fabs(value[0]);
+        for (size_t c = 1; forces && c < DIG_FORCE_CHANNELS; c++) {
+            o.force_N[c - 1][k]       = value[c];
+            o.force_sigma_N[c - 1][k] = 0.01 * fabs(value[c]);
+        }
+    }
+    return o;
+}
+
+static void note(struct times *const times, const double ms, const double plain_ms)
+{
+    times->ms[times->digs]       = ms;
+    times->plain_ms[times->digs] = plain_ms;
+    times->digs++;
+}
+
+static double interval_off(const struct dig_curve_set *const set, const struct dig_match *const a,
+                           const struct dig_match *const b)
+{
+    double off = 0.0;
+    for (int i = 0; i < DIG_AXES; i++) {
+        const enum dig_axis axis = (enum dig_axis)i;
+        off                      = fmax(off, fabs(dig_axis_position(set, axis, a->low.value[i]) -
+                                                  dig_axis_position(set, axis, b->low.value[i])));
+        off                      = fmax(off, fabs(dig_axis_position(set, axis, a->high.value[i]) -
+                                                  dig_axis_position(set, axis, b->high.value[i])));
+    }
+    return off;
+}
+
+// One dig, with and without the summary. Returns by how much the intervals differ.
+static double match_once(const struct dig_summary *const     summary,
+                         const struct dig_observation *const o, struct times *const nearest,
+                         struct times *const refined)
+{
+    struct dig_match match, plain;
+    const double     from = cpu_ms();
+    if (dig_match_nearest_by(summary, 1, o, outside_floors, &match) != DIG_OK) {
+        die("no match");
+    }
+    const double found = cpu_ms();
+    if (dig_match_nearest(summary->set, o, outside_floors, &plain) != DIG_OK) {
+        die("no match");
+    }
+    const double found_plainly = cpu_ms();
+    note(nearest, found - from, found_plainly - found);
+    if (match.nearest != plain.nearest ||
+        memcmp(&match.distance, &plain.distance, sizeof match.distance) != 0) {
+        die("another entry is nearer than the one found by the summary");
+    }
+
+    const double start = cpu_ms();
+    if (dig_fit_refine_by(summary, 1, o, EVALUATIONS, &match) != DIG_OK) {
+        die("not refined");
+    }
+    const double done = cpu_ms();
+    if (dig_fit_refine(summary->set, o, EVALUATIONS, &plain) != DIG_OK) {
+        die("not refined");
+    }
+    note(refined, done - start, cpu_ms() - done);
+    return interval_off(summary->set, &match, &plain);
+}
+
+static int compare(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print(const char *const kind, const size_t entries, struct times *const t)
+{
+    qsort(t->ms, t->digs, sizeof t->ms[0], compare);
+    qsort(t->plain_ms, t->digs, sizeof t->plain_ms[0], compare);
+    (void)printf("%s %zu %zu %.2f %.2f %.2f\n", kind, entries, t->digs, t->ms[t->digs / 2],
+                 t->ms[t->digs - 1], t->plain_ms[t->digs / 2]);
+}
+
+int main(const int argc, char **const argv)
+{
+    const int points = argc == 4 ? atoi(argv[2]) : 0;
+    const int digs   = argc == 4 ? atoi(argv[3]) : 0;
+    if (points < 2 || digs < 2 || digs > DIGS_MAX) {
+        die("expected TABLE.sqlite POINTS DIGS, 2 to 1000 digs");
+    }
+    struct dig_error      error = { "" };
+    struct dig_curve_set *from  = NULL;
+    if (dig_table_load(argv[1], &from, &error) != DIG_OK) {
+        die(error.text);
+    }
+    const struct dig_curve_set *const set     = grow(from, (size_t)points);
+    struct dig_outline *const         outline = take(dig_summary_outlines(set), sizeof *outline);
+    struct dig_summary                summary;
+    dig_summary_make(set, outline, &summary);
+
+    static struct times nearest, moment, forces;
+    double              off  = 0.0;
+    uint64_t            seed = 7;
+    for (int d = 0; d < digs; d++) {
+        const struct dig_observation o = dig_somewhere(from, d % 2 == 1, &seed);
+        off = fmax(off, match_once(&summary, &o, &nearest, d % 2 == 1 ? &forces : &moment));
+    }
+    print("nearest", set->entries, &nearest);
+    print("moment", set->entries, &moment);
+    print("forces", set->entries, &forces);
+    (void)printf("off %.1e\n", off);
+    return 0;
+}

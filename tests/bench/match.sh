@@ -1,0 +1,26 @@
+#!/bin/bash
+# The matcher on 10^5 curves of 3 channels x 256 points, grown from tables/rig.sqlite: the nearest entry by
+# a summary of the table beside a look at all entries, and the refinement, against 10 and 50 ms. Processor
+# time of one thread. Lines `name ratio unit detail`; BENCH_QUICK=1: 10 digs instead of 40. 0.9 GB of memory.
+#   BUILD=build tests/bench/match.sh
+set -eu
+BUILD=${BUILD:-build}
+digs=40
+[ -z "${BENCH_QUICK-}" ] || digs=10
+make --no-print-directory -s BUILD="$BUILD" "$BUILD/tests/bench/match" >&2
+
+"$BUILD/tests/bench/match" tables/rig.sqlite 47 "$digs" | awk '
+    $1 == "off" {
+        off = $2
+        printf "match-nearest %.0f x-a-look-at-all median %s ms, a look at all %s; the same entry and distance in %d of %d digs, %d curves\n",
+            plain["nearest"] / ms["nearest"], ms["nearest"], plain["nearest"], n["nearest"], n["nearest"], entries
+        printf "match-nearest-limit %.2f x-of-10ms median %s ms, worst %s\n", ms["nearest"] / 10, ms["nearest"], worst["nearest"]
+        split("moment forces", kinds)
+        for (k = 1; k <= 2; k++) {
+            kind = kinds[k]
+            printf "match-refined-%s %.2f x-of-50ms median %s ms, worst %s, without a summary %s; ends of intervals within %s of an axis of those without\n",
+                kind, ms[kind] / 50, ms[kind], worst[kind], plain[kind], off
+        }
+        next
+    }
+    { entries = $2; n[$1] = $3; ms[$1] = $4; worst[$1] = $5; plain[$1] = $6 }'
