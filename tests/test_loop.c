@@ -4,6 +4,7 @@
 
 #include "files/machine_yaml.h"
 #include "files/scene_yaml.h"
+#include "tests/count_allocations.h"
 #include "tests/testlib.h"
 
 #include <pthread.h>
@@ -13,37 +14,6 @@
 
 #define MS      1000000LL
 #define GRAVELS 8
-
-// Counts what the tick allocates. A sanitizer brings its own allocator, and glibc's names are
-// needed.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define COUNTS_ALLOCATIONS 1
-extern void *__libc_malloc(size_t size);               // NOLINT(bugprone-reserved-identifier)
-extern void *__libc_calloc(size_t count, size_t size); // NOLINT(bugprone-reserved-identifier)
-extern void *__libc_realloc(void *old, size_t size);   // NOLINT(bugprone-reserved-identifier)
-static _Thread_local unsigned long allocations;
-
-void *malloc(const size_t size)
-{
-    allocations++;
-    return __libc_malloc(size);
-}
-
-void *calloc(const size_t count, const size_t size)
-{
-    allocations++;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *const old, const size_t size)
-{
-    allocations++;
-    return __libc_realloc(old, size);
-}
-#else
-#define COUNTS_ALLOCATIONS 0
-static const unsigned long allocations = 0;
-#endif
 
 // Everything a loop needs, and the other ends of its handoffs.
 struct bench {
@@ -404,10 +374,7 @@ static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **sta
 static void a_tick_allocates_nothing(void **state)
 {
     (void)state;
-    if (!COUNTS_ALLOCATIONS) {
-        print_message("SKIP: a sanitizer owns malloc, allocations are counted without it\n");
-        skip();
-    }
+    skip_unless_allocations_count();
     struct bench *const b = bench_create();
     offer(b, &b->offer, 3, 1, INT64_MAX);
     unsigned long in_ticks = 0;

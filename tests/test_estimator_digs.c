@@ -1,0 +1,206 @@
+// Tests for estimator/estimator.c: whole digs, from pressures to what is told of them.
+
+#include "tests/count_allocations.h"
+#include "tests/driven.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+
+// simpleA, as Froude has it, by perfect sensors.
+static const struct drive calm = {
+    .which = MADE_SIMPLE_A, .stretch = 1.0, .until = 1.0, .seed = 1
+};
+
+// The family's forces are -8 and 5 times its moment; so must those observed be, everywhere.
+static double worst_force(const struct driven *const b)
+{
+    static const double by[]  = { -8.0, 5.0 };
+    double              worst = 0.0;
+    for (int c = 0; c < 2; c++) {
+        double largest = 0.0, off = 0.0;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double expected_N = by[c] * b->observation.moment_Nm[k];
+            largest                 = fmax(largest, fabs(expected_N));
+            off                     = fmax(off, fabs(b->observation.force_N[c][k] - expected_N));
+        }
+        worst = fmax(worst, off / largest);
+    }
+    return worst;
+}
+
+static void every_kind_of_dig_is_observed_as_it_was(void **state)
+{
+    (void)state;
+    const struct {
+        const char  *name;
+        struct drive drive;
+        double       error;
+    } cases[] = {
+        { "simpleA", calm, 0.03 },
+        { "simpleB", { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .seed = 1 }, 0.03 },
+        { "actual", { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 1 }, 0.03 },
+        { "slow", { .which = MADE_SIMPLE_A, .stretch = 2.5, .until = 1, .seed = 1 }, 0.03 },
+        { "fast", { .which = MADE_ACTUAL, .stretch = 0.6, .until = 1, .seed = 1 }, 0.03 },
+        { "paused",
+          { .which = MADE_SIMPLE_A, .stretch = 1, .pause_s = 8, .until = 1, .seed = 1 },
+          0.03 },
+        { "stepped back",
+          { .which = MADE_ACTUAL, .stretch = 1, .back_s = 0.2, .until = 1, .seed = 1 },
+          0.07 }, // what was not felt while it went back is within the smoothing
+        { "sensors",
+          { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
+          0.04 },
+        { "all of it",
+          { .which   = MADE_ACTUAL,
+            .stretch = 1.7,
+            .pause_s = 3,
+            .until   = 1,
+            .drop    = 0.2,
+            .sensors = true,
+            .seed    = 3 },
+          0.03 },
+        { "broken off", { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .seed = 1 }, 0.03 },
+    };
+    // simpleB and actual are one until the first turns on (40 % of its way is the shared turn) and
+    // the other drags.
+    const double known_before[MADE_TRAJECTORIES] = { 0.2, 0.75, 0.35 };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct driven *const b = driven_create(cases[i].drive.sensors);
+        driven_dig(b, cases[i].drive);
+        const double error = driven_error(b, cases[i].drive.stretch, cases[i].drive.until);
+        print_message("%-12s: error %.4f, off path %.2f mm, %.3f to %.3f, known from %.3f, "
+                      "progress within %.3f\n",
+                      cases[i].name, error, 1e3 * b->observation.off_path_m, b->observation.first,
+                      b->observation.last, b->known_from, b->worst_progress);
+        assert_int_equal(b->observations, 1);
+        assert_int_equal(b->observation.trajectory, cases[i].drive.which);
+        assert_int_equal(b->observation.dig_count, 1);
+        assert_true(error < cases[i].error);
+        print_message("              forces within %.4f\n", worst_force(b));
+        assert_true(b->observation.forces);
+        assert_true(worst_force(b) < (cases[i].drive.sensors ? 0.1 : 0.001));
+        assert_close(b->observation.first, 0.0, 0.0);
+        assert_close(b->observation.last, cases[i].drive.until, 0.03);
+        assert_true(b->observation.off_path_m < 0.001);
+        assert_int_equal(b->known_at_end, cases[i].drive.which);
+        assert_true(b->known_from < known_before[cases[i].drive.which]);
+        assert_true(b->worst_progress < 0.03);
+        driven_destroy(b);
+    }
+}
+
+// What a dig looked like before it was over is what it turns out to have been, as far as it was
+// dug; never a progress that no sample after it had smoothed. Which dig it is may not be known yet.
+static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
+{
+    (void)state;
+    const struct {
+        struct drive drive;
+        int          known_from;
+    } cases[] = {
+        { calm, 0 },
+        { { .which = MADE_SIMPLE_A, .stretch = 2.5, .pause_s = 8, .until = 1, .seed = 1 }, 0 },
+        { { .which   = MADE_ACTUAL,
+            .stretch = 1.7,
+            .pause_s = 3,
+            .until   = 1,
+            .drop    = 0.2,
+            .sensors = true,
+            .seed    = 3 },
+          1 },
+        { { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .sensors = true, .seed = 1 }, 3 },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct drive *const drive = &cases[i].drive;
+        struct driven *const      b     = driven_create(drive->sensors);
+        b->shadow                       = calloc(1, sizeof *b->shadow);
+        dig_shadow_forget(b->shadow, b->set);
+        driven_dig(b, *drive);
+        assert_int_equal(b->observations, 1);
+        assert_int_equal(b->earlies, DRIVEN_LOOKS);
+        assert_false(b->shadow->on);
+        for (int s = 0; s < DRIVEN_LOOKS; s++) {
+            const struct dig_observation *const o = &b->early[s];
+            if (s < cases[i].known_from) {
+                continue;
+            }
+            assert_int_equal(o->trajectory, (int)drive->which);
+            assert_int_equal(o->dig_count, 1);
+            const struct dig_trajectory t       = made_trajectory(drive->which);
+            const double                tooth_m = b->set->tooth_m, at = driven_look_at[s];
+            const double                smoothed_s =
+                dig_trajectory_time_s(&t, tooth_m, at) - DIG_SMOOTH_HALF_s / drive->stretch;
+            const double half = at - dig_trajectory_path_m(&t, tooth_m, smoothed_s) /
+                                         dig_trajectory_path_m(&t, tooth_m, 1e3);
+            print_message("case %zu, %.2f of the path: %.3f to %.3f, half a window is %.3f\n", i,
+                          at, o->first, o->last, half);
+            assert_true(o->last <= at - half + 0.01 && o->last > at - half - 0.03);
+            double miss2 = 0.0, whole2 = 0.0;
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                if (k / 255.0 >= o->first && k / 255.0 <= o->last) {
+                    miss2 += pow(o->moment_Nm[k] - b->observation.moment_Nm[k], 2.0);
+                    whole2 += pow(b->observation.moment_Nm[k], 2.0);
+                }
+            }
+            print_message("    off what it turned out to be by %.4f\n", sqrt(miss2 / whole2));
+            assert_true(sqrt(miss2 / whole2) < 0.02);
+        }
+        driven_destroy(b);
+    }
+}
+
+// Slower than the window holds: every other sample is kept, and again.
+static void a_dig_longer_than_the_window_is_still_observed(void **state)
+{
+    (void)state;
+    struct driven *const b = driven_create(false);
+    driven_dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 24, .until = 1, .seed = 5 });
+    assert_int_equal(b->observations, 1);
+    assert_true(driven_error(b, 24.0, 1.0) < 0.01);
+    driven_destroy(b);
+}
+
+// Handed out raw and observed beside the tick, every dig is what it was within.
+static void a_dig_handed_out_raw_is_observed_the_same(void **state)
+{
+    (void)state;
+    const struct drive drives[] = {
+        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
+        { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .sensors = true, .seed = 3 },
+        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .sensors = true, .seed = 4 },
+    };
+    struct driven *const inside = driven_create(true), *const beside = driven_create(true);
+    beside->allocations = &allocations;
+    beside->spare       = calloc(1, dig_raw_size());
+    assert_non_null(beside->spare);
+    dig_estimator_lend(beside->estimator, beside->spare);
+    for (size_t i = 0; i < sizeof drives / sizeof drives[0]; i++) {
+        driven_dig(inside, drives[i]);
+        driven_dig(beside, drives[i]);
+        assert_int_equal(beside->observations, i + 1);
+        assert_memory_equal(&inside->observation, &beside->observation, sizeof inside->observation);
+    }
+    assert_int_equal(dig_estimator_lost(beside->estimator), 0);
+    assert_int_equal(beside->steps_with_allocation, 0);
+
+    // The one who took the last dig keeps it: the next goes into no memory, and is counted.
+    beside->keeps = true;
+    driven_dig(beside, drives[0]);
+    driven_dig(beside, drives[0]);
+    assert_int_equal(beside->observations, 4);
+    assert_int_equal(dig_estimator_lost(beside->estimator), 1);
+    driven_destroy(inside);
+    // The last raw dig taken is one of the estimator's own or the spare: both are freed.
+    driven_destroy(beside);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kind_of_dig_is_observed_as_it_was),
+        cmocka_unit_test(a_dig_going_on_is_observed_as_it_will_have_been),
+        cmocka_unit_test(a_dig_longer_than_the_window_is_still_observed),
+        cmocka_unit_test(a_dig_handed_out_raw_is_observed_the_same),
+    };
+    return cmocka_run_group_tests_name("estimator_digs", tests, NULL, NULL);
+}
