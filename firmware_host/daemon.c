@@ -233,6 +233,7 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
     }
     connect_threads(d);
     d->loaded.set = NULL; // the matcher's from now on, as it may exchange it
+    dig_matcher_take_up(&d->fit.matcher, d->fit.set);
     dig_fit_restore(&d->fit);
     *daemon = d;
     return DIG_OK;

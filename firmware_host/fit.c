@@ -98,13 +98,13 @@ static enum dig_status match_pool(const struct dig_fit *const fit, struct dig_po
 {
     const double          floors = fit->config->estimator.outside_floors;
     const enum dig_status status =
-        dig_match_nearest_pool(fit->set, pool->digs, pool->dig, floors, match);
+        dig_matcher_nearest(&fit->matcher, fit->set, pool->digs, pool->dig, floors, match);
     if (status != DIG_ENOMATCH || pool->digs == 1) {
         return status;
     }
     pool->dig[0] = pool->dig[pool->digs - 1];
     pool->digs   = 1;
-    return dig_match_nearest(fit->set, pool->dig, floors, match);
+    return dig_matcher_nearest(&fit->matcher, fit->set, 1, pool->dig, floors, match);
 }
 
 static void doubt(const struct dig_fit *const fit, struct dig_observation *const dig)
@@ -142,8 +142,8 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
                  status);
         return;
     }
-    status =
-        dig_fit_refine_pool(fit->set, pool.digs, pool.dig, fit->config->match_evaluations, &match);
+    status = dig_matcher_refine(&fit->matcher, fit->set, pool.digs, pool.dig,
+                                fit->config->match_evaluations, &match);
     if (status != DIG_OK) {
         // The nearest entry stands: it is exact, only coarse.
         note_dig(fit, dig, "nearest entry only", status);
@@ -163,8 +163,10 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
 static void match_early(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
     struct dig_match match;
-    if (dig_match_nearest(fit->set, dig, fit->config->estimator.outside_floors, &match) != DIG_OK ||
-        dig_fit_refine(fit->set, dig, fit->config->match_evaluations, &match) != DIG_OK ||
+    const double     floors = fit->config->estimator.outside_floors;
+    if (dig_matcher_nearest(&fit->matcher, fit->set, 1, dig, floors, &match) != DIG_OK ||
+        dig_matcher_refine(&fit->matcher, fit->set, 1, dig, fit->config->match_evaluations,
+                           &match) != DIG_OK ||
         match.samples == 0) {
         return;
     }
@@ -249,6 +251,7 @@ static void reload(struct dig_fit *const fit)
     }
     fit->retiring = fit->set;
     fit->set      = set;
+    dig_matcher_take_up(&fit->matcher, set);
     fit->generation++;
     fit->lambda = fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     if (fit->early != NULL) {
@@ -346,6 +349,7 @@ void dig_fit_run(struct dig_fit *const fit)
 void dig_fit_finish(struct dig_fit *const fit)
 {
     assert(fit != NULL);
+    dig_matcher_finish(&fit->matcher);
     dig_curve_set_destroy(fit->retiring);
     dig_curve_set_destroy(fit->set);
     fit->retiring = NULL;

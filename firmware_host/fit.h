@@ -10,6 +10,7 @@
 #include "firmware_host/early.h"
 #include "firmware_host/known.h"
 #include "firmware_host/loop.h"
+#include "firmware_host/matcher.h"
 
 #include <stdatomic.h>
 
@@ -53,10 +54,11 @@ struct dig_fit {
     atomic_bool               busy;
 
     // the thread's own
-    struct dig_known known;
-    struct dig_known hunch; // of the dig going on
-    struct dig_pool  pool;  // the digs it is known from; none: restored without them
-    struct dig_offer next;  // what is offered
+    struct dig_matcher matcher; // of set; zeroed: without a summary
+    struct dig_known   known;
+    struct dig_known   hunch; // of the dig going on
+    struct dig_pool    pool;  // the digs it is known from; none: restored without them
+    struct dig_offer   next;  // what is offered
 };
 
 /// Takes up what the state file knows, if there is one, and offers it. Before the thread starts.

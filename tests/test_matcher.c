@@ -1,0 +1,69 @@
+// Tests for firmware_host/matcher.c
+
+#include "firmware_host/matcher.h"
+
+#include "tests/made_table.h"
+#include "tests/testlib.h"
+
+static const struct made_options options = { .relative_sd = 0.15, .packings = 3 };
+
+static struct dig_match match_by(const struct dig_matcher *const   matcher,
+                                 const struct dig_curve_set *const set)
+{
+    const struct dig_gravel      gravel = { { 0.55, 0.3, 2200 } };
+    const struct dig_observation dig    = made_observation(&gravel, MADE_SIMPLE_A, 0.0);
+    struct dig_match             match;
+    assert_int_equal(dig_matcher_nearest(matcher, set, 1, &dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_matcher_refine(matcher, set, 1, &dig, 200, &match), DIG_OK);
+    return match;
+}
+
+static void with_and_without_a_summary_a_dig_is_of_the_same_gravel(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set     = made_table(&options);
+    struct dig_matcher          matcher = { .outline = NULL };
+    const struct dig_match      without = match_by(&matcher, set);
+    dig_matcher_take_up(&matcher, set);
+    assert_non_null(matcher.outline);
+    const struct dig_match with = match_by(&matcher, set);
+    assert_int_equal(with.nearest, without.nearest);
+    assert_memory_equal(&with.nearest_distance, &without.nearest_distance, sizeof(double));
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(with.gravel.value[a], without.gravel.value[a], 1e-3 * without.gravel.value[a]);
+    }
+    dig_matcher_finish(&matcher);
+    made_table_destroy(set);
+}
+
+// The first entry that fits is another once the table has changed, and the summary with it.
+static void another_table_taken_up_is_the_one_that_is_matched(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set     = made_table(&options);
+    struct dig_matcher          matcher = { .outline = NULL };
+    dig_matcher_take_up(&matcher, set);
+    const int before = match_by(&matcher, set).nearest;
+
+    struct dig_curve_set *const other                                   = made_table(&options);
+    other->packings[(size_t)before * MADE_TRAJECTORIES + MADE_SIMPLE_A] = 0;
+    dig_matcher_take_up(&matcher, other);
+    made_table_destroy(set);
+    assert_int_not_equal(match_by(&matcher, other).nearest, before);
+
+    dig_matcher_finish(&matcher);
+    assert_null(matcher.outline);
+    assert_int_not_equal(match_by(&matcher, other).nearest, before);
+    dig_matcher_finish(&matcher);
+    dig_matcher_finish(NULL);
+    made_table_destroy(other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(with_and_without_a_summary_a_dig_is_of_the_same_gravel),
+        cmocka_unit_test(another_table_taken_up_is_the_one_that_is_matched),
+    };
+    return cmocka_run_group_tests_name("matcher", tests, NULL, NULL);
+}
