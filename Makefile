@@ -259,7 +259,7 @@ clean: ## Remove the build folder
 	$(Q)rm -rf $(BUILD)
 
 help: ## This list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-15s %s\n", $$1, $$2 }' Makefile messages/java.mk
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  %-15s %s\n", $$1, $$2 }' Makefile messages/java.mk
 
 .SECONDARY:
 -include messages/java.mk
