@@ -27,6 +27,9 @@ static const double rarer = 0.01;
 static const double lead       = 3.0;
 static const double told_apart = 6.0;
 
+// Below this chance of its own misfit the plain hypothesis is refuted by itself.
+static const double refuted = 0.001;
+
 // Evidence is tempered: covariance and templates are known from a few packings only.
 static const double temper = 0.5;
 
@@ -281,6 +284,13 @@ static bool is_believable(const struct context *const c)
             (share_of(c, &c->s->chosen) >= least_share && c->left <= most_left * c->expected));
 }
 
+// Beside a plain hypothesis that could be true an effect must be decisive. Where it cannot, an
+// effect need only be the likelier.
+static bool is_decisive(const struct context *const c, const double evidence)
+{
+    return evidence >= told_apart || (evidence > 0.0 && c->s->plain_fit < refuted);
+}
+
 static void give_up(struct context *const c)
 {
     c->s->unlisted = true;
@@ -313,7 +323,8 @@ static enum dig_status decide_which(struct context *const c)
     if (status == DIG_OK) {
         status = dig_confirm_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen, &c->s->confirmed);
     }
-    if (status == DIG_OK && (evidence < told_apart || c->s->confirmed < 0.0 || !is_believable(c))) {
+    if (status == DIG_OK &&
+        (!is_decisive(c, evidence) || c->s->confirmed < 0.0 || !is_believable(c))) {
         give_up(c);
     }
     return status;

@@ -59,7 +59,7 @@ smooth() { # RECORDING: time and smoothed moment
 smooth "$out/X_0.7_0.7_2500__actual.csv" >"$out/X_measured.dat"
 
 svg() { # NAME: gnuplot's commands from stdin
-    { echo "set terminal svg size 760,380 font 'sans,12' background 'white'; set output '$plots/$1.svg'
+    { echo "set terminal svg noenhanced size 760,380 font 'sans,12' background 'white'; set output '$plots/$1.svg'
             set xlabel 't [s]'; set ylabel 'My [N m]'; set key top left; set grid"
       cat; } | (cd "$out" && gnuplot)
 }
