@@ -4,6 +4,7 @@
 #ifndef DIG_TESTS_DEM_FIXTURE_H
 #define DIG_TESTS_DEM_FIXTURE_H
 
+#include "core/scene.h"
 #include "core/units.h"
 #include "offline_dem/world.h"
 #include "tests/testlib.h"
@@ -17,6 +18,31 @@
 #define GRAIN_kg   (DENSITY * 4.0 / 3.0 * DIG_PI * GRAIN_m * GRAIN_m * GRAIN_m)
 #define GRAIN_kgm2 (0.4 * GRAIN_kg * GRAIN_m * GRAIN_m)
 #define GRAVITY    9.81
+
+/// A box of about 8 x 6 x 4 grains, and a small bucket that is dragged for an instant: what takes a
+/// fraction of a second to pour. Tests that dig say how.
+static inline struct dig_scene dem_small_scene(void)
+{
+    return (struct dig_scene){
+        .name         = "small",
+        .bucket       = { .points  = 5,
+                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
+                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
+                          .width_m = 0.028 },
+        .box          = { 0.0, 0.06, -0.0225, 0.0225, 0.0, 0.03 },
+        .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
+        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
+        .gravity_mps2 = GRAVITY,
+        .time_step_s  = STEP_s,
+        .output_s     = 0.005,
+        .trajectories = 1,
+        .trajectory   = { { .name      = "scratch",
+                            .start_x_m = 0.03,
+                            .start_z_m = 0.06,
+                            .phases    = 1,
+                            .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
+    };
+}
 
 /// The reference digs' material with these two frictions.
 static inline struct dig_law_material dem_material(const double friction, const double rolling)

@@ -7,26 +7,17 @@
 
 static struct dig_scene small_scene(void)
 {
-    return (struct dig_scene){
-        .name         = "small",
-        .bucket       = { .points  = 5,
-                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
-                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
-                          .width_m = 0.028 },
-        .box          = { 0.0, 0.08, -0.0225, 0.0225, 0.0, 0.03 },
-        .packing      = { 0.3, 0.694, 0.3, 0.3, 0.1 },
-        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
-        .gravity_mps2 = GRAVITY,
-        .time_step_s  = STEP_s,
-        .output_s     = 0.005,
-        .trajectories = 1,
-        .trajectory   = { { .name      = "dip",
-                            .start_x_m = 0.03,
-                            .start_z_m = 0.066,
-                            .phases    = 2,
-                            .phase     = { { "down", 0.04, 0.0, -0.15, 0.0 },
-                                           { "drag", 0.02, 0.2, 0.0, 2.0 } } } },
-    };
+    struct dig_scene scene = dem_small_scene();
+    scene.box.x_max_m      = 0.08;
+    scene.packing.settle_s = 0.3;
+    scene.packing.relax_s  = 0.1;
+    scene.trajectory[0]    = (struct dig_trajectory){ .name      = "dip",
+                                                      .start_x_m = 0.03,
+                                                      .start_z_m = 0.066,
+                                                      .phases    = 2,
+                                                      .phase     = { { "down", 0.04, 0.0, -0.15, 0.0 },
+                                                                     { "drag", 0.02, 0.2, 0.0, 2.0 } } };
+    return scene;
 }
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };

@@ -13,25 +13,7 @@ static struct dig_bed poured;
 static int pour(void **state)
 {
     (void)state;
-    const struct dig_scene scene = {
-        .name         = "small",
-        .bucket       = { .points  = 5,
-                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
-                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
-                          .width_m = 0.028 },
-        .box          = { 0.0, 0.06, -0.0225, 0.0225, 0.0, 0.03 },
-        .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
-        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
-        .gravity_mps2 = GRAVITY,
-        .time_step_s  = STEP_s,
-        .output_s     = 0.005,
-        .trajectories = 1,
-        .trajectory   = { { .name      = "scratch",
-                            .start_x_m = 0.03,
-                            .start_z_m = 0.06,
-                            .phases    = 1,
-                            .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
-    };
+    const struct dig_scene  scene  = dem_small_scene();
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     return dig_bed_pour(&scene, &gravel, 3, NULL, &poured, NULL);
 }

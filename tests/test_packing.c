@@ -7,36 +7,12 @@
 
 #include <math.h>
 
-// A box of about 8 x 6 x 4 grains.
-static struct dig_scene small_scene(void)
-{
-    return (struct dig_scene){
-        .name         = "small",
-        .bucket       = { .points  = 5,
-                          .x_m     = { 0.0, -0.016, -0.0208, -0.016, -0.0048 },
-                          .z_m     = { -0.036, -0.0288, -0.0168, -0.0048, 0.0 },
-                          .width_m = 0.028 },
-        .box          = { 0.0, 0.06, -0.0225, 0.0225, 0.0, 0.03 },
-        .packing      = { 0.3, 0.694, 0.3, 0.45, 0.15 },
-        .material     = { 2.0 * GRAIN_m, 5e6, 0.2, 0.2, 2.0 },
-        .gravity_mps2 = GRAVITY,
-        .time_step_s  = STEP_s,
-        .output_s     = 0.005,
-        .trajectories = 1,
-        .trajectory   = { { .name      = "scratch",
-                            .start_x_m = 0.03,
-                            .start_z_m = 0.06,
-                            .phases    = 1,
-                            .phase     = { { "drag", 0.1, 0.05, 0.0, 0.0 } } } },
-    };
-}
-
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
 static void inserted_grains_are_inside_and_apart(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_small_scene();
     const size_t           n     = dig_packing_grains(&scene);
     double                 x[512], y[512], z[512];
     assert_in_range(n, 100, 512);
@@ -59,7 +35,7 @@ static void inserted_grains_are_inside_and_apart(void **state)
 static void a_seed_names_a_packing(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_small_scene();
     double                 x[3][3], y[3], z[3];
     for (uint64_t k = 0; k < 3; k++) {
         assert_int_equal(dig_packing_insert(&scene, k == 2 ? 8 : 7, 3, x[k], y, z), DIG_OK);
@@ -71,7 +47,7 @@ static void a_seed_names_a_packing(void **state)
 static void a_column_that_is_full_grows(void **state)
 {
     (void)state;
-    struct dig_scene scene       = small_scene();
+    struct dig_scene scene       = dem_small_scene();
     scene.packing.solid_fraction = 0.45; // above what random insertion reaches
     const size_t n               = dig_packing_grains(&scene);
     double       x[512], y[512], z[512];
@@ -86,11 +62,11 @@ static void a_column_that_is_full_grows(void **state)
 static void what_cannot_fit_is_refused_and_nothing_written(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_small_scene();
     scene.box.y_max_m      = scene.box.y_min_m + 1.9 * GRAIN_m;
     double x[512] = { 0.0 }, y[512] = { 0.0 }, z[512] = { 0.0 };
     assert_int_equal(dig_packing_insert(&scene, 1, 100, x, y, z), DIG_EUNREACHABLE);
-    scene = small_scene();
+    scene = dem_small_scene();
     assert_int_equal(dig_packing_insert(&scene, 1, 512, x, y, z), DIG_EUNREACHABLE);
     for (size_t i = 0; i < 512; i++) {
         assert_true(fabs(x[i]) + fabs(y[i]) + fabs(z[i]) <= 0.0);
@@ -100,7 +76,7 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
 static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_small_scene();
     struct dig_bed         bed;
     assert_int_equal(dig_bed_pour(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
     assert_in_range(bed.grains, 100, dig_packing_grains(&scene));
@@ -152,7 +128,7 @@ static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
 static void pouring_twice_gives_the_same_bits(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_small_scene();
     struct dig_bed         a, b;
     assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &a, NULL), DIG_OK);
     assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &b, NULL), DIG_OK);
