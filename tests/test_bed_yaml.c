@@ -3,27 +3,14 @@
 
 #include "core/ground.h"
 #include "core/log_normal.h"
-#include "files/scene_yaml.h"
-#include "tests/scratch.h"
-
-#include <ctype.h>
+#include "tests/yaml_fixture.h"
 
 #define EXAMPLE "tests/data/formats/scene_bed.yaml"
-
-static struct dig_scene read_scene(const char *const path)
-{
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    if (dig_scene_read(path, &scene, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    return scene;
-}
 
 static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 {
     (void)state;
-    const struct dig_scene           s   = read_scene(EXAMPLE);
+    const struct dig_scene           s   = yaml_scene(EXAMPLE);
     const struct dig_bed_plan *const bed = &s.bed;
     assert_int_equal(s.laws.normal, DIG_NORMAL_HERTZ);
     assert_int_equal(s.laws.rolling, DIG_ROLLING_CDT);
@@ -63,29 +50,12 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_true(bed->earlier_as_dug);
 }
 
-static char *with(const char *const text, const char *const from, const char *const to)
-{
-    const char *const at = strstr(text, from);
-    assert_non_null(at);
-    const size_t size = strlen(text) + strlen(to) + 1;
-    char *const  out  = malloc(size);
-    assert_non_null(out);
-    (void)snprintf(out, size, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
-    return out;
-}
-
-static void hash_of(const char *const text, char hex[const 65])
-{
-    const struct dig_scene s = read_scene(scratch_write("scene.yaml", text));
-    dig_scene_hash(&s, hex);
-}
-
 // The tables that exist name the rig by this hash, made before beds could hold anything else.
 static void a_plain_scene_keeps_its_identity(void **state)
 {
     (void)state;
     char                   hex[65];
-    const struct dig_scene rig = read_scene("config/scenes/rig.yaml");
+    const struct dig_scene rig = yaml_scene("config/scenes/rig.yaml");
     dig_scene_hash(&rig, hex);
     assert_string_equal(hex, "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
 }
@@ -96,7 +66,7 @@ static void whatever_changes_the_bed_changes_the_identity(void **state)
     size_t      size = 0;
     char *const text = scratch_read(EXAMPLE, &size);
     char        before[65], after[65];
-    hash_of(text, before);
+    yaml_scene_hash(text, before);
     static const char *const differs[][2] = {
         { "normal: hertz", "normal: hooke" },
         { "rolling: cdt", "rolling: none" },
@@ -123,8 +93,8 @@ static void whatever_changes_the_bed_changes_the_identity(void **state)
         { "  earlier: scrape\n", "" },
     };
     for (size_t i = 0; i < sizeof differs / sizeof differs[0]; i++) {
-        char *const other = with(text, differs[i][0], differs[i][1]);
-        hash_of(other, after);
+        char *const other = yaml_with(text, differs[i][0], differs[i][1]);
+        yaml_scene_hash(other, after);
         if (strcmp(before, after) == 0) {
             fail_msg("%s does not change the identity", differs[i][1]);
         }
@@ -133,23 +103,9 @@ static void whatever_changes_the_bed_changes_the_identity(void **state)
     free(text);
 }
 
-static void expect_refusal(const char *const text, const char *const says)
-{
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    memset(&scene, 0x5a, sizeof scene);
-    const struct dig_scene untouched = scene;
-    assert_int_equal(dig_scene_read(scratch_write("bad.yaml", text), &scene, &error), DIG_EINVAL);
-    assert_memory_equal(&scene, &untouched, sizeof scene);
-    assert_contains(error.text, says);
-    assert_contains(error.text, "expected");
-}
-
 static void what_cannot_be_is_refused_with_line_and_key(void **state)
 {
     (void)state;
-    size_t                   size     = 0;
-    char *const              text     = scratch_read(EXAMPLE, &size);
     static const char *const bad[][3] = {
         { "normal: hertz", "normal: herz", "bad.yaml:31: laws.normal" },
         { "cohesion_Jpm3: 2.0e+4", "cohesion_Jpm3: -1", "bad.yaml:33: laws.cohesion_Jpm3: -1" },
@@ -177,33 +133,13 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
         { "  sizes:", "  log_normal: {median_m: 0.05, sigma: 0.3, classes: 4}\n  sizes:",
           "bed.log_normal: beside bed.sizes" },
     };
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char *const other = with(text, bad[i][0], bad[i][1]);
-        expect_refusal(other, bad[i][2]);
-        free(other);
-    }
-    free(text);
+    yaml_refuses_each(EXAMPLE, sizeof bad / sizeof bad[0], bad, yaml_scene_refused);
 }
 
 static void no_key_is_overlooked(void **state)
 {
     (void)state;
-    size_t      size = 0;
-    char *const text = scratch_read(EXAMPLE, &size);
-    int         line = 1;
-    for (size_t i = 0; i + 1 < size; i++) {
-        line += text[i] == '\n';
-        if (text[i + 1] != ':' || !isalnum((unsigned char)text[i])) {
-            continue;
-        }
-        const char kept = text[i];
-        text[i]         = 'Q';
-        char where[32];
-        (void)snprintf(where, sizeof where, "bad.yaml:%d: ", line);
-        expect_refusal(text, where);
-        text[i] = kept;
-    }
-    free(text);
+    yaml_knows_every_key(EXAMPLE, yaml_scene_refused);
 }
 
 // 15.87 % of a normal distribution lie below -1 sigma and 30.85 % below -1/2 sigma, as tables say.
@@ -228,7 +164,7 @@ static void a_log_normal_bed_is_cut_into_classes_of_equal_mass(void **state)
 static void the_ground_is_straight_between_its_points(void **state)
 {
     (void)state;
-    struct dig_scene s = read_scene(EXAMPLE);
+    struct dig_scene s = yaml_scene(EXAMPLE);
     assert_close(dig_scene_ground_m(&s, 0.25), 0.29, 1e-15);
     assert_close(dig_scene_ground_m(&s, -1.0), 0.28, 1e-15);
     assert_close(dig_scene_ground_m(&s, 2.0), 0.29, 1e-15);

@@ -14,13 +14,13 @@ static struct dig_scene small_scene(void)
     scene.box.x_max_m      = 0.08;
     scene.packing.settle_s = 0.3;
     scene.packing.relax_s  = 0.1;
-    scene.trajectory[0]    = (struct dig_trajectory){ .name      = "scratch",
-                                                      .start_x_m = 0.03,
-                                                      .start_z_m = 0.08,
-                                                      .phases    = 3,
-                                                      .phase     = { { "down", 0.2, 0.0, -0.13, 0.0 },
-                                                                     { "drag", 0.3, 0.06, 0.0, 0.0 },
-                                                                     { "curl", 0.1, 0.0, 0.0, 0.5 } } };
+
+    struct dig_trajectory *const t = &scene.trajectory[0];
+    t->start_z_m                   = 0.08;
+    t->phases                      = 3;
+    t->phase[0]                    = (struct dig_phase){ "down", 0.2, 0.0, -0.13, 0.0 };
+    t->phase[1]                    = (struct dig_phase){ "drag", 0.3, 0.06, 0.0, 0.0 };
+    t->phase[2]                    = (struct dig_phase){ "curl", 0.1, 0.0, 0.0, 0.5 };
     return scene;
 }
 

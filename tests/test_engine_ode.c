@@ -11,12 +11,12 @@ static struct dig_scene small_scene(void)
     scene.box.x_max_m      = 0.08;
     scene.packing.settle_s = 0.3;
     scene.packing.relax_s  = 0.1;
-    scene.trajectory[0]    = (struct dig_trajectory){ .name      = "dip",
-                                                      .start_x_m = 0.03,
-                                                      .start_z_m = 0.066,
-                                                      .phases    = 2,
-                                                      .phase     = { { "down", 0.04, 0.0, -0.15, 0.0 },
-                                                                     { "drag", 0.02, 0.2, 0.0, 2.0 } } };
+
+    struct dig_trajectory *const t = &scene.trajectory[0];
+    t->start_z_m                   = 0.066;
+    t->phases                      = 2;
+    t->phase[0]                    = (struct dig_phase){ "down", 0.04, 0.0, -0.15, 0.0 };
+    t->phase[1]                    = (struct dig_phase){ "drag", 0.02, 0.2, 0.0, 2.0 };
     return scene;
 }
 

@@ -3,9 +3,7 @@
 #include "files/machine_yaml.h"
 
 #include "core/units.h"
-#include "tests/scratch.h"
-
-#include <ctype.h>
+#include "tests/yaml_fixture.h"
 
 static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 {
@@ -35,23 +33,19 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(m.boom_foot_Z_m, 1.8, 0.0);
 }
 
+static void loads(const char *const path)
+{
+    struct dig_machine machine;
+    struct dig_error   error = { "" };
+    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+}
+
 static void every_machine_that_is_shipped_loads(void **state)
 {
     (void)state;
-    DIR *const dir = opendir("config/machines");
-    assert_non_null(dir);
-    for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        if (strstr(entry->d_name, ".yaml") != NULL) {
-            char               path[512];
-            struct dig_machine machine;
-            struct dig_error   error = { "" };
-            (void)snprintf(path, sizeof path, "config/machines/%s", entry->d_name);
-            if (dig_machine_read(path, &machine, &error) != DIG_OK) {
-                fail_msg("%s", error.text);
-            }
-        }
-    }
-    (void)closedir(dir);
+    yaml_loads_all("config/machines", loads);
 }
 
 static void expect_refusal(const char *const text, const char *const says)
@@ -82,39 +76,14 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
           "cylinders.bucket.eye_m: unknown key" },
         { "angle_step_rad: 4.0e-4", "angle_step_rad: -1", "sensors.angle_step_rad: -1" },
     };
-    size_t      size  = 0;
-    char *const text  = scratch_read("tests/data/formats/machine.yaml", &size);
-    char *const other = malloc(size + 100);
-    assert_non_null(other);
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        const char *const at = strstr(text, bad[i][0]);
-        assert_non_null(at);
-        (void)snprintf(other, size + 100, "%.*s%s%s", (int)(at - text), text, bad[i][1],
-                       at + strlen(bad[i][0]));
-        expect_refusal(other, bad[i][2]);
-    }
-    free(other);
-    free(text);
+    yaml_refuses_each("tests/data/formats/machine.yaml", sizeof bad / sizeof bad[0], bad,
+                      expect_refusal);
 }
 
 static void every_key_is_known_and_needed(void **state)
 {
     (void)state;
-    size_t      size = 0;
-    char *const text = scratch_read("tests/data/formats/machine.yaml", &size);
-    int         line = 1;
-    for (size_t i = 0; i + 1 < size; i++) {
-        line += text[i] == '\n';
-        if (text[i + 1] == ':' && isalnum((unsigned char)text[i])) {
-            const char kept = text[i];
-            text[i]         = 'Q';
-            char where[32];
-            (void)snprintf(where, sizeof where, "bad.yaml:%d: ", line);
-            expect_refusal(text, where);
-            text[i] = kept;
-        }
-    }
-    free(text);
+    yaml_knows_every_key("tests/data/formats/machine.yaml", expect_refusal);
 }
 
 int main(void)

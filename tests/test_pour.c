@@ -15,12 +15,12 @@ static struct dig_scene small_scene(void)
     scene.packing.settle_s = 0.3;
     scene.packing.relax_s  = 0.1;
     scene.time_step_s      = 5e-5;
-    scene.trajectory[0]    = (struct dig_trajectory){ .name      = "scratch",
-                                                      .start_x_m = 0.03,
-                                                      .start_z_m = 0.07,
-                                                      .phases    = 2,
-                                                      .phase     = { { "down", 0.1, 0.0, -0.15, 0.0 },
-                                                                     { "drag", 0.2, 0.05, 0.0, 0.0 } } };
+
+    struct dig_trajectory *const t = &scene.trajectory[0];
+    t->start_z_m                   = 0.07;
+    t->phases                      = 2;
+    t->phase[0]                    = (struct dig_phase){ "down", 0.1, 0.0, -0.15, 0.0 };
+    t->phase[1]                    = (struct dig_phase){ "drag", 0.2, 0.05, 0.0, 0.0 };
     return scene;
 }
 

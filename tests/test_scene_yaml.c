@@ -1,28 +1,14 @@
 // Tests for files/scene_yaml.c and config/scenes/
 
-#include "files/scene_yaml.h"
-
 #include "core/units.h"
-#include "tests/scratch.h"
-
-#include <ctype.h>
-
-static struct dig_scene read_scene(const char *const path)
-{
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    if (dig_scene_read(path, &scene, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    return scene;
-}
+#include "tests/yaml_fixture.h"
 
 // Where the tooth starts and the pin ends: the first stands in the reference digs' manifest as
 // toe_x0_m, the second is the last line of curves/mu0.3_mur0.3_rho2500__actual.csv there.
 static void the_rig_is_the_scene_of_the_reference_digs(void **state)
 {
     (void)state;
-    const struct dig_scene             rig     = read_scene("config/scenes/rig.yaml");
+    const struct dig_scene             rig     = yaml_scene("config/scenes/rig.yaml");
     const struct dig_trajectory *const actual  = dig_scene_find(&rig, "actual");
     const struct dig_trajectory *const simpleA = dig_scene_find(&rig, "simpleA");
     const struct dig_trajectory *const simpleB = dig_scene_find(&rig, "simpleB");
@@ -48,25 +34,21 @@ static void the_rig_is_the_scene_of_the_reference_digs(void **state)
     assert_close(rig.packing.fill_factor * rig.box.z_max_m, 0.3 * 0.196747, 1e-6);
 }
 
+static void loads(const char *const path)
+{
+    (void)yaml_scene(path);
+}
+
 static void every_scene_that_is_shipped_loads(void **state)
 {
     (void)state;
-    DIR *const dir = opendir("config/scenes");
-    assert_non_null(dir);
-    for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        if (strstr(entry->d_name, ".yaml") != NULL) {
-            char path[512];
-            (void)snprintf(path, sizeof path, "config/scenes/%s", entry->d_name);
-            (void)read_scene(path);
-        }
-    }
-    (void)closedir(dir);
+    yaml_loads_all("config/scenes", loads);
 }
 
 static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 {
     (void)state;
-    const struct dig_scene s = read_scene("tests/data/formats/scene.yaml");
+    const struct dig_scene s = yaml_scene("tests/data/formats/scene.yaml");
     assert_string_equal(s.name, "tub");
     assert_int_equal(s.bucket.points, 4);
     assert_close(s.bucket.x_m[2], -0.12, 0.0);
@@ -81,30 +63,13 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(s.trajectory[0].theta0_rad, -DIG_PI / 12.0, 1e-15);
 }
 
-static char *with(const char *const text, const char *const from, const char *const to)
-{
-    const char *const at = strstr(text, from);
-    assert_non_null(at);
-    const size_t size = strlen(text) + strlen(to) + 1;
-    char *const  out  = malloc(size);
-    assert_non_null(out);
-    (void)snprintf(out, size, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
-    return out;
-}
-
-static void hash_of(const char *const text, char hex[const 65])
-{
-    const struct dig_scene s = read_scene(scratch_write("scene.yaml", text));
-    dig_scene_hash(&s, hex);
-}
-
 static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
 {
     (void)state;
     size_t      size = 0;
     char *const text = scratch_read("tests/data/formats/scene.yaml", &size);
     char        before[65], after[65];
-    hash_of(text, before);
+    yaml_scene_hash(text, before);
     assert_int_equal(strlen(before), 64);
 
     static const char *const same[][2] = {
@@ -114,8 +79,8 @@ static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
         { "x: [0, 1.0]", "x:\n    - 0\n    - 1" },
     };
     for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
-        char *const other = with(text, same[i][0], same[i][1]);
-        hash_of(other, after);
+        char *const other = yaml_with(text, same[i][0], same[i][1]);
+        yaml_scene_hash(other, after);
         assert_string_equal(before, after);
         free(other);
     }
@@ -126,31 +91,17 @@ static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
         { "omega_degps: 10", "omega_degps: 10.5" },
     };
     for (size_t i = 0; i < sizeof differs / sizeof differs[0]; i++) {
-        char *const other = with(text, differs[i][0], differs[i][1]);
-        hash_of(other, after);
+        char *const other = yaml_with(text, differs[i][0], differs[i][1]);
+        yaml_scene_hash(other, after);
         assert_string_not_equal(before, after);
         free(other);
     }
     free(text);
 }
 
-static void expect_refusal(const char *const text, const char *const says)
-{
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    memset(&scene, 0x5a, sizeof scene);
-    const struct dig_scene untouched = scene;
-    assert_int_equal(dig_scene_read(scratch_write("bad.yaml", text), &scene, &error), DIG_EINVAL);
-    assert_memory_equal(&scene, &untouched, sizeof scene);
-    assert_contains(error.text, says);
-    assert_contains(error.text, "expected");
-}
-
 static void what_cannot_be_is_refused_with_line_and_key(void **state)
 {
     (void)state;
-    size_t                   size     = 0;
-    char *const              text     = scratch_read("tests/data/formats/scene.yaml", &size);
     static const char *const bad[][3] = {
         { "young_Pa: 5.0e+6", "young_Pa: -1", "bad.yaml:22: material.young_Pa: -1" },
         { "y: [-0.3, 0.3]", "y: [0.3, -0.3]", "bad.yaml:12: box_m.y: [0.3, -0.3]" },
@@ -162,34 +113,14 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
           "bad.yaml:6: bucket.profile_m: 2 values" },
         { "name: scrape", "name: ''", "bad.yaml:30: trajectories[0].name: nothing" },
     };
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char *const other = with(text, bad[i][0], bad[i][1]);
-        expect_refusal(other, bad[i][2]);
-        free(other);
-    }
-    free(text);
+    yaml_refuses_each("tests/data/formats/scene.yaml", sizeof bad / sizeof bad[0], bad,
+                      yaml_scene_refused);
 }
 
-// Each key of the rig in turn is spelled wrongly: an unknown key is found by its own line.
 static void every_key_is_known_and_needed(void **state)
 {
     (void)state;
-    size_t      size = 0;
-    char *const text = scratch_read("tests/data/formats/scene.yaml", &size);
-    int         line = 1;
-    for (size_t i = 0; i + 1 < size; i++) {
-        line += text[i] == '\n';
-        if (text[i + 1] != ':' || !isalnum((unsigned char)text[i])) {
-            continue;
-        }
-        const char kept = text[i];
-        text[i]         = 'Q';
-        char where[32];
-        (void)snprintf(where, sizeof where, "bad.yaml:%d: ", line);
-        expect_refusal(text, where);
-        text[i] = kept;
-    }
-    free(text);
+    yaml_knows_every_key("tests/data/formats/scene.yaml", yaml_scene_refused);
 }
 
 int main(void)
