@@ -54,8 +54,8 @@ static inline const float *dig_outline_sd(const struct dig_summary *const summar
     return summary->outline[dig_outline_place(summary->set, 2 * channel + 1, slot)].block;
 }
 
-/// Sums the set up; it and the outlines must outlive *summary. Reads every curve once: about a
-/// microsecond each.
+/// Sums the set up; it and the outlines must outlive *summary. Reads every curve once: a few
+/// microseconds each.
 void dig_summary_make(const struct dig_curve_set *set, struct dig_outline outline[],
                       struct dig_summary *summary);
 
