@@ -6,12 +6,12 @@
 #include "firmware_host/fit.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
+#include "tests/wires.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define ESTIMATES 4096
-#define TICK_NS   20000000LL
+#define TICK_NS 20000000LL
 
 static const double lambda = 10.0;
 
@@ -21,15 +21,8 @@ static const struct dig_gravel   gravel = { { 0.6, 0.5, 2500 } };
 struct bench {
     struct dig_config     config;
     struct dig_curve_set *set;
-    struct dig_ring       digs, spares, results, estimates;
-    struct dig_latest     offer, table, tables, notes;
-    struct dig_raw       *dig_memory[4], *spare_memory[4], *raw;
-    struct dig_estimate   estimate_memory[ESTIMATES];
-    struct dig_fit_result result_memory[64];
-    struct dig_offer      offer_memory[3], table_memory[3];
-    struct dig_table_news tables_memory[3];
-    struct dig_note       note_memory[3];
-    atomic_llong          tick_generation, publish_generation;
+    struct wires          wires;
+    struct dig_raw       *raw;
     struct dig_early      early;
     struct dig_fit        fit;
     // what the tick would know
@@ -48,34 +41,12 @@ static struct bench *bench_create(void)
     b->config.match_evaluations = 200;
     b->config.match_least_path  = 0.6;
     b->config.match_early_path  = 0.3;
-    dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
-    dig_ring_init(&b->results, sizeof b->result_memory[0], 64, b->result_memory);
-    dig_ring_init(&b->estimates, sizeof b->estimate_memory[0], ESTIMATES, b->estimate_memory);
-    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
-    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
-    dig_latest_init(&b->tables, sizeof b->tables_memory[0], b->tables_memory);
-    dig_latest_init(&b->notes, sizeof b->note_memory[0], b->note_memory);
-    atomic_store(&b->tick_generation, 1);
-    atomic_store(&b->publish_generation, 1);
-    b->early.estimates = &b->estimates;
+    wires_init(&b->wires);
+    wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
+    b->fit.early       = &b->early;
+    b->early.estimates = &b->wires.estimates;
     dig_early_forget(&b->early, b->set);
     dig_shadow_forget(&b->shadow, b->set);
-    b->fit = (struct dig_fit){ .config             = &b->config,
-                               .set                = b->set,
-                               .generation         = 1,
-                               .lambda             = lambda,
-                               .known_settings     = { 3600.0, 3.0 },
-                               .digs               = &b->digs,
-                               .spares             = &b->spares,
-                               .early              = &b->early,
-                               .offer              = &b->offer,
-                               .table              = &b->table,
-                               .results            = &b->results,
-                               .tables             = &b->tables,
-                               .notes              = &b->notes,
-                               .tick_generation    = &b->tick_generation,
-                               .publish_generation = &b->publish_generation };
     return b;
 }
 
@@ -105,7 +76,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
         .progress   = progress,
     };
     dig_shadow_take(&b->shadow, b->set, lambda, &e);
-    (void)dig_ring_push(&b->estimates, &e);
+    (void)dig_ring_push(&b->wires.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
 
@@ -138,7 +109,7 @@ static void end_dig(struct bench *const b, const enum made_trajectory which, con
     if (recorded) {
         *b->raw           = b->shadow.raw;
         b->raw->dig_count = b->digs_done + 1;
-        (void)dig_ring_push(&b->digs, &b->raw);
+        (void)dig_ring_push(&b->wires.digs, &b->raw);
     }
     b->digs_done++;
     tell(b, dig_trajectory_pose(&t, 1e3), 0.0, DIG_PHASE_AIR, -1, (double)NAN);
@@ -155,7 +126,7 @@ static int results(struct bench *const b, struct dig_known *const first,
 {
     int                   n = 0;
     struct dig_fit_result result;
-    while (dig_ring_pop(&b->results, &result)) {
+    while (dig_ring_pop(&b->wires.results, &result)) {
         *first = n == 0 ? result.known : *first;
         *last  = result.known;
         n++;
@@ -170,7 +141,7 @@ static void a_dig_is_matched_while_it_goes_on(void **state)
     struct dig_known    first, last;
     dig_until(b, MADE_SIMPLE_A, 0.33, 2.0);
     assert_int_equal(results(b, &first, &last), 0);
-    assert_null(dig_latest_look(&b->offer));
+    assert_null(dig_latest_look(&b->wires.offer));
     dig_until(b, MADE_SIMPLE_A, 0.9, 2.0);
     const int n = results(b, &first, &last);
     assert_true(n >= 4 && n <= 6);
@@ -185,7 +156,7 @@ static void a_dig_is_matched_while_it_goes_on(void **state)
     assert_true(first.expires_ns - first.time_ns == 30000000000LL);
 
     // Nothing else is known: it is predicted from, but not kept.
-    const struct dig_offer *const offer = dig_latest_look(&b->offer);
+    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
     assert_non_null(offer);
     assert_true(offer->known && offer->forecast.along[MADE_ACTUAL].valid);
     assert_true(offer->expires_ns == last.expires_ns);
@@ -222,13 +193,13 @@ static void a_dig_broken_off_takes_it_back(void **state)
         assert_int_equal(results(b, &first, &last), 1);
         assert_true(!last.valid && !last.going_on);
         assert_string_equal(last.wanted, "the simple dig cannot be matched: dig a simple dig");
-        const struct dig_offer *const offer = dig_latest_look(&b->offer);
+        const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
         assert_non_null(offer);
         assert_false(offer->known);
         assert_false(b->fit.known.any);
         if (lost == 0) {
             struct dig_raw *raw;
-            assert_true(dig_ring_pop(&b->spares, &raw));
+            assert_true(dig_ring_pop(&b->wires.spares, &raw));
         }
     }
     bench_destroy(b);
@@ -245,12 +216,12 @@ static void what_is_known_is_still_predicted_from(void **state)
     const struct dig_known before = b->fit.known;
     assert_true(before.valid);
     (void)results(b, &first, &last);
-    (void)dig_latest_look(&b->offer);
+    (void)dig_latest_look(&b->wires.offer);
 
     dig_until(b, MADE_SIMPLE_A, 0.5, 2.0);
     assert_true(results(b, &first, &last) >= 1);
     assert_true(last.going_on && last.valid);
-    assert_null(dig_latest_look(&b->offer));
+    assert_null(dig_latest_look(&b->wires.offer));
     end_dig(b, MADE_SIMPLE_A, false);
     assert_int_equal(results(b, &first, &last), 1);
     assert_true(last.valid && !last.going_on && last.time_ns == before.time_ns);

@@ -4,6 +4,7 @@
 
 #include "files/identity_json.h"
 #include "tests/scratch.h"
+#include "tests/wires.h"
 
 #include <fcntl.h>
 #include <stdlib.h>
@@ -16,22 +17,14 @@
 
 // Gravels at the corners of a cube, whose curves differ by a factor; only simpleA has curves.
 struct bench {
-    struct dig_config     config;
-    struct dig_curve_set  set;
-    struct dig_gravel     gravel[GRAVELS];
-    double                axis[DIG_AXES][2];
-    int                   cell[GRAVELS], packings[GRAVELS * TRAJECTORIES];
-    struct dig_curve      curve[GRAVELS * TRAJECTORIES];
-    struct dig_ring       digs, spares, results;
-    struct dig_latest     offer, table, tables, notes;
-    struct dig_raw       *dig_memory[4], *spare_memory[4];
-    struct dig_fit_result result_memory[16];
-    struct dig_offer      offer_memory[3], table_memory[3];
-    struct dig_table_news tables_memory[3];
-    struct dig_note       note_memory[3];
-    atomic_bool           stop;
-    atomic_llong          tick_generation, publish_generation;
-    struct dig_fit        fit;
+    struct dig_config    config;
+    struct dig_curve_set set;
+    struct dig_gravel    gravel[GRAVELS];
+    double               axis[DIG_AXES][2];
+    int                  cell[GRAVELS], packings[GRAVELS * TRAJECTORIES];
+    struct dig_curve     curve[GRAVELS * TRAJECTORIES];
+    struct wires         wires;
+    struct dig_fit       fit;
 };
 
 static double moment_Nm(const int gravel, const int point)
@@ -81,30 +74,8 @@ static struct bench *bench_create(void)
     b->config.match_least_path  = 0.6;
     b->config.match_expires_s   = 3600.0;
     b->config.drift_floors      = 3.0;
-    dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
-    dig_ring_init(&b->results, sizeof b->result_memory[0], 16, b->result_memory);
-    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
-    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
-    dig_latest_init(&b->tables, sizeof b->tables_memory[0], b->tables_memory);
-    dig_latest_init(&b->notes, sizeof b->note_memory[0], b->note_memory);
-    atomic_store(&b->tick_generation, 1);
-    atomic_store(&b->publish_generation, 1);
-    b->fit = (struct dig_fit){ .config             = &b->config,
-                               .set                = set,
-                               .generation         = 1,
-                               .lambda             = 10.0,
-                               .known_settings     = { 3600.0, 3.0 },
-                               .digs               = &b->digs,
-                               .spares             = &b->spares,
-                               .offer              = &b->offer,
-                               .table              = &b->table,
-                               .results            = &b->results,
-                               .tables             = &b->tables,
-                               .notes              = &b->notes,
-                               .stop               = &b->stop,
-                               .tick_generation    = &b->tick_generation,
-                               .publish_generation = &b->publish_generation };
+    wires_init(&b->wires);
+    wires_init_fit(&b->wires, &b->config, set, &b->fit);
     return b;
 }
 
@@ -130,13 +101,13 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
         struct dig_fit_result result;
         b->fit.known = (struct dig_known){ .any = false };
         dig_in(b, gravel, 0, 1.0);
-        const struct dig_offer *const offer = dig_latest_look(&b->offer);
+        const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
         assert_non_null(offer);
         assert_true(offer->known && offer->set == &b->set && offer->generation == 1);
         assert_int_equal(offer->dig_count, 5);
         assert_true(offer->forecast.along[0].valid);
         assert_false(offer->forecast.along[1].valid); // the table has no such curve
-        assert_true(dig_ring_pop(&b->results, &result));
+        assert_true(dig_ring_pop(&b->wires.results, &result));
         assert_true(result.known.valid && !result.known.restored);
         assert_int_equal(result.known.match.nearest, gravel);
         assert_string_equal(result.known.trajectory, "simpleA");
@@ -155,8 +126,8 @@ static void a_dig_that_does_not_identify_is_passed_over(void **state)
     struct bench *const b = bench_create();
     struct dig_note     note;
     dig_in(b, 0, 1, 1.0);
-    assert_null(dig_latest_look(&b->offer));
-    assert_false(dig_latest_take(&b->notes, &note));
+    assert_null(dig_latest_look(&b->wires.offer));
+    assert_false(dig_latest_take(&b->wires.notes, &note));
     assert_int_equal(atomic_load(&b->fit.matches), 0);
     free(b);
 }
@@ -169,8 +140,8 @@ static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **
     (void)strcpy(b->config.identify_trajectory[0], "actual");
     b->config.identify_trajectories = 1;
     dig_in(b, 0, 1, 1.0);
-    assert_null(dig_latest_look(&b->offer));
-    assert_true(dig_latest_take(&b->notes, &note));
+    assert_null(dig_latest_look(&b->wires.offer));
+    assert_true(dig_latest_take(&b->wires.notes, &note));
     assert_non_null(strstr(note.text, "dig 5 (actual): no match"));
     free(b);
 }
@@ -191,7 +162,7 @@ static void a_dig_broken_off_leaves_what_is_known(void **state)
     dig_fit_take(&b->fit, &dig);
     assert_int_equal(b->fit.known.match.dig_count, 5);
     struct dig_note note;
-    assert_true(dig_latest_take(&b->notes, &note));
+    assert_true(dig_latest_take(&b->wires.notes, &note));
     assert_non_null(strstr(note.text, "59 % of its path was measured, expected at least 60 %"));
 
     dig.last = 0.61;
@@ -221,12 +192,12 @@ static void ground_that_changed_is_no_longer_known(void **state)
         assert_true((b->fit.known.drift > 3.0) == (factor[i] > 1.0));
         assert_true(b->fit.known.valid == (i < 3));
     }
-    const struct dig_offer *const offer = dig_latest_look(&b->offer);
+    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
     assert_non_null(offer);
     assert_false(offer->known);
     assert_true(offer->expires_ns > 0);
     struct dig_fit_result result;
-    while (dig_ring_pop(&b->results, &result)) {
+    while (dig_ring_pop(&b->wires.results, &result)) {
     }
     assert_false(result.known.valid);
     assert_string_equal(result.known.wanted, "the ground has changed: dig a simple dig");
@@ -251,7 +222,7 @@ static double drift_of(struct bench *const b, const int gravel, const double fac
     const double          drift = b->fit.known.drift;
     struct dig_fit_result result;
     b->fit.known = before;
-    while (dig_ring_pop(&b->results, &result)) {
+    while (dig_ring_pop(&b->wires.results, &result)) {
     }
     return drift;
 }
@@ -300,7 +271,7 @@ static void a_simple_dig_that_differs_is_doubted_first(void **state)
     assert_true(drift_of(b, 5, factor) < 6.0);
     struct dig_fit_result result;
     dig_in(b, 5, 0, factor);
-    while (dig_ring_pop(&b->results, &result)) {
+    while (dig_ring_pop(&b->wires.results, &result)) {
     }
     assert_true(result.known.valid);
     assert_int_equal(result.known.match.digs, 3);
@@ -352,12 +323,12 @@ static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
     dig_in(b, 3, 0, 1.0);
     assert_false(dig_fit_once(&b->fit));
     assert_true(b->fit.known.valid);
-    (void)dig_latest_look(&b->offer);
+    (void)dig_latest_look(&b->wires.offer);
     const struct timespec pause = { .tv_nsec = 60000000L };
     (void)nanosleep(&pause, NULL);
     assert_false(dig_fit_once(&b->fit));
     assert_false(b->fit.known.valid);
-    const struct dig_offer *const offer = dig_latest_look(&b->offer);
+    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
     assert_non_null(offer);
     assert_false(offer->known);
     free(b);
@@ -388,7 +359,7 @@ static void what_is_known_survives_in_its_file(void **state)
         assert_close(k->match.gravel.value[a], before.match.gravel.value[a],
                      1e-8 * before.match.gravel.value[a]);
     }
-    const struct dig_offer *const offer = dig_latest_look(&again->offer);
+    const struct dig_offer *const offer = dig_latest_look(&again->wires.offer);
     assert_non_null(offer);
     assert_true(offer->known && offer->forecast.along[0].valid);
 
@@ -416,8 +387,8 @@ static void what_is_known_survives_in_its_file(void **state)
         dig_fit_restore(&other->fit);
         struct dig_note note = { "" };
         assert_false(other->fit.known.any);
-        assert_null(dig_latest_look(&other->offer));
-        assert_true(dig_latest_take(&other->notes, &note));
+        assert_null(dig_latest_look(&other->wires.offer));
+        assert_true(dig_latest_take(&other->wires.notes, &note));
         assert_non_null(strstr(note.text, bad[i].expected));
         free(other);
     }
@@ -552,7 +523,7 @@ static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **st
     dig_in(b, 6, 0, 1.0);
     struct dig_note note = { "" };
     assert_true(b->fit.known.valid);
-    assert_true(dig_latest_take(&b->notes, &note));
+    assert_true(dig_latest_take(&b->wires.notes, &note));
     assert_non_null(strstr(note.text, "/dev/full"));
     free(b);
 }

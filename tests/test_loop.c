@@ -6,14 +6,16 @@
 #include "files/scene_yaml.h"
 #include "tests/count_allocations.h"
 #include "tests/testlib.h"
+#include "tests/wires.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#define MS      1000000LL
-#define GRAVELS 8
+#define MS        1000000LL
+#define GRAVELS   8
+#define ESTIMATES 8 // that wait at most
 
 // Everything a loop needs, and the other ends of its handoffs.
 struct bench {
@@ -26,15 +28,8 @@ struct bench {
     struct dig_curve              curve[GRAVELS * DIG_TRAJECTORY_MAX];
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
-    struct dig_ring               readings, records, digs, spares, estimates;
-    struct dig_estimate           estimate_memory[8];
-    struct dig_latest             offer, table, outlook, pulse;
-    struct dig_reading            reading_memory[1024];
-    struct dig_record             record_memory[1024];
-    struct dig_raw               *dig_memory[4], *spare_memory[4], *raw[2];
-    struct dig_offer              offer_memory[3], table_memory[3];
-    struct dig_outlook            outlook_memory[3];
-    struct dig_pulse              pulse_memory[3];
+    struct wires                  wires;
+    struct dig_raw               *raw[2];
     struct dig_loop               loop;
 };
 
@@ -86,35 +81,16 @@ static struct bench *bench_create(void)
     assert_non_null(b->estimator);
     assert_int_equal(dig_estimator_init(b->estimator, &b->machine, &b->set, &b->estimator_settings),
                      DIG_OK);
-    dig_ring_init(&b->readings, sizeof b->reading_memory[0], 1024, b->reading_memory);
-    dig_ring_init(&b->records, sizeof b->record_memory[0], 1024, b->record_memory);
-    dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
-    dig_ring_init(&b->estimates, sizeof b->estimate_memory[0], 8, b->estimate_memory);
+    wires_init(&b->wires);
+    dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], ESTIMATES,
+                  b->wires.estimate_memory);
     for (int i = 0; i < 2; i++) {
         b->raw[i] = calloc(1, dig_raw_size());
         assert_non_null(b->raw[i]);
-        (void)dig_ring_push(&b->spares, &b->raw[i]);
+        (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
     }
-    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
-    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
-    dig_latest_init(&b->outlook, sizeof b->outlook_memory[0], b->outlook_memory);
-    dig_latest_init(&b->pulse, sizeof b->pulse_memory[0], b->pulse_memory);
-    const struct dig_loop_settings settings = {
-        .assembler    = { .time_scale = 1.0,
-                          .coherent_s = 1.0,
-                          .optional_s = 1.0,
-                          .groups     = 1,
-                          .needed     = { true } },
-        .tick_s       = 0.005,
-        .stale_s      = 0.1,
-        .prediction_s = 0.05,
-        .ahead_s      = 0.5,
-        .set          = &b->set,
-    };
-    const struct dig_loop_ports ports = { &b->readings, &b->offer,   &b->table,
-                                          &b->spares,   &b->records, &b->digs,
-                                          &b->outlook,  &b->pulse,   &b->estimates };
+    const struct dig_loop_settings settings = wires_loop_settings(&b->set);
+    const struct dig_loop_ports    ports    = wires_loop_ports(&b->wires);
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     return b;
 }
@@ -162,7 +138,7 @@ static struct dig_reading still(const int64_t time_ns)
 static struct dig_pulse pulse_of(struct bench *const b)
 {
     struct dig_pulse pulse = { 0 };
-    assert_true(dig_latest_take(&b->pulse, &pulse));
+    assert_true(dig_latest_take(&b->wires.pulse, &pulse));
     return pulse;
 }
 
@@ -172,13 +148,13 @@ static void a_whole_sample_becomes_an_estimate(void **state)
     struct bench *const      b = bench_create();
     const struct dig_reading r = still(1000 * MS);
     struct dig_record        record;
-    assert_true(dig_ring_push(&b->readings, &r));
+    assert_true(dig_ring_push(&b->wires.readings, &r));
     dig_loop_tick(&b->loop, 1001 * MS);
-    assert_true(dig_ring_pop(&b->records, &record));
+    assert_true(dig_ring_pop(&b->wires.records, &record));
     assert_true(record.has_estimate);
     assert_true(record.estimate.time_ns == 1000 * MS);
     assert_close(record.sample.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8.4e6, 0.0);
-    assert_false(dig_ring_pop(&b->records, &record));
+    assert_false(dig_ring_pop(&b->wires.records, &record));
     const struct dig_pulse pulse = pulse_of(b);
     assert_true(pulse.fresh);
     assert_int_equal(pulse.ticks, 1);
@@ -197,16 +173,16 @@ static void each_estimate_is_shared_and_none_waited_for(void **state)
         if (i == 3) {
             r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
         }
-        assert_true(dig_ring_push(&b->readings, &r));
+        assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, 1001 * MS + i * 5 * MS);
     }
     for (int64_t i = 0; i < 9; i++) {
         if (i != 3) {
-            assert_true(dig_ring_pop(&b->estimates, &estimate));
+            assert_true(dig_ring_pop(&b->wires.estimates, &estimate));
             assert_true(estimate.time_ns == 1000 * MS + i * 5 * MS);
         }
     }
-    assert_false(dig_ring_pop(&b->estimates, &estimate));
+    assert_false(dig_ring_pop(&b->wires.estimates, &estimate));
     assert_int_equal(pulse_of(b).lost, 0);
     bench_destroy(b);
 }
@@ -219,9 +195,9 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
 
     r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
     struct dig_record record;
-    assert_true(dig_ring_push(&b->readings, &r));
+    assert_true(dig_ring_push(&b->wires.readings, &r));
     dig_loop_tick(&b->loop, 1001 * MS);
-    assert_true(dig_ring_pop(&b->records, &record));
+    assert_true(dig_ring_pop(&b->wires.records, &record));
     assert_false(record.has_estimate);
     const struct dig_pulse pulse = pulse_of(b);
     assert_false(pulse.fresh);
@@ -237,9 +213,9 @@ static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void 
     struct dig_reading  r           = still(1000 * MS);
     r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_ABSENT;
     struct dig_record record;
-    assert_true(dig_ring_push(&b->readings, &r));
+    assert_true(dig_ring_push(&b->wires.readings, &r));
     dig_loop_tick(&b->loop, 1001 * MS);
-    assert_true(dig_ring_pop(&b->records, &record));
+    assert_true(dig_ring_pop(&b->wires.records, &record));
     assert_true(record.has_estimate);
     assert_true(record.estimate.wrench.moment_valid);
     assert_true(record.estimate.wrench.sigma_My_Nm > 0.0);
@@ -256,7 +232,7 @@ static void silence_is_missing_after_the_stale_time_only(void **state)
     dig_loop_tick(&b->loop, 995 * MS);
     assert_int_equal(pulse_of(b).missing, 1);
     const struct dig_reading r = still(1000 * MS);
-    assert_true(dig_ring_push(&b->readings, &r));
+    assert_true(dig_ring_push(&b->wires.readings, &r));
     for (int64_t now = 1000; now <= 1200; now += 5) {
         dig_loop_tick(&b->loop, now * MS);
         assert_true(pulse_of(b).fresh == (now <= 1100));
@@ -271,7 +247,7 @@ static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **s
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < 1100; i++) {
         const struct dig_reading r = still(1000 * MS + i * 5 * MS);
-        assert_true(dig_ring_push(&b->readings, &r));
+        assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
     }
     assert_int_equal(pulse_of(b).lost, 1100 - 1024);
@@ -284,16 +260,16 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < DIG_READINGS_PER_TICK + 10; i++) {
         const struct dig_reading r = still(1000 * MS + i * MS);
-        assert_true(dig_ring_push(&b->readings, &r));
+        assert_true(dig_ring_push(&b->wires.readings, &r));
     }
     struct dig_record record;
     int               first = 0, second = 0;
     dig_loop_tick(&b->loop, 1300 * MS);
-    while (dig_ring_pop(&b->records, &record)) {
+    while (dig_ring_pop(&b->wires.records, &record)) {
         first++;
     }
     dig_loop_tick(&b->loop, 1305 * MS);
-    while (dig_ring_pop(&b->records, &record)) {
+    while (dig_ring_pop(&b->wires.records, &record)) {
         second++;
     }
     assert_int_equal(first, DIG_READINGS_PER_TICK);
@@ -309,9 +285,9 @@ static int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
     struct dig_outlook outlook;
     for (int64_t i = 0; i < 400; i++) {
         const struct dig_reading r = still((from_ms + i * 5) * MS);
-        assert_true(dig_ring_push(&b->readings, &r));
+        assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
-        if (dig_latest_take(&b->outlook, &outlook)) {
+        if (dig_latest_take(&b->wires.outlook, &outlook)) {
             outlooks++;
             assert_true(outlook.prediction.valid);
             assert_int_equal(outlook.why_not, DIG_WHY_NOT_VALID);
@@ -332,7 +308,7 @@ static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
-    offer(b, &b->offer, 3, 1, INT64_MAX);
+    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     for (size_t t = 0; t < b->set.trajectories; t++) {
         assert_true(seen[t]);
@@ -345,7 +321,7 @@ static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    offer(b, &b->offer, 3, 1, 2000 * MS);
+    offer(b, &b->wires.offer, 3, 1, 2000 * MS);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
     assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
     bench_destroy(b);
@@ -357,15 +333,15 @@ static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **sta
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    offer(b, &b->offer, 3, 1, INT64_MAX);
+    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 1);
-    offer(b, &b->table, 5, 2, INT64_MAX);
+    offer(b, &b->wires.table, 5, 2, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 2);
     assert_int_equal(pulse_of(b).generation, 2);
     const double with_five = b->loop.outlook.prediction.peak_Nm;
-    offer(b, &b->offer, 3, 1, INT64_MAX); // late: of the table before
+    offer(b, &b->wires.offer, 3, 1, INT64_MAX); // late: of the table before
     assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
     assert_close(b->loop.outlook.prediction.peak_Nm, with_five, 1e-9);
     bench_destroy(b);
@@ -376,7 +352,7 @@ static void a_tick_allocates_nothing(void **state)
     (void)state;
     skip_unless_allocations_count();
     struct bench *const b = bench_create();
-    offer(b, &b->offer, 3, 1, INT64_MAX);
+    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     unsigned long in_ticks = 0;
     int           digs     = 0;
     for (int64_t i = 0; i < 2000; i++) {
@@ -384,18 +360,18 @@ static void a_tick_allocates_nothing(void **state)
 
         // Pressures that come and go, so that digs begin and end.
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
-        (void)dig_ring_push(&b->readings, &r);
+        (void)dig_ring_push(&b->wires.readings, &r);
         if (i % 100 == 0) {
-            offer(b, &b->offer, 3, 1, INT64_MAX);
+            offer(b, &b->wires.offer, 3, 1, INT64_MAX);
         }
         const unsigned long before = allocations;
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
         in_ticks += allocations - before;
 
         struct dig_raw *raw = NULL;
-        if (dig_ring_pop(&b->digs, &raw)) {
+        if (dig_ring_pop(&b->wires.digs, &raw)) {
             digs++;
-            assert_true(dig_ring_push(&b->spares, &raw));
+            assert_true(dig_ring_push(&b->wires.spares, &raw));
         }
     }
     assert_true(in_ticks == 0);
@@ -431,14 +407,14 @@ static void the_loop_runs_beside_its_neighbours(void **state)
     for (int i = 0; i < 100; i++) {
         (void)clock_gettime(CLOCK_MONOTONIC, &t);
         const struct dig_reading r = still((int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
-        assert_true(dig_ring_push(&run.bench->readings, &r));
+        assert_true(dig_ring_push(&run.bench->wires.readings, &r));
         const struct timespec pause = { .tv_nsec = 5 * MS };
         (void)nanosleep(&pause, NULL);
         struct dig_record record;
-        while (dig_ring_pop(&run.bench->records, &record)) {
+        while (dig_ring_pop(&run.bench->wires.records, &record)) {
             estimates += record.has_estimate;
         }
-        (void)dig_latest_take(&run.bench->pulse, &pulse);
+        (void)dig_latest_take(&run.bench->wires.pulse, &pulse);
     }
     atomic_store(&run.stop, true);
     assert_int_equal(pthread_join(thread, NULL), 0);

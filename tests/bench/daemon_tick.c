@@ -13,6 +13,7 @@
 #include "firmware_host/fit.h"
 #include "firmware_host/rt.h"
 #include "tables/load.h"
+#include "tests/wires.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -22,7 +23,6 @@
 #include <time.h>
 
 #define STEP_ns 1000000LL
-#define RING    1024
 #define BINS    20000 // of 0.1 us
 
 struct bench {
@@ -31,21 +31,10 @@ struct bench {
     struct dig_machine_recording recording;
     struct dig_estimator        *estimator;
     struct dig_config            config;
-    struct dig_ring              readings, records, digs, spares, results, estimates;
-    struct dig_latest            offer, table, tables, outlook, pulse, notes;
-    struct dig_reading           reading_memory[RING];
-    struct dig_record            record_memory[RING];
-    struct dig_estimate          estimate_memory[RING];
+    struct wires                 wires;
     struct dig_early             early;
-    struct dig_raw              *raw[2], *dig_memory[4], *spare_memory[4];
-    struct dig_fit_result        result_memory[4];
-    struct dig_offer             offer_memory[3], table_memory[3];
-    struct dig_table_news        tables_memory[3];
-    struct dig_note              note_memory[3];
-    struct dig_outlook           outlook_memory[3];
-    struct dig_pulse             pulse_memory[3];
+    struct dig_raw              *raw[2];
     struct dig_loop              loop;
-    atomic_llong                 publish_generation;
     struct dig_fit               fit;
     int64_t                      count[BINS];
     double                       sum_us, worst_us, second_us;
@@ -84,58 +73,24 @@ static struct dig_reading reading_at(const struct dig_machine_recording *const r
 
 static void connect(struct bench *const b)
 {
-    dig_ring_init(&b->readings, sizeof b->reading_memory[0], RING, b->reading_memory);
-    dig_ring_init(&b->records, sizeof b->record_memory[0], RING, b->record_memory);
-    dig_ring_init(&b->digs, sizeof b->dig_memory[0], 4, b->dig_memory);
-    dig_ring_init(&b->spares, sizeof b->spare_memory[0], 4, b->spare_memory);
-    dig_ring_init(&b->estimates, sizeof b->estimate_memory[0], RING, b->estimate_memory);
-    dig_ring_init(&b->results, sizeof b->result_memory[0], 4, b->result_memory);
-    dig_latest_init(&b->offer, sizeof b->offer_memory[0], b->offer_memory);
-    dig_latest_init(&b->table, sizeof b->table_memory[0], b->table_memory);
-    dig_latest_init(&b->tables, sizeof b->tables_memory[0], b->tables_memory);
-    dig_latest_init(&b->notes, sizeof b->note_memory[0], b->note_memory);
-    dig_latest_init(&b->outlook, sizeof b->outlook_memory[0], b->outlook_memory);
-    dig_latest_init(&b->pulse, sizeof b->pulse_memory[0], b->pulse_memory);
-    const struct dig_loop_settings settings = {
-        .assembler    = { .time_scale = 1.0,
-                          .coherent_s = 1.0,
-                          .optional_s = 1.0,
-                          .groups     = 1,
-                          .needed     = { true } },
-        .tick_s       = 1e-9 * (double)STEP_ns,
-        .stale_s      = 0.1,
-        .prediction_s = 1.0 / 15.0,
-        .ahead_s      = 0.5,
-        .set          = b->set,
-    };
-    const struct dig_loop_ports ports = { &b->readings, &b->offer,   &b->table,
-                                          &b->spares,   &b->records, &b->digs,
-                                          &b->outlook,  &b->pulse,   &b->estimates };
+    wires_init(&b->wires);
+    const struct dig_loop_ports ports    = wires_loop_ports(&b->wires);
+    struct dig_loop_settings    settings = wires_loop_settings(b->set);
+    settings.tick_s                      = 1e-9 * (double)STEP_ns;
+    settings.prediction_s                = 1.0 / 15.0;
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     for (int i = 0; i < 2; i++) {
         b->raw[i] = calloc(1, dig_raw_size());
-        (void)dig_ring_push(&b->spares, &b->raw[i]);
+        (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
     }
-    b->early.estimates = &b->estimates;
+    b->early.estimates = &b->wires.estimates;
     dig_early_forget(&b->early, b->set);
-    b->fit = (struct dig_fit){
-        .config             = &b->config,
-        .machine            = &b->machine,
-        .set                = b->set,
-        .generation         = 1,
-        .lambda             = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m,
-        .known_settings     = { 1e9, 3.0 },
-        .digs               = &b->digs,
-        .spares             = &b->spares,
-        .early              = &b->early,
-        .offer              = &b->offer,
-        .table              = &b->table,
-        .results            = &b->results,
-        .tables             = &b->tables,
-        .notes              = &b->notes,
-        .tick_generation    = &b->loop.generation,
-        .publish_generation = &b->publish_generation,
-    };
+    wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
+    b->fit.machine                  = &b->machine;
+    b->fit.early                    = &b->early;
+    b->fit.lambda                   = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m;
+    b->fit.known_settings.expires_s = 1e9;
+    b->fit.tick_generation          = &b->loop.generation;
 }
 
 static struct bench *create(char *argv[])
@@ -170,11 +125,11 @@ static void be_the_others(struct bench *const b)
     struct dig_record     record;
     struct dig_outlook    outlook;
     struct dig_fit_result result;
-    while (dig_ring_pop(&b->records, &record)) {
+    while (dig_ring_pop(&b->wires.records, &record)) {
     }
-    (void)dig_latest_take(&b->outlook, &outlook);
+    (void)dig_latest_take(&b->wires.outlook, &outlook);
     (void)dig_fit_once(&b->fit);
-    (void)dig_ring_pop(&b->results, &result);
+    (void)dig_ring_pop(&b->wires.results, &result);
 }
 
 static void count(struct bench *const b, const double took_us)
@@ -217,7 +172,7 @@ int main(const int argc, char *argv[])
     for (long i = 0; i < ticks; i++) {
         const int64_t            now_ns  = (i + 1) * STEP_ns;
         const struct dig_reading reading = reading_at(&b->recording, i * STEP_ns, &row);
-        (void)dig_ring_push(&b->readings, &reading);
+        (void)dig_ring_push(&b->wires.readings, &reading);
         const double begin_us = cpu_us();
         dig_loop_tick(&b->loop, now_ns);
         const double took_us = cpu_us() - begin_us;

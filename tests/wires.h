@@ -1,0 +1,105 @@
+// The rings and latest values between the daemon's threads, with their memory: for tests that stand
+// at the other ends of the tick or of the matcher.
+
+#ifndef DIG_TESTS_WIRES_H
+#define DIG_TESTS_WIRES_H
+
+#include "firmware_host/fit.h"
+#include "firmware_host/loop.h"
+
+#define WIRES_RING    1024 // readings and records
+#define WIRES_RESULTS 64
+#define WIRES_TELLS   4096 // estimates, of the dig going on
+
+struct wires {
+    struct dig_ring   readings, records, digs, spares, results, estimates;
+    struct dig_latest offer, table, tables, outlook, pulse, notes;
+    atomic_llong      tick_generation, publish_generation; // of the table in use there
+
+    struct dig_reading    reading_memory[WIRES_RING];
+    struct dig_record     record_memory[WIRES_RING];
+    struct dig_raw       *dig_memory[4], *spare_memory[4];
+    struct dig_fit_result result_memory[WIRES_RESULTS];
+    struct dig_estimate   estimate_memory[WIRES_TELLS];
+    struct dig_offer      offer_memory[3], table_memory[3];
+    struct dig_table_news tables_memory[3];
+    struct dig_outlook    outlook_memory[3];
+    struct dig_pulse      pulse_memory[3];
+    struct dig_note       note_memory[3];
+};
+
+/// All of them empty, the first table in use. They stay where they are.
+static inline void wires_init(struct wires *const w)
+{
+    dig_ring_init(&w->readings, sizeof w->reading_memory[0], WIRES_RING, w->reading_memory);
+    dig_ring_init(&w->records, sizeof w->record_memory[0], WIRES_RING, w->record_memory);
+    dig_ring_init(&w->digs, sizeof w->dig_memory[0], 4, w->dig_memory);
+    dig_ring_init(&w->spares, sizeof w->spare_memory[0], 4, w->spare_memory);
+    dig_ring_init(&w->results, sizeof w->result_memory[0], WIRES_RESULTS, w->result_memory);
+    dig_ring_init(&w->estimates, sizeof w->estimate_memory[0], WIRES_TELLS, w->estimate_memory);
+    dig_latest_init(&w->offer, sizeof w->offer_memory[0], w->offer_memory);
+    dig_latest_init(&w->table, sizeof w->table_memory[0], w->table_memory);
+    dig_latest_init(&w->tables, sizeof w->tables_memory[0], w->tables_memory);
+    dig_latest_init(&w->outlook, sizeof w->outlook_memory[0], w->outlook_memory);
+    dig_latest_init(&w->pulse, sizeof w->pulse_memory[0], w->pulse_memory);
+    dig_latest_init(&w->notes, sizeof w->note_memory[0], w->note_memory);
+    atomic_store(&w->tick_generation, 1);
+    atomic_store(&w->publish_generation, 1);
+}
+
+/// What a tick of 5 ms is set to that takes its readings from one source.
+static inline struct dig_loop_settings wires_loop_settings(const struct dig_curve_set *const set)
+{
+    return (struct dig_loop_settings){
+        .assembler    = { .time_scale = 1.0,
+                          .coherent_s = 1.0,
+                          .optional_s = 1.0,
+                          .groups     = 1,
+                          .needed     = { true } },
+        .tick_s       = 0.005,
+        .stale_s      = 0.1,
+        .prediction_s = 0.05,
+        .ahead_s      = 0.5,
+        .set          = set,
+    };
+}
+
+/// The ends of them that are the tick's.
+static inline struct dig_loop_ports wires_loop_ports(struct wires *const w)
+{
+    return (struct dig_loop_ports){
+        .readings  = &w->readings,
+        .offer     = &w->offer,
+        .table     = &w->table,
+        .spares    = &w->spares,
+        .records   = &w->records,
+        .digs      = &w->digs,
+        .outlook   = &w->outlook,
+        .pulse     = &w->pulse,
+        .estimates = &w->estimates,
+    };
+}
+
+/// A matcher between them, at the first table; the machine is ten times as large as the rig.
+static inline void wires_init_fit(struct wires *const w, const struct dig_config *const config,
+                                  struct dig_curve_set *const set, struct dig_fit *const fit)
+{
+    *fit = (struct dig_fit){
+        .config             = config,
+        .set                = set,
+        .generation         = 1,
+        .lambda             = 10.0,
+        .known_settings     = { .expires_s = 3600.0, .drift_floors = 3.0 },
+        .digs               = &w->digs,
+        .spares             = &w->spares,
+        .offer              = &w->offer,
+        .table              = &w->table,
+        .results            = &w->results,
+        .tables             = &w->tables,
+        .notes              = &w->notes,
+        .tick_generation    = &w->tick_generation,
+        .publish_generation = &w->publish_generation,
+    };
+}
+
+#endif // DIG_TESTS_WIRES_H
