@@ -5,11 +5,12 @@
 # LCM wants a route for its multicast group. Where there is none and none can be added, the test moves
 # into a network namespace of its own, whose loopback carries it; that needs no privilege.
 set -u
+. tests/system/check.bash
 BIN=${BIN:-build/bin}
 helpers=$BIN/../tests/system
 scene=config/scenes/rig.yaml
 machine=config/machines/zx200_trench.yaml
-passed=0 failed=0 always_failed=0 children=()
+always_failed=0 children=()
 
 if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     ip link set lo up multicast on 2>/dev/null
@@ -51,16 +52,6 @@ check_always() { # SENTENCE COMMAND…
     local before=$failed
     check "$@"
     always_failed=$((always_failed + failed - before))
-}
-
-check() { # SENTENCE COMMAND…
-    if "${@:2}"; then
-        passed=$((passed + 1))
-        echo "ok    $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL  $1"
-    fi
 }
 
 # How late the rig's latest tick was, ms: what a bus carries then is not the motion that was meant.
@@ -131,10 +122,6 @@ make_digs() { # makes the table and the digs, whose truth is friction 0.5, rolli
 
 last() { # KIND FILE FIELD: a field of the last line of a kind
     awk -v kind="$1" -v field="$3" '$1 == kind { value = $field } END { print value }' "$2"
-}
-
-within() { # VALUE LOW HIGH
-    awk -v v="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(v != "" && v >= low && v <= high) }'
 }
 
 identified() { # FILE: the last match is near the truth

@@ -1,26 +1,12 @@
 #!/bin/bash
 # digloop and digreport as a user meets them: LIGGGHTS digs against the table that ships, and bad input.
 set -u
+. tests/system/check.bash
 BIN=${BIN:-build/bin}
 table=${TABLE:-tables/rig.sqlite}
 reference=tests/data/reference/mu0.5_mur0.5_rho2500
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-check() { # SENTENCE COMMAND…
-    if "${@:2}"; then
-        passed=$((passed + 1))
-        echo "ok    $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL  $1"
-    fi
-}
-
-within() { # VALUE LOW HIGH
-    awk -v v="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(v != "" && v >= low && v <= high) }'
-}
 
 # Exit status 2, a message that holds every word, and no output file.
 refuses() { # WORDS… -- COMMAND…

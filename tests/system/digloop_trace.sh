@@ -1,22 +1,12 @@
 #!/bin/bash
 # digloop trace as a user meets it: LIGGGHTS digs in plain gravel, and campaigns that cannot be traced.
 set -u
+. tests/system/check.bash
 BIN=${BIN:-build/bin}
 table=${TABLE:-tables/rig.sqlite}
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-check() { # SENTENCE COMMAND…
-    if "${@:2}"; then
-        passed=$((passed + 1))
-        echo "ok    $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL  $1"
-    fi
-}
 
 # Exit status 2 and a message that holds every word.
 refuses() { # WORDS… -- FOLDER

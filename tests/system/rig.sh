@@ -2,30 +2,20 @@
 # digrig as a user meets it: options, files, exit codes, a real Modbus server and, in User Mode Linux,
 # a real CAN interface. Run from the repository's root; BIN is where the programs are.
 set -u
+. tests/system/check.bash
 BIN=${BIN:-build/bin}
 rig=$BIN/digrig
 simple=tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv
 actual=tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv
 machine=config/machines/zx200_trench.yaml
 work=$(mktemp -d)
-passed=0 failed=0 server=
+server=
 
 cleanup() {
     [ -n "$server" ] && kill -KILL "$server" 2>/dev/null
     rm -rf "$work"
 }
 trap cleanup EXIT
-
-check() { # SENTENCE COMMAND…
-    if "${@:2}"; then
-        passed=$((passed + 1))
-        echo "ok    $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL  $1"
-        tail -n 5 "$work"/err 2>/dev/null
-    fi
-}
 
 exits() { # STATUS COMMAND…: runs it, output in $work/out and err
     local want=$1
