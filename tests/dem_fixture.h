@@ -9,6 +9,7 @@
 #include "offline_dem/world.h"
 #include "tests/testlib.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,6 +91,19 @@ static inline void dem_run(struct dig_world *const world, const size_t steps)
     for (size_t s = 0; s < steps; s++) {
         assert_int_equal(dig_world_step(world), DIG_OK);
     }
+}
+
+static inline void dem_run_for(struct dig_world *const world, const double time_s)
+{
+    dem_run(world, (size_t)llround(time_s / world->dt_s));
+}
+
+/// A slope is a floor that stays level under a gravity that leans.
+static inline void dem_add_slope(struct dig_world *const world, const double slope_rad)
+{
+    world->gravity_mps2[0] = GRAVITY * sin(slope_rad);
+    world->gravity_mps2[2] = -GRAVITY * cos(slope_rad);
+    dem_add_wall(world, 0.0, 0.0, 1.0, 0.0);
 }
 
 /// The grain that was number `name` at the beginning: grains change places.

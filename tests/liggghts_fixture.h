@@ -43,6 +43,20 @@ static inline struct table *read_table(const char *const path)
     return table;
 }
 
+/// A world of like grains where the table's first three columns are.
+static inline struct dig_world world_of(const struct table *const     start,
+                                        const struct dig_law_material material)
+{
+    double(*const x)[3] = calloc(start->rows, sizeof *x);
+    assert_non_null(x);
+    for (size_t i = 0; i < start->rows; i++) {
+        memcpy(x[i], start->value[i], sizeof x[i]);
+    }
+    const struct dig_world world = dem_world(start->rows, (const double(*)[3])x, material);
+    free(x);
+    return world;
+}
+
 /// How far ours may be from theirs.
 struct tolerance {
     double x_m, f_N, t_Nm;

@@ -110,6 +110,12 @@ static void server_start(struct server *const s)
     assert_int_equal(pthread_create(&s->thread, NULL, serve, s), 0);
 }
 
+static void server_open(struct server *const s)
+{
+    s->listener = listen_on(0, &s->port);
+    server_start(s);
+}
+
 static void server_stop(struct server *const s)
 {
     atomic_store(&s->stop, true);
@@ -142,6 +148,7 @@ static void client_start_with(struct client *const c, const int port, const char
     const struct dig_modbus_address address = {
         .host = "127.0.0.1", .port = port, .unit = 1, .poll_s = poll_s
     };
+    *c = (struct client){ 0 };
     assert_int_equal(dig_signal_map_read(map, NULL, &c->map, NULL), DIG_OK);
     assert_int_equal(dig_input_modbus_create(&c->input, &address, &c->map), DIG_OK);
     dig_ring_init(&c->readings, sizeof c->reading_memory[0], 256, c->reading_memory);
@@ -164,6 +171,12 @@ static void client_stop(struct client *const c)
     dig_input_destroy(&c->input);
 }
 
+static void pause_ms(void)
+{
+    const struct timespec pause = { .tv_nsec = MS };
+    (void)nanosleep(&pause, NULL);
+}
+
 // Until the next reading, or for ten seconds.
 static bool next_reading(struct client *const c, struct dig_reading *const reading)
 {
@@ -171,10 +184,17 @@ static bool next_reading(struct client *const c, struct dig_reading *const readi
         if (dig_ring_pop(&c->readings, reading)) {
             return true;
         }
-        const struct timespec pause = { .tv_nsec = MS };
-        (void)nanosleep(&pause, NULL);
+        pause_ms();
     }
     return false;
+}
+
+// What waits is older.
+static bool fresh_reading(struct client *const c, struct dig_reading *const reading)
+{
+    while (dig_ring_pop(&c->readings, reading)) {
+    }
+    return next_reading(c, reading);
 }
 
 static bool next_note(struct client *const c, struct dig_note *const note)
@@ -183,8 +203,7 @@ static bool next_note(struct client *const c, struct dig_note *const note)
         if (dig_latest_take(&c->notes, note)) {
             return true;
         }
-        const struct timespec pause = { .tv_nsec = MS };
-        (void)nanosleep(&pause, NULL);
+        pause_ms();
     }
     return false;
 }
@@ -193,10 +212,8 @@ static void the_block_is_polled_and_decoded_with_reads_only(void **state)
 {
     (void)state;
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     client_start(&c, s.port);
     struct dig_reading reading;
     for (int i = 0; i < 20; i++) {
@@ -221,7 +238,6 @@ static void a_server_that_comes_late_is_found_and_said(void **state)
     struct server s = { 0 };
     s.listener      = listen_on(0, &s.port); // bound, not listening: refused
     static struct client c;
-    c = (struct client){ 0 };
     client_start(&c, s.port);
     struct dig_note note;
     assert_true(next_note(&c, &note));
@@ -240,22 +256,17 @@ static void a_connection_that_breaks_is_made_anew(void **state)
 {
     (void)state;
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     client_start(&c, s.port);
     struct dig_reading reading;
     assert_true(next_reading(&c, &reading));
     atomic_store(&s.hang_up, true);
     while (atomic_load(&s.connections) < 2) {
-        const struct timespec pause = { .tv_nsec = MS };
-        (void)nanosleep(&pause, NULL);
+        pause_ms();
     }
     atomic_store(&s.hang_up, false);
-    while (dig_ring_pop(&c.readings, &reading)) {
-    }
-    assert_true(next_reading(&c, &reading));
+    assert_true(fresh_reading(&c, &reading));
     client_stop(&c);
     server_stop(&s);
     assert_true(atomic_load(&c.input.reconnects) >= 1);
@@ -265,21 +276,16 @@ static void a_refusal_is_counted_and_borne(void **state)
 {
     (void)state;
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     client_start(&c, s.port);
     struct dig_reading reading;
     assert_true(next_reading(&c, &reading));
     atomic_store(&s.refuse, 3);
     while (atomic_load(&c.input.malformed) < 3) {
-        const struct timespec pause = { .tv_nsec = MS };
-        (void)nanosleep(&pause, NULL);
+        pause_ms();
     }
-    while (dig_ring_pop(&c.readings, &reading)) {
-    }
-    assert_true(next_reading(&c, &reading));
+    assert_true(fresh_reading(&c, &reading));
     assert_int_equal(atomic_load(&c.input.malformed), 3);
     assert_int_equal(atomic_load(&s.connections), 1);
     client_stop(&c);
@@ -323,10 +329,8 @@ static void blocks_that_lie_apart_are_asked_for_each_at_its_rate(void **state)
 {
     (void)state;
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
     int came[3] = { 0 };
     count_blocks(&c, 1, 10, came);
@@ -347,10 +351,8 @@ static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void 
 {
     (void)state;
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     atomic_store(&s.refused, 1011); // the temperature
     client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
     int came[3] = { 0 };
@@ -392,10 +394,8 @@ static void a_block_of_force_alone_is_done_without_until_it_is_back(void **state
         "  - {name: boom_head_Pa, register: 1009, scale: 1e3, min: -1, max: 4.0e7}\n"
         "  - {name: boom_rod_Pa, register: 1010, scale: 1e3, min: -1, max: 4.0e7}\n";
     struct server s = { 0 };
-    s.listener      = listen_on(0, &s.port);
-    server_start(&s);
+    server_open(&s);
     static struct client c;
-    c = (struct client){ 0 };
     atomic_store(&s.refused, 1009);
     client_start_with(&c, s.port, scratch_write("force.yaml", map), 0.01);
     struct dig_reading reading;

@@ -137,15 +137,8 @@ static struct dig_world on_floor(const struct dig_law_material *const m, const d
     const double     x[1][3] = { { 0.0, 0.0, GRAIN_m - 1e-7 } };
     struct dig_world world   = dem_world(1, x, *m);
     world.dt_s               = FINE_s;
-    world.gravity_mps2[0]    = GRAVITY * sin(slope);
-    world.gravity_mps2[2]    = -GRAVITY * cos(slope);
-    dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
+    dem_add_slope(&world, slope);
     return world;
-}
-
-static void run_for(struct dig_world *const world, const double time_s)
-{
-    dem_run(world, (size_t)llround(time_s / world->dt_s));
 }
 
 // Rolling without slip under a torque mu_r r N: v0^2 / (2 x 5/7 mu_r g), and there it stays.
@@ -160,10 +153,10 @@ static void cdt_stops_a_rolling_grain_where_mechanics_says(void **state)
         const double     v                = 0.2;
         world.grains.motion[0].v_mps[0]   = v;
         world.grains.motion[0].w_radps[1] = v / GRAIN_m;
-        run_for(&world, 1.5 * v / (5.0 / 7.0 * 0.2 * GRAVITY));
+        dem_run_for(&world, 1.5 * v / (5.0 / 7.0 * 0.2 * GRAVITY));
         const double stop_m = v * v / (2.0 * 5.0 / 7.0 * 0.2 * GRAVITY);
         assert_close(world.grains.motion[0].x_m[0], stop_m, 0.01 * stop_m);
-        run_for(&world, 0.05);
+        dem_run_for(&world, 0.05);
         assert_close(world.grains.motion[0].x_m[0], stop_m, 0.01 * stop_m);
         dig_world_finish(&world);
     }
@@ -172,9 +165,9 @@ static void cdt_stops_a_rolling_grain_where_mechanics_says(void **state)
 static double acceleration(const struct dig_law_material *const m, const double slope)
 {
     struct dig_world world = on_floor(m, slope);
-    run_for(&world, 0.03);
+    dem_run_for(&world, 0.03);
     const double before_mps = world.grains.motion[0].v_mps[0];
-    run_for(&world, 0.02);
+    dem_run_for(&world, 0.02);
     const double a = (world.grains.motion[0].v_mps[0] - before_mps) / 0.02;
     dig_world_finish(&world);
     return a;
@@ -205,7 +198,7 @@ static void without_rolling_friction_a_grain_spins_on(void **state)
     m.rolling                         = 0.9;
     struct dig_world world            = on_floor(&m, 0.0);
     world.grains.motion[0].w_radps[1] = 40.0;
-    run_for(&world, 0.02);
+    dem_run_for(&world, 0.02);
     assert_close(world.grains.motion[0].w_radps[1], 40.0, 1e-9);
     dig_world_finish(&world);
 }
@@ -229,7 +222,7 @@ static void glued_grains_rest_where_push_and_pull_balance(void **state)
     const double     rj       = 1.5 * GRAIN_m;
     struct dig_world world    = two((GRAIN_m + rj) * (1.0 - 1e-6), rj, DENSITY);
     dig_world_set_material(&world, &m);
-    run_for(&world, 0.05);
+    dem_run_for(&world, 0.05);
     const double apart_m   = dem_grain(&world, 1)->x_m[0] - dem_grain(&world, 0)->x_m[0];
     const double overlap_m = GRAIN_m + rj - apart_m;
     const double circle_m  = shared_circle_m(GRAIN_m, rj, apart_m);
@@ -247,7 +240,7 @@ static bool hangs(const struct dig_law_material *const m, const double load_N)
     struct dig_world world   = dem_world(1, x, *m);
     world.dt_s               = FINE_s;
     dem_add_wall(&world, 0.0, 0.0, -1.0, 0.0);
-    run_for(&world, 0.02); // to its balance
+    dem_run_for(&world, 0.02); // to its balance
     for (size_t s = 0; s < 50000; s++) {
         world.gravity_mps2[2] = -fmin(1.0, (double)s / 15000.0) * load_N / GRAIN_kg;
         dem_run(&world, 1);
@@ -305,7 +298,7 @@ static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state
                     kind.inertia_kgm2 * b->w_radps[a];
             }
         }
-        run_for(&world, 4e-3);
+        dem_run_for(&world, 4e-3);
     }
     const double p = GRAIN_kg * 0.7;
     for (size_t a = 0; a < 3; a++) {

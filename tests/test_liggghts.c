@@ -59,12 +59,7 @@ static void a_cluster_falls_apart_as_in_liggghts(void **state)
     struct table *const start = read_table(FOLDER "cluster_start.csv");
     struct table *const then  = read_table(FOLDER "cluster.csv");
     const size_t        n     = start->rows;
-    double(*const x)[3]       = calloc(n, sizeof *x);
-    assert_non_null(x);
-    for (size_t i = 0; i < n; i++) {
-        memcpy(x[i], start->value[i], sizeof x[i]);
-    }
-    struct dig_world world = dem_world(n, (const double(*)[3])x, dem_material(0.5, 0.0));
+    struct dig_world    world = world_of(start, dem_material(0.5, 0.0));
     add_box_of_cluster(&world);
     for (size_t i = 0; i < n; i++) {
         world.grains.motion[i].v_mps[2] = -1.0;
@@ -82,7 +77,6 @@ static void a_cluster_falls_apart_as_in_liggghts(void **state)
         }
     }
     dig_world_finish(&world);
-    free(x);
     free(start);
     free(then);
 }
@@ -95,14 +89,8 @@ static void a_bed_at_rest_stays_as_in_liggghts(void **state)
     (void)state;
     struct table *const start = read_table(FOLDER "slump_start_0.0_1.csv");
     struct table *const then  = read_table(FOLDER "rest.csv");
-    const size_t        n     = start->rows;
-    double(*const x)[3]       = calloc(n, sizeof *x);
-    assert_non_null(x);
-    for (size_t i = 0; i < n; i++) {
-        memcpy(x[i], start->value[i], sizeof x[i]);
-    }
-    struct dig_world world = dem_world(n, (const double(*)[3])x, dem_material(0.5, 0.0));
-    world.gravity_mps2[2]  = -GRAVITY;
+    struct dig_world    world = world_of(start, dem_material(0.5, 0.0));
+    world.gravity_mps2[2]     = -GRAVITY;
     dem_add_wall(&world, 1.0, 0.0, 0.0, 0.0);
     dem_add_wall(&world, -1.0, 0.0, 0.0, -0.08);
     dem_add_wall(&world, 0.0, 1.0, 0.0, 0.0);
@@ -119,12 +107,11 @@ static void a_bed_at_rest_stays_as_in_liggghts(void **state)
         const struct dig_motion ours = *dem_grain(&world, grain);
         for (int k = 0; k < 3; k++) {
             assert_close(ours.x_m[k], value[2 + k], at <= 8 ? 1e-12 : 2e-7);
-            moved_m = fmax(moved_m, fabs(ours.x_m[k] - x[grain][k]));
+            moved_m = fmax(moved_m, fabs(ours.x_m[k] - start->value[grain][k]));
         }
     }
     assert_true(moved_m > 1e-5);
     dig_world_finish(&world);
-    free(x);
     free(start);
     free(then);
 }

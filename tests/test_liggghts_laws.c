@@ -97,16 +97,11 @@ static void walls_answer_as_in_liggghts(void **state)
 // Grains of three sizes in turn, all laws at once.
 static struct dig_world mixed_cluster(const struct table *const start)
 {
-    double(*const x)[3] = calloc(start->rows, sizeof *x);
-    assert_non_null(x);
-    for (size_t i = 0; i < start->rows; i++) {
-        memcpy(x[i], start->value[i], sizeof x[i]);
-    }
     struct dig_law_material m      = dem_material(0.5, 0.3);
     m.normal_law                   = DIG_NORMAL_HERTZ;
     m.rolling_law                  = DIG_ROLLING_CDT;
     m.cohesion_Jpm3                = 3e4;
-    struct dig_world         world = dem_world(start->rows, (const double(*)[3])x, m);
+    struct dig_world         world = world_of(start, m);
     const double             r[]   = { 0.003, 0.0034, 0.00375 };
     struct dig_grains *const g     = &world.grains;
     g->kinds                       = 3;
@@ -124,7 +119,6 @@ static struct dig_world mixed_cluster(const struct table *const start)
     world.dt_s            = FINE_s;
     world.gravity_mps2[2] = -GRAVITY;
     dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
-    free(x);
     return world;
 }
 

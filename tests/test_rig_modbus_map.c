@@ -6,9 +6,8 @@
 
 #include <stdio.h>
 
-static void registers_are_those_worked_by_hand(void **state)
+static void encode_example(uint16_t registers[const DIG_RIG_REGISTERS])
 {
-    (void)state;
     struct dig_sample sample = {
         .value = { 0.5123, -1.25, -0.00012, 12.4e6, 1.0e6, 0.0, 34.3e6, 1.2346e6, 499.0, -0.05,
                    45.25 },
@@ -16,8 +15,14 @@ static void registers_are_those_worked_by_hand(void **state)
     for (int s = 0; s < DIG_SIGNALS; s++) {
         sample.valid[s] = true;
     }
-    uint16_t registers[DIG_RIG_REGISTERS];
     dig_rig_modbus_encode(&sample, 65535, registers);
+}
+
+static void registers_are_those_worked_by_hand(void **state)
+{
+    (void)state;
+    uint16_t registers[DIG_RIG_REGISTERS];
+    encode_example(registers);
     // -12500 is 0xCF2C, -1 is 0xFFFF, -500 is 0xFE0C; 452.5 tenths round away from zero.
     const uint16_t expected[DIG_RIG_REGISTERS] = { 65535, 5123, 0xCF2C, 0xFFFF, 0xFE0C, 12400,
                                                    1000,  0,    34300,  1235,   0,      453 };
@@ -27,15 +32,8 @@ static void registers_are_those_worked_by_hand(void **state)
 static void example_of_the_formats_is_what_is_read(void **state)
 {
     (void)state;
-    struct dig_sample sample = {
-        .value = { 0.5123, -1.25, -0.00012, 12.4e6, 1.0e6, 0.0, 34.3e6, 1.2346e6, 499.0, -0.05,
-                   45.25 },
-    };
-    for (int s = 0; s < DIG_SIGNALS; s++) {
-        sample.valid[s] = true;
-    }
     uint16_t registers[DIG_RIG_REGISTERS];
-    dig_rig_modbus_encode(&sample, 65535, registers);
+    encode_example(registers);
     FILE *const file = fopen("tests/data/formats/rig_registers.csv", "r");
     assert_non_null(file);
     char header[200];

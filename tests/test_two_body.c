@@ -27,16 +27,8 @@ static struct dig_world on_floor(const double friction, const double rolling, co
     struct dig_world world   = dem_world(1, x, dem_material(friction, rolling));
     set_stiff(&world, friction, rolling, 0.2);
     world.dt_s = FINE_s;
-    // A slope is a floor that stays level under a gravity that leans.
-    world.gravity_mps2[0] = GRAVITY * sin(slope);
-    world.gravity_mps2[2] = -GRAVITY * cos(slope);
-    dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
+    dem_add_slope(&world, slope);
     return world;
-}
-
-static void run_for(struct dig_world *const world, const double time_s)
-{
-    dem_run(world, (size_t)llround(time_s / world->dt_s));
 }
 
 static void two_grains_part_with_the_restitution_they_were_given(void **state)
@@ -52,7 +44,7 @@ static void two_grains_part_with_the_restitution_they_were_given(void **state)
         world.dt_s                      = FINE_s;
         world.grains.motion[0].v_mps[0] = 0.7;
         world.grains.motion[1].v_mps[0] = -0.5;
-        run_for(&world, 5e-3);
+        dem_run_for(&world, 5e-3);
         const double apart = dem_grain(&world, 1)->v_mps[0] - dem_grain(&world, 0)->v_mps[0];
         assert_close(apart / 1.2, restitution[k], 0.005);
         // Equal masses: the mean velocity is kept.
@@ -69,7 +61,7 @@ static void a_grain_leaves_a_wall_with_its_restitution(void **state)
     set_stiff(&world, 0.5, 0.5, 0.6);
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[2] = -0.5;
-    run_for(&world, 5e-3);
+    dem_run_for(&world, 5e-3);
     assert_close(world.grains.motion[0].v_mps[2], 0.3, 0.3 * 0.005);
     dig_world_finish(&world);
 }
@@ -86,7 +78,7 @@ static void a_grazing_impact_slides(void **state)
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[0] = 2.0;
     world.grains.motion[0].v_mps[2] = -0.5;
-    run_for(&world, 2e-3);
+    dem_run_for(&world, 2e-3);
     const struct dig_motion *const m    = &world.grains.motion[0];
     const double                   lost = mu * 1.95 * 0.5;
     assert_close(m->v_mps[0], 2.0 - lost, 0.01 * lost);
@@ -105,7 +97,7 @@ static void a_steep_impact_sticks_within_coulomb(void **state)
     world.grains.motion[0].x_m[2]   = 1.01 * GRAIN_m;
     world.grains.motion[0].v_mps[0] = 0.05;
     world.grains.motion[0].v_mps[2] = -1.0;
-    run_for(&world, 3e-3);
+    dem_run_for(&world, 3e-3);
     const struct dig_motion *const m    = &world.grains.motion[0];
     const double                   slip = m->v_mps[0] - GRAIN_m * m->w_radps[1];
     const double                   lost = 0.05 - m->v_mps[0];
@@ -122,9 +114,9 @@ static void a_sliding_grain_ends_rolling_at_five_sevenths(void **state)
     struct dig_world world          = on_floor(0.5, 0.0, 0.0);
     world.grains.motion[0].v_mps[0] = 0.3;
     // Sliding ends after 2/7 v0 / (mu g).
-    run_for(&world, 0.01);
+    dem_run_for(&world, 0.01);
     assert_close(world.grains.motion[0].v_mps[0], 0.3 - 0.5 * GRAVITY * 0.01, 2e-3);
-    run_for(&world, 0.04);
+    dem_run_for(&world, 0.04);
     assert_close(world.grains.motion[0].v_mps[0], 0.3 * 5.0 / 7.0, 1e-3);
     assert_close(world.grains.motion[0].w_radps[1] * GRAIN_m, 0.3 * 5.0 / 7.0, 1e-3);
     dig_world_finish(&world);
@@ -134,9 +126,9 @@ static void a_sliding_grain_ends_rolling_at_five_sevenths(void **state)
 static double acceleration(const double friction, const double rolling, const double slope)
 {
     struct dig_world world = on_floor(friction, rolling, slope);
-    run_for(&world, 0.03);
+    dem_run_for(&world, 0.03);
     const double before_mps = world.grains.motion[0].v_mps[0];
-    run_for(&world, 0.02);
+    dem_run_for(&world, 0.02);
     const double a = (world.grains.motion[0].v_mps[0] - before_mps) / 0.02;
     dig_world_finish(&world);
     return a;
@@ -170,7 +162,7 @@ static void a_grain_stays_below_the_rolling_friction_angle_and_rolls_above(void 
     const double above   = atan(rolling) + 0.1;
     assert_close(acceleration(0.9, rolling, below), 0.0, 0.02);
     struct dig_world world = on_floor(0.9, rolling, below);
-    run_for(&world, 0.1);
+    dem_run_for(&world, 0.1);
     assert_true(fabs(world.grains.motion[0].x_m[0]) < 1e-5);
     dig_world_finish(&world);
 
@@ -196,7 +188,7 @@ static void rolling_friction_takes_spin_off_linearly(void **state)
     struct dig_world world            = on_floor(0.0, rolling, 0.0);
     world.grains.motion[0].w_radps[0] = 50.0;
     const double rate                 = rolling * GRAIN_m * GRAIN_kg * GRAVITY / GRAIN_kgm2;
-    run_for(&world, 0.01);
+    dem_run_for(&world, 0.01);
     assert_close(world.grains.motion[0].w_radps[0], 50.0 - rate * 0.01, 0.02 * rate * 0.01);
     dig_world_finish(&world);
 }
@@ -206,7 +198,7 @@ static void spin_about_the_normal_is_free(void **state)
     (void)state;
     struct dig_world world            = on_floor(0.9, 0.9, 0.0);
     world.grains.motion[0].w_radps[2] = 50.0;
-    run_for(&world, 0.02);
+    dem_run_for(&world, 0.02);
     assert_close(world.grains.motion[0].w_radps[2], 50.0, 1e-9);
     dig_world_finish(&world);
 }
@@ -215,7 +207,7 @@ static void a_grain_at_rest_presses_with_its_weight(void **state)
 {
     (void)state;
     struct dig_world world = on_floor(0.5, 0.5, 0.0);
-    run_for(&world, 0.1);
+    dem_run_for(&world, 0.1);
     assert_close(world.on_walls.f_N[2], -GRAIN_kg * GRAVITY, 1e-6 * GRAIN_kg * GRAVITY);
     assert_close(dig_grains_kinetic_J(&world.grains), 0.0, 1e-16);
     dig_world_finish(&world);

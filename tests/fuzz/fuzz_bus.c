@@ -10,6 +10,7 @@
 #include "firmware_host/assemble.h"
 #include "firmware_host/input.h"
 #include "firmware_host/signal_map.h"
+#include "tests/fuzz/random.h"
 
 #include <arpa/inet.h>
 #include <math.h>
@@ -33,21 +34,6 @@ struct piece {
 
 static struct piece corpus[LINES];
 static size_t       pieces;
-static uint64_t     state;
-
-static uint64_t next(void) // splitmix64, Steele, Lea and Flood 2014
-{
-    uint64_t z = (state += 0x9E3779B97F4A7C15u);
-    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-}
-
-static size_t below(const size_t n)
-{
-    return n == 0 ? 0 : (size_t)(next() % n);
-}
-
 // "(1.0) vcan0 18FF79E8#6937323732370000", or hex alone.
 static void load_corpus(const char *const path)
 {

@@ -16,6 +16,7 @@
 #include "firmware_host/dbc.h"
 #include "firmware_host/signal_map.h"
 #include "tables/load.h"
+#include "tests/fuzz/random.h"
 
 #include <dirent.h>
 #include <stdint.h>
@@ -150,21 +151,6 @@ static struct {
     { "table", "tests/data/formats/table.sqlite", read_table, NULL, 0, 0, 0 },
 };
 enum { TARGETS = sizeof target / sizeof target[0] };
-
-static uint64_t state;
-
-static uint64_t next(void) // splitmix64, Steele, Lea and Flood 2014
-{
-    uint64_t z = (state += 0x9E3779B97F4A7C15u);
-    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-}
-
-static size_t below(const size_t n)
-{
-    return n == 0 ? 0 : (size_t)(next() % n);
-}
 
 static const char *const tokens[] = { "nan",  "-inf", "1e999", "-1", "0", "[",  "]",  "{",    "}",
                                       ":",    ",",    "\n",    "\"", "#", "~",  "|",  "9e99", "%s",
