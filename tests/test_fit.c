@@ -3,6 +3,7 @@
 #include "firmware_host/fit.h"
 
 #include "files/identity_json.h"
+#include "tests/cube_table.h"
 #include "tests/scratch.h"
 #include "tests/wires.h"
 
@@ -12,19 +13,15 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#define GRAVELS      8
+#define GRAVELS      CUBE_GRAVELS
 #define TRAJECTORIES 2
 
 // Gravels at the corners of a cube, whose curves differ by a factor; only simpleA has curves.
 struct bench {
-    struct dig_config    config;
-    struct dig_curve_set set;
-    struct dig_gravel    gravel[GRAVELS];
-    double               axis[DIG_AXES][2];
-    int                  cell[GRAVELS], packings[GRAVELS * TRAJECTORIES];
-    struct dig_curve     curve[GRAVELS * TRAJECTORIES];
-    struct wires         wires;
-    struct dig_fit       fit;
+    struct dig_config config;
+    struct cube_table cube;
+    struct wires      wires;
+    struct dig_fit    fit;
 };
 
 static double moment_Nm(const int gravel, const int point)
@@ -37,7 +34,7 @@ static struct bench *bench_create(void)
 {
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
-    struct dig_curve_set *const set = &b->set;
+    struct dig_curve_set *const set = &b->cube.set;
     set->tooth_m                    = 0.09;
     set->bucket_width_m             = 0.07;
     set->smooth_half_s              = DIG_SMOOTH_HALF_s;
@@ -48,25 +45,12 @@ static struct bench *bench_create(void)
         set->trajectory[t].phases   = 1;
         set->trajectory[t].phase[0] = (struct dig_phase){ .duration_s = 2.0, .vx_mps = 0.05 };
     }
-    set->entries  = GRAVELS;
-    set->gravel   = b->gravel;
-    set->packings = b->packings;
-    set->curve    = b->curve;
-    set->cell     = b->cell;
-    for (int axis = 0; axis < DIG_AXES; axis++) {
-        b->axis[axis][0]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 1500.0 : 0.3;
-        b->axis[axis][1]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 2500.0 : 0.9;
-        set->axis_count[axis] = 2;
-        set->axis[axis]       = b->axis[axis];
-    }
+    cube_table_init(&b->cube);
     for (int g = 0; g < GRAVELS; g++) {
-        b->cell[g] = g;
-        b->gravel[g] =
-            (struct dig_gravel){ { b->axis[0][g / 4], b->axis[1][g / 2 % 2], b->axis[2][g % 2] } };
-        b->packings[g * TRAJECTORIES] = 3;
+        b->cube.packings[g * TRAJECTORIES] = 3;
         for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-            b->curve[g * TRAJECTORIES].mean[DIG_CHANNEL_MY_Nm][p] = (float)moment_Nm(g, p);
-            b->curve[g * TRAJECTORIES].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
+            b->cube.curve[g * TRAJECTORIES].mean[DIG_CHANNEL_MY_Nm][p] = (float)moment_Nm(g, p);
+            b->cube.curve[g * TRAJECTORIES].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
         }
     }
     b->config.estimator         = dig_estimator_settings_default();
@@ -103,7 +87,7 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
         dig_in(b, gravel, 0, 1.0);
         const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
         assert_non_null(offer);
-        assert_true(offer->known && offer->set == &b->set && offer->generation == 1);
+        assert_true(offer->known && offer->set == &b->cube.set && offer->generation == 1);
         assert_int_equal(offer->dig_count, 5);
         assert_true(offer->forecast.along[0].valid);
         assert_false(offer->forecast.along[1].valid); // the table has no such curve
@@ -176,8 +160,8 @@ static void ground_that_changed_is_no_longer_known(void **state)
     (void)state;
     struct bench *const b = bench_create();
     for (int g = 0; g < GRAVELS; g++) {
-        b->packings[g * TRAJECTORIES + 1] = 3;
-        b->curve[g * TRAJECTORIES + 1]    = b->curve[g * TRAJECTORIES];
+        b->cube.packings[g * TRAJECTORIES + 1] = 3;
+        b->cube.curve[g * TRAJECTORIES + 1]    = b->cube.curve[g * TRAJECTORIES];
     }
     dig_in(b, 3, 0, 1.0);
     assert_true(b->fit.known.valid);
@@ -231,8 +215,8 @@ static struct bench *bench_of_two_digs(void)
 {
     struct bench *const b = bench_create();
     for (int g = 0; g < GRAVELS; g++) {
-        b->packings[g * TRAJECTORIES + 1] = 3;
-        b->curve[g * TRAJECTORIES + 1]    = b->curve[g * TRAJECTORIES];
+        b->cube.packings[g * TRAJECTORIES + 1] = 3;
+        b->cube.curve[g * TRAJECTORIES + 1]    = b->cube.curve[g * TRAJECTORIES];
     }
     return b;
 }
@@ -342,14 +326,14 @@ static void what_is_known_survives_in_its_file(void **state)
     struct bench *const b = bench_create();
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("match.json"));
-    (void)strcpy(b->set.scene_hash,
+    (void)strcpy(b->cube.set.scene_hash,
                  "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
     dig_in(b, 6, 0, 1.0);
     const struct dig_known before = b->fit.known;
 
     struct bench *const again = bench_create();
     again->config.match_state = b->config.match_state;
-    memcpy(again->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+    memcpy(again->cube.set.scene_hash, b->cube.set.scene_hash, sizeof b->cube.set.scene_hash);
     dig_fit_restore(&again->fit);
     const struct dig_known *const k = &again->fit.known;
     assert_true(k->valid && k->restored);
@@ -372,12 +356,12 @@ static void what_is_known_survives_in_its_file(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct bench *const other = bench_create();
         other->config.match_state = b->config.match_state;
-        memcpy(other->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+        memcpy(other->cube.set.scene_hash, b->cube.set.scene_hash, sizeof b->cube.set.scene_hash);
         struct timespec wall;
         (void)clock_gettime(CLOCK_REALTIME, &wall);
         struct timespec times[2] = { wall, wall };
         if (i == 0) {
-            other->set.scene_hash[0] = 'b';
+            other->cube.set.scene_hash[0] = 'b';
         }
         times[1].tv_sec += i == 1 ? -3700 : i == 2 ? 7200 : 0;
         assert_int_equal(utimensat(AT_FDCWD, scratch_path("match.json"), times, 0), 0);
@@ -403,7 +387,7 @@ static void the_digs_of_a_ground_survive_too(void **state)
     struct bench *const b = bench_create();
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("pool.json"));
-    (void)strcpy(b->set.scene_hash,
+    (void)strcpy(b->cube.set.scene_hash,
                  "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
     for (int i = 0; i < 9; i++) {
         dig_in(b, 5, 0, 1.0 + 0.001 * i);
@@ -411,7 +395,7 @@ static void the_digs_of_a_ground_survive_too(void **state)
     for (int bare = 0; bare < 2; bare++) {
         struct bench *const again = bench_create();
         again->config.match_state = b->config.match_state;
-        memcpy(again->set.scene_hash, b->set.scene_hash, sizeof b->set.scene_hash);
+        memcpy(again->cube.set.scene_hash, b->cube.set.scene_hash, sizeof b->cube.set.scene_hash);
         if (bare == 1) {
             struct dig_identity id;
             assert_int_equal(dig_identity_read(scratch_path("pool.json"), &id, NULL), DIG_OK);
@@ -441,7 +425,7 @@ static void the_digs_of_a_ground_survive_too(void **state)
 static void give_forces(struct bench *const b)
 {
     for (int g = 0; g < GRAVELS; g++) {
-        struct dig_curve *const curve = &b->curve[g * TRAJECTORIES];
+        struct dig_curve *const curve = &b->cube.curve[g * TRAJECTORIES];
         for (int c = 0; c < 2; c++) {
             for (int p = 0; p < DIG_CURVE_POINTS; p++) {
                 curve->mean[1 + c][p] = (float)((c == 0 ? -3.0 : 2.0) * moment_Nm(GRAVELS - g, p));
@@ -459,7 +443,7 @@ static void dig_with_forces_in(struct bench *const b, const int gravel, const do
         dig.moment_Nm[p] = factor * moment_Nm(gravel, p);
         dig.sigma_Nm[p]  = 0.005;
         for (int c = 0; c < 2; c++) {
-            dig.force_N[c][p]       = (double)b->curve[gravel * TRAJECTORIES].mean[1 + c][p];
+            dig.force_N[c][p]       = (double)b->cube.curve[gravel * TRAJECTORIES].mean[1 + c][p];
             dig.force_sigma_N[c][p] = 0.02 + 0.001 * c;
         }
     }
@@ -476,7 +460,7 @@ static void the_forces_of_a_ground_survive_too(void **state)
         give_forces(one);
         (void)snprintf(one->config.match_state.text, sizeof one->config.match_state.text, "%s",
                        scratch_path("forces.json"));
-        (void)strcpy(one->set.scene_hash,
+        (void)strcpy(one->cube.set.scene_hash,
                      "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
     }
     for (int i = 0; i < 8; i++) {
@@ -541,14 +525,14 @@ static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
         f->along[t].energy_J                                                 = energy_J[t];
         f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = (float)carried_kg[t];
     }
-    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), 1);
+    assert_int_equal(dig_known_hint(&b->cube.set, f, 10.0, &J_per_kg), 1);
     assert_close(J_per_kg, 500.0 / 1500.0, 1e-9);
     f->along[1].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = 0.9F;
-    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), 0);
+    assert_int_equal(dig_known_hint(&b->cube.set, f, 10.0, &J_per_kg), 0);
     for (int t = 0; t < TRAJECTORIES; t++) {
         f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = NAN;
     }
-    assert_int_equal(dig_known_hint(&b->set, f, 10.0, &J_per_kg), -1);
+    assert_int_equal(dig_known_hint(&b->cube.set, f, 10.0, &J_per_kg), -1);
     free(f);
     free(b);
 }

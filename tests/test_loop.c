@@ -5,6 +5,7 @@
 #include "files/machine_yaml.h"
 #include "files/scene_yaml.h"
 #include "tests/count_allocations.h"
+#include "tests/cube_table.h"
 #include "tests/testlib.h"
 #include "tests/wires.h"
 
@@ -14,18 +15,14 @@
 #include <time.h>
 
 #define MS        1000000LL
-#define GRAVELS   8
+#define GRAVELS   CUBE_GRAVELS
 #define ESTIMATES 8 // that wait at most
 
 // Everything a loop needs, and the other ends of its handoffs.
 struct bench {
     struct dig_machine            machine;
     struct dig_scene              scene;
-    struct dig_curve_set          set;
-    struct dig_gravel             gravel[GRAVELS];
-    double                        axis[DIG_AXES][2];
-    int                           cell[GRAVELS], packings[GRAVELS * DIG_TRAJECTORY_MAX];
-    struct dig_curve              curve[GRAVELS * DIG_TRAJECTORY_MAX];
+    struct cube_table             cube;
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
     struct wires                  wires;
@@ -35,34 +32,21 @@ struct bench {
 
 static void fill_table(struct bench *const b)
 {
-    struct dig_curve_set *const set = &b->set;
+    struct dig_curve_set *const set = &b->cube.set;
     set->tooth_m                    = dig_scene_tooth_m(&b->scene);
     set->bucket_width_m             = b->scene.bucket.width_m;
     set->young_Pa                   = b->scene.material.young_Pa;
     set->smooth_half_s              = DIG_SMOOTH_HALF_s;
     set->trajectories               = b->scene.trajectories;
     memcpy(set->trajectory, b->scene.trajectory, sizeof set->trajectory);
-    set->entries  = GRAVELS;
-    set->gravel   = b->gravel;
-    set->packings = b->packings;
-    set->curve    = b->curve;
-    set->cell     = b->cell;
-    for (int axis = 0; axis < DIG_AXES; axis++) {
-        b->axis[axis][0]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 1500.0 : 0.3;
-        b->axis[axis][1]      = axis == DIG_AXIS_DENSITY_kgpm3 ? 2500.0 : 0.9;
-        set->axis_count[axis] = 2;
-        set->axis[axis]       = b->axis[axis];
-    }
+    cube_table_init(&b->cube);
     for (int g = 0; g < GRAVELS; g++) {
-        b->cell[g] = g;
-        b->gravel[g] =
-            (struct dig_gravel){ { b->axis[0][g / 4], b->axis[1][g / 2 % 2], b->axis[2][g % 2] } };
         for (size_t t = 0; t < set->trajectories; t++) {
-            const size_t at = (size_t)g * set->trajectories + t;
-            b->packings[at] = 3;
+            const size_t at      = (size_t)g * set->trajectories + t;
+            b->cube.packings[at] = 3;
             for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-                b->curve[at].mean[DIG_CHANNEL_MY_Nm][p] = 0.1F * (float)(1 + g);
-                b->curve[at].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
+                b->cube.curve[at].mean[DIG_CHANNEL_MY_Nm][p] = 0.1F * (float)(1 + g);
+                b->cube.curve[at].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
             }
         }
     }
@@ -79,8 +63,9 @@ static struct bench *bench_create(void)
     b->estimator_settings = dig_estimator_settings_default();
     b->estimator          = calloc(1, dig_estimator_size());
     assert_non_null(b->estimator);
-    assert_int_equal(dig_estimator_init(b->estimator, &b->machine, &b->set, &b->estimator_settings),
-                     DIG_OK);
+    assert_int_equal(
+        dig_estimator_init(b->estimator, &b->machine, &b->cube.set, &b->estimator_settings),
+        DIG_OK);
     wires_init(&b->wires);
     dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], ESTIMATES,
                   b->wires.estimate_memory);
@@ -89,7 +74,7 @@ static struct bench *bench_create(void)
         assert_non_null(b->raw[i]);
         (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
     }
-    const struct dig_loop_settings settings = wires_loop_settings(&b->set);
+    const struct dig_loop_settings settings = wires_loop_settings(&b->cube.set);
     const struct dig_loop_ports    ports    = wires_loop_ports(&b->wires);
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     return b;
@@ -108,16 +93,16 @@ static void offer(struct bench *const b, struct dig_latest *const to, const int 
                   const int64_t generation, const int64_t expires_ns)
 {
     const struct dig_match  match = { .valid   = true,
-                                      .gravel  = b->gravel[gravel],
+                                      .gravel  = b->cube.gravel[gravel],
                                       .nearest = gravel };
     struct dig_offer *const made  = calloc(1, sizeof *made);
     assert_non_null(made);
-    made->set        = &b->set;
+    made->set        = &b->cube.set;
     made->generation = generation;
     made->known      = true;
     made->dig_count  = 7;
     made->expires_ns = expires_ns;
-    dig_forecast_make(&b->set, 10.0, &match, &made->forecast);
+    dig_forecast_make(&b->cube.set, 10.0, &match, &made->forecast);
     dig_latest_put(to, made);
     free(made);
 }
@@ -310,7 +295,7 @@ static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void
     assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
     offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
-    for (size_t t = 0; t < b->set.trajectories; t++) {
+    for (size_t t = 0; t < b->cube.set.trajectories; t++) {
         assert_true(seen[t]);
     }
     bench_destroy(b);
