@@ -1,28 +1,11 @@
 #include "closed_loop/batch.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 60 };
-
-static struct made_world world;
-
-static int make(void **state)
-{
-    (void)state;
-    world = made_world(5);
-    return 0;
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    made_world_finish(&world);
-    return 0;
-}
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
@@ -174,5 +157,5 @@ int main(void)
         cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
         cmocka_unit_test(only_what_all_digs_have_is_compared),
     };
-    return cmocka_run_group_tests_name("batch", tests, make, clean);
+    return cmocka_run_group_tests_name("batch", tests, world_setup, world_teardown);
 }

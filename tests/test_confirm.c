@@ -1,33 +1,15 @@
 #include "closed_loop/confirm.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 7 };
 
-static struct made_world       world;
-static struct dig_soil        *soil;
 static struct dig_measured     measured[DIGS];
 static struct dig_batch        batch;
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
-
-static int make(void **state)
-{
-    (void)state;
-    world = made_world(5);
-    return dig_soil_create(world.surface, world.effects, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    made_world_finish(&world);
-    return 0;
-}
 
 // Six simple digs and a real one, the real one the third.
 static void dig_with(const double layer, uint64_t seed)
@@ -134,5 +116,5 @@ int main(void)
         cmocka_unit_test(what_cannot_be_fitted_to_the_others_counts_nothing),
         cmocka_unit_test(a_dig_left_out_leaves_the_others_as_they_are),
     };
-    return cmocka_run_group_tests_name("confirm", tests, make, clean);
+    return cmocka_run_group_tests_name("confirm", tests, world_setup, world_teardown);
 }

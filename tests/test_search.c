@@ -1,31 +1,12 @@
 #include "closed_loop/search.h"
 
-#include "tests/made_campaign.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 6, DRAWS = 24 };
-
-static struct made_world world;
-static struct dig_soil  *soil;
-
-static int make(void **state)
-{
-    (void)state;
-    world = made_world(5);
-    return dig_soil_create(world.surface, world.effects, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    made_world_finish(&world);
-    return 0;
-}
 
 // Three simple and three real digs of a gravel with these effects, searched.
 static struct dig_search search(const struct dig_gravel *const gravel, const size_t effects,
@@ -162,5 +143,5 @@ int main(void)
         cmocka_unit_test(a_gravel_beyond_the_grid_is_no_effect),
         cmocka_unit_test(the_same_seed_gives_the_same_answer),
     };
-    return cmocka_run_group_tests_name("search", tests, make, clean);
+    return cmocka_run_group_tests_name("search", tests, world_setup, world_teardown);
 }

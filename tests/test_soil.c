@@ -1,28 +1,9 @@
 #include "closed_loop/soil.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static struct made_world world;
-static struct dig_soil  *soil;
-
-static int make(void **state)
-{
-    (void)state;
-    world = made_world(5);
-    return dig_soil_create(world.surface, world.effects, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    made_world_finish(&world);
-    return 0;
-}
 
 // The plain features and size at a gravel.
 static void plain_at(const struct dig_gravel *const gravel, const size_t t, double place[DIG_AXES],
@@ -184,5 +165,5 @@ int main(void)
         cmocka_unit_test(another_scene_is_refused_and_writes_nothing),
         cmocka_unit_test(without_beds_only_the_reduced_forms_are_known),
     };
-    return cmocka_run_group_tests_name("soil", tests, make, clean);
+    return cmocka_run_group_tests_name("soil", tests, world_setup, world_teardown);
 }

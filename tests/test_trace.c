@@ -1,30 +1,14 @@
 #include "closed_loop/trace.h"
 
-#include "tests/made_campaign.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 8 };
 
-static struct made_world   world;
 static struct dig_measured measured[DIGS];
-
-static int make(void **state)
-{
-    (void)state;
-    world = made_world(5);
-    return 0;
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    made_world_finish(&world);
-    return 0;
-}
 
 // Four simple and four real digs; the first identifies, the last two real ones are held out.
 static void dig_campaign(const size_t effects, const enum dig_effect_id effect,
@@ -180,5 +164,5 @@ int main(void)
         cmocka_unit_test(another_scenes_effects_are_refused),
         cmocka_unit_test(the_holdout_is_for_the_error_alone),
     };
-    return cmocka_run_group_tests_name("trace", tests, make, clean);
+    return cmocka_run_group_tests_name("trace", tests, world_setup, world_teardown);
 }
