@@ -151,7 +151,7 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         put_cell(to, 3, c->p_fit);
         put_cell(to, 2, c->inclusion);
         put_cell(to, 3, c->error);
-        (void)fputs("<td style=\"text-align:left\">", to);
+        (void)fputs("<td style=\"text-align:left;min-width:15em\">", to);
         for (size_t p = 0; p < c->parameters; p++) {
             (void)fprintf(to, "%s", p == 0 ? "" : ", ");
             dig_html_text(to, c->parameter[p].name);
