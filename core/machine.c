@@ -126,7 +126,72 @@ static enum dig_status check_four_bar(const struct dig_four_bar *const bar,
     return DIG_OK;
 }
 
-// What stands outside links, cylinders and four-bar.
+static enum dig_status check_sensor(const struct dig_machine *const machine,
+                                    struct dig_error *const         error)
+{
+    static const double                  farthest = 10.0; // bucket lengths: beyond, a slip of units
+    const char *const                    group    = "force_sensor";
+    const struct dig_force_sensor *const sensor   = &machine->sensor;
+    const double                         place_m  = dig_vec2_norm(sensor->place_m);
+    if (!(place_m <= farthest * machine->link[DIG_JOINT_BUCKET].length_m)) {
+        return refuse(error, group, "", "place_m", place_m, "at most ten bucket lengths away");
+    }
+    if (!(fabs(sensor->turn_rad) <= 2.0 * DIG_PI)) {
+        return refuse(error, group, "", "turn_deg", sensor->turn_rad / DIG_RAD_PER_DEG,
+                      "an angle within +-360");
+    }
+    const struct {
+        const char *key;
+        double      limit, step, sigma;
+    } ranges[] = {
+        { "limit_N", sensor->limit_N, sensor->step_N, sensor->sigma_N },
+        { "limit_Nm", sensor->limit_Nm, sensor->step_Nm, sensor->sigma_Nm },
+    };
+    static const char *const step_key[]  = { "step_N", "step_Nm" };
+    static const char *const sigma_key[] = { "sigma_N", "sigma_Nm" };
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        if (!(ranges[i].limit > 0.0 && isfinite(ranges[i].limit))) {
+            return refuse(error, group, "", ranges[i].key, ranges[i].limit, "a number > 0");
+        }
+        if (!(ranges[i].step >= 0.0 && ranges[i].step < ranges[i].limit)) {
+            return refuse(error, group, "", step_key[i], ranges[i].step,
+                          ">= 0 and less than the limit");
+        }
+        if (!(ranges[i].sigma >= 0.0 && ranges[i].sigma < ranges[i].limit)) {
+            return refuse(error, group, "", sigma_key[i], ranges[i].sigma,
+                          ">= 0 and less than the limit");
+        }
+    }
+    if (!(sensor->path_sigma_m >= 0.0 && isfinite(sensor->path_sigma_m))) {
+        return refuse(error, group, "", "path_sigma_m", sensor->path_sigma_m, ">= 0");
+    }
+    return DIG_OK;
+}
+
+// What keeps a machine with cylinders on the ground.
+static enum dig_status check_ground(const struct dig_machine *const machine,
+                                    struct dig_error *const         error)
+{
+    if (!(machine->weight_N > 0.0 && isfinite(machine->weight_N))) {
+        return refuse(error, "ground", "", "weight_N", machine->weight_N, "a number > 0");
+    }
+    if (!(machine->tip_front_X_m > machine->tip_rear_X_m && isfinite(machine->tip_front_X_m))) {
+        return refuse(error, "ground", "", "tip_front_X_m", machine->tip_front_X_m,
+                      "greater than tip_rear_X_m");
+    }
+    if (!(machine->weight_X_m > machine->tip_rear_X_m &&
+          machine->weight_X_m < machine->tip_front_X_m)) {
+        return refuse(error, "ground", "", "weight_X_m", machine->weight_X_m,
+                      "between tip_rear_X_m and tip_front_X_m");
+    }
+    if (!isfinite(machine->boom_foot_Z_m)) {
+        return refuse(error, "ground", "", "boom_foot_Z_m", machine->boom_foot_Z_m,
+                      "a finite number");
+    }
+    return DIG_OK;
+}
+
+// Sensors of a machine of either kind, and the bucket's width.
 static enum dig_status check_rest(const struct dig_machine *const machine,
                                   struct dig_error *const         error)
 {
@@ -147,22 +212,6 @@ static enum dig_status check_rest(const struct dig_machine *const machine,
         return dig_error_set(error, DIG_EINVAL, "bucket_width_m: %g, expected a number > 0",
                              machine->bucket_width_m);
     }
-    if (!(machine->weight_N > 0.0 && isfinite(machine->weight_N))) {
-        return refuse(error, "ground", "", "weight_N", machine->weight_N, "a number > 0");
-    }
-    if (!(machine->tip_front_X_m > machine->tip_rear_X_m && isfinite(machine->tip_front_X_m))) {
-        return refuse(error, "ground", "", "tip_front_X_m", machine->tip_front_X_m,
-                      "greater than tip_rear_X_m");
-    }
-    if (!(machine->weight_X_m > machine->tip_rear_X_m &&
-          machine->weight_X_m < machine->tip_front_X_m)) {
-        return refuse(error, "ground", "", "weight_X_m", machine->weight_X_m,
-                      "between tip_rear_X_m and tip_front_X_m");
-    }
-    if (!isfinite(machine->boom_foot_Z_m)) {
-        return refuse(error, "ground", "", "boom_foot_Z_m", machine->boom_foot_Z_m,
-                      "a finite number");
-    }
     return DIG_OK;
 }
 
@@ -172,6 +221,11 @@ enum dig_status dig_machine_check(const struct dig_machine *const machine,
     assert(machine != NULL);
 
     enum dig_status status = DIG_OK;
+    if (machine->sensor.fitted) {
+        status = check_link(&machine->link[DIG_JOINT_BUCKET], "bucket", error);
+        status = status == DIG_OK ? check_sensor(machine, error) : status;
+        return status == DIG_OK ? check_rest(machine, error) : status;
+    }
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
         status = check_link(&machine->link[j], dig_joint_name((enum dig_joint)j), error);
     }
@@ -181,5 +235,6 @@ enum dig_status dig_machine_check(const struct dig_machine *const machine,
     if (status == DIG_OK) {
         status = check_four_bar(&machine->four_bar, error);
     }
-    return status == DIG_OK ? check_rest(machine, error) : status;
+    status = status == DIG_OK ? check_rest(machine, error) : status;
+    return status == DIG_OK ? check_ground(machine, error) : status;
 }

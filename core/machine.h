@@ -11,6 +11,10 @@
 //
 // In every link frame +y is +x turned by +90 degrees. boom_rad is the boom's +x against machine X,
 // arm_rad the arm's against the boom's, bucket_rad the bucket's against the arm's.
+//
+// A laboratory rig has none of that but the bucket: an arm carries it along a path and says where
+// it is, a force sensor between the two says what it feels. Its machine frame is its own, with X
+// against the drag direction and Z up, and bucket_rad is the bucket's +x against X itself.
 
 #ifndef DIG_CORE_MACHINE_H
 #define DIG_CORE_MACHINE_H
@@ -18,6 +22,8 @@
 #include "core/error.h"
 #include "core/status.h"
 #include "core/vec2.h"
+
+#include <stdbool.h>
 
 enum dig_joint { DIG_JOINT_BOOM, DIG_JOINT_ARM, DIG_JOINT_BUCKET, DIG_JOINTS };
 
@@ -58,16 +64,32 @@ struct dig_four_bar {
     struct dig_vec2 ear_m;        // K in the bucket frame
 };
 
+/// A sensor of force and moment that carries the bucket, turns with it, and reads what the bucket
+/// (with all that hangs on the sensor) puts on it: forces along its own x and z, the moment about
+/// its origin. Its z is its x turned by +90 degrees, moments are counter-clockwise.
+struct dig_force_sensor {
+    bool            fitted; // false: the machine has cylinders; true: it has nothing but the bucket
+    struct dig_vec2 place_m;  // its origin in the bucket frame
+    double          turn_rad; // its +x against the bucket's +x
+    double          limit_N;  // beyond either limit it says nothing
+    double          limit_Nm;
+    double          step_N, step_Nm;   // quantisation of the readings as they arrive; 0: none
+    double          sigma_N, sigma_Nm; // 1 sigma of one reading, quantisation not included
+    double          path_sigma_m;      // 1 sigma of the pin's place along each axis, as it is told
+};
+
 struct dig_machine {
-    char                name[64];
-    struct dig_link     link[DIG_JOINTS];
-    struct dig_cylinder cylinder[DIG_JOINTS];
-    struct dig_four_bar four_bar;
-    double              bucket_width_m;
-    double              pressure_step_Pa; // quantisation of the pressures as they arrive; 0: none
-    double              angle_step_rad;   // quantisation of the angles as they arrive; 0: none
-    double              angle_sigma_rad;  // 1 sigma of one angle sensor, quantisation not included
-    // What keeps the machine on the ground: the soil may not lift it off its tracks.
+    char                    name[64];
+    struct dig_link         link[DIG_JOINTS];     // with a force sensor: the bucket's alone
+    struct dig_cylinder     cylinder[DIG_JOINTS]; // without a force sensor, and so on down …
+    struct dig_four_bar     four_bar;             // … to here
+    struct dig_force_sensor sensor;
+    double                  bucket_width_m;
+    double pressure_step_Pa; // quantisation of the pressures as they arrive; 0: none
+    double angle_step_rad;   // quantisation of the angles as they arrive; 0: none
+    double angle_sigma_rad;  // 1 sigma of one angle sensor, quantisation not included
+    // With cylinders only. What keeps the machine on the ground: the soil may not lift it off its
+    // tracks.
     double weight_N;      // machine without the front links above
     double weight_X_m;    // its centre of mass, from the boom foot along machine X
     double tip_front_X_m; // front tipping edge of the tracks
@@ -76,7 +98,8 @@ struct dig_machine {
 };
 
 /// Refuses what cannot be: non-positive lengths, areas or masses, a rod thicker than its bore,
-/// empty angle ranges, non-finite numbers. *error names the key and what was expected. It does not
+/// empty angle ranges, a force sensor without a range or farther from the bucket's pin than ten
+/// bucket lengths, non-finite numbers. *error names the key and what was expected. It does not
 /// know whether the linkage closes over its range: dig_linkage_check() of the estimator does.
 DIG_MUST_CHECK enum dig_status dig_machine_check(const struct dig_machine *machine,
                                                  struct dig_error         *error);

@@ -16,6 +16,11 @@ static const char *const names[DIG_SIGNALS] = {
     [DIG_SIGNAL_BUCKET_ROD_Pa]    = "bucket_rod_Pa",
     [DIG_SIGNAL_PITCH_rad]        = "pitch_rad",
     [DIG_SIGNAL_TEMPERATURE_degC] = "temperature_degC",
+    [DIG_SIGNAL_PIN_X_m]          = "pin_X_m",
+    [DIG_SIGNAL_PIN_Z_m]          = "pin_Z_m",
+    [DIG_SIGNAL_SENSOR_FX_N]      = "sensor_Fx_N",
+    [DIG_SIGNAL_SENSOR_FZ_N]      = "sensor_Fz_N",
+    [DIG_SIGNAL_SENSOR_MY_Nm]     = "sensor_My_Nm",
 };
 
 const char *dig_signal_name(const enum dig_signal signal)
@@ -34,42 +39,68 @@ int dig_signal_find(const char *const name)
     return -1;
 }
 
-bool dig_signal_tells_moment(const enum dig_signal signal)
+enum dig_sensing dig_signals_sensing(const bool valid[const DIG_SIGNALS])
 {
-    return signal <= DIG_SIGNAL_BUCKET_rad || signal == DIG_SIGNAL_BUCKET_HEAD_Pa ||
-           signal == DIG_SIGNAL_BUCKET_ROD_Pa;
+    assert(valid != NULL);
+    bool by_sensor    = false;
+    bool by_cylinders = false;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        by_sensor = by_sensor || (valid[i] && i >= DIG_SIGNAL_PIN_X_m);
+        by_cylinders =
+            by_cylinders || (valid[i] && i < DIG_SIGNALS_NEEDED && i != DIG_SIGNAL_BUCKET_rad);
+    }
+    return by_sensor && !by_cylinders ? DIG_SENSING_SENSOR : DIG_SENSING_CYLINDERS;
+}
+
+bool dig_signal_is_optional(const enum dig_signal signal)
+{
+    return signal == DIG_SIGNAL_PITCH_rad || signal == DIG_SIGNAL_TEMPERATURE_degC;
+}
+
+bool dig_signal_is_needed(const enum dig_sensing sensing, const enum dig_signal signal)
+{
+    return sensing == DIG_SENSING_CYLINDERS
+               ? signal < DIG_SIGNALS_NEEDED
+               : signal == DIG_SIGNAL_BUCKET_rad || signal >= DIG_SIGNAL_PIN_X_m;
+}
+
+bool dig_signal_tells_moment(const enum dig_sensing sensing, const enum dig_signal signal)
+{
+    const bool of_others = signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_ARM_ROD_Pa;
+    return dig_signal_is_needed(sensing, signal) && !of_others;
 }
 
 bool dig_sample_has_moment(const struct dig_sample *const sample)
 {
     assert(sample != NULL);
-    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
-        if (!sample->valid[i] && dig_signal_tells_moment((enum dig_signal)i)) {
-            return false;
-        }
+    const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
+    bool                   has     = true;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        has = has && (sample->valid[i] || !dig_signal_tells_moment(sensing, (enum dig_signal)i));
     }
-    return true;
+    return has;
 }
 
 bool dig_sample_is_complete(const struct dig_sample *const sample)
 {
     assert(sample != NULL);
-    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
-        if (!sample->valid[i]) {
-            return false;
-        }
+    const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
+    bool                   has     = true;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        has = has && (sample->valid[i] || !dig_signal_is_needed(sensing, (enum dig_signal)i));
     }
-    return true;
+    return has;
 }
 
 void dig_signal_name_missing(const bool valid[const DIG_SIGNALS], const size_t size,
                              char text[const])
 {
     assert(valid != NULL && size > 0 && text != NULL);
-    size_t used = 0;
-    text[0]     = '\0';
-    for (int i = 0; i < DIG_SIGNALS_NEEDED && used < size; i++) {
-        if (!valid[i]) {
+    const enum dig_sensing sensing = dig_signals_sensing(valid);
+    size_t                 used    = 0;
+    text[0]                        = '\0';
+    for (int i = 0; i < DIG_SIGNALS && used < size; i++) {
+        if (!valid[i] && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
             (void)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", names[i]);
             used = strlen(text);
         }

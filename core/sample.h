@@ -21,11 +21,20 @@ enum dig_signal {
     DIG_SIGNAL_BUCKET_ROD_Pa,
     DIG_SIGNAL_PITCH_rad,
     DIG_SIGNAL_TEMPERATURE_degC,
+    // Of a rig that carries its bucket on a force sensor (core/machine.h), beside bucket_rad.
+    DIG_SIGNAL_PIN_X_m,
+    DIG_SIGNAL_PIN_Z_m,
+    DIG_SIGNAL_SENSOR_FX_N,
+    DIG_SIGNAL_SENSOR_FZ_N,
+    DIG_SIGNAL_SENSOR_MY_Nm,
     DIG_SIGNALS
 };
 
-/// Every signal up to here is needed for force and moment; those after it are optional.
+/// Every signal up to here is needed for force and moment of a machine with cylinders.
 #define DIG_SIGNALS_NEEDED DIG_SIGNAL_PITCH_rad
+
+/// What tells force and moment: a machine's cylinders, or a rig's force sensor.
+enum dig_sensing { DIG_SENSING_CYLINDERS, DIG_SENSING_SENSOR };
 
 /// Room for the names of all of those.
 #define DIG_SIGNAL_NAMES_SIZE 160
@@ -42,9 +51,20 @@ const char *dig_signal_name(enum dig_signal signal);
 /// The signal of that name, or -1.
 int dig_signal_find(const char *name);
 
+/// Of which kind signals are: by sensor, where some are there that only a force sensor's rig has,
+/// and none that only a machine with cylinders has.
+enum dig_sensing dig_signals_sensing(const bool valid[DIG_SIGNALS]);
+
+/// True for what force and moment need: the three angles and all pressures; with a force sensor the
+/// pin's place, the bucket's angle and all that the sensor reads.
+bool dig_signal_is_needed(enum dig_sensing sensing, enum dig_signal signal);
+
 /// True for what the moment needs: the three angles and the bucket's pressures. The other
-/// cylinders' pressures tell the force.
-bool dig_signal_tells_moment(enum dig_signal signal);
+/// cylinders' pressures tell the force. With a force sensor all that is needed.
+bool dig_signal_tells_moment(enum dig_sensing sensing, enum dig_signal signal);
+
+/// True for what can always be done without: pitch and temperature.
+bool dig_signal_is_optional(enum dig_signal signal);
 
 /// True when every signal the moment needs is valid.
 bool dig_sample_has_moment(const struct dig_sample *sample);

@@ -42,7 +42,8 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
 {
     assert(machine != NULL && sample != NULL && readings != NULL);
     assert(correction == NULL || rates != NULL);
-    if (!dig_sample_has_moment(sample)) {
+    if (!dig_sample_has_moment(sample) ||
+        dig_signals_sensing(sample->valid) != DIG_SENSING_CYLINDERS) {
         return DIG_ESTALE;
     }
     struct dig_readings r = {

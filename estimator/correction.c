@@ -81,6 +81,9 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
                                      const struct dig_correction *const correction)
 {
     assert(machine != NULL && correction != NULL);
+    if (machine->sensor.fitted && !dig_correction_is_none(correction)) {
+        return DIG_EINVAL;
+    }
     const double *const number = (const double *)(const void *)correction;
     for (size_t i = 0; i < NUMBERS; i++) {
         if (!isfinite(number[i])) {

@@ -55,8 +55,8 @@ struct dig_correction {
 bool dig_correction_is_none(const struct dig_correction *correction);
 
 /// DIG_EINVAL: a number that is not finite, a gain of -1 or less, or a machine that is none any
-/// more with it (dig_machine_check() and the linkage's closing over its range). About a
-/// millisecond.
+/// more with it (dig_machine_check() and the linkage's closing over its range), or a force sensor's
+/// rig, whose corrections would be its sensor's own: none is known here. About a millisecond.
 DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    *machine,
                                                     const struct dig_correction *correction);
 

@@ -4,6 +4,7 @@
 #include "estimator/cylinder.h"
 #include "estimator/estimator_state.h"
 #include "estimator/linkage.h"
+#include "estimator/sensed.h"
 #include "estimator/wrench.h"
 
 #include <assert.h>
@@ -18,6 +19,9 @@ static const double least_progress = 0.2;
 
 // Rates of the joints come from the angles of so long.
 static const double rates_window_s = 0.25;
+
+// A rig's accelerations from the places of so long: its path is told well enough for less.
+static const double sensed_window_s = 0.1;
 
 // Filters step over longer gaps as if they were this long.
 static const double longest_step_s = 0.1;
@@ -75,6 +79,7 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
     estimator->machine  = machine;
     estimator->settings = *settings;
     estimator->raw      = &estimator->own_raw;
+    estimator->rates    = (struct dig_rates_filter){ .window_s = sensed_window_s };
     dig_estimator_adopt(estimator, set);
     return DIG_OK;
 }
@@ -303,6 +308,9 @@ enum dig_status dig_estimator_correct(struct dig_estimator *const        estimat
     if (status != DIG_OK) {
         return status;
     }
+    if (estimator->machine->sensor.fitted) {
+        return DIG_OK; // nothing to correct, or it was refused
+    }
     estimator->corrects   = true;
     estimator->correction = *correction;
     estimator->corrected  = dig_correction_machine(estimator->machine, correction);
@@ -310,11 +318,29 @@ enum dig_status dig_estimator_correct(struct dig_estimator *const        estimat
     return DIG_OK;
 }
 
+// The wrench of a rig by its force sensor, inertia taken off. A number that is not finite must not
+// enter the filter.
+static enum dig_status solve_sensed(struct dig_estimator *const    e,
+                                    const struct dig_sample *const sample,
+                                    struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    const struct dig_sensed_motion still = { .turn_radps = 0.0 };
+    const enum dig_status status = dig_sensed_solve(e->machine, sample, &still, wrench, front);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_sensed_motion motion = dig_sensed_move(&e->rates, e->machine, sample);
+    return dig_sensed_solve(e->machine, sample, &motion, wrench, front);
+}
+
 // The wrench of the machine as it is taken to be. With a delay the parabola of the last angles is
 // read off where they were when the pressures were.
 static enum dig_status solve(struct dig_estimator *const e, const struct dig_sample *const sample,
                              struct dig_wrench *const wrench, struct dig_front *const front)
 {
+    if (e->machine->sensor.fitted) {
+        return solve_sensed(e, sample, wrench, front);
+    }
     if (!e->corrects) {
         return dig_wrench_solve(e->machine, sample, wrench, front);
     }

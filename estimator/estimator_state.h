@@ -22,7 +22,7 @@ struct dig_estimator {
     struct dig_correction         correction;
     struct dig_machine            corrected; // the machine with it
 
-    // of the last quarter second, while it corrects
+    // of the last quarter second, while it corrects; of a tenth where a force sensor tells
     struct dig_rates_filter rates;
 
     // of the sample before

@@ -33,6 +33,8 @@ struct dig_linkage_pose {
     struct dig_lever lever;      // about Q
 };
 
+/// Nothing to refuse where a force sensor carries the bucket: it has no linkage.
+///
 /// DIG_EUNREACHABLE unless the four-bar closes with margin over the bucket's whole range, and boom
 /// and arm cylinders have some length there; *error names the angle. Call once, after
 /// dig_machine_check(): the solvers trust the geometry. About a millisecond.

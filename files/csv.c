@@ -60,6 +60,8 @@ static char *next_field(char **const rest)
     return field;
 }
 
+static const char byte_order_mark[] = "\xef\xbb\xbf";
+
 static bool is_comment_or_blank(const char *const line)
 {
     const char first = line[strspn(line, " \t")];
@@ -189,7 +191,7 @@ static enum dig_status read_row(struct reader *const r, char *line)
 static enum dig_status read_lines(struct reader *const r, char *text)
 {
     // Spreadsheets put a byte-order mark first.
-    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) {
+    if (strncmp(text, byte_order_mark, 3) == 0) {
         text += 3;
     }
     bool            header = false;
@@ -240,6 +242,29 @@ enum dig_status dig_csv_read(const char *const path, const size_t columns,
     }
     *csv = reader.csv;
     return DIG_OK;
+}
+
+bool dig_csv_has(const char *const path, const char *const column)
+{
+    assert(path != NULL && column != NULL);
+    FILE *const file = fopen(path, "r");
+    if (file == NULL) {
+        return false;
+    }
+    char *line   = NULL;
+    char *header = NULL;
+    for (size_t room = 0; header == NULL && getline(&line, &room, file) > 0;) {
+        char *const text            = strncmp(line, byte_order_mark, 3) == 0 ? line + 3 : line;
+        text[strcspn(text, "\r\n")] = '\0';
+        header                      = is_comment_or_blank(text) ? NULL : text;
+    }
+    bool has = false;
+    for (const char *field; header != NULL && !has && (field = next_field(&header)) != NULL;) {
+        has = strcmp(field, column) == 0;
+    }
+    free(line);
+    (void)fclose(file);
+    return has;
 }
 
 void dig_csv_finish(struct dig_csv *const csv)

@@ -33,6 +33,10 @@ DIG_MUST_CHECK enum dig_status dig_csv_read(const char *path, size_t columns,
                                             const struct dig_csv_column column[],
                                             struct dig_csv *csv, struct dig_error *error);
 
+/// True when the header line of path names this column; false also when path cannot be read, which
+/// dig_csv_read() says.
+bool dig_csv_has(const char *path, const char *column);
+
 void dig_csv_finish(struct dig_csv *csv);
 
 #endif // DIG_FILES_CSV_H

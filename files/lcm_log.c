@@ -137,6 +137,9 @@ struct rows {
     struct dig_sample *row;
 };
 
+// As many as samples had before there were force sensors; what came after is added at the end.
+static const int32_t least_signals = DIG_SIGNAL_TEMPERATURE_degC + 1;
+
 // One DIGSIGHT_SAMPLE as the next row.
 static enum dig_status add_row(const struct reading *const r, const struct event *const event,
                                struct rows *const rows)
@@ -147,10 +150,10 @@ static enum dig_status add_row(const struct reading *const r, const struct event
         return refuse_message(r, event);
     }
     enum dig_status status = DIG_OK;
-    if (message.signals != DIG_SIGNALS) {
-        status =
-            dig_error_set(r->error, DIG_EINVAL, "%s: event %" PRIu64 ": %d signals, expected %d",
-                          r->path, event->number, message.signals, DIG_SIGNALS);
+    if (message.signals < least_signals || message.signals > DIG_SIGNALS) {
+        status = dig_error_set(r->error, DIG_EINVAL,
+                               "%s: event %" PRIu64 ": %d signals, expected %d to %d", r->path,
+                               event->number, message.signals, least_signals, DIG_SIGNALS);
     } else if (rows->count > 0 && message.time_ns <= rows->row[rows->count - 1].time_ns) {
         // A repetition, or a second daemon's: a recording ascends.
     } else {
@@ -165,7 +168,7 @@ static enum dig_status add_row(const struct reading *const r, const struct event
             rows->room = room;
         }
         struct dig_sample sample = { .time_ns = message.time_ns };
-        for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        for (int i = 0; i < message.signals; i++) {
             sample.valid[i] = message.valid[i] != 0;
             sample.value[i] = sample.valid[i] ? message.value[i] : 0.0;
         }

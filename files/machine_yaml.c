@@ -29,19 +29,26 @@ struct sensors_text {
     double pressure_step_Pa, angle_step_rad, angle_sigma_rad;
 };
 
+struct force_sensor_text {
+    double place_m[2], turn_deg, limit_N, limit_Nm, step_N, step_Nm, sigma_N, sigma_Nm;
+    double path_sigma_m;
+};
+
 struct ground_text {
     double weight_N, weight_X_m, tip_front_X_m, tip_rear_X_m, boom_foot_Z_m;
 };
 
+// Of either kind; what the other has stays 0.
 struct machine_text {
-    char                  name[sizeof((struct dig_machine *)NULL)->name];
-    char                 *source;
-    struct link_text      boom, arm, bucket;
-    double                bucket_width_m;
-    struct cylinders_text cylinders;
-    struct four_bar_text  four_bar;
-    struct sensors_text   sensors;
-    struct ground_text    ground;
+    char                     name[sizeof((struct dig_machine *)NULL)->name];
+    char                    *source;
+    struct link_text         boom, arm, bucket;
+    double                   bucket_width_m;
+    struct cylinders_text    cylinders;
+    struct four_bar_text     four_bar;
+    struct sensors_text      sensors;
+    struct ground_text       ground;
+    struct force_sensor_text force_sensor;
 };
 
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -120,6 +127,42 @@ static const cyaml_schema_field_t ground_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t force_sensor_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("place_m", REQUIRED, struct force_sensor_text, place_m, &number, 2),
+    CYAML_FIELD_FLOAT("turn_deg", REQUIRED, struct force_sensor_text, turn_deg),
+    CYAML_FIELD_FLOAT("limit_N", REQUIRED, struct force_sensor_text, limit_N),
+    CYAML_FIELD_FLOAT("limit_Nm", REQUIRED, struct force_sensor_text, limit_Nm),
+    CYAML_FIELD_FLOAT("step_N", REQUIRED, struct force_sensor_text, step_N),
+    CYAML_FIELD_FLOAT("step_Nm", REQUIRED, struct force_sensor_text, step_Nm),
+    CYAML_FIELD_FLOAT("sigma_N", REQUIRED, struct force_sensor_text, sigma_N),
+    CYAML_FIELD_FLOAT("sigma_Nm", REQUIRED, struct force_sensor_text, sigma_Nm),
+    CYAML_FIELD_FLOAT("path_sigma_m", REQUIRED, struct force_sensor_text, path_sigma_m),
+    SOURCE,
+    CYAML_FIELD_END,
+};
+
+// A rig has no pressures.
+static const cyaml_schema_field_t rig_sensors_fields[] = {
+    CYAML_FIELD_FLOAT("angle_step_rad", REQUIRED, struct sensors_text, angle_step_rad),
+    CYAML_FIELD_FLOAT("angle_sigma_rad", REQUIRED, struct sensors_text, angle_sigma_rad),
+    SOURCE,
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t rig_fields[] = {
+    CYAML_FIELD_STRING("name", REQUIRED, struct machine_text, name, 1),
+    CYAML_FIELD_STRING_PTR("source", REQUIRED, struct machine_text, source, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_MAPPING("bucket", REQUIRED, struct machine_text, bucket, link_fields),
+    CYAML_FIELD_FLOAT("bucket_width_m", REQUIRED, struct machine_text, bucket_width_m),
+    CYAML_FIELD_MAPPING("force_sensor", REQUIRED, struct machine_text, force_sensor,
+                        force_sensor_fields),
+    CYAML_FIELD_MAPPING("sensors", REQUIRED, struct machine_text, sensors, rig_sensors_fields),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_value_t rig_schema = { CYAML_VALUE_MAPPING(
+    CYAML_FLAG_POINTER, struct machine_text, rig_fields) };
+
 static const cyaml_schema_field_t machine_fields[] = {
     CYAML_FIELD_STRING("name", REQUIRED, struct machine_text, name, 1),
     CYAML_FIELD_STRING_PTR("source", REQUIRED, struct machine_text, source, 1, CYAML_UNLIMITED),
@@ -170,7 +213,23 @@ static struct dig_cylinder convert_cylinder(const struct cylinder_text *const te
     };
 }
 
-static struct dig_machine convert(const struct machine_text *const text)
+static struct dig_force_sensor convert_sensor(const struct force_sensor_text *const text)
+{
+    return (struct dig_force_sensor){
+        .fitted       = true,
+        .place_m      = vec2(text->place_m),
+        .turn_rad     = text->turn_deg * DIG_RAD_PER_DEG,
+        .limit_N      = text->limit_N,
+        .limit_Nm     = text->limit_Nm,
+        .step_N       = text->step_N,
+        .step_Nm      = text->step_Nm,
+        .sigma_N      = text->sigma_N,
+        .sigma_Nm     = text->sigma_Nm,
+        .path_sigma_m = text->path_sigma_m,
+    };
+}
+
+static struct dig_machine convert(const struct machine_text *const text, const bool senses)
 {
     struct dig_machine machine = {
         .link = {
@@ -199,6 +258,9 @@ static struct dig_machine convert(const struct machine_text *const text)
         .tip_rear_X_m     = text->ground.tip_rear_X_m,
         .boom_foot_Z_m    = text->ground.boom_foot_Z_m,
     };
+    if (senses) {
+        machine.sensor = convert_sensor(&text->force_sensor);
+    }
     memcpy(machine.name, text->name, sizeof machine.name);
     return machine;
 }
@@ -208,13 +270,15 @@ enum dig_status dig_machine_read(const char *const path, struct dig_machine *con
 {
     assert(path != NULL && machine != NULL);
 
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
+    const bool                        senses = dig_yaml_line(path, "force_sensor") > 0;
+    const cyaml_schema_value_t *const kind   = senses ? &rig_schema : &schema;
+    cyaml_data_t                     *data   = NULL;
+    enum dig_status                   status = dig_yaml_load(path, kind, &data, error);
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_machine loaded = convert(data);
-    dig_yaml_free(&schema, data);
+    const struct dig_machine loaded = convert(data, senses);
+    dig_yaml_free(kind, data);
 
     struct dig_error found = { "" };
     status                 = dig_machine_check(&loaded, &found);

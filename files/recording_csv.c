@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define GAP_MAX_s  0.02 // 50 Hz
 #define ROWS_MIN   2
@@ -36,17 +37,35 @@ static const struct dig_csv_column bed_column[] = {
 };
 #define BED_COLUMNS (sizeof bed_column / sizeof bed_column[0])
 
-// Time, then one column a signal in the signals' own order.
-static void machine_columns(struct dig_csv_column column[const DIG_SIGNALS + 1])
+// Time, then one column a signal in the signals' own order: of a machine with cylinders, or of a
+// rig with a force sensor.
+struct machine_columns {
+    size_t                count;
+    struct dig_csv_column column[DIG_SIGNALS + 1];
+    enum dig_signal       signal[DIG_SIGNALS + 1]; // from the second column on
+};
+
+static struct machine_columns machine_columns(const enum dig_sensing sensing)
 {
-    column[0] = (struct dig_csv_column){ .name = "t_s" };
+    struct machine_columns of = { .count = 1, .column = { { .name = "t_s" } } };
     for (int s = 0; s < DIG_SIGNALS; s++) {
-        column[s + 1] = (struct dig_csv_column){
-            .name      = dig_signal_name((enum dig_signal)s),
-            .optional  = !dig_signal_tells_moment((enum dig_signal)s),
+        const enum dig_signal signal = (enum dig_signal)s;
+        if (!dig_signal_is_needed(sensing, signal) && !dig_signal_is_optional(signal)) {
+            continue;
+        }
+        of.signal[of.count]   = signal;
+        of.column[of.count++] = (struct dig_csv_column){
+            .name      = dig_signal_name(signal),
+            .optional  = !dig_signal_tells_moment(sensing, signal),
             .may_empty = true,
         };
     }
+    return of;
+}
+
+bool dig_machine_recording_is(const char *const path)
+{
+    return dig_csv_has(path, dig_signal_name(DIG_SIGNAL_BUCKET_rad));
 }
 
 static enum dig_status check_rows(const struct dig_csv *const csv, const char *const path,
@@ -151,17 +170,19 @@ enum dig_status dig_recording_read(const char *const path, struct dig_recording 
     return status;
 }
 
-static struct dig_sample sample_row(const double v[const DIG_SIGNALS + 1])
+static struct dig_sample sample_row(const struct machine_columns *const of, const double v[const])
 {
     struct dig_sample sample = { .time_ns = llround(v[0] * 1e9) };
-    for (int s = 0; s < DIG_SIGNALS; s++) {
-        sample.valid[s] = !isnan(v[s + 1]);
-        sample.value[s] = sample.valid[s] ? v[s + 1] : 0.0;
+    for (size_t c = 1; c < of->count; c++) {
+        const enum dig_signal s = of->signal[c];
+        sample.valid[s]         = !isnan(v[c]);
+        sample.value[s]         = sample.valid[s] ? v[c] : 0.0;
     }
     return sample;
 }
 
-static enum dig_status take_machine_rows(const struct dig_csv *const csv, const char *const path,
+static enum dig_status take_machine_rows(const struct machine_columns *const of,
+                                         const struct dig_csv *const csv, const char *const path,
                                          struct dig_machine_recording *const recording,
                                          struct dig_error *const             error)
 {
@@ -177,7 +198,7 @@ static enum dig_status take_machine_rows(const struct dig_csv *const csv, const 
         return no_memory(path, csv->rows, error);
     }
     for (size_t i = 0; i < csv->rows; i++) {
-        row[i] = sample_row(csv->value + i * csv->columns);
+        row[i] = sample_row(of, csv->value + i * csv->columns);
     }
     *recording = (struct dig_machine_recording){ .rows = csv->rows, .row = row };
     return DIG_OK;
@@ -189,12 +210,13 @@ enum dig_status dig_machine_recording_read(const char *const                   p
 {
     assert(path != NULL && recording != NULL);
 
-    struct dig_csv_column column[DIG_SIGNALS + 1];
-    machine_columns(column);
+    const bool senses = dig_csv_has(path, dig_signal_name(DIG_SIGNAL_SENSOR_MY_Nm));
+    const struct machine_columns of =
+        machine_columns(senses ? DIG_SENSING_SENSOR : DIG_SENSING_CYLINDERS);
     struct dig_csv  csv;
-    enum dig_status status = dig_csv_read(path, DIG_SIGNALS + 1, column, &csv, error);
+    enum dig_status status = dig_csv_read(path, of.count, of.column, &csv, error);
     if (status == DIG_OK) {
-        status = take_machine_rows(&csv, path, recording, error);
+        status = take_machine_rows(&of, &csv, path, recording, error);
         dig_csv_finish(&csv);
     }
     return status;
@@ -245,15 +267,22 @@ enum dig_status dig_recording_write(const char *const                 path,
     return dig_out_commit(&out, error);
 }
 
-// An optional signal has a column when at least one sample holds it.
-static bool has_signal(const struct dig_machine_recording *const recording, const int signal)
+// A signal has a column when at least one sample holds it, or when it is needed.
+static void find_written(const struct dig_machine_recording *const recording,
+                         bool                                      written[const DIG_SIGNALS])
 {
+    memset(written, 0, DIG_SIGNALS * sizeof written[0]);
     for (size_t i = 0; i < recording->rows; i++) {
-        if (recording->row[i].valid[signal]) {
-            return true;
+        for (int s = 0; s < DIG_SIGNALS; s++) {
+            written[s] = written[s] || recording->row[i].valid[s];
         }
     }
-    return signal < DIG_SIGNALS_NEEDED;
+    const enum dig_sensing sensing = dig_signals_sensing(written);
+    for (int s = 0; s < DIG_SIGNALS; s++) {
+        const enum dig_signal signal = (enum dig_signal)s;
+        written[s] =
+            dig_signal_is_needed(sensing, signal) || (written[s] && dig_signal_is_optional(signal));
+    }
 }
 
 enum dig_status dig_machine_recording_write(const char *const                         path,
@@ -268,9 +297,9 @@ enum dig_status dig_machine_recording_write(const char *const                   
         return status;
     }
     bool written[DIG_SIGNALS];
+    find_written(recording, written);
     (void)fputs("t_s", out.file);
     for (int s = 0; s < DIG_SIGNALS; s++) {
-        written[s] = has_signal(recording, s);
         if (written[s]) {
             (void)fprintf(out.file, ",%s", dig_signal_name((enum dig_signal)s));
         }

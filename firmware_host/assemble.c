@@ -48,7 +48,7 @@ static bool is_believable(struct dig_assembler *const a, const size_t signal, co
     if (rate > 0.0 && a->good_ns[signal] > 0) {
         const double since_s = 1e-9 * (double)(time_ns - a->good_ns[signal]);
         if (!(fabs(value - a->good[signal]) <= rate * (fmax(since_s, 0.0) + bunched_s))) {
-            a->drops.jump += signal < DIG_SIGNALS_NEEDED ? 1 : 0;
+            a->drops.jump += dig_signal_is_optional((enum dig_signal)signal) ? 0 : 1;
             return false;
         }
     }
@@ -73,7 +73,7 @@ static void remember(struct dig_assembler *const a, const struct dig_reading *co
         past->valid[i] =
             reading->state[i] == DIG_READING_OK && is_believable(a, i, reading->value[i], time_ns);
         past->value[i] = past->valid[i] ? reading->value[i] : 0.0;
-        if (i < DIG_SIGNALS_NEEDED) {
+        if (!dig_signal_is_optional((enum dig_signal)i)) {
             count_drop(&a->drops, reading->state[i]);
         }
     }
@@ -212,9 +212,9 @@ static struct dig_sample sample_at(const struct dig_assembler *const a, const in
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         const struct dig_past_reading *const last =
             a->carried[i] ? past_of(a, a->group_of[i], 0) : NULL;
-        const bool old =
-            last == NULL || a->silent[a->group_of[i]] ||
-            (i >= DIG_SIGNALS_NEEDED && time_ns - last->time_ns > ns(a->settings.optional_s));
+        const bool old = last == NULL || a->silent[a->group_of[i]] ||
+                         (dig_signal_is_optional((enum dig_signal)i) &&
+                          time_ns - last->time_ns > ns(a->settings.optional_s));
         if (!old) {
             read_off(a, i, time_ns, &sample);
         }

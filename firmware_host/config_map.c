@@ -35,7 +35,7 @@ static struct key key_of(const char *const parent, const char *const name)
 // How far a unit is from SI, and what it measures.
 struct unit {
     const char *name;
-    char        kind; // p pressure, a angle, t temperature
+    char        kind; // p pressure, a angle, t temperature, l length, f force, m moment
     double      scale;
 };
 
@@ -44,15 +44,33 @@ static const struct unit units[] = {
     { "MPa", 'p', 1e6 },         { "bar", 'p', 1e5 },
     { "psi", 'p', 6894.757293 }, { "rad", 'a', 1.0 },
     { "mrad", 'a', 1e-3 },       { "deg", 'a', DIG_RAD_PER_DEG },
-    { "degC", 't', 1.0 },
+    { "degC", 't', 1.0 },        { "m", 'l', 1.0 },
+    { "mm", 'l', 1e-3 },         { "N", 'f', 1.0 },
+    { "Nm", 'm', 1.0 },
 };
 
 static char kind_of(const size_t signal)
 {
-    if (signal == DIG_SIGNAL_TEMPERATURE_degC) {
-        return 't';
+    switch ((enum dig_signal)signal) {
+    case DIG_SIGNAL_BOOM_rad:
+    case DIG_SIGNAL_ARM_rad:
+    case DIG_SIGNAL_BUCKET_rad:
+    case DIG_SIGNAL_PITCH_rad: return 'a';
+    case DIG_SIGNAL_TEMPERATURE_degC: return 't';
+    case DIG_SIGNAL_PIN_X_m:
+    case DIG_SIGNAL_PIN_Z_m: return 'l';
+    case DIG_SIGNAL_SENSOR_FX_N:
+    case DIG_SIGNAL_SENSOR_FZ_N: return 'f';
+    case DIG_SIGNAL_SENSOR_MY_Nm: return 'm';
+    case DIG_SIGNAL_BOOM_HEAD_Pa:
+    case DIG_SIGNAL_BOOM_ROD_Pa:
+    case DIG_SIGNAL_ARM_HEAD_Pa:
+    case DIG_SIGNAL_ARM_ROD_Pa:
+    case DIG_SIGNAL_BUCKET_HEAD_Pa:
+    case DIG_SIGNAL_BUCKET_ROD_Pa:
+    case DIG_SIGNALS: break;
     }
-    return signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_BUCKET_ROD_Pa ? 'p' : 'a';
+    return 'p';
 }
 
 // A scale that contradicts the DBC's unit is a slip, not a calibration: beyond a tenth it is
@@ -414,16 +432,29 @@ static enum dig_status read_blocks(const struct work *const         work,
     return status;
 }
 
-// What the moment needs must be there. A cylinder's force is told by both of its chambers.
+// What the moment needs must be there, and nothing of the other kind of machine. A cylinder's force
+// is told by both of its chambers.
 static enum dig_status check_signals(const struct work *const work)
 {
-    const struct dig_map_entry *const entry = work->map->entry;
-    for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
-        if (!entry[i].used && dig_signal_tells_moment((enum dig_signal)i)) {
+    const struct dig_map_entry *const entry   = work->map->entry;
+    const enum dig_sensing            sensing = dig_signal_map_sensing(work->map);
+    const bool                        sensor  = sensing == DIG_SENSING_SENSOR;
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        const enum dig_signal signal = (enum dig_signal)i;
+        if (!entry[i].used && dig_signal_tells_moment(sensing, signal)) {
+            return dig_yaml_refuse(work->path, "signals", work->error, "no entry %s, expected %s",
+                                   dig_signal_name(signal),
+                                   sensor ? "the pin's place, the bucket's angle and all that the "
+                                            "force sensor reads"
+                                          : "one for each angle and both pressures of the "
+                                            "bucket's cylinder");
+        }
+        if (entry[i].used && !dig_signal_is_optional(signal) &&
+            !dig_signal_is_needed(sensing, signal)) {
             return dig_yaml_refuse(work->path, "signals", work->error,
-                                   "no entry %s, expected one for each angle and both pressures of "
-                                   "the bucket's cylinder",
-                                   dig_signal_name((enum dig_signal)i));
+                                   "entry %s, expected signals of cylinders or of a force sensor, "
+                                   "not of both",
+                                   dig_signal_name(signal));
         }
     }
     for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i < DIG_SIGNALS_NEEDED; i += 2) {
@@ -467,11 +498,12 @@ static enum dig_status read_map(const struct work *const         work,
     if (status == DIG_OK && map->kind == DIG_MAP_MODBUS) {
         status = read_blocks(work, text);
     }
-    for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS_NEEDED; i++) {
-        if (map->entry[i].used) {
+    const enum dig_sensing sensing = dig_signal_map_sensing(map);
+    for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS; i++) {
+        if (map->entry[i].used && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
             struct dig_map_group *const group = &map->group[map->entry[i].group];
-            group->spared =
-                (group->spared || !group->needed) && !dig_signal_tells_moment((enum dig_signal)i);
+            group->spared                     = (group->spared || !group->needed) &&
+                            !dig_signal_tells_moment(sensing, (enum dig_signal)i);
             group->needed = true;
         }
     }

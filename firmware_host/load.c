@@ -85,6 +85,20 @@ static void find_measured(struct dig_loaded *const l)
     }
 }
 
+// What tells the forces must be what the machine has.
+static enum dig_status check_sensing(const char *const path, const struct dig_loaded *const l,
+                                     struct dig_error *const error)
+{
+    const bool senses = dig_signals_sensing(l->measured) == DIG_SENSING_SENSOR;
+    if (senses == l->machine.sensor.fitted) {
+        return DIG_OK;
+    }
+    return dig_yaml_refuse(path, "machine", error,
+                           "%s has %s, but the input brings %s; expected the same", l->machine.name,
+                           senses ? "cylinders" : "a force sensor that carries its bucket",
+                           senses ? "signals of a force sensor" : "none of its signals");
+}
+
 enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,
                          struct dig_error *const error)
 {
@@ -100,6 +114,9 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
     }
     if (status == DIG_OK) {
         find_measured(&l);
+        status = check_sensing(path, &l, error);
+    }
+    if (status == DIG_OK) {
         status = dig_table_load(l.config.table.text, &l.set, error);
     }
     if (status == DIG_OK) {

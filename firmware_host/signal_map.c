@@ -40,6 +40,16 @@ static void decode(const struct dig_map_entry *const entry, const uint64_t raw,
     }
 }
 
+enum dig_sensing dig_signal_map_sensing(const struct dig_signal_map *const map)
+{
+    assert(map != NULL);
+    bool used[DIG_SIGNALS];
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        used[i] = map->entry[i].used;
+    }
+    return dig_signals_sensing(used);
+}
+
 int dig_signal_map_group(const struct dig_signal_map *const map, const uint32_t id,
                          const bool extended)
 {

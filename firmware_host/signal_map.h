@@ -87,6 +87,9 @@ DIG_MUST_CHECK enum dig_status dig_signal_map_read(const char *path, const struc
                                                    struct dig_signal_map *map,
                                                    struct dig_error      *error);
 
+/// Of which kind of machine the map's signals are.
+enum dig_sensing dig_signal_map_sensing(const struct dig_signal_map *map);
+
 /// The group (in map->group) of a CAN id, or -1.
 int dig_signal_map_group(const struct dig_signal_map *map, uint32_t id, bool extended);
 

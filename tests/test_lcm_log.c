@@ -210,9 +210,13 @@ static void defects_are_refused_and_write_nothing(void **state)
                   "few.lcm: 1 samples on DIGSIGHT_SAMPLE, expected at least 2");
 
     log = begin("other.lcm");
-    put_sample(log, 1, DIG_SIGNALS - 1);
+    put_sample(log, 1, 10);
     lcm_eventlog_destroy(log);
-    check_refused("other.lcm", DIG_EINVAL, "event 0: 10 signals, expected 11");
+    check_refused("other.lcm", DIG_EINVAL, "event 0: 10 signals, expected 11 to 16");
+    log = begin("more.lcm");
+    put_sample(log, 1, DIG_SIGNALS + 1);
+    lcm_eventlog_destroy(log);
+    check_refused("more.lcm", DIG_EINVAL, "event 0: 17 signals, expected 11 to 16");
 
     // Another type's fingerprint under our channel's name: what an older build's log looks like.
     char                   text[] = "";

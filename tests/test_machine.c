@@ -165,6 +165,33 @@ static void what_is_missing_is_named(void **state)
     assert_non_null(strstr(text, "bucket_rod_Pa")); // all nine have room
 }
 
+// Of a rig all that it has is needed; nothing of a machine with cylinders may be there beside it.
+static void a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle(void **state)
+{
+    (void)state;
+    static const enum dig_signal needed[] = {
+        DIG_SIGNAL_BUCKET_rad,  DIG_SIGNAL_PIN_X_m,     DIG_SIGNAL_PIN_Z_m,
+        DIG_SIGNAL_SENSOR_FX_N, DIG_SIGNAL_SENSOR_FZ_N, DIG_SIGNAL_SENSOR_MY_Nm,
+    };
+    struct dig_sample s = { 0 };
+    for (int i = 0; i < 6; i++) {
+        s.valid[needed[i]] = true;
+    }
+    assert_int_equal(dig_signals_sensing(s.valid), DIG_SENSING_SENSOR);
+    assert_true(dig_sample_has_moment(&s) && dig_sample_is_complete(&s));
+    for (int i = 0; i < 6; i++) {
+        char text[DIG_SIGNAL_NAMES_SIZE];
+        s.valid[needed[i]] = false;
+        assert_false(dig_sample_has_moment(&s) || dig_sample_is_complete(&s));
+        dig_signal_name_missing(s.valid, sizeof text, text);
+        assert_string_equal(text, dig_signal_name(needed[i]));
+        s.valid[needed[i]] = true;
+    }
+    s.valid[DIG_SIGNAL_ARM_HEAD_Pa] = true;
+    assert_int_equal(dig_signals_sensing(s.valid), DIG_SENSING_CYLINDERS);
+    assert_false(dig_sample_has_moment(&s));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +202,7 @@ int main(void)
         cmocka_unit_test(a_sample_is_complete_without_the_optional_signals_only),
         cmocka_unit_test(angles_and_the_buckets_pressures_tell_the_moment),
         cmocka_unit_test(what_is_missing_is_named),
+        cmocka_unit_test(a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle),
     };
     return cmocka_run_group_tests_name("machine", tests, NULL, NULL);
 }

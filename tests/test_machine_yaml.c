@@ -48,6 +48,30 @@ static void every_machine_that_is_shipped_loads(void **state)
     yaml_loads_all("config/machines", loads);
 }
 
+static void the_example_of_a_rig_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    struct dig_error   error = { "" };
+    struct dig_machine m;
+    if (dig_machine_read("tests/data/formats/machine_sensor.yaml", &m, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_true(m.sensor.fitted);
+    assert_close(m.sensor.place_m.x, -0.06, 0.0);
+    assert_close(m.sensor.place_m.y, 0.005, 0.0);
+    assert_close(m.sensor.turn_rad, DIG_PI / 2.0, 1e-15);
+    assert_close(m.sensor.limit_N, 290.0, 0.0);
+    assert_close(m.sensor.limit_Nm, 10.0, 0.0);
+    assert_close(m.sensor.step_N, 0.125, 0.0);
+    assert_close(m.sensor.step_Nm, 0.0025, 0.0);
+    assert_close(m.sensor.sigma_N, 0.06, 0.0);
+    assert_close(m.sensor.sigma_Nm, 0.001, 0.0);
+    assert_close(m.sensor.path_sigma_m, 2e-5, 0.0);
+    assert_close(m.link[DIG_JOINT_BUCKET].com_m.y, 0.01, 0.0);
+    assert_close(m.angle_sigma_rad, 1e-4, 0.0);
+    assert_close(m.bucket_width_m, 0.07, 0.0);
+}
+
 static void expect_refusal(const char *const text, const char *const says)
 {
     struct dig_error   error = { "" };
@@ -80,6 +104,28 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
                       expect_refusal);
 }
 
+static void what_no_rig_can_be_is_refused_with_line_and_key(void **state)
+{
+    (void)state;
+    static const char *const bad[][3] = {
+        { "place_m: [-0.06, 0.005]", "place_m: [-60, 5]", "bad.yaml:14: force_sensor.place_m: 60" },
+        { "turn_deg: 90", "turn_deg: 900", "force_sensor.turn_deg: 900" },
+        { "limit_N: 290", "limit_N: 0", "force_sensor.limit_N: 0" },
+        { "limit_Nm: 10", "limit_Nm: -10", "force_sensor.limit_Nm: -10" },
+        { "step_N: 0.125", "step_N: 290", "force_sensor.step_N: 290" },
+        { "step_Nm: 0.0025", "step_Nm: -1", "force_sensor.step_Nm: -1" },
+        { "sigma_N: 0.06", "sigma_N: -1", "force_sensor.sigma_N: -1" },
+        { "sigma_Nm: 0.001", "sigma_Nm: 11", "force_sensor.sigma_Nm: 11" },
+        { "path_sigma_m: 2.0e-5", "path_sigma_m: -1", "force_sensor.path_sigma_m: -1" },
+        { "mass_kg: 0.15", "mass_kg: 0", "bucket.mass_kg: 0" },
+        { "angle_sigma_rad: 1.0e-4", "angle_sigma_rad: -1", "sensors.angle_sigma_rad: -1" },
+        { "bucket_width_m: 0.07", "bucket_width_m: 0", "bucket_width_m: 0" },
+        { "sensors:\n", "boom: {length_m: 1}\nsensors:\n", "boom: unknown key" },
+    };
+    yaml_refuses_each("tests/data/formats/machine_sensor.yaml", sizeof bad / sizeof bad[0], bad,
+                      expect_refusal);
+}
+
 static void every_key_is_known_and_needed(void **state)
 {
     (void)state;
@@ -90,6 +136,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(the_example_of_a_rig_loads_as_it_is_written),
+        cmocka_unit_test(what_no_rig_can_be_is_refused_with_line_and_key),
         cmocka_unit_test(every_machine_that_is_shipped_loads),
         cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
         cmocka_unit_test(every_key_is_known_and_needed),

@@ -75,6 +75,53 @@ static void the_booms_and_the_arms_pressures_may_lack_a_column(void **state)
     assert_non_null(strstr(error.text, "bucket_rod_Pa: missing"));
 }
 
+static void a_rig_s_recording_holds_its_force_sensor(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r    = { 0 };
+    const char *const            path = "tests/data/formats/machine_recording_sensor.csv";
+    assert_true(dig_machine_recording_is(path));
+    assert_int_equal(dig_machine_recording_read(path, &r, NULL), DIG_OK);
+    assert_int_equal(r.rows, 3);
+    assert_true(dig_sample_is_complete(&r.row[0]) && dig_sample_has_moment(&r.row[0]));
+    assert_close(r.row[0].value[DIG_SIGNAL_PIN_X_m], -0.0833, 0.0);
+    assert_close(r.row[0].value[DIG_SIGNAL_PIN_Z_m], 0.1719, 0.0);
+    assert_close(r.row[0].value[DIG_SIGNAL_BUCKET_rad], -1.309, 0.0);
+    assert_close(r.row[1].value[DIG_SIGNAL_SENSOR_FX_N], 1.25, 0.0);
+    assert_close(r.row[1].value[DIG_SIGNAL_SENSOR_FZ_N], -0.375, 0.0);
+    assert_close(r.row[1].value[DIG_SIGNAL_SENSOR_MY_Nm], 0.0266, 0.0);
+    assert_false(r.row[2].valid[DIG_SIGNAL_SENSOR_FZ_N]);
+    assert_false(dig_sample_has_moment(&r.row[2]));
+    assert_false(r.row[0].valid[DIG_SIGNAL_BOOM_rad] || r.row[0].valid[DIG_SIGNAL_BOOM_HEAD_Pa]);
+
+    // Written and read back it is the same, and no column of a machine with cylinders comes in.
+    struct dig_machine_recording again = { 0 };
+    const char *const            copy  = scratch_path("sensor.csv");
+    assert_int_equal(dig_machine_recording_write(copy, &r, NULL), DIG_OK);
+    size_t      size = 0;
+    char *const text = scratch_read(copy, &size);
+    assert_null(strstr(text, "boom"));
+    free(text);
+    assert_int_equal(dig_machine_recording_read(copy, &again, NULL), DIG_OK);
+    assert_int_equal(again.rows, r.rows);
+    assert_memory_equal(again.row, r.row, r.rows * sizeof r.row[0]);
+    dig_machine_recording_finish(&again);
+    dig_machine_recording_finish(&r);
+
+    struct dig_error  error = { "" };
+    const char *const both  = scratch_write(
+         "both.csv", "# a comment\n\nt_s,boom_rad,bucket_rad,pin_X_m,pin_Z_m,sensor_Fx_N,"
+                      "sensor_Fz_N,sensor_My_Nm\n0,1,2,3,4,5,6,7\n.01,1,2,3,4,5,6,7\n");
+    assert_int_equal(dig_machine_recording_read(both, &r, &error), DIG_EINVAL);
+    assert_contains(error.text, "\"boom_rad\": unknown");
+    const char *const lacks = scratch_write(
+        "lacks.csv", "t_s,bucket_rad,pin_X_m,sensor_Fx_N,sensor_Fz_N,sensor_My_Nm\n0,1,2,3,4,5\n");
+    assert_int_equal(dig_machine_recording_read(lacks, &r, &error), DIG_EINVAL);
+    assert_contains(error.text, "pin_Z_m: missing");
+    assert_false(dig_machine_recording_is("tests/data/formats/force_recording.csv"));
+    assert_false(dig_machine_recording_is(scratch_path("none.csv")));
+}
+
 static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **state)
 {
     (void)state;
@@ -231,7 +278,8 @@ static void a_machine_recording_is_read_back_with_its_gaps(void **state)
     for (int i = 0; i < 20; i++) {
         rows[i].time_ns = INT64_C(3600000000000) + i * INT64_C(10000001);
         for (int s = 0; s < DIG_SIGNALS; s++) {
-            rows[i].valid[s] = (i + s) % 3 != 0 && s != DIG_SIGNAL_PITCH_rad;
+            rows[i].valid[s] =
+                (i + s) % 3 != 0 && s <= DIG_SIGNAL_TEMPERATURE_degC && s != DIG_SIGNAL_PITCH_rad;
             rows[i].value[s] = rows[i].valid[s] ? 12345678.9 * s - i / 3.0 : 0.0;
         }
     }
@@ -381,6 +429,7 @@ int main(void)
         cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
         cmocka_unit_test(a_machine_recording_may_have_a_hole_and_its_times_are_rounded),
         cmocka_unit_test(the_booms_and_the_arms_pressures_may_lack_a_column),
+        cmocka_unit_test(a_rig_s_recording_holds_its_force_sensor),
         cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
         cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
         cmocka_unit_test(defects_of_machine_recordings_and_beds_are_told_too),

@@ -254,6 +254,42 @@ static void a_machine_with_the_buckets_pressures_alone_can_be_mapped(void **stat
     assert_int_equal(none.groups, 42);
 }
 
+// A rig's: the pin's place in millimetres, the sensor in newtons, each register signed.
+static void a_rig_with_a_force_sensor_can_be_mapped(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "kind: modbus\nsignals:\n"
+        "  - {name: bucket_rad,   register: 0, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+        "  - {name: pin_X_m,      register: 1, type: int16, scale: 1e-4, sign: -1, min: -1, max: "
+        "1}\n"
+        "  - {name: pin_Z_m,      register: 2, type: int16, scale: 1e-4, min: -4, max: 4}\n"
+        "  - {name: sensor_Fx_N,  register: 3, type: int16, scale: 0.01, min: -300, max: 300}\n"
+        "  - {name: sensor_Fz_N,  register: 4, type: int16, scale: 0.01, min: -300, max: 300}\n"
+        "  - {name: sensor_My_Nm, register: 5, type: int16, scale: 1e-3, min: -10, max: 10}\n";
+    const struct dig_signal_map map = modbus_map(scratch_write("sensor.yaml", text));
+    assert_int_equal(dig_signal_map_sensing(&map), DIG_SENSING_SENSOR);
+    assert_true(map.group[0].needed && !map.group[0].spared);
+    const uint16_t     registers[] = { 0xCE14, 833, 1719, 125, 0xFFDB, 27 };
+    struct dig_reading r;
+    dig_signal_map_registers(&map, 0, registers, 7, &r);
+    assert_close(r.value[DIG_SIGNAL_BUCKET_rad], -1.278, 1e-12);
+    assert_close(r.value[DIG_SIGNAL_PIN_X_m], -0.0833, 1e-12);
+    assert_close(r.value[DIG_SIGNAL_PIN_Z_m], 0.1719, 1e-12);
+    assert_close(r.value[DIG_SIGNAL_SENSOR_FX_N], 1.25, 1e-12);
+    assert_close(r.value[DIG_SIGNAL_SENSOR_FZ_N], -0.37, 1e-12);
+    assert_close(r.value[DIG_SIGNAL_SENSOR_MY_Nm], 0.027, 1e-12);
+
+    struct dig_error      error = { "" };
+    struct dig_signal_map none;
+    char                  bad[1024];
+    (void)snprintf(bad, sizeof bad, "%.*s", (int)(strstr(text, "  - {name: sensor_My") - text),
+                   text);
+    assert_int_equal(dig_signal_map_read(scratch_write("bad.yaml", bad), NULL, &none, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "no entry sensor_My_Nm, expected the pin's place");
+}
+
 static void defects_are_refused_with_file_line_and_key(void **state)
 {
     (void)state;
@@ -462,6 +498,7 @@ int main(void)
         cmocka_unit_test(a_machine_with_the_buckets_pressures_alone_can_be_mapped),
         cmocka_unit_test(a_block_of_force_alone_is_spared),
         cmocka_unit_test(registers_far_apart_come_in_blocks),
+        cmocka_unit_test(a_rig_with_a_force_sensor_can_be_mapped),
         cmocka_unit_test(defects_are_refused_with_file_line_and_key),
         cmocka_unit_test(can_entries_must_fit_the_dbc),
     };

@@ -164,6 +164,12 @@ static enum dig_status load_machine(const struct dig_campaign *const  from,
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     enum dig_status status = dig_machine_read(from->machine, &machine, error);
+    if (status == DIG_OK && machine.sensor.fitted) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s: a force sensor, expected a machine with cylinders or force "
+                               "recordings: effects of cylinders are what is looked for in air",
+                               from->machine);
+    }
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
         status                 = digloop_read_machine(file, &machine, &recording[i], error);

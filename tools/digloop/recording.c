@@ -25,14 +25,23 @@ bool digloop_is_force_recording(const char *const path)
     if (dig_lcm_log_is(path)) {
         return false;
     }
-    char        line[512] = "";
-    FILE *const file      = fopen(path, "r");
-    while (file != NULL && fgets(line, sizeof line, file) != NULL && line[0] == '#') {
+    return !dig_machine_recording_is(path);
+}
+
+// What tells the forces must be what the machine has: else not one sample could be used.
+static enum dig_status check_kind(const struct dig_machine *const           machine,
+                                  const struct dig_machine_recording *const recording,
+                                  const char *const file, struct dig_error *const error)
+{
+    bool senses = false;
+    for (size_t i = 0; i < recording->rows; i++) {
+        senses = senses || recording->row[i].valid[DIG_SIGNAL_SENSOR_MY_Nm];
     }
-    if (file != NULL) {
-        (void)fclose(file);
-    }
-    return strstr(line, dig_signal_name(DIG_SIGNAL_BOOM_rad)) == NULL;
+    return senses == machine->sensor.fitted
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL, "%s: %s, expected what machine %s has", file,
+                               senses ? "readings of a force sensor" : "none of a force sensor",
+                               machine->name);
 }
 
 // What a sensor cut off would be taken for the soil's, or for an effect.
@@ -58,6 +67,9 @@ enum dig_status digloop_read_machine(const char *const                   path,
     struct dig_machine_recording read = { .rows = 0 };
     enum dig_status status            = dig_lcm_log_is(path) ? dig_lcm_log_read(path, &read, error)
                                                              : dig_machine_recording_read(path, &read, error);
+    if (status == DIG_OK) {
+        status = check_kind(machine, &read, path, error);
+    }
     if (status == DIG_OK) {
         status = check_range(machine, &read, path, error);
     }

@@ -103,7 +103,6 @@ static enum dig_status load(const struct dig_rig_options *const options,
 static void describe(const struct dig_machine *const machine, const double scene_tooth_m,
                      const struct dig_rig_track *const track)
 {
-    char text[200];
     (void)fprintf(
         stderr,
         "digrig: %s, lambda %.2f, %.1f s; pin starts at X %.2f m, Z %.2f m; blended within "
@@ -112,7 +111,7 @@ static void describe(const struct dig_machine *const machine, const double scene
         machine->name, machine->link[DIG_JOINT_BUCKET].length_m / scene_tooth_m,
         (double)(track->rows - 1) * track->step_s, track->placement.X_m, track->placement.Z_m,
         1e3 * track->blend_off_m, 57.29578 * track->blend_off_rad, 100.0 * track->nearest.share,
-        dig_rig_margin_text(&track->nearest, sizeof text, text));
+        track->nearest_text);
 }
 
 static int work(const struct dig_rig_options *const options)
@@ -130,6 +129,12 @@ static int work(const struct dig_rig_options *const options)
     }
 
     enum dig_status status = load(options, &machine, &track_options.scene_tooth_m, digs, &error);
+    if (status == DIG_OK && machine.sensor.fitted && options->command == DIG_RIG_COMMAND_SERVE) {
+        status = dig_error_set(&error, DIG_EINVAL,
+                               "%s: a force sensor has no layout on the buses served here, "
+                               "expected record",
+                               machine.name);
+    }
     if (status == DIG_OK) {
         status = dig_rig_track_build(&machine, &track_options, digs->recordings, digs->recording,
                                      &track, &error);

@@ -21,12 +21,13 @@ struct dig_rig_noise dig_rig_noise_init(uint64_t seed);
 double dig_rig_noise_normal(struct dig_rig_noise *noise);
 
 /// What the sensors read of one row at time_ns: angles with angle_sigma_rad, pressures with their
-/// cylinder's pressure_sigma_Pa of normal noise, pitch 0, oil at 45 degC. noise NULL: exact.
+/// cylinder's pressure_sigma_Pa of normal noise, pitch 0, oil at 45 degC. With a force sensor: the
+/// pin's place, the bucket's angle and the sensor's load, each with its sigma. noise NULL: exact.
 struct dig_sample dig_rig_sense(const struct dig_machine *machine, const struct dig_rig_row *row,
                                 int64_t time_ns, struct dig_rig_noise *noise);
 
-/// Rounds angles and pressures to whole steps of machine->angle_step_rad and pressure_step_Pa
-/// (0: not at all), as a machine recording is to hold them.
+/// Rounds angles and pressures to whole steps of machine->angle_step_rad and pressure_step_Pa, a
+/// force sensor's readings to its steps (0: not at all), as a machine recording is to hold them.
 void dig_rig_quantise(const struct dig_machine *machine, struct dig_sample *sample);
 
 #endif // DIG_TOOLS_RIG_SENSORS_H

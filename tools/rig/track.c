@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Half width of the second difference that gives the accelerations, in frames.
 static const size_t reach = 5;
@@ -79,6 +80,49 @@ static enum dig_status move_links(const struct dig_machine *const  machine,
     return DIG_OK;
 }
 
+// The bucket's own motion at frame i of a machine with a force sensor. Still at both ends.
+static struct dig_rig_motion move_bucket(const struct dig_machine *const  machine,
+                                         const struct dig_rig_path *const path, const size_t i)
+{
+    if (i < reach || i + reach >= path->frames) {
+        return (struct dig_rig_motion){ .turn_radps2 = { 0.0 } };
+    }
+    const struct dig_rig_pose pose[3] = { path->frame[i - reach].pose, path->frame[i].pose,
+                                          path->frame[i + reach].pose };
+    return dig_rig_gauge_motion(machine, pose, (double)reach * DIG_RIG_STEP_s);
+}
+
+static enum dig_status fill_sensed(const struct dig_machine *const           machine,
+                                   const struct dig_rig_track_options *const options,
+                                   const struct dig_rig_path *const path, const size_t every,
+                                   struct dig_rig_track *const track, struct dig_error *const error)
+{
+    double worst_s = 0.0;
+    for (size_t r = 0; r < track->rows; r++) {
+        const size_t          i      = r * every;
+        struct dig_rig_motion motion = { .turn_radps2 = { 0.0 } };
+        if (!options->quasi_static) {
+            motion = move_bucket(machine, path, i);
+        }
+        const struct dig_rig_pose pose = placed(path, i, &track->placement);
+        const struct dig_rig_load load =
+            dig_rig_gauge_read(machine, &pose, &motion, &path->frame[i].soil);
+        char         text[sizeof track->nearest_text];
+        const double share = dig_rig_gauge_share(&machine->sensor, &load, sizeof text, text);
+        if (!(share >= track->nearest.share)) {
+            track->nearest.share = share;
+            worst_s              = (double)i * DIG_RIG_STEP_s;
+            memcpy(track->nearest_text, text, sizeof text);
+        }
+        track->row[r] =
+            (struct dig_rig_row){ .pose = pose, .soil = path->frame[i].soil, .load = load };
+    }
+    return track->nearest.share > 0.0
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL, "%s cannot do this dig: %s (at %.2f s)",
+                               machine->name, track->nearest_text, worst_s);
+}
+
 static enum dig_status refuse(const struct dig_machine *const    machine,
                               const struct dig_rig_margin *const margin, const double at_s,
                               struct dig_error *const error)
@@ -90,10 +134,10 @@ static enum dig_status refuse(const struct dig_machine *const    machine,
                          dig_rig_margin_text(margin, sizeof text, text), at_s);
 }
 
-static enum dig_status fill(const struct dig_machine *const           machine,
-                            const struct dig_rig_track_options *const options,
-                            const struct dig_rig_path *const path, const size_t every,
-                            struct dig_rig_track *const track, struct dig_error *const error)
+static enum dig_status fill_driven(const struct dig_machine *const           machine,
+                                   const struct dig_rig_track_options *const options,
+                                   const struct dig_rig_path *const path, const size_t every,
+                                   struct dig_rig_track *const track, struct dig_error *const error)
 {
     double worst_s = 0.0;
     for (size_t r = 0; r < track->rows; r++) {
@@ -127,7 +171,17 @@ static enum dig_status fill(const struct dig_machine *const           machine,
             .pressures = state.pressures,
         };
     }
+    (void)dig_rig_margin_text(&track->nearest, sizeof track->nearest_text, track->nearest_text);
     return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
+}
+
+static enum dig_status fill(const struct dig_machine *const           machine,
+                            const struct dig_rig_track_options *const options,
+                            const struct dig_rig_path *const path, const size_t every,
+                            struct dig_rig_track *const track, struct dig_error *const error)
+{
+    return machine->sensor.fitted ? fill_sensed(machine, options, path, every, track, error)
+                                  : fill_driven(machine, options, path, every, track, error);
 }
 
 enum dig_status dig_rig_track_build(const struct dig_machine *const           machine,
@@ -164,7 +218,7 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
         .blend_off_m   = path.blend_off_m,
         .blend_off_rad = path.blend_off_rad,
     };
-    if (!options->placed) {
+    if (!options->placed && !machine->sensor.fitted) {
         status = dig_rig_placement_find(machine, &path, &result.placement, error);
     }
     if (status == DIG_OK) {

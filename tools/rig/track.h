@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/machine.h"
 #include "core/recording.h"
+#include "tools/rig/gauge.h"
 #include "tools/rig/path.h"
 #include "tools/rig/placement.h"
 #include "tools/rig/state.h"
@@ -14,10 +15,11 @@
 #include <stddef.h>
 
 struct dig_rig_row {
-    struct dig_rig_pose      pose; // machine frame
-    struct dig_rig_wrench    soil; // machine frame
-    struct dig_rig_joints    joints;
+    struct dig_rig_pose      pose;   // machine frame
+    struct dig_rig_wrench    soil;   // machine frame
+    struct dig_rig_joints    joints; // of a machine with cylinders, and so are the pressures
     struct dig_rig_pressures pressures;
+    struct dig_rig_load      load; // of one with a force sensor
 };
 
 /// Row i is at i * step_s. Owned by the caller; free with dig_rig_track_finish().
@@ -27,6 +29,7 @@ struct dig_rig_track {
     struct dig_rig_row      *row;
     struct dig_rig_placement placement;
     struct dig_rig_margin    nearest; // the limit that came nearest over all rows
+    char                     nearest_text[200];
     double                   blend_off_m, blend_off_rad;
 };
 
@@ -44,8 +47,10 @@ struct dig_rig_track_options dig_rig_track_options_default(void);
 
 /// Path, placement, joints, pressures. Refuses what the machine cannot do, naming what stops it,
 /// its peak and its limit: DIG_EUNREACHABLE for a pose or a joint, stroke or lever out of bounds,
-/// DIG_EINVAL for a dig beyond a relief pressure, or that lifts or tips the machine, or an option
-/// out of its domain; DIG_ENOMEM. Accelerations are central differences of the links' places over
+/// DIG_EINVAL for a dig beyond a relief pressure or a force sensor's range, or that lifts or tips
+/// the machine, or an option out of its domain; DIG_ENOMEM. A bucket on a force sensor can be
+/// carried anywhere: its pin starts at 0, 0 unless it is placed. Accelerations are central
+/// differences of the links' places over
 /// +-5 ms. A few seconds for minutes of machine time.
 DIG_MUST_CHECK enum dig_status
 dig_rig_track_build(const struct dig_machine *machine, const struct dig_rig_track_options *options,
