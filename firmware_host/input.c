@@ -38,7 +38,7 @@ void dig_input_give(struct dig_input *const input, const struct dig_reading *con
     }
 }
 
-static void say(struct dig_input *const input, const struct dig_error *const error)
+void dig_input_say(struct dig_input *const input, const struct dig_error *const error)
 {
     struct dig_note note = { "" };
     if (error != NULL) {
@@ -69,7 +69,7 @@ void dig_input_run(struct dig_input *const input)
                 atomic_fetch_add(&input->reconnects, 1);
             }
             before = true;
-            say(input, NULL);
+            dig_input_say(input, NULL);
             const long long frames = atomic_load(&input->frames);
             atomic_store(&input->connected, true);
             read_on(input, &error);
@@ -82,7 +82,7 @@ void dig_input_run(struct dig_input *const input)
             }
         }
         if (error.text[0] != '\0') {
-            say(input, &error);
+            dig_input_say(input, &error);
             dig_input_pause(input, pause_ns);
             pause_ns = 2 * pause_ns < LONGEST_PAUSE ? 2 * pause_ns : LONGEST_PAUSE;
         }

@@ -79,6 +79,9 @@ DIG_MUST_CHECK enum dig_status dig_input_replay_create(struct dig_input         
 /// Hands a reading on, or counts it as lost.
 void dig_input_give(struct dig_input *input, const struct dig_reading *reading);
 
+/// Publishes the last trouble in words; NULL: it is over.
+void dig_input_say(struct dig_input *input, const struct dig_error *error);
+
 /// The input thread: returns when *stop is set or a replay ended.
 void dig_input_run(struct dig_input *input);
 

@@ -1,6 +1,9 @@
 // Modbus TCP and RTU through libmodbus: the blocks of registers the map names, each polled at its
 // own rate, one request at a time: the one that is due longest. Only functions 3 and 4, which read;
 // no call of this file can write.
+//
+// A block that does not answer holds up the others for RESPONSE_us each time. One that can be done
+// without, and is silent while the others answer, is asked only now and then.
 
 #include "firmware_host/input.h"
 #include "firmware_host/signal_map.h"
@@ -16,6 +19,8 @@
 #define RESPONSE_us    200000 // a server that is slower than this is taken for gone
 #define FAILURES_BORNE 5
 #define SPARED_ns      NS_PER_S // between polls of a block that can be done without and fails
+#define SILENCES_BORNE 3
+#define SILENT_s       5 // between polls of one that does not even answer
 
 struct modbus_source {
     struct dig_modbus_address    address;
@@ -24,6 +29,9 @@ struct modbus_source {
     // of each block
     int64_t next_ns[DIG_GROUPS_MAX];  // when the next poll is due
     int     failures[DIG_GROUPS_MAX]; // in a row
+    int     silences[DIG_GROUPS_MAX]; // time-outs in a row, with an answer of another block between
+    int64_t answers;                  // of all blocks …
+    int64_t answers_at[DIG_GROUPS_MAX]; // … when the block timed out last
 };
 
 static enum dig_status refuse(const struct dig_input *const input, const char *const what,
@@ -54,8 +62,47 @@ static enum dig_status open_modbus(struct dig_input *const input, struct dig_err
     for (size_t g = 0; g < s->map->groups; g++) {
         s->next_ns[g]  = now_ns;
         s->failures[g] = 0;
+        s->silences[g] = 0;
+
+        s->answers_at[g] = s->answers;
     }
     return DIG_OK;
+}
+
+static struct dig_error registers_of(const struct dig_input *const     input,
+                                     const struct dig_map_group *const group,
+                                     const char *const what, const char *const why)
+{
+    struct dig_error error = { "" };
+    (void)dig_error_set(&error, DIG_EIO, "%s: registers %u … %u: %s%s", input->name,
+                        group->first_register, group->first_register + group->registers - 1, what,
+                        why);
+    return error;
+}
+
+static bool can_be_spared(const struct dig_map_group *const group)
+{
+    return !group->needed || group->spared;
+}
+
+// A time-out. While nobody answers it is the server that is silent, not the block.
+static void hear_nothing(struct dig_input *const input, const size_t block)
+{
+    struct modbus_source *const       s     = input->source;
+    const struct dig_map_group *const group = &s->map->group[block];
+    if (s->answers > s->answers_at[block]) {
+        s->silences[block]++;
+    }
+    s->answers_at[block] = s->answers;
+    if (!can_be_spared(group) || s->silences[block] < SILENCES_BORNE) {
+        return;
+    }
+    if (s->silences[block] == SILENCES_BORNE) {
+        const struct dig_error error =
+            registers_of(input, group, "silent while others answer, asked every few seconds", "");
+        dig_input_say(input, &error);
+    }
+    s->next_ns[block] = dig_input_now_ns() + SILENT_s * NS_PER_S;
 }
 
 // A poll that failed. A frame that did not survive the wire, a refusal or a late answer is borne a
@@ -74,14 +121,18 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
         atomic_fetch_add(&input->timeouts, 1);
     }
     const bool few = ++s->failures[block] < FAILURES_BORNE;
-    if (borne && (few || !group->needed || group->spared)) {
+    if (borne && (few || can_be_spared(group))) {
         (void)modbus_flush(s->bus);
         s->next_ns[block] += few ? 0 : SPARED_ns;
+        if (why == ETIMEDOUT) {
+            hear_nothing(input, block);
+        }
         return DIG_OK;
     }
-    return dig_error_set(error, DIG_EIO, "%s: registers %u … %u: no good answer: %s", input->name,
-                         group->first_register, group->first_register + group->registers - 1,
-                         modbus_strerror(why));
+    if (error != NULL) {
+        *error = registers_of(input, group, "no good answer: ", modbus_strerror(why));
+    }
+    return DIG_EIO;
 }
 
 // The block that is due longest.
@@ -128,6 +179,11 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     atomic_fetch_add(&input->frames, 1);
     dig_input_give(input, &reading);
     s->failures[block] = 0;
+    s->answers++;
+    if (s->silences[block] >= SILENCES_BORNE) {
+        dig_input_say(input, NULL);
+    }
+    s->silences[block] = 0;
     return DIG_OK;
 }
 

@@ -30,8 +30,9 @@ struct server {
     atomic_bool       hang_up;          // end the connection instead of answering
     atomic_int        refuse;           // answer so many requests with an exception
     atomic_int        refused;          // requests for this register get an exception; 0: none
+    atomic_int        muted;            // requests for this register get no answer; 0: none
     atomic_int        first, registers; // of the last request
-    atomic_int        reads, writes, connections;
+    atomic_int        reads, writes, connections, unanswered;
     pthread_t         thread;
 };
 
@@ -52,7 +53,9 @@ static void answer(struct server *const s, modbus_t *const bus)
         const int            first = asked[0] << 8 | asked[1];
         atomic_store(&s->first, first);
         atomic_store(&s->registers, asked[2] << 8 | asked[3]);
-        if (first > 0 && first == atomic_load(&s->refused)) {
+        if (first > 0 && first == atomic_load(&s->muted)) {
+            atomic_fetch_add(&s->unanswered, 1);
+        } else if (first > 0 && first == atomic_load(&s->refused)) {
             (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS);
         } else if (atomic_load(&s->refuse) > 0) {
             atomic_fetch_sub(&s->refuse, 1);
@@ -75,7 +78,7 @@ static void *serve(void *const context)
         atomic_fetch_add(&s->connections, 1);
         modbus_t *const bus = modbus_new_tcp("127.0.0.1", s->port);
         (void)modbus_set_socket(bus, fd);
-        (void)modbus_set_indication_timeout(bus, 0, 200000);
+        (void)modbus_set_indication_timeout(bus, 0, 500000); // longer than a client waits
         answer(s, bus);
         modbus_close(bus);
         modbus_free(bus);
@@ -414,6 +417,50 @@ static void a_block_of_force_alone_is_done_without_until_it_is_back(void **state
     assert_int_equal(atomic_load(&c.input.reconnects), 0);
 }
 
+static double now_s(void)
+{
+    return 1e-9 * (double)dig_input_now_ns();
+}
+
+// A block without an answer costs the others 200 ms each time: after three times it is asked once
+// in five seconds, and said to be silent; the others go on. Then it is back.
+static void a_silent_block_is_asked_less_and_less_while_others_answer(void **state)
+{
+    (void)state;
+    struct server s = { 0 };
+    server_open(&s);
+    static struct client c;
+    atomic_store(&s.muted, 1011); // the temperature, due twice a second
+    client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
+    int             came[3] = { 0 };
+    struct dig_note note    = { "" };
+    bool            said    = false;
+    while (!said) {
+        count_blocks(&c, 0, came[0] + 1, came);
+        said = dig_latest_take(&c.notes, &note) && strstr(note.text, "silent") != NULL;
+    }
+    assert_contains(note.text, "registers 1011 … 1011: silent while others answer");
+    assert_true(atomic_load(&c.input.timeouts) >= 3);
+
+    const double begin_s = now_s();
+    const int    before  = atomic_load(&s.unanswered);
+    while (now_s() - begin_s < 2.5) {
+        count_blocks(&c, 0, came[0] + 1, came);
+        count_blocks(&c, 1, came[1] + 1, came);
+    }
+    assert_true(atomic_load(&s.unanswered) - before <= (now_s() - begin_s) / 5.0);
+    assert_int_equal(came[2], 0);
+    atomic_store(&s.muted, 0);
+    count_blocks(&c, 2, 1, came);
+    while (note.text[0] != '\0') {
+        assert_true(next_note(&c, &note));
+    }
+    client_stop(&c);
+    server_stop(&s);
+    assert_int_equal(atomic_load(&s.connections), 1);
+    assert_int_equal(atomic_load(&c.input.reconnects), 0);
+}
+
 static void what_cannot_be_polled_is_refused(void **state)
 {
     (void)state;
@@ -437,6 +484,7 @@ int main(void)
         cmocka_unit_test(blocks_that_lie_apart_are_asked_for_each_at_its_rate),
         cmocka_unit_test(a_block_that_is_refused_is_done_without_or_ends_the_connection),
         cmocka_unit_test(a_block_of_force_alone_is_done_without_until_it_is_back),
+        cmocka_unit_test(a_silent_block_is_asked_less_and_less_while_others_answer),
         cmocka_unit_test(what_cannot_be_polled_is_refused),
     };
     return cmocka_run_group_tests_name("input_modbus", tests, NULL, NULL);

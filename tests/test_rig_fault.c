@@ -23,6 +23,7 @@ static void every_kind_is_read_with_its_time(void **state)
     assert_int_equal(parse("stuck-angles@1").kind, DIG_RIG_FAULT_STUCK_ANGLES);
     assert_int_equal(parse("slow=2@1").kind, DIG_RIG_FAULT_SLOW);
     assert_int_equal(parse("far@1:2").kind, DIG_RIG_FAULT_FAR);
+    assert_int_equal(parse("far-silent@1:2").kind, DIG_RIG_FAULT_FAR_SILENT);
     assert_close(parse("drop=0.25@1:2").amount, 0.25, 0.0);
     assert_close(parse("drop=0.25@1:2").end_s, 3.0, 0.0);
     assert_close(parse("frozen@5.5:2").begin_s, 5.5, 0.0);

@@ -72,4 +72,24 @@ check "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
 check "the force is told before and again when the block is back" \
     awk '$1 == "estimate" { n = split($0, part, "\""); has = $9; if (has != was || !seen) turns = turns has; was = has; seen = 1 }
          END { exit !(turns ~ /10+1$/) }' "$f"
+
+# The same block without any answer, from the first request to the last: it is asked now and then only, so
+# that the moment hardly loses a sample.
+log mute
+start "$work/rigmute.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed 4 --start-delay 3 \
+    --fault far-silent@0 --json
+rig=$started
+sleep 0.5
+began=$SECONDS
+start "$work/mute.log" "$BIN/digsightd" -c "$work/force.yaml"
+daemon=$started
+wait "$rig"
+took=$((SECONDS - began + 1))
+stop "$daemon"
+read_log mute
+f=$work/mute.txt
+check "a block that does not answer is said to be silent" grep -q "registers 1005 … 1008: silent while others answer" "$work/mute.log"
+check "it is asked three times, then every five seconds" within "$(last health "$f" $h_timeouts)" 3 $((4 + took / 5))
+check "the moment identifies the gravel beside it" identified "$f"
+check "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
 finish

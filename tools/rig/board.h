@@ -13,7 +13,8 @@
 struct dig_rig_manner {
     double drop, exception, corrupt; // shares of requests
     double slow_s;                   // real time before each answer
-    bool   far;                      // registers from DIG_RIG_FAR on are refused as busy
+    bool   far;                      // registers from DIG_RIG_FAR on are refused as busy …
+    bool   far_silent;               // … or are not answered for
 };
 
 struct dig_rig_board {

@@ -90,11 +90,12 @@ static struct dig_rig_manner manner_at(const struct dig_rig_buses *const buses, 
 {
     const size_t n = buses->faults;
     return (struct dig_rig_manner){
-        .drop      = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_DROP, time_s),
-        .exception = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_EXCEPTION, time_s),
-        .corrupt   = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_CORRUPT, time_s),
-        .slow_s    = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_SLOW, time_s),
-        .far       = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR, time_s),
+        .drop       = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_DROP, time_s),
+        .exception  = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_EXCEPTION, time_s),
+        .corrupt    = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_CORRUPT, time_s),
+        .slow_s     = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_SLOW, time_s),
+        .far        = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR, time_s),
+        .far_silent = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR_SILENT, time_s),
     };
 }
 

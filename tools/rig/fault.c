@@ -24,6 +24,7 @@ static const struct {
     { "exception", DIG_RIG_FAULT_EXCEPTION, 1.0 },
     { "slow", DIG_RIG_FAULT_SLOW, 10.0 },
     { "far", DIG_RIG_FAULT_FAR, 0.0 },
+    { "far-silent", DIG_RIG_FAULT_FAR_SILENT, 0.0 },
 };
 
 // The number at text, in (0, most]; NULL behind it when it is none.
@@ -69,12 +70,13 @@ enum dig_status dig_rig_fault_parse(const char *const text, struct dig_rig_fault
             return DIG_OK;
         }
     }
-    return dig_error_set(error, DIG_EINVAL,
-                         "fault: \"%s\", expected not-available, nan, frozen, missing, "
-                         "out-of-range, stuck-pressures, stuck-angles, far, or drop, duplicate, "
-                         "reorder, corrupt, exception with =SHARE, or delay, slow with =SECONDS; "
-                         "then @SECONDS[:DURATION]",
-                         text);
+    return dig_error_set(
+        error, DIG_EINVAL,
+        "fault: \"%s\", expected not-available, nan, frozen, missing, "
+        "out-of-range, stuck-pressures, stuck-angles, far, far-silent, or drop, duplicate, "
+        "reorder, corrupt, exception with =SHARE, or delay, slow with =SECONDS; "
+        "then @SECONDS[:DURATION]",
+        text);
 }
 
 bool dig_rig_fault_is_on(const size_t faults, const struct dig_rig_fault fault[],

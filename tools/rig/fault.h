@@ -16,6 +16,7 @@
 //   exception=0.1@5:2   Modbus: that share of requests is answered with exception 6, busy
 //   slow=0.1@5:2        Modbus: every answer comes that many (real) seconds late
 //   far@5:2             Modbus: requests of registers from 1000 on get exception 6
+//   far-silent@5:2      Modbus: they get no answer
 
 #ifndef DIG_TOOLS_RIG_FAULT_H
 #define DIG_TOOLS_RIG_FAULT_H
@@ -40,7 +41,8 @@ enum dig_rig_fault_kind {
     DIG_RIG_FAULT_DELAY,
     DIG_RIG_FAULT_EXCEPTION,
     DIG_RIG_FAULT_SLOW,
-    DIG_RIG_FAULT_FAR
+    DIG_RIG_FAULT_FAR,
+    DIG_RIG_FAULT_FAR_SILENT
 };
 
 struct dig_rig_fault {

@@ -84,7 +84,8 @@ static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request
     if (manner.slow_s > 0.0) {
         (void)poll(NULL, 0, (int)(1e3 * manner.slow_s));
     }
-    if (manner.drop > 0.0 && dig_rig_wire_random(&server->random) < manner.drop) {
+    if ((manner.far_silent && far) ||
+        (manner.drop > 0.0 && dig_rig_wire_random(&server->random) < manner.drop)) {
         server->requests.unanswered++;
         return true;
     }
