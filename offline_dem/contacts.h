@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define DIG_BLOCK    32 // contacts computed together: their operands stay in the first cache
+#define DIG_BLOCK    64 // contacts computed together: their operands stay in the first cache
 #define DIG_MEMORIES 6  // numbers of a struct dig_memory
 
 struct dig_contacts {

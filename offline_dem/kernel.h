@@ -19,14 +19,17 @@ enum dig_isa dig_kernel_best(void);
 /// "baseline", "avx2", "avx512f".
 const char *dig_kernel_name(enum dig_isa isa);
 
-/// Operands of a block of contacts, filled by whoever knows the geometry; results of the law.
+/// Operands of a block of contacts, filled by whoever knows the geometry; the law leaves its
+/// results in their place.
 struct dig_block {
-    _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
-    _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
+    union {
+        _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
+        _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
+    };
 };
 
 /// The law on count <= DIG_BLOCK contacts, whose operands stand in block->in and whose memories
-/// stand in memory; memories are updated, block->out is filled.
+/// stand in memory; memories are updated, block->out is filled and block->in is gone.
 void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, size_t count,
                       double memory[DIG_MEMORIES][DIG_BLOCK], struct dig_block *block);
 

@@ -161,26 +161,45 @@ static inline struct dig_law dig_law_wall(const struct dig_law_material *const m
     return law;
 }
 
-/// One contact over one step. Without branches, so that a loop over it becomes vector code; bodies
-/// that do not touch get zeros, and *memory is cleared.
-__attribute__((always_inline)) static inline struct dig_push
-dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch t,
-             struct dig_memory *const memory)
+/// The line of centres: the unit vector n from j to i, and their distance.
+struct dig_line {
+    double nx, ny, nz, d_m;
+};
+
+/// What the step makes of a contact before its springs are capped.
+struct dig_strain {
+    double normal_N;
+    double vx_mps, vy_mps, vz_mps; // slip of the contact point
+    double spring2_m2;             // |xi|^2
+    double torque2_Nm2;            // |M|^2
+};
+
+/// What friction leaves of the springs and of the damping: 1 where it bears them.
+struct dig_caps {
+    double spring, damping, torque;
+};
+
+// One contact over one step in four stages, each without branches, so that a loop over it becomes
+// vector code. They stand apart because every stage waits for the one before: with many contacts at
+// the same stage the processor works on the others meanwhile.
+#define DIG_LAW_STAGE __attribute__((always_inline)) static inline
+
+DIG_LAW_STAGE struct dig_line dig_law_line(const double dx_m, const double dy_m, const double dz_m)
 {
     // The floor keeps a lane of padding from dividing by zero.
-    const double d2_m2    = t.dx_m * t.dx_m + t.dy_m * t.dy_m + t.dz_m * t.dz_m + 1e-300;
-    const double d_m      = sqrt(d2_m2);
-    const bool   touching = d_m < law.reach_m;
-    const double inv      = 1.0 / d_m;
-    const double nx       = t.dx_m * inv;
-    const double ny       = t.dy_m * inv;
-    const double nz       = t.dz_m * inv;
+    const double d_m = sqrt(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m + 1e-300);
+    const double inv = 1.0 / d_m;
+    return (struct dig_line){ dx_m * inv, dy_m * inv, dz_m * inv, d_m };
+}
 
+/// The memory grows with the slip and the turning. Of the touch only velocities are read.
+DIG_LAW_STAGE struct dig_strain dig_law_strain(const struct dig_law law, const double dt_s,
+                                               const struct dig_line n, const struct dig_touch t,
+                                               struct dig_memory *const memory)
+{
     // Normal
-    const double delta_m  = law.reach_m - d_m;
-    const double vn_mps   = t.vx_mps * nx + t.vy_mps * ny + t.vz_mps * nz;
-    const double normal_N = law.normal_Npm * delta_m - law.damping_Nspm * vn_mps;
-    const double load_N   = fabs(normal_N);
+    const double delta_m = law.reach_m - n.d_m;
+    const double vn_mps  = t.vx_mps * n.nx + t.vy_mps * n.ny + t.vz_mps * n.nz;
 
     // Slip of the contact point
     const double ci_m = law.lever_i_m - 0.5 * delta_m;
@@ -188,45 +207,91 @@ dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch
     const double wx   = ci_m * t.ix_radps + cj_m * t.jx_radps;
     const double wy   = ci_m * t.iy_radps + cj_m * t.jy_radps;
     const double wz   = ci_m * t.iz_radps + cj_m * t.jz_radps;
-    const double vx   = t.vx_mps - vn_mps * nx - (wy * nz - wz * ny);
-    const double vy   = t.vy_mps - vn_mps * ny - (wz * nx - wx * nz);
-    const double vz   = t.vz_mps - vn_mps * nz - (wx * ny - wy * nx);
+    const double vx   = t.vx_mps - vn_mps * n.nx - (wy * n.nz - wz * n.ny);
+    const double vy   = t.vy_mps - vn_mps * n.ny - (wz * n.nx - wx * n.nz);
+    const double vz   = t.vz_mps - vn_mps * n.nz - (wx * n.ny - wy * n.nx);
 
-    // Tangential spring, capped
+    // Tangential spring
     double       sx = memory->sx_m + vx * dt_s;
     double       sy = memory->sy_m + vy * dt_s;
     double       sz = memory->sz_m + vz * dt_s;
-    const double sn = sx * nx + sy * ny + sz * nz;
-    sx -= sn * nx;
-    sy -= sn * ny;
-    sz -= sn * nz;
-    const double spring_N = law.normal_Npm * sqrt(sx * sx + sy * sy + sz * sz);
-    const double grip_N   = law.friction * load_N;
-    const bool   slides   = spring_N > grip_N;
-    const double shorten  = slides ? grip_N / spring_N : 1.0;
-    const double damping  = slides ? 0.0 : law.damping_Nspm;
-    sx *= shorten;
-    sy *= shorten;
-    sz *= shorten;
-    const double tx = -law.normal_Npm * sx - damping * vx;
-    const double ty = -law.normal_Npm * sy - damping * vy;
-    const double tz = -law.normal_Npm * sz - damping * vz;
+    const double sn = sx * n.nx + sy * n.ny + sz * n.nz;
+    sx -= sn * n.nx;
+    sy -= sn * n.ny;
+    sz -= sn * n.nz;
 
-    // Rolling spring, capped
-    double       rx        = t.ix_radps - t.jx_radps;
-    double       ry        = t.iy_radps - t.jy_radps;
-    double       rz        = t.iz_radps - t.jz_radps;
-    const double rn        = rx * nx + ry * ny + rz * nz;
-    const double kr        = law.rolling_Nmprad * dt_s;
-    rx                     = memory->mx_Nm + kr * (rx - rn * nx);
-    ry                     = memory->my_Nm + kr * (ry - rn * ny);
-    rz                     = memory->mz_Nm + kr * (rz - rn * nz);
-    const double torque_Nm = sqrt(rx * rx + ry * ry + rz * rz);
+    // Rolling spring
+    double       rx = t.ix_radps - t.jx_radps;
+    double       ry = t.iy_radps - t.jy_radps;
+    double       rz = t.iz_radps - t.jz_radps;
+    const double rn = rx * n.nx + ry * n.ny + rz * n.nz;
+    const double kr = law.rolling_Nmprad * dt_s;
+    rx              = memory->mx_Nm + kr * (rx - rn * n.nx);
+    ry              = memory->my_Nm + kr * (ry - rn * n.ny);
+    rz              = memory->mz_Nm + kr * (rz - rn * n.nz);
+
+    *memory = (struct dig_memory){ sx, sy, sz, rx, ry, rz };
+    return (struct dig_strain){
+        .normal_N    = law.normal_Npm * delta_m - law.damping_Nspm * vn_mps,
+        .vx_mps      = vx,
+        .vy_mps      = vy,
+        .vz_mps      = vz,
+        .spring2_m2  = sx * sx + sy * sy + sz * sz,
+        .torque2_Nm2 = rx * rx + ry * ry + rz * rz,
+    };
+}
+
+/// Whether dig_law_caps() may give less than 1, told without a root: never false when it does.
+DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_strain strain)
+{
+    const double more     = 1.0 + 1e-12; // than all roundings on either side
+    const double load_N   = fabs(strain.normal_N);
+    const double grip_N   = law.friction * load_N;
+    const double limit_Nm = law.rolling_lever_m * load_N;
+    return (more * law.normal_Npm * law.normal_Npm * strain.spring2_m2 >= grip_N * grip_N) |
+           (more * strain.torque2_Nm2 >= limit_Nm * limit_Nm);
+}
+
+/// Of the strain the normal force and the two squares are read.
+DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struct dig_strain strain)
+{
+    const double load_N    = fabs(strain.normal_N);
+    const double spring_N  = law.normal_Npm * sqrt(strain.spring2_m2);
+    const double grip_N    = law.friction * load_N;
+    const bool   slides    = spring_N > grip_N;
+    const double torque_Nm = sqrt(strain.torque2_Nm2);
     const double limit_Nm  = law.rolling_lever_m * load_N;
-    const double cut       = torque_Nm > limit_Nm ? limit_Nm / torque_Nm : 1.0;
-    rx *= cut;
-    ry *= cut;
-    rz *= cut;
+    return (struct dig_caps){
+        .spring  = slides ? grip_N / spring_N : 1.0,
+        .damping = slides ? 0.0 : 1.0,
+        .torque  = torque_Nm > limit_Nm ? limit_Nm / torque_Nm : 1.0,
+    };
+}
+
+/// Of the strain the normal force and the slip are read. Bodies that do not touch get zeros, and
+/// *memory is cleared.
+DIG_LAW_STAGE struct dig_push dig_law_push(const struct dig_law law, const struct dig_line n,
+                                           const struct dig_strain  strain,
+                                           const struct dig_caps    caps,
+                                           struct dig_memory *const memory)
+{
+    const bool   touching = n.d_m < law.reach_m;
+    const double delta_m  = law.reach_m - n.d_m;
+    const double ci_m     = law.lever_i_m - 0.5 * delta_m;
+    const double cj_m     = law.lever_j_m > 0.0 ? law.lever_j_m - 0.5 * delta_m : 0.0;
+
+    const double sx = memory->sx_m * caps.spring;
+    const double sy = memory->sy_m * caps.spring;
+    const double sz = memory->sz_m * caps.spring;
+    const double rx = memory->mx_Nm * caps.torque;
+    const double ry = memory->my_Nm * caps.torque;
+    const double rz = memory->mz_Nm * caps.torque;
+    const double tx = -law.normal_Npm * sx - law.damping_Nspm * (strain.vx_mps * caps.damping);
+    const double ty = -law.normal_Npm * sy - law.damping_Nspm * (strain.vy_mps * caps.damping);
+    const double tz = -law.normal_Npm * sz - law.damping_Nspm * (strain.vz_mps * caps.damping);
+    const double ax = n.ny * tz - n.nz * ty;
+    const double ay = n.nz * tx - n.nx * tz;
+    const double az = n.nx * ty - n.ny * tx;
 
     memory->sx_m  = touching ? sx : 0.0;
     memory->sy_m  = touching ? sy : 0.0;
@@ -234,14 +299,10 @@ dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch
     memory->mx_Nm = touching ? rx : 0.0;
     memory->my_Nm = touching ? ry : 0.0;
     memory->mz_Nm = touching ? rz : 0.0;
-
-    const double ax = ny * tz - nz * ty;
-    const double ay = nz * tx - nx * tz;
-    const double az = nx * ty - ny * tx;
     return (struct dig_push){
-        .fx_N  = touching ? normal_N * nx + tx : 0.0,
-        .fy_N  = touching ? normal_N * ny + ty : 0.0,
-        .fz_N  = touching ? normal_N * nz + tz : 0.0,
+        .fx_N  = touching ? strain.normal_N * n.nx + tx : 0.0,
+        .fy_N  = touching ? strain.normal_N * n.ny + ty : 0.0,
+        .fz_N  = touching ? strain.normal_N * n.nz + tz : 0.0,
         .ix_Nm = touching ? -ci_m * ax - rx : 0.0,
         .iy_Nm = touching ? -ci_m * ay - ry : 0.0,
         .iz_Nm = touching ? -ci_m * az - rz : 0.0,
@@ -249,6 +310,17 @@ dig_law_step(const struct dig_law law, const double dt_s, const struct dig_touch
         .jy_Nm = touching ? -cj_m * ay + ry : 0.0,
         .jz_Nm = touching ? -cj_m * az + rz : 0.0,
     };
+}
+
+/// One contact over one step: all stages. Bodies that do not touch get zeros, and *memory is
+/// cleared.
+DIG_LAW_STAGE struct dig_push dig_law_step(const struct dig_law law, const double dt_s,
+                                           const struct dig_touch   t,
+                                           struct dig_memory *const memory)
+{
+    const struct dig_line   n      = dig_law_line(t.dx_m, t.dy_m, t.dz_m);
+    const struct dig_strain strain = dig_law_strain(law, dt_s, n, t, memory);
+    return dig_law_push(law, n, strain, dig_law_caps(law, strain), memory);
 }
 
 #endif // DIG_OFFLINE_DEM_LAW_H

@@ -12,7 +12,7 @@
 // it is to find a grain that exists.
 static void pad(struct dig_contacts *const list)
 {
-    for (size_t c = list->n; c % 4 != 0; c++) {
+    for (size_t c = list->n; c % 8 != 0; c++) {
         list->i[c] = 0;
         list->j[c] = 0;
     }
