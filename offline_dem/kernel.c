@@ -3,6 +3,7 @@
 #include "offline_dem/period.h"
 #include "offline_dem/rows.h"
 #include "offline_dem/stages.h"
+#include "offline_dem/wall_rows.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -48,12 +49,33 @@ BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
     }
 }
 
+// Where a block of contacts finds its memories: in the list, or when the list is to stay as it is
+// in a copy.
+BODY void open_memories(const bool still, struct dig_contacts *const list, const size_t first,
+                        double copy[DIG_MEMORIES][DIG_BLOCK], double *memories[DIG_MEMORIES])
+{
+    for (int m = 0; m < DIG_MEMORIES; m++) {
+        memories[m] = list->memory[m] + first;
+        if (still) {
+            memcpy(copy[m], memories[m], sizeof copy[m]);
+            memories[m] = copy[m];
+        }
+    }
+}
+
 BODY void pairs_body(const bool wide, const bool general, const struct dig_law law,
                      const double dt_s, const double period_m, const bool still,
                      struct dig_contacts *const list, struct dig_grains *const grains)
 {
+    if (list->n == 0) {
+        return;
+    }
+    // Cleared once a list: the analyzer does not see that every stage fills what the next one
+    // reads.
     struct dig_block block;
-    double           copy[DIG_MEMORIES][DIG_BLOCK];
+    memset(&block, 0, sizeof block);
+    double  copy[DIG_MEMORIES][DIG_BLOCK];
+    double *memories[DIG_MEMORIES] = { NULL };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
@@ -61,16 +83,38 @@ BODY void pairs_body(const bool wide, const bool general, const struct dig_law l
         if (period_m > 0.0) {
             fold(period_m, count, block.in[1]);
         }
-        double *memories[DIG_MEMORIES];
-        for (int m = 0; m < DIG_MEMORIES; m++) {
-            memories[m] = list->memory[m] + first;
-            if (still) {
-                memcpy(copy[m], memories[m], sizeof copy[m]);
-                memories[m] = copy[m];
-            }
-        }
+        open_memories(still, list, first, copy, memories);
         block_body(general, law, dt_s, count, memories, &block);
         scatter(wide, list, &block, first, count, grains->load);
+    }
+}
+
+BODY void walls_body(const bool general, const struct dig_law law, const double dt_s,
+                     const struct dig_wall wall[], const bool still,
+                     struct dig_contacts *const list, struct dig_grains *const grains,
+                     double on_walls_N[3])
+{
+    if (list->n == 0) {
+        return;
+    }
+    // Cleared once a list: the analyzer does not see that every stage fills what the next one
+    // reads.
+    struct dig_block block;
+    memset(&block, 0, sizeof block);
+    double  copy[DIG_MEMORIES][DIG_BLOCK];
+    double *memories[DIG_MEMORIES] = { NULL };
+    four    sum_N                  = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };
+    for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+        const size_t left  = list->n - first;
+        const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
+        // The law reaches as far as the grain's radius.
+        gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
+        open_memories(still, list, first, copy, memories);
+        block_body(general, law, dt_s, count, memories, &block);
+        scatter_walls(list, &block, first, count, grains->load, &sum_N);
+    }
+    for (int k = 0; k < 3; k++) {
+        on_walls_N[k] = sum_N[k];
     }
 }
 
@@ -166,6 +210,17 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
             pairs_body(wide, false, *law, dt_s, period_m, still, list, grains);                    \
         }                                                                                          \
     }                                                                                              \
+    attribute static void walls_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const struct dig_wall wall[], const bool still,           \
+                                         struct dig_contacts *const list,                          \
+                                         struct dig_grains *const grains, double on_walls_N[3])    \
+    {                                                                                              \
+        if (law->general) {                                                                        \
+            walls_body(true, *law, dt_s, wall, still, list, grains, on_walls_N);                   \
+        } else {                                                                                   \
+            walls_body(false, *law, dt_s, wall, still, list, grains, on_walls_N);                  \
+        }                                                                                          \
+    }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
                                            const double dt_s, const double(*const at_m)[4],        \
                                            const size_t count, const uint32_t *const which,        \
@@ -217,6 +272,18 @@ void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, c
                       struct dig_grains *const grains)
 {
     run_pairs(isa, law, dt_s, period_y_m, true, list, grains);
+}
+
+void dig_kernel_walls(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const struct dig_wall wall[], const bool still,
+                      struct dig_contacts *const list, struct dig_grains *const grains,
+                      double on_walls_N[3])
+{
+    switch (isa) {
+    case DIG_ISA_AVX512: walls_avx512(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    case DIG_ISA_AVX2: walls_avx2(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    case DIG_ISA_BASE: walls_base(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    }
 }
 
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,

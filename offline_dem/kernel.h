@@ -8,8 +8,10 @@
 #include "offline_dem/contacts.h"
 #include "offline_dem/grains.h"
 #include "offline_dem/law.h"
+#include "offline_dem/wall.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum dig_isa { DIG_ISA_BASE, DIG_ISA_AVX2, DIG_ISA_AVX512 };
 
@@ -26,6 +28,9 @@ struct dig_block {
         _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
         _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
     };
+    // Between the stages of the plain law: distances, and whether a cap may hold.
+    _Alignas(64) double d_m[DIG_BLOCK];
+    _Alignas(64) int64_t may_cap[DIG_BLOCK];
 };
 
 /// The law on count <= DIG_BLOCK contacts, whose operands stand in block->in and whose memories
@@ -41,6 +46,12 @@ void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s, 
 /// The same, but the contacts remember nothing of it: for grains that are held still.
 void dig_kernel_still(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
                       struct dig_contacts *list, struct dig_grains *grains);
+
+/// Forces and torques of all contacts of a list of grains with walls, added to the loads; the
+/// walls' reaction is added to on_walls_N. With `still` the contacts remember nothing of it.
+void dig_kernel_walls(enum dig_isa isa, const struct dig_law *law, double dt_s,
+                      const struct dig_wall wall[], bool still, struct dig_contacts *list,
+                      struct dig_grains *grains, double on_walls_N[3]);
 
 /// Kicks every grain (with `which`: those `count` grains only) over kick_s with its load and
 /// gravity, moves it over dt_s and clears its load. at_m: where each grain stood when the contact

@@ -160,13 +160,11 @@ BODY void find_pushes(const struct dig_law law, const size_t padded,
 BODY void block_plain(const struct dig_law law, const double dt_s, const size_t count,
                       double *const memories[DIG_MEMORIES], struct dig_block *const block)
 {
-    const size_t         padded = pad(count, block);
-    _Alignas(64) double  d_m[DIG_BLOCK];
-    _Alignas(64) int64_t may_cap[DIG_BLOCK];
-    find_lines(padded, block->in, d_m);
-    find_strains(law, dt_s, padded, memories, block->in, d_m, may_cap);
-    find_caps(law, padded, block->in, may_cap);
-    find_pushes(law, padded, memories, block->in, d_m);
+    const size_t padded = pad(count, block);
+    find_lines(padded, block->in, block->d_m);
+    find_strains(law, dt_s, padded, memories, block->in, block->d_m, block->may_cap);
+    find_caps(law, padded, block->in, block->may_cap);
+    find_pushes(law, padded, memories, block->in, block->d_m);
 }
 
 BODY void block_general(const struct dig_law law, const double dt_s, const size_t count,

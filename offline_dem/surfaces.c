@@ -82,18 +82,6 @@ static void fill(struct dig_block *const block, const size_t c, const struct dig
     }
 }
 
-// A grain pressed through a wall still stands on the right side of it.
-static void fill_wall(const struct dig_wall *const wall, const double radius_m,
-                      const struct dig_motion *const m, const size_t c,
-                      struct dig_block *const block)
-{
-    const double *const n = wall->normal;
-    const double h_m      = n[0] * m->x_m[0] + n[1] * m->x_m[1] + n[2] * m->x_m[2] - wall->offset_m;
-    const double safe_m   = fmax(h_m, 1e-3 * radius_m);
-    const double d[3]     = { safe_m * n[0], safe_m * n[1], safe_m * n[2] };
-    fill(block, c, m, d, (const double[3]){ 0.0, 0.0, 0.0 });
-}
-
 // One contact of the tool; the arm from the pin to the contact point is kept for the moment.
 static void fill_plate(const struct dig_tool *const tool, const double body_m[3],
                        const double closest_m[3], const struct dig_motion *const m, const size_t c,
@@ -123,8 +111,7 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
     dig_tool_to_body(w->tool, m->x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
-    while (c + used < count && list->i[first + c + used] == i &&
-           list->j[first + c + used] >= w->walls) {
+    while (c + used < count && list->i[first + c + used] == i) {
         const size_t k     = near.count;
         const size_t plate = list->j[first + c + used] - w->walls;
         dig_tool_closest(w->tool, plate, body_m, near.closest_m[k]);
@@ -165,12 +152,6 @@ static void apply(struct dig_world *const w, const struct dig_contacts *const li
             load->f_N[k] += f[k];
             load->t_Nm[k] += block->out[3 + k][c];
         }
-        if (list->j[first + c] < w->walls) {
-            for (int k = 0; k < 3; k++) {
-                w->on_walls.f_N[k] -= f[k];
-            }
-            continue;
-        }
         const double *const      a   = arm_m[c];
         struct dig_wrench *const sum = &w->on_tool;
         for (int k = 0; k < 3; k++) {
@@ -194,22 +175,17 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-// One list of contacts of grains of one radius. Contacts of held grains remember nothing new.
-static void step_list(struct dig_world *const w, const struct dig_law *const law,
-                      const double radius_m, const bool held, struct dig_contacts *const list)
+// One list of contacts of grains of one radius with the plates. Contacts of held grains remember
+// nothing new.
+static void step_plates(struct dig_world *const w, const struct dig_law *const law,
+                        const double radius_m, const bool held, struct dig_contacts *const list)
 {
     for (size_t first = 0; first < list->n;) {
         const size_t     count = block_length(list, first);
         struct dig_block block;
         double           arm_m[DIG_BLOCK][3];
         for (size_t c = 0; c < count;) {
-            if (list->j[first + c] < w->walls) {
-                fill_wall(&w->wall[list->j[first + c]], radius_m,
-                          &w->grains.motion[list->i[first + c]], c, &block);
-                c++;
-            } else {
-                c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
-            }
+            c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
         }
         double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
         for (int m = 0; m < DIG_MEMORIES; m++) {
@@ -228,14 +204,22 @@ void dig_surfaces_step(struct dig_world *const w, const bool held)
 {
     w->on_tool  = (struct dig_wrench){ 0 };
     w->on_walls = (struct dig_wrench){ 0 };
-    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
-        const size_t                kind     = l % DIG_KINDS_MAX;
-        const double                radius_m = w->grains.kind[kind].radius_m;
-        const struct dig_law *const law =
-            l < DIG_KINDS_MAX ? &w->wall_law[kind] : &w->tool_law[kind];
-        step_list(w, law, radius_m, false, &w->surface[l]);
+    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
+        const struct dig_law *const law = &w->wall_law[kind];
+        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, false, &w->surface[kind], &w->grains,
+                         w->on_walls.f_N);
         if (held) {
-            step_list(w, law, radius_m, true, &w->held_surface[l]);
+            dig_kernel_walls(w->isa, law, w->dt_s, w->wall, true, &w->held_surface[kind],
+                             &w->grains, w->on_walls.f_N);
+        }
+    }
+    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
+        const double                radius_m = w->grains.kind[kind].radius_m;
+        const struct dig_law *const law      = &w->tool_law[kind];
+        const size_t                l        = DIG_KINDS_MAX + kind;
+        step_plates(w, law, radius_m, false, &w->surface[l]);
+        if (held) {
+            step_plates(w, law, radius_m, true, &w->held_surface[l]);
         }
     }
 }
