@@ -2,6 +2,7 @@
 
 #include "closed_loop/dense.h"
 #include "closed_loop/levenberg.h"
+#include "closed_loop/soil_fit.h"
 
 #include <assert.h>
 #include <math.h>
@@ -195,15 +196,30 @@ static double effect_squares(const struct problem *const p, const size_t g,
     return sum;
 }
 
+// The size of a plain dig of the gravel over that of the group's digs, squared: what is known of
+// the plain digs' scatter counts for as much less beside digs that are larger.
+static double size2_of_plain(const struct problem *const p, const size_t g, const double x[],
+                             double *const factor)
+{
+    const struct dig_batch_group *const group = &p->batch->group[g];
+    double                              plain[DIG_FEATURES];
+    double                              amplitude[DIG_FORCE_CHANNELS];
+    dig_surface_features(p->soil->surface, group->trajectory, x, plain, amplitude);
+    *factor = dig_scatter_factor(p->batch->scatter, group->trajectory,
+                                 dig_soil_strength(p->soil->surface, x, amplitude));
+    return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
+}
+
 // What the effects bring along for one dig of a group: of templates, and what they may be unlike.
 static double noise_of_dig(const struct problem *const p, const size_t g,
-                           const struct dig_measured *const dig, const double x[])
+                           const struct dig_measured *const dig, const double x[],
+                           const double size2)
 {
     double feature[DIG_FEATURES];
     double of_templates;
     dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &of_templates);
-    return of_templates + unlikeness * unlikeness * effect_squares(p, g, dig, x) /
-                              (double)p->batch->group[g].features;
+    return size2 * of_templates + unlikeness * unlikeness * effect_squares(p, g, dig, x) /
+                                      (double)p->batch->group[g].features;
 }
 
 // v of each group at x. Digs that an effect makes differ share what it brings along on average.
@@ -212,16 +228,20 @@ static void weigh(struct problem *const p, const double x[], double noise[])
     for (size_t g = 0; g < p->batch->groups; g++) {
         const struct dig_batch_group *const group = &p->batch->group[g];
         double                              own   = 0.0;
+        double                              factor;
+        const double                        size2 = size2_of_plain(p, g, x, &factor);
         for (size_t i = 0; p->differs && i < p->batch->digs; i++) {
             if (p->batch->dig[i].group == g) {
-                own += noise_of_dig(p, g, &p->batch->measured[p->batch->dig[i].measured], x) /
-                       (double)group->digs;
+                const struct dig_measured *const dig =
+                    &p->batch->measured[p->batch->dig[i].measured];
+                own += noise_of_dig(p, g, dig, x, size2) / (double)group->digs;
             }
         }
         if (!p->differs && p->hypothesis->effects > 0) {
-            own = noise_of_dig(p, g, first_of(p->batch, g), x);
+            own = noise_of_dig(p, g, first_of(p->batch, g), x, size2);
         }
-        noise[g] = discrepancy + dig_surface_noise(p->soil->surface, group->trajectory, x) + own;
+        noise[g] = discrepancy + own +
+                   size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);
         p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + noise[g]);
     }
 }
@@ -293,20 +313,41 @@ static void set_interval(const struct dig_levenberg *const l, const double norma
     }
 }
 
+// The misfit at x, each number weighed as x says.
+static double misfit_at(struct problem *const p, const struct dig_levenberg *const l,
+                        const double x[], struct dig_fitted *const f)
+{
+    double r[RESIDUALS_MAX];
+    double squares = 0.0;
+    weigh(p, x, f->noise);
+    residual(p, x, r);
+    for (size_t i = 0; i < l->residuals; i++) {
+        squares += r[i] * r[i];
+    }
+    memcpy(f->number, x, l->unknowns * sizeof f->number[0]);
+    judge(p, squares, f);
+    return f->misfit;
+}
+
+// Least squares with weights that follow: the best of all rounds, and of the start, is kept.
 static void fit_from(struct problem *const p, struct dig_levenberg *const l, const double start[],
                      struct dig_fitted *const f)
 {
-    double normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
-    double squares = 0.0;
-    memcpy(f->number, start, l->unknowns * sizeof f->number[0]);
+    double            x[DIG_HYPOTHESIS_NUMBERS];
+    double            normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
+    struct dig_fitted tried = *f;
     for (size_t j = 0; j < l->unknowns; j++) {
-        f->number[j] = fmin(fmax(f->number[j], l->low[j]), l->high[j]);
+        x[j] = fmin(fmax(start[j], l->low[j]), l->high[j]);
     }
+    (void)misfit_at(p, l, x, f);
     for (int round = 0; round < ROUNDS; round++) {
-        weigh(p, f->number, f->noise);
-        dig_levenberg_run(l, f->number, &squares, normal);
+        double squares = 0.0;
+        weigh(p, x, tried.noise);
+        dig_levenberg_run(l, x, &squares, normal);
+        if (misfit_at(p, l, x, &tried) < f->misfit) {
+            *f = tried;
+        }
     }
-    judge(p, squares, f);
     set_interval(l, normal, f);
 }
 

@@ -22,10 +22,12 @@ static const double much_left   = 4.0;
 // it is so much rarer than the level.
 static const double rarer = 0.01;
 
-// Log evidence by which a second effect must lead, and within which two answers are not told apart:
-// an effect from another, or from none.
-static const double lead       = 3.0;
+// Log evidence within which two answers are not told apart: an effect from another, from none, or
+// from two.
 static const double told_apart = 6.0;
+
+// Beyond which digs that differ as an effect says are not put down to scatter.
+static const double lead = 3.0;
 
 // Below this chance of its own misfit the plain hypothesis is refuted by itself.
 static const double refuted = 0.001;
@@ -291,6 +293,26 @@ static bool is_decisive(const struct context *const c, const double evidence)
     return evidence >= told_apart || (evidence > 0.0 && c->s->plain_fit < refuted);
 }
 
+// The best single effect again, from where a pair that holds it has led: a pair must not lead for
+// having been fitted better.
+static void fit_again(struct context *const c, const size_t best,
+                      const struct dig_fitted *const pair)
+{
+    double start[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(start, pair->number, sizeof start);
+    for (size_t e = 0; e < pair->hypothesis.effects; e++) {
+        if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
+            struct dig_fitted again;
+            start[DIG_AXES] = pair->number[DIG_AXES + e];
+            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, false, &again);
+            if (again.misfit < c->s->rival[best].misfit) {
+                c->s->rival[best]        = again;
+                c->s->log_evidence[best] = evidence_of(c, &again, 1);
+            }
+        }
+    }
+}
+
 static void give_up(struct context *const c)
 {
     c->s->unlisted = true;
@@ -310,16 +332,17 @@ static enum dig_status decide_which(struct context *const c)
     }
     const size_t best = best_rival(c->s);
     c->s->chosen      = c->s->rival[best];
-    double evidence   = c->s->log_evidence[best];
-    bool   more       = false;
+    bool more         = false;
     status            = weigh_chosen(c, &more);
     struct dig_fitted pair;
-    if (status == DIG_OK && more && find_pair(c, &pair) &&
-        evidence_of(c, &pair, 2) > evidence + lead) {
-        c->s->chosen = pair;
-        evidence     = evidence_of(c, &pair, 2);
+    if (status == DIG_OK && more && find_pair(c, &pair)) {
+        fit_again(c, best, &pair);
+        c->s->chosen = evidence_of(c, &pair, 2) > c->s->log_evidence[best] + told_apart
+                           ? pair
+                           : c->s->rival[best];
         status       = weigh_chosen(c, &more);
     }
+    const double evidence = evidence_of(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
     if (status == DIG_OK) {
         status = dig_confirm_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen, &c->s->confirmed);
     }

@@ -7,7 +7,7 @@
 //
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
 // density; s = log(amplitude of My / density), -1 … 1 over the base gravels; terms for which the
-// beds are too few are left out. Two effects have a reduced form instead, a factor on the plain dig
+// beds are too few are left out, and all but c0 are drawn towards nothing as far as the beds allow. Two effects have a reduced form instead, a factor on the plain dig
 // (estimator/effects/): rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts
 // pass - 1 fold.
 
@@ -15,6 +15,7 @@
 #define DIG_CLOSED_LOOP_SOIL_H
 
 #include "closed_loop/measured.h"
+#include "closed_loop/scatter.h"
 #include "closed_loop/surface.h"
 #include "core/effect.h"
 #include "core/effect_set.h"
@@ -46,10 +47,11 @@ struct dig_soil {
     struct dig_soil_template template[DIG_EFFECTS][DIG_TRAJECTORY_MAX];
 };
 
-/// Fits the templates. effects may be NULL: the reduced forms alone are known then. Some megabytes;
-/// free with free(). DIG_EINVAL: effects of another table's scene or trajectories.
+/// Fits the templates. effects may be NULL (scatter then, too): the reduced forms alone are known
+/// then. Some megabytes; free with free(). DIG_EINVAL: effects of another table's scene or trajectories.
 DIG_MUST_CHECK enum dig_status dig_soil_create(const struct dig_surface    *surface,
                                                const struct dig_effect_set *effects,
+                                               const struct dig_scatter    *scatter,
                                                struct dig_soil            **soil);
 
 /// True when the effect can be told along this trajectory.

@@ -4,6 +4,7 @@
 #include "closed_loop/judge.h"
 #include "closed_loop/trace_parts.h"
 #include "closed_loop/trace_work.h"
+#include "closed_loop/worth.h"
 
 #include <assert.h>
 #include <math.h>
@@ -11,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Share of the scatter of one dig below which a change of the prediction is not made.
-static const double matters = 0.15;
+// A prediction is changed where this chance that the next dig comes out worse for it is not
+// exceeded: a change about as large as what one dig scatters by in its direction.
+static const double most_chance_of_worse = 0.25;
 
 struct dig_trace_settings dig_trace_settings_default(void)
 {
@@ -65,7 +67,7 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_soil_create(w->surface, effects, &w->soil);
+    status = dig_soil_create(w->surface, effects, w->scatter, &w->soil);
     return status == DIG_EINVAL
                ? dig_error_set(error, status,
                                "the table of effects is of another scene, expected "
@@ -196,20 +198,15 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
     trace->high          = gravel_at(t->surface, s->chosen.high);
 }
 
-// A change of the moment much below the floor is as likely to make a dig worse as better.
-static void drop_what_does_not_matter(const struct dig_tracing *const t,
+// A change that is likely to make the next dig's error worse is named, but not made.
+static void drop_what_is_not_worth_it(const struct dig_tracing *const t,
                                       struct dig_trace *const         trace)
 {
-    double change = 0.0;
-    double whole  = 0.0;
-    for (size_t i = 0; i < t->digs; i++) {
-        const struct dig_trace_curves *const c = &trace->curves[i];
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            change += pow(c->after[DIG_CHANNEL_MY_Nm][k] - c->before[DIG_CHANNEL_MY_Nm][k], 2.0);
-            whole += pow(c->before_sd[DIG_CHANNEL_MY_Nm][k], 2.0);
-        }
+    if (dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
+        most_chance_of_worse) {
+        return;
     }
-    for (size_t i = 0; change < matters * matters * whole && i < t->digs; i++) {
+    for (size_t i = 0; i < t->digs; i++) {
         struct dig_trace_curves *const c = &trace->curves[i];
         memcpy(c->after, c->before, sizeof c->after);
         memcpy(c->after_sd, c->before_sd, sizeof c->after_sd);
@@ -263,7 +260,7 @@ static enum dig_status report(const struct dig_tracing *const      t,
         fill_sets(t->search, w->air, trace);
         dig_trace_fill_candidates(t, trace);
         dig_trace_fill_curves(t, trace->unlisted, trace->curves);
-        drop_what_does_not_matter(t, trace);
+        drop_what_is_not_worth_it(t, trace);
         fill_errors(t, w, trace);
         dig_trace_advise(t, trace);
         advise_on_size(w, trace);

@@ -34,7 +34,7 @@ static int make(void **state)
     static const struct dig_hypothesis none = { .effects = 0 };
     if (dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch) !=
             DIG_OK ||
-        dig_soil_create(world.surface, world.effects, &soil) != DIG_OK) {
+        dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK) {
         return 1;
     }
     dig_hypothesis_fit(batch, soil, &none, middle, true, &plain);

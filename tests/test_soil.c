@@ -49,6 +49,30 @@ static void a_template_gives_back_what_was_put_in(void **state)
     }
 }
 
+// The made effects are proportional to the magnitude and alike in all gravels: the terms that say
+// otherwise are drawn to nothing, and the variance of what is known of the effect is of the order
+// of what one term alone would have from all beds. Five free terms have nine times as much.
+static void terms_that_the_beds_do_not_ask_for_bring_no_noise(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
+    for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
+        double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+        double noise = 0.0;
+        double known = 0.0;
+        plain_at(&gravel, t, place, plain, size);
+        memcpy(with, plain, sizeof with);
+        dig_soil_add(soil, DIG_EFFECT_LAYERING, t, place, 0.5, 1.0, plain, size, with, &noise);
+        for (size_t e = 0; e < world.effects->entries; e++) {
+            if (world.effects->entry[e].effect == DIG_EFFECT_LAYERING) {
+                known += (double)world.effects->packings[e * world.effects->trajectories + t] *
+                         pow(world.effects->entry[e].magnitude, 2.0);
+            }
+        }
+        assert_true(noise > 0.5 * 0.25 / known && noise < 4.0 * 0.25 / known);
+    }
+}
+
 static void an_effect_that_is_absent_adds_nothing(void **state)
 {
     (void)state;
@@ -138,7 +162,8 @@ static void another_scene_is_refused_and_writes_nothing(void **state)
     (void)state;
     struct dig_soil *untouched = soil;
     world.effects->scene_hash[0] ^= 1;
-    assert_int_equal(dig_soil_create(world.surface, world.effects, &untouched), DIG_EINVAL);
+    assert_int_equal(dig_soil_create(world.surface, world.effects, world.scatter, &untouched),
+                     DIG_EINVAL);
     world.effects->scene_hash[0] ^= 1;
     assert_ptr_equal(untouched, soil);
 }
@@ -147,7 +172,7 @@ static void without_beds_only_the_reduced_forms_are_known(void **state)
 {
     (void)state;
     struct dig_soil *bare = NULL;
-    assert_int_equal(dig_soil_create(world.surface, NULL, &bare), DIG_OK);
+    assert_int_equal(dig_soil_create(world.surface, NULL, NULL, &bare), DIG_OK);
     assert_false(dig_soil_knows(bare, DIG_EFFECT_COHESION, 0));
     assert_true(dig_soil_knows(bare, DIG_EFFECT_WEAR, 0));
     assert_true(dig_soil_knows(bare, DIG_EFFECT_RATE_DEPENDENCE, 0));
@@ -158,6 +183,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_template_gives_back_what_was_put_in),
+        cmocka_unit_test(terms_that_the_beds_do_not_ask_for_bring_no_noise),
         cmocka_unit_test(an_effect_that_is_absent_adds_nothing),
         cmocka_unit_test(features_are_those_of_the_curve),
         cmocka_unit_test(the_tooths_speed_tells_features_as_it_tells_the_curve),

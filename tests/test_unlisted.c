@@ -21,7 +21,7 @@ static int make(void **state)
     world    = made_world(5);
     measured = calloc(DIGS, sizeof *measured);
     batch    = malloc(sizeof *batch);
-    return dig_soil_create(world.surface, world.effects, &soil);
+    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
 }
 
 static int clean(void **state)

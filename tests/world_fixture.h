@@ -17,7 +17,7 @@ static inline int world_setup(void **state)
 {
     (void)state;
     world = made_world(5);
-    return dig_soil_create(world.surface, world.effects, &soil);
+    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
 }
 
 static inline int world_teardown(void **state)

@@ -12,13 +12,14 @@
 static enum dig_status make_soil(const struct digloop_options *const options,
                                  const struct dig_curve_set *const   set,
                                  const struct dig_surface *const     surface,
+                                 const struct dig_scatter *const     scatter,
                                  struct dig_soil **const soil, struct dig_error *const error)
 {
     char                   path[DIGLOOP_PATH_SIZE];
     struct dig_effect_set *effects = NULL;
     enum dig_status        status  = digloop_load_effects(options, set, path, &effects, error);
     if (status == DIG_OK) {
-        status = dig_soil_create(surface, effects, soil);
+        status = dig_soil_create(surface, effects, scatter, soil);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
         }
@@ -46,7 +47,7 @@ enum dig_status digloop_design(const struct digloop_options *const options,
     }
     status = dig_scatter_measure(options->table, surface, &scatter, error);
     if (status == DIG_OK) {
-        status = make_soil(options, set, surface, &soil, error);
+        status = make_soil(options, set, surface, scatter, &soil, error);
     }
     if (status != DIG_OK) {
         goto done;

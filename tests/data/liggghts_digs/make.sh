@@ -2,6 +2,7 @@
 # Digs in gravels that hold one effect, computed with LIGGGHTS-PUBLIC 3.8 (Debian's package liggghts).
 #   ./make.sh GRAVEL SEED [TRAJECTORY...]   the rig scene (config/scenes/rig.yaml), some ten minutes of one core a seed:
 #                                           GRAVEL_seedN__TRAJECTORY.csv beside this file
+#   ./make.sh muF_murR_rhoD SEED            the same of a plain gravel, named by its parameters
 #   ./make.sh GRAVEL SEED scratch           the small scene of test_small_digs.c, seconds: phase means
 #                                           on stdout, a line each
 set -eu
@@ -35,7 +36,11 @@ other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
 slope_down) slope_deg=-8 ;;
 hertz) normal=hertz roll=cdt ;;
-*) echo "gravel: $gravel, expected one of the case above" >&2; exit 2 ;;
+mu*_mur*_rho*) # a plain gravel by its parameters
+    friction=${gravel#mu} friction=${friction%%_*}
+    rolling=${gravel#*_mur} rolling=${rolling%%_*}
+    density=${gravel#*_rho} ;;
+*) echo "gravel: $gravel, expected muF_murR_rhoD or one of the case above" >&2; exit 2 ;;
 esac
 
 law="$normal tangential history rolling_friction $roll"

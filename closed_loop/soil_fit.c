@@ -1,0 +1,305 @@
+#include "closed_loop/soil_fit.h"
+
+#include "closed_loop/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEVELS_MAX = 16, ROUNDS = 60 };
+
+static const double ridge = 1e-6; // of the diagonal, where magnitudes make terms nearly the same
+
+// Beyond the table's largest magnitude.
+static const double beyond = 1.5;
+
+// How far beyond the base gravels' strengths a template goes on changing.
+static const double most_strength = 1.3;
+
+// Widest and narrowest prior of a term, in variances of what one dig scatters by.
+static const double widest    = 1e6;
+static const double narrowest = 1e-6;
+
+double dig_soil_strength(const struct dig_surface *const surface, const double place[DIG_AXES],
+                         const double amplitude[DIG_FORCE_CHANNELS])
+{
+    const struct dig_gravel gravel = dig_surface_gravel(surface, place);
+    return log(amplitude[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+}
+
+// One bed of an effect along one trajectory, relative to the plain dig of its gravel.
+struct bed {
+    double                  u, strength, weight;
+    double                  amplitude[DIG_FORCE_CHANNELS];
+    const struct dig_curve *curve;
+    double                  plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double                  feature[DIG_FEATURES]; // of what the effect adds, over the amplitude
+};
+
+static void describe_bed(const struct dig_soil *const soil, const struct dig_effect_set *const set,
+                         const struct dig_scatter *const scatter, const size_t entry,
+                         const size_t t, struct bed *const bed)
+{
+    const struct dig_effect_entry *const of = &set->entry[entry];
+    double                               place[DIG_AXES];
+    double                               plain[DIG_FEATURES];
+    dig_surface_place(soil->surface, &of->gravel, place);
+    dig_surface_features(soil->surface, t, place, plain, bed->amplitude);
+    dig_surface_curve(soil->surface, t, place, bed->plain);
+    bed->curve    = &set->curve[entry * set->trajectories + t];
+    bed->u        = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
+    bed->strength = dig_soil_strength(soil->surface, place, bed->amplitude);
+
+    // A dig that is larger with the effect scatters more, and so does one of a strong gravel.
+    double with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double size[DIG_FORCE_CHANNELS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            with[c][k] = (double)bed->curve->mean[c][k];
+        }
+    }
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])with, bed->feature);
+    dig_features_amplitude(bed->feature, NULL, size);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        bed->feature[f] = (bed->feature[f] - plain[f]) / bed->amplitude[f / DIG_FEATURE_BINS];
+    }
+    bed->weight = (double)set->packings[entry * set->trajectories + t] /
+                  (dig_scatter_factor(scatter, t, bed->strength) *
+                   pow(size[DIG_CHANNEL_MY_Nm] / bed->amplitude[DIG_CHANNEL_MY_Nm], 2.0));
+}
+
+static size_t gather(const struct dig_soil *const soil, const struct dig_effect_set *const set,
+                     const struct dig_scatter *const scatter, const enum dig_effect_id effect,
+                     const size_t t, struct bed bed[])
+{
+    size_t beds = 0;
+    for (size_t e = 0; e < set->entries; e++) {
+        if (set->entry[e].effect == effect && set->packings[e * set->trajectories + t] > 0) {
+            describe_bed(soil, set, scatter, e, t, &bed[beds++]);
+        }
+    }
+    return beds;
+}
+
+static size_t count_levels(const size_t beds, const struct bed bed[], const bool of_strength)
+{
+    double level[LEVELS_MAX];
+    size_t levels = 0;
+    for (size_t b = 0; b < beds; b++) {
+        const double at = of_strength ? bed[b].strength : bed[b].u;
+        bool new        = true;
+        for (size_t i = 0; i < levels; i++) {
+            new = new &&fabs(level[i] - at) > 1e-6;
+        }
+        if (new &&levels < LEVELS_MAX) {
+            level[levels++] = at;
+        }
+    }
+    return levels;
+}
+
+static void choose_terms(const size_t beds, const struct bed bed[],
+                         struct dig_soil_template *const template)
+{
+    static const unsigned power[DIG_SOIL_TERMS][2] = {
+        { 1, 0 }, { 1, 1 }, { 1, 2 }, { 2, 0 }, { 2, 1 }
+    };
+    const size_t strengths  = count_levels(beds, bed, true);
+    const size_t magnitudes = count_levels(beds, bed, false);
+    template->terms         = 0;
+    for (size_t i = 0; i < DIG_SOIL_TERMS; i++) {
+        if (power[i][0] <= magnitudes && power[i][1] < strengths && template->terms < beds) {
+            memcpy(template->power[template->terms++], power[i], sizeof power[i]);
+        }
+    }
+    double least = bed[0].strength;
+    double most  = bed[0].strength;
+    for (size_t b = 1; b < beds; b++) {
+        least = fmin(least, bed[b].strength);
+        most  = fmax(most, bed[b].strength);
+    }
+    template->centre = 0.5 * (least + most);
+    template->half   = fmax(0.5 * (most - least), 1e-3);
+}
+
+static double power_of(const double x, const unsigned power)
+{
+    double product = 1.0;
+    for (unsigned p = 0; p < power; p++) {
+        product *= x;
+    }
+    return product;
+}
+
+void dig_soil_terms(const struct dig_soil_template *const template, const double u,
+                    const double strength, double term[DIG_SOIL_TERMS])
+{
+    const double s =
+        fmin(fmax((strength - template->centre) / template->half, -most_strength), most_strength);
+    for (size_t j = 0; j < template->terms; j++) {
+        term[j] = power_of(u, template->power[j][0]) * power_of(s, template->power[j][1]);
+    }
+}
+
+// (sum w x x' + the priors' precision)^-1 over the terms.
+static enum dig_status invert(const size_t beds, const struct bed bed[],
+                              const double precision[DIG_SOIL_TERMS],
+                              struct dig_soil_template *const template)
+{
+    const size_t n                                       = template->terms;
+    double       normal[DIG_SOIL_TERMS * DIG_SOIL_TERMS] = { 0.0 };
+    for (size_t b = 0; b < beds; b++) {
+        double term[DIG_SOIL_TERMS];
+        dig_soil_terms(template, bed[b].u, bed[b].strength, term);
+        for (size_t i = 0; i < n; i++) {
+            for (size_t j = 0; j < n; j++) {
+                normal[i * n + j] += bed[b].weight * term[i] * term[j];
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        normal[i * n + i] += ridge * normal[i * n + i] + precision[i];
+    }
+    const enum dig_status status = dig_cholesky(n, normal);
+    for (size_t j = 0; j < n && status == DIG_OK; j++) {
+        double column[DIG_SOIL_TERMS] = { 0.0 };
+        column[j]                     = 1.0;
+        dig_lower_solve(n, normal, column);
+        dig_lower_transposed_solve(n, normal, column);
+        for (size_t i = 0; i < n; i++) {
+            template->inverse[i][j] = column[i];
+        }
+    }
+    return status;
+}
+
+// How much of a bed's relative difference goes into each term.
+static void shares_of(const struct dig_soil_template *const template, const struct bed *const bed,
+                      double share[DIG_SOIL_TERMS])
+{
+    double term[DIG_SOIL_TERMS];
+    dig_soil_terms(template, bed->u, bed->strength, term);
+    for (size_t j = 0; j < template->terms; j++) {
+        share[j] = 0.0;
+        for (size_t i = 0; i < template->terms; i++) {
+            share[j] += bed->weight * template->inverse[j][i] * term[i];
+        }
+    }
+}
+
+static void fit_features(const size_t beds, const struct bed bed[],
+                         struct dig_soil_template *const template)
+{
+    memset(template->feature, 0, sizeof template->feature);
+    for (size_t b = 0; b < beds; b++) {
+        double share[DIG_SOIL_TERMS];
+        shares_of(template, &bed[b], share);
+        for (size_t j = 0; j < template->terms; j++) {
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                template->feature[j][f] += share[j] * bed[b].feature[f];
+            }
+        }
+    }
+}
+
+// Every term but the first has a prior about nothing, as wide as the beds say: the width that makes
+// them likeliest, term by term, by expectation and maximisation (MacKay 1992; Dempster, Laird and
+// Rubin 1977). A term that few beds ask for by less than their scatter then adds no noise.
+static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
+                                 const double scatter[DIG_FEATURES],
+                                 struct dig_soil_template *const template)
+{
+    double          precision[DIG_SOIL_TERMS] = { 0.0 };
+    enum dig_status status                    = DIG_OK;
+    for (int round = 0; round <= ROUNDS && status == DIG_OK; round++) {
+        status = invert(beds, bed, precision, template);
+        for (size_t j = 1; j < template->terms && round < ROUNDS && status == DIG_OK; j++) {
+            double square = template->inverse[j][j];
+            fit_features(beds, bed, template);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                square += template->feature[j][f] * template->feature[j][f] / scatter[f] /
+                          (double)DIG_FEATURES;
+            }
+            precision[j] = 1.0 / fmin(fmax(square, narrowest), widest);
+        }
+    }
+    return status;
+}
+
+static void fit(const size_t beds, const struct bed bed[], const double scatter[DIG_FEATURES],
+                struct dig_soil_template *const template)
+{
+    if (fit_terms(beds, bed, scatter, template) != DIG_OK) {
+        return;
+    }
+    for (size_t b = 0; b < beds; b++) {
+        double share[DIG_SOIL_TERMS];
+        shares_of(template, &bed[b], share);
+        for (size_t j = 0; j < template->terms; j++) {
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                    template->curve[j][c][k] +=
+                        share[j] * ((double)bed[b].curve->mean[c][k] - bed[b].plain[c][k]) /
+                        bed[b].amplitude[c];
+                }
+            }
+        }
+    }
+    for (size_t j = 0; j < template->terms; j++) {
+        dig_features_of((const double(*)[DIG_CURVE_POINTS]) template->curve[j],
+                        template->feature[j]);
+    }
+    template->known = true;
+}
+
+// The scale and range of an effect's magnitudes. False when the set has none.
+static bool set_range(struct dig_soil *const soil, const struct dig_effect_set *const set,
+                      const enum dig_effect_id effect)
+{
+    double least = 0.0;
+    double most  = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        if (set->entry[e].effect == effect) {
+            least = fmin(least, set->entry[e].magnitude - soil->absent[effect]);
+            most  = fmax(most, set->entry[e].magnitude - soil->absent[effect]);
+        }
+    }
+    const double scale = fmax(most, -least);
+    if (!(scale > 0.0)) {
+        return false;
+    }
+    soil->scale[effect] = scale;
+    soil->low[effect]   = beyond * least / scale;
+    soil->high[effect]  = beyond * most / scale;
+    return true;
+}
+
+enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_effect_set *const set,
+                             const struct dig_scatter *const scatter)
+{
+    assert(soil != NULL && set != NULL && scatter != NULL);
+    struct bed *const bed = calloc(set->entries + 1, sizeof *bed);
+    if (bed == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t t = 0; t < set->trajectories; t++) {
+        double own[DIG_FEATURES]; // variance of one dig
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            own[f] = scatter->covariance[t][f][f];
+        }
+        for (int e = 0; e < DIG_EFFECTS && soil->surface->known[t]; e++) {
+            const enum dig_effect_id effect = (enum dig_effect_id)e;
+            const size_t             beds =
+                set_range(soil, set, effect) ? gather(soil, set, scatter, effect, t, bed) : 0;
+            if (beds > 0) {
+                struct dig_soil_template *const template = &soil->template[e][t];
+                template->base_density_kgpm3 = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
+                choose_terms(beds, bed, template);
+                fit(beds, bed, own, template);
+            }
+        }
+    }
+    free(bed);
+    return DIG_OK;
+}

@@ -1,0 +1,23 @@
+// How templates come out of beds that hold an effect: closed_loop/soil.h has the formula. Internal
+// to soil.c.
+
+#ifndef DIG_CLOSED_LOOP_SOIL_FIT_H
+#define DIG_CLOSED_LOOP_SOIL_FIT_H
+
+#include "closed_loop/scatter.h"
+#include "closed_loop/soil.h"
+
+/// Fits the templates and ranges of all effects that the set has beds of; soil->surface and absent
+/// are given. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_soil_fit(struct dig_soil *soil, const struct dig_effect_set *set,
+                                            const struct dig_scatter *scatter);
+
+/// log(amplitude of My / density): how hard a gravel resists for its weight.
+double dig_soil_strength(const struct dig_surface *surface, const double place[DIG_AXES],
+                         const double amplitude[DIG_FORCE_CHANNELS]);
+
+/// What a template's terms are multiplied by at u and strength.
+void dig_soil_terms(const struct dig_soil_template *template, double u, double strength,
+                    double term[DIG_SOIL_TERMS]);
+
+#endif // DIG_CLOSED_LOOP_SOIL_FIT_H
