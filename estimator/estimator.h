@@ -81,7 +81,7 @@ struct dig_match {
     struct dig_gravel mode;            // where the posterior is highest
     bool              forces;          // the posterior is of moment and forces
     double            noise_floor;     // expected distance of another packing of the same gravel
-    bool              outside;         // distance says: none of the table's gravels
+    bool              outside;         // none of the table's gravels, by distance or by forces
     double            outside_floors;  // distance > this many noise floors is outside
     size_t            samples;         // 0 until refined
     struct dig_gravel sample[DIG_MATCH_SAMPLES]; // equally likely, in proportion to the posterior

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { STARTS = 3 };
+enum { STARTS = 3, EXCESS_EVALUATIONS = 100 };
 
 // Distance of what the table does not hold: worse than any curve.
 static const double no_curve = 1e6;
@@ -21,6 +21,7 @@ static const double no_curve = 1e6;
 // The fit in positions 0 … 1 along the axes that have more than one point.
 struct problem {
     const struct dig_curve_set *set;
+    const struct dig_summary   *summary; // or NULL
     const struct dig_pool_sums *sums;
     unsigned                    dimensions;
     enum dig_axis               axis[DIG_AXES];
@@ -69,14 +70,26 @@ static struct dig_distance distance_at(const struct problem *const    problem,
 }
 
 // NOLINTNEXTLINE(readability-non-const-parameter): the signature is NLopt's
-static double objective(const unsigned n, const double *const x, double *const gradient,
-                        void *const context)
+static double distance_of(const unsigned n, const double *const x, double *const gradient,
+                          void *const context)
 {
     (void)n;
     (void)gradient;
     const struct problem *const problem = context;
     const struct dig_gravel     gravel  = gravel_of(problem, x);
     return distance_at(problem, &gravel).distance;
+}
+
+// NOLINTNEXTLINE(readability-non-const-parameter): the signature is NLopt's
+static double excess_of(const unsigned n, const double *const x, double *const gradient,
+                        void *const context)
+{
+    (void)n;
+    (void)gradient;
+    const struct problem *const problem = context;
+    const struct dig_gravel     gravel  = gravel_of(problem, x);
+    return fmin(dig_posterior_excess(problem->set, problem->summary, problem->sums, &gravel),
+                no_curve);
 }
 
 // Places to start from, the best first.
@@ -169,10 +182,10 @@ static struct starts choose_starts(const struct problem *const    problem,
     return starts;
 }
 
-// Minimises from one start; *x and *distance improve or stay.
-static enum dig_status improve(struct problem *const problem, const double start[],
-                               const double step[], const int max_evaluations, double x[],
-                               double *const distance)
+// Minimises from one start; *x and *least improve or stay.
+static enum dig_status improve(struct problem *const problem, const nlopt_func minimised,
+                               const double start[], const double step[], const int max_evaluations,
+                               double x[], double *const least)
 {
     struct nlopt_opt_s *const opt = nlopt_create(NLOPT_LN_SBPLX, problem->dimensions);
     if (opt == NULL) {
@@ -184,7 +197,7 @@ static enum dig_status improve(struct problem *const problem, const double start
     }
     double       found = INFINITY;
     nlopt_result result =
-        nlopt_set_min_objective(opt, objective, problem) < 0 ||
+        nlopt_set_min_objective(opt, minimised, problem) < 0 ||
                 nlopt_set_lower_bounds1(opt, 0.0) < 0 || nlopt_set_upper_bounds1(opt, 1.0) < 0 ||
                 nlopt_set_initial_step(opt, step) < 0 || nlopt_set_xtol_abs1(opt, 1e-5) < 0 ||
                 nlopt_set_maxeval(opt, max_evaluations) < 0
@@ -196,8 +209,8 @@ static enum dig_status improve(struct problem *const problem, const double start
     if (result < 0 && result != NLOPT_ROUNDOFF_LIMITED) {
         return result == NLOPT_OUT_OF_MEMORY ? DIG_ENOMEM : DIG_EINVAL;
     }
-    if (found < *distance) {
-        *distance = found;
+    if (found < *least) {
+        *least = found;
         for (unsigned d = 0; d < problem->dimensions; d++) {
             x[d] = at[d];
         }
@@ -215,14 +228,63 @@ static bool has_forces(const struct dig_pool_sums *const sums)
     return has;
 }
 
+// Whether the forces say that no gravel of the table is that of the digs. The most probable lies on
+// a grid, which digs that scatter little may be finer than: where it is too far, around it.
+static enum dig_status contradict(const struct dig_curve_set *const set,
+                                  const struct dig_summary *const   summary,
+                                  const struct dig_pool_sums *const sums,
+                                  const struct dig_match *const     match,
+                                  const struct dig_gravel *const mode, bool *const contradicted)
+{
+    double least = dig_posterior_excess(set, summary, sums, mode);
+    if (least > DIG_POSTERIOR_OUTSIDE) {
+        static const double step[DIG_AXES] = { 0.04, 0.04, 0.04 };
+        struct problem      problem        = make_problem(set, sums, match);
+        double              x[DIG_AXES]    = { 0.0 };
+        problem.summary                    = summary;
+        position_of(&problem, mode, x);
+        const enum dig_status status =
+            problem.dimensions > 0
+                ? improve(&problem, excess_of, x, step, EXCESS_EVALUATIONS, x, &least)
+                : DIG_OK;
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    *contradicted = least > DIG_POSTERIOR_OUTSIDE;
+    return DIG_OK;
+}
+
+// The posterior. Where no gravel of the table both resists and pushes like the digs, which is the
+// forces' to tell, the one that resists like them says more about the next dig than one between.
+static enum dig_status judge(const struct dig_curve_set *const set,
+                             const struct dig_summary *const   summary,
+                             struct dig_pool_sums *const sums, struct dig_match *const refined,
+                             bool *const contradicted)
+{
+    *contradicted          = false;
+    enum dig_status status = dig_posterior_fill(set, summary, sums, refined);
+    if (status == DIG_OK && has_forces(sums)) {
+        status = contradict(set, summary, sums, refined, &refined->mode, contradicted);
+    }
+    if (*contradicted) {
+        for (size_t g = 0; g < sums->groups; g++) {
+            sums->group[g].forces = false;
+        }
+        status = dig_posterior_fill(set, summary, sums, refined);
+    }
+    return status;
+}
+
 static enum dig_status refine(const struct dig_curve_set *const set,
                               const struct dig_summary *const   summary,
-                              const struct dig_pool_sums *const sums, const int max_evaluations,
+                              struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
 {
     // A table of scattered points has no cell to be unsure in: the nearest entry stands.
     struct dig_match      refined = *match;
-    const enum dig_status judged  = dig_posterior_fill(set, summary, sums, &refined);
+    bool                  contradicted;
+    const enum dig_status judged = judge(set, summary, sums, &refined, &contradicted);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -239,8 +301,9 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         }
         int left = max_evaluations;
         for (size_t s = 0; s < starts.count && left > 0; s++) {
-            const int             share  = s + 1 < starts.count ? (left + 1) / 2 : left;
-            const enum dig_status status = improve(&problem, starts.x[s], step, share, x, &best);
+            const int             share = s + 1 < starts.count ? (left + 1) / 2 : left;
+            const enum dig_status status =
+                improve(&problem, distance_of, starts.x[s], step, share, x, &best);
             if (status != DIG_OK) {
                 return status;
             }
@@ -249,10 +312,12 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.gravel = gravel_of(&problem, x);
     }
 
-    // How far the table is, its nearest gravel says; which gravel it is, all that was measured.
+    // How far the table is, its nearest gravel says, and the forces; which gravel it is, all that
+    // was measured.
     struct dig_distance at_best = distance_at(&problem, &refined.gravel);
     if (at_best.distance < no_curve) {
-        refined.outside = at_best.distance > match->outside_floors * at_best.noise_floor;
+        refined.outside =
+            contradicted || at_best.distance > match->outside_floors * at_best.noise_floor;
     }
     if (judged == DIG_OK && has_forces(sums)) {
         refined.gravel = refined.mode;

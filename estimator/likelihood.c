@@ -113,24 +113,27 @@ static double sum_up(const size_t count, const double miss2[], const double d[])
     return sum + log_of(&product);
 }
 
-static double log_of_moment(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+// Normalised misses squared and determinants, point by point or block by block. Where nothing was
+// measured the miss is 0 and the variance 1.
+struct misses {
+    double miss2[DIG_CURVE_POINTS];
+    double d[DIG_CURVE_POINTS];
+};
+
+static void miss_moment(const struct dig_likelihood *const l, const struct dig_cell *const cell,
+                        struct misses *const misses)
 {
     struct channel_curve moment;
     make_curve(l, cell, DIG_CHANNEL_MY_Nm, &moment);
-
-    // Where nothing was measured the miss is 0 and the variance 1.
-    double d[DIG_CURVE_POINTS];
-    double miss2[DIG_CURVE_POINTS];
     for (size_t from = 0; from < l->count; from += STRIDE) {
         for (size_t k = from; k < from + STRIDE; k++) {
             const double widened = l->inverse_digs[k] + cell->inverse_packings;
             const double d_there = moment.spread2[k] * widened + l->sigma2[0][k] + least_d;
             const double miss    = l->mean[0][k] - moment.mean[k];
-            miss2[k]             = l->measured[k] * miss * miss / d_there;
-            d[k]                 = l->measured[k] * d_there + (1.0 - l->measured[k]);
+            misses->miss2[k]     = l->measured[k] * miss * miss / d_there;
+            misses->d[k]         = l->measured[k] * d_there + (1.0 - l->measured[k]);
         }
     }
-    return sum_up(l->count, miss2, d);
 }
 
 // miss' D^-1 miss and det D of moment and forces at one point, D of the digs' spread and of the
@@ -157,14 +160,13 @@ static inline double joint2(const double miss[DIG_FORCE_CHANNELS], const double 
     return miss[0] * miss[0] / e0 + y1 * y1 / e1 + y2 * y2 / e2;
 }
 
-static double log_of_all(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+static void miss_all(const struct dig_likelihood *const l, const struct dig_cell *const cell,
+                     struct misses *const misses)
 {
     struct channel_curve curve[DIG_FORCE_CHANNELS];
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         make_curve(l, cell, c, &curve[c]);
     }
-    double d[DIG_CURVE_POINTS];
-    double miss2[DIG_CURVE_POINTS];
     for (size_t from = 0; from < l->count; from += STRIDE) {
         for (size_t k = from; k < from + STRIDE; k++) {
             const double widened   = l->inverse_digs[k] + cell->inverse_packings;
@@ -176,18 +178,41 @@ static double log_of_all(const struct dig_likelihood *const l, const struct dig_
                                        widened * curve[2].spread2[k] + least_d };
             const double sigma2[]  = { l->sigma2[0][k], l->sigma2[1][k], l->sigma2[2][k] };
             double       determinant;
-            miss2[k] = l->measured[k] * joint2(miss, spread2, sigma2, &determinant);
-            d[k]     = l->measured[k] * determinant + (1.0 - l->measured[k]);
+            misses->miss2[k] = l->measured[k] * joint2(miss, spread2, sigma2, &determinant);
+            misses->d[k]     = l->measured[k] * determinant + (1.0 - l->measured[k]);
         }
     }
-    return sum_up(l->count, miss2, d);
+}
+
+static void miss_by(const struct dig_likelihood *const l, const struct dig_cell *const cell,
+                    struct misses *const misses)
+{
+    if (l->channels == 1) {
+        miss_moment(l, cell, misses);
+    } else {
+        miss_all(l, cell, misses);
+    }
 }
 
 double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
 {
     assert(l != NULL && cell != NULL);
-    const double sum = l->channels == 1 ? log_of_moment(l, cell) : log_of_all(l, cell);
+    struct misses misses;
+    miss_by(l, cell, &misses);
+    const double sum = sum_up(l->count, misses.miss2, misses.d);
     return -0.5 * l->effective * sum / l->measured_count;
+}
+
+double dig_likelihood_miss2(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+{
+    assert(l != NULL && cell != NULL);
+    struct misses misses;
+    miss_by(l, cell, &misses);
+    double sum = 0.0;
+    for (size_t k = 0; k < l->count; k++) {
+        sum += misses.miss2[k];
+    }
+    return sum / (l->measured_count * (double)l->channels);
 }
 
 void dig_likelihood_make(const struct dig_curve_set *const set,

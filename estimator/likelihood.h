@@ -37,4 +37,8 @@ bool dig_likelihood_outline(const struct dig_summary *summary, struct dig_likeli
 /// with forces 14.
 double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
 
+/// Mean over points and channels of (m - t)' D^-1 (m - t): 1 is expected of digs in the cell's
+/// gravel. The same cost.
+double dig_likelihood_miss2(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
+
 #endif // DIG_ESTIMATOR_LIKELIHOOD_H

@@ -76,7 +76,9 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest_by(const struct dig_summary *su
 
 /// From a nearest match on between the grid points, and the posterior of the gravel (low and high
 /// widened where needed to hold the gravel told); judges again by the smallest distance whether the
-/// gravel is outside the table. Allocates (in NLopt); never call it in the tick. At most
+/// gravel is outside the table. So it is, too, where every dig has forces and they and the moment
+/// are too far from the most probable gravel (DIG_POSTERIOR_OUTSIDE); the gravel is that of the
+/// moment alone then. Allocates (in NLopt); never call it in the tick. At most
 /// max_evaluations of the distance, then the posterior on a fixed grid: some ten milliseconds and
 /// 350 kB of stack. DIG_EINVAL: no valid match of this observation, or max_evaluations < 1;
 /// DIG_ENOMEM. Then *match is unchanged.

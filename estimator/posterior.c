@@ -31,6 +31,28 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
     return sum;
 }
 
+double dig_posterior_excess(const struct dig_curve_set *const set,
+                            const struct dig_summary *const   summary,
+                            const struct dig_pool_sums *const sums,
+                            const struct dig_gravel *const    gravel)
+{
+    assert(set != NULL && sums != NULL && gravel != NULL);
+    double errors = 0.0; // independent ones, of all trajectories and channels
+    double miss2  = 0.0; // mean of a trajectory, as often as it has such
+    for (size_t g = 0; g < sums->groups; g++) {
+        struct dig_likelihood l;
+        struct dig_cell       cell;
+        dig_likelihood_make(set, summary, &sums->group[g], &l);
+        if (dig_cell_find(set, gravel, l.trajectory, &cell) != DIG_OK) {
+            return INFINITY;
+        }
+        const double own = (double)l.channels * l.effective;
+        errors += own;
+        miss2 += own * dig_likelihood_miss2(&l, &cell);
+    }
+    return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
+}
+
 // The fine grid: points are centres of equal intervals of each axis's position.
 struct fine {
     size_t count[DIG_AXES];

@@ -42,6 +42,23 @@
 #define DIG_POSTERIOR_MY_FZ 0.55
 #define DIG_POSTERIOR_FX_FZ (-0.39)
 
+/// Digs of moment and forces farther than this from the most probable gravel are of none of the
+/// table's: of digs left out of their own gravel's entry one in 60 is called so (450 digs, whole
+/// and in part, tables/rig.sqlite; tests/bench/outside.c).
+#define DIG_POSTERIOR_OUTSIDE 4.0
+
+/// How much farther digs are from a gravel, over all channels measured, than their errors make
+/// digs, in standard deviations of that: with the mean of squares normalised over points and
+/// channels, which is 1 where the gravel is theirs, and as many independent errors as the
+/// likelihood counts,
+///
+///   excess = (mean - 1) sqrt(channels n_eff / 2)
+///
+/// Infinite where the table has no curve. By a summary (or NULL) as below; some 15 microseconds a
+/// trajectory with it.
+double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_summary *summary,
+                            const struct dig_pool_sums *sums, const struct dig_gravel *gravel);
+
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
 /// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
 /// evaluations a trajectory; 220 kB of stack. By a summary of the set only those are made that do

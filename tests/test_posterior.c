@@ -259,6 +259,130 @@ static void forces_count_only_where_every_dig_has_them(void **state)
     made_table_destroy(set);
 }
 
+static void expect_the_same(const struct dig_match *const a, const struct dig_match *const b)
+{
+    for (int x = 0; x < DIG_AXES; x++) {
+        assert_close(a->gravel.value[x], b->gravel.value[x], 0.0);
+        assert_close(a->mean.value[x], b->mean.value[x], 0.0);
+        assert_close(a->low.value[x], b->low.value[x], 0.0);
+        assert_close(a->high.value[x], b->high.value[x], 0.0);
+    }
+    assert_int_equal(a->samples, b->samples);
+    assert_memory_equal(a->sample, b->sample, a->samples * sizeof a->sample[0]);
+    assert_close(a->distance, b->distance, 0.0);
+    assert_close(a->noise_floor, b->noise_floor, 0.0);
+}
+
+// The moment of a gravel of the table, and a push that none has: outside, and the gravel is the one
+// the moment alone tells. Digs of the table with the forces that belong to them are inside.
+static void forces_that_no_gravel_has_are_told_and_done_without(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set  = table_with_forces();
+    uint64_t                    seed = 77;
+    for (int trial = 0; trial < 20; trial++) {
+        const struct dig_gravel gravel = { { 0.4 + 0.4 * model_uniform(&seed),
+                                             0.3 + 0.5 * model_uniform(&seed), 2500 } };
+        const size_t            digs   = trial % 2 == 0 ? 1 : 3;
+        struct dig_observation  dig[3];
+        dig_there(&gravel, digs, dig, &seed);
+        const struct dig_match inside = fit(set, digs, dig);
+        assert_true(inside.forces && !inside.outside);
+
+        // Pushed twice as hard as by any friction, lifted half as hard as by any rolling friction.
+        for (size_t d = 0; d < digs; d++) {
+            for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+                dig[d].force_N[0][k] *= 2.5;
+                dig[d].force_N[1][k] *= 0.4;
+            }
+        }
+        const struct dig_match outside = fit(set, digs, dig);
+        assert_true(outside.outside && !outside.forces);
+        for (size_t d = 0; d < digs; d++) {
+            dig[d].forces = false;
+        }
+        const struct dig_match bare = fit(set, digs, dig);
+        assert_false(bare.outside);
+        expect_the_same(&outside, &bare);
+    }
+    made_table_destroy(set);
+}
+
+// Of digs in the gravel it is asked about the excess is a standard deviation of its own about 0, of
+// whole digs and of parts, of one and of several: the same limit means the same for all.
+static void excess_has_one_scale_for_digs_of_any_length(void **state)
+{
+    (void)state;
+    enum { CASES = 3, TRIALS = 200 };
+    static const double         last[CASES] = { 1.0, 0.4, 1.0 };
+    static const size_t         digs[CASES] = { 1, 1, 3 };
+    struct dig_curve_set *const set         = table_with_forces();
+    uint64_t                    seed        = 5;
+    for (int c = 0; c < CASES; c++) {
+        double sum = 0.0, sum2 = 0.0;
+        for (int trial = 0; trial < TRIALS; trial++) {
+            const struct dig_gravel gravel = { { 0.3 + 0.6 * model_uniform(&seed),
+                                                 0.1 + 0.9 * model_uniform(&seed), 2500 } };
+            struct dig_observation  dig[3];
+            struct dig_pool_sums    sums;
+            dig_there(&gravel, digs[c], dig, &seed);
+            for (size_t d = 0; d < digs[c]; d++) {
+                dig[d].last = last[c];
+            }
+            dig_pool_sum(digs[c], dig, &sums);
+            const double excess = dig_posterior_excess(set, NULL, &sums, &gravel);
+            sum += excess;
+            sum2 += excess * excess;
+        }
+        const double mean = sum / TRIALS;
+        const double sd   = sqrt(sum2 / TRIALS - mean * mean);
+        print_message("%zu digs, %.1f of the path: excess %.2f +- %.2f\n", digs[c], last[c], mean,
+                      sd);
+        assert_true(fabs(mean) < 0.5 && sd > 0.5 && sd < 1.5);
+    }
+    const struct dig_gravel     none = { { 5.0, 0.5, 2500 } };
+    const struct dig_gravel     some = { { 0.6, 0.5, 2500 } };
+    struct dig_observation      dig  = made_observation(&some, MADE_ACTUAL, 0.0);
+    static struct dig_pool_sums sums;
+    dig_pool_sum(1, &dig, &sums);
+    assert_true(isinf(dig_posterior_excess(set, NULL, &sums, &none)));
+    made_table_destroy(set);
+}
+
+static struct dig_observation reference(const struct dig_curve_set *const set,
+                                        const char *const path, const bool forces)
+{
+    struct dig_recording recording;
+    struct dig_observed  seen;
+    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
+    dig_recording_finish(&recording);
+    struct dig_observation dig = { .trajectory = seen.trajectory, .last = 1.0, .forces = forces };
+    memcpy(dig.moment_Nm, seen.value[0], sizeof dig.moment_Nm);
+    memcpy(dig.force_N, seen.value[1], sizeof dig.force_N);
+    return dig;
+}
+
+// Gravels of LIGGGHTS: one without rolling friction, which the table does not have, and three that
+// it has. No limit was chosen by them.
+static void a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts(void **state)
+{
+    (void)state;
+    static const char *const gravels[] = { "mu0.5_mur0.0", "mu0.3_mur0.3", "mu0.5_mur0.5",
+                                           "mu0.9_mur0.9" };
+    struct dig_curve_set    *set       = NULL;
+    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
+    for (size_t g = 0; g < sizeof gravels / sizeof gravels[0]; g++) {
+        char path[128];
+        (void)snprintf(path, sizeof path, "tests/data/reference/%s_rho2500__simpleA.csv",
+                       gravels[g]);
+        const struct dig_observation dig = reference(set, path, true);
+        const struct dig_match       m   = fit(set, 1, &dig);
+        assert_true(m.outside == (g == 0) && m.forces == (g != 0));
+    }
+    dig_curve_set_destroy(set);
+}
+
 // Digs of LIGGGHTS, all packings of a gravel together; off: how far the posterior's mean is from
 // the truth, axis by axis, as a share of the axis.
 static void add_reference(const struct dig_curve_set *const set, const char *const trajectory,
@@ -267,22 +391,13 @@ static void add_reference(const struct dig_curve_set *const set, const char *con
 {
     struct dig_observation dig[DIG_POOL_MAX] = { { 0 } };
     for (int p = 0; p < packings; p++) {
-        char                 path[128], seed[16] = "";
-        struct dig_recording recording;
-        struct dig_observed  seen;
+        char path[128], seed[16] = "";
         if (p > 0) {
             (void)snprintf(seed, sizeof seed, "_seed%d", p + 1);
         }
         (void)snprintf(path, sizeof path, "tests/data/reference/mu%.1f_mur%.1f_rho2500%s__%s.csv",
                        both, both, seed, trajectory);
-        assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
-        assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
-        dig_recording_finish(&recording);
-        dig[p].trajectory = seen.trajectory;
-        dig[p].last       = 1.0;
-        dig[p].forces     = forces;
-        memcpy(dig[p].moment_Nm, seen.value[0], sizeof dig[p].moment_Nm);
-        memcpy(dig[p].force_N, seen.value[1], sizeof dig[p].force_N);
+        dig[p] = reference(set, path, forces);
     }
     const struct dig_match m = fit(set, (size_t)packings, dig);
     print_message("%.1f/%.1f/2500 %-8s %s: %.2f (%.2f to %.2f), %.2f (%.2f to %.2f), %.0f (%.0f to "
@@ -331,6 +446,9 @@ int main(void)
         cmocka_unit_test(errors_of_moment_and_forces_go_together_as_packings_show),
         cmocka_unit_test(forces_tell_more_and_never_too_much),
         cmocka_unit_test(forces_tell_the_family_apart_on_digs_of_liggghts),
+        cmocka_unit_test(forces_that_no_gravel_has_are_told_and_done_without),
+        cmocka_unit_test(excess_has_one_scale_for_digs_of_any_length),
+        cmocka_unit_test(a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts),
         cmocka_unit_test(forces_count_only_where_every_dig_has_them),
     };
     return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);

@@ -1,0 +1,291 @@
+// How well "outside" is told by moment and forces, on a table's own packings:
+//
+//   inside   each dig of a gravel that was dug more than once, against the table without that dig:
+//   the
+//            share told as outside is a share of false alarms
+//   beyond   each dig of a gravel on a face of the grid, against the table without the whole face,
+//   and of
+//            those told as outside, how wrong the next dig along the other trajectory would be
+//            predicted by the gravel told (of the moment alone) and by the one that the forces
+//            would pull it to
+//
+//   outside TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE_OF_THE_PATH]
+
+#include "core/error.h"
+#include "estimator/match.h"
+#include "estimator/pool.h"
+#include "estimator/posterior.h"
+#include "tables/derive.h"
+#include "tables/load.h"
+#include "tables/store.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RUNS_MAX = 400, EVALUATIONS = 300 };
+static const double floors = 2.5;
+
+struct run {
+    size_t entry;
+    double value[DIG_CHANNELS][DIG_CURVE_POINTS];
+};
+
+struct bench {
+    struct dig_curve_set *set;
+    size_t                trajectory, other;
+    double                last; // of the path that is measured
+    size_t                runs;
+    struct run            run[RUNS_MAX];
+};
+
+struct tally {
+    size_t digs, outside, by_moment, compared, better; // by_moment: outside by it alone
+    double by_told, by_forces;                         // sums of relative errors, of those outside
+};
+
+static size_t slot_of(const struct bench *const b, const size_t entry, const size_t trajectory)
+{
+    return entry * b->set->trajectories + trajectory;
+}
+
+static enum dig_status take(void *const context, const struct dig_run *const run,
+                            struct dig_error *const error)
+{
+    struct bench *const b = context;
+    if (run->origin.trajectory != b->trajectory || run->origin.effect[0] != '\0') {
+        return DIG_OK;
+    }
+    if (b->runs == RUNS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "more than %d runs", RUNS_MAX);
+    }
+    struct run *const one = &b->run[b->runs++];
+    for (size_t e = 0; e < b->set->entries; e++) {
+        if (memcmp(&b->set->gravel[e], &run->origin.gravel, sizeof run->origin.gravel) == 0) {
+            one->entry = e;
+        }
+    }
+    return dig_derive_run(&b->set->trajectory[b->trajectory], b->set->tooth_m,
+                          b->set->smooth_half_s, run->windows, run->first_s, run->step_s,
+                          run->value, one->value);
+}
+
+static struct dig_observation observed(const struct bench *const b, const struct run *const run)
+{
+    struct dig_observation o = {
+        .dig_count = 1, .trajectory = (int)b->trajectory, .last = b->last, .forces = true
+    };
+    memcpy(o.moment_Nm, run->value[0], sizeof o.moment_Nm);
+    memcpy(o.force_N, run->value[1], sizeof o.force_N);
+    return o;
+}
+
+// Relative error of the moment that a match predicts along the other trajectory; NaN: none was dug.
+static double error_of(const struct bench *const b, const struct dig_curve_set *const set,
+                       const struct dig_match *const match, const size_t entry)
+{
+    static struct dig_curve predicted;
+    const size_t            slot = slot_of(b, entry, b->other);
+    if (b->set->packings[slot] < 1 ||
+        dig_predict_curve(set, match, b->other, &predicted) != DIG_OK) {
+        return (double)NAN;
+    }
+    const float *const truth  = b->set->curve[slot].mean[DIG_CHANNEL_MY_Nm];
+    double             miss2  = 0.0;
+    double             whole2 = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        miss2 += pow((double)predicted.mean[DIG_CHANNEL_MY_Nm][k] - (double)truth[k], 2.0);
+        whole2 += pow((double)truth[k], 2.0);
+    }
+    return sqrt(miss2 / whole2);
+}
+
+static void judge(const struct bench *const b, const struct dig_curve_set *const set,
+                  const struct run *const run, struct tally *const tally)
+{
+    static struct dig_pool_sums  sums;
+    const struct dig_observation o = observed(b, run);
+    struct dig_match             told;
+    if (dig_match_nearest(set, &o, floors, &told) != DIG_OK ||
+        dig_fit_refine(set, &o, EVALUATIONS, &told) != DIG_OK) {
+        return;
+    }
+    struct dig_match       bare;
+    struct dig_observation alone = o;
+    alone.forces                 = false;
+    if (dig_match_nearest(set, &alone, floors, &bare) != DIG_OK ||
+        dig_fit_refine(set, &alone, EVALUATIONS, &bare) != DIG_OK) {
+        return;
+    }
+    tally->by_moment += bare.outside ? 1 : 0;
+    tally->digs++;
+    if (told.forces) {
+        return;
+    }
+    tally->outside++;
+    struct dig_match pulled = told;
+    dig_pool_sum(1, &o, &sums);
+    if (dig_posterior_fill(set, NULL, &sums, &pulled) != DIG_OK) {
+        return;
+    }
+    const double by_told   = error_of(b, set, &told, run->entry);
+    const double by_forces = error_of(b, set, &pulled, run->entry);
+    if (isfinite(by_told) && isfinite(by_forces)) {
+        tally->compared++;
+        tally->better += by_told < by_forces ? 1 : 0;
+        tally->by_told += by_told;
+        tally->by_forces += by_forces;
+    }
+}
+
+static void tell(const char *const name, const struct tally *const t)
+{
+    printf("%-28s %4zu digs, %3zu told outside (%4.1f %%), %zu by the moment alone", name, t->digs,
+           t->outside, 100.0 * (double)t->outside / (double)t->digs, t->by_moment);
+    if (t->compared > 0) {
+        printf("; next dig off by %.3f as told, %.3f by the forces; %zu of %zu better as told",
+               t->by_told / (double)t->compared, t->by_forces / (double)t->compared, t->better,
+               t->compared);
+    }
+    printf("\n");
+}
+
+static void add(struct tally *const sum, const struct tally *const more)
+{
+    sum->digs += more->digs;
+    sum->outside += more->outside;
+    sum->by_moment += more->by_moment;
+    sum->compared += more->compared;
+    sum->better += more->better;
+    sum->by_told += more->by_told;
+    sum->by_forces += more->by_forces;
+}
+
+// Each dig against its entry without it. A single dig that is left has the entry's spread.
+static void look_inside(struct bench *const b)
+{
+    struct tally tally = { .digs = 0 };
+    for (size_t left = 0; left < b->runs; left++) {
+        const size_t      slot  = slot_of(b, b->run[left].entry, b->trajectory);
+        struct dig_curve *curve = &b->set->curve[slot];
+        const int         all   = b->set->packings[slot];
+        if (all < 2) {
+            continue;
+        }
+        const struct dig_curve     whole    = *curve;
+        static struct dig_ensemble ensemble = { .packings = 0 };
+        memset(&ensemble, 0, sizeof ensemble);
+        for (size_t i = 0; i < b->runs; i++) {
+            if (i != left && b->run[i].entry == b->run[left].entry) {
+                dig_ensemble_add(&ensemble, (const double(*)[DIG_CURVE_POINTS])b->run[i].value);
+            }
+        }
+        dig_ensemble_curve(&ensemble, curve);
+        if (ensemble.packings == 1) {
+            memcpy(curve->sd, whole.sd, sizeof curve->sd);
+        }
+        b->set->packings[slot] = all - 1;
+        judge(b, b->set, &b->run[left], &tally);
+        b->set->packings[slot] = all;
+        *curve                 = whole;
+    }
+    tell("inside", &tally);
+}
+
+static bool is_on_face(const struct bench *const b, const size_t entry, const int axis,
+                       const double face)
+{
+    return fabs(b->set->gravel[entry].value[axis] / face - 1.0) < 1e-9;
+}
+
+// The grid without its first (end 0) or last points of an axis; entries of that face have no digs.
+static struct dig_curve_set without(const struct bench *const b, const int axis, const int end,
+                                    const double face, int packings[], int cell[])
+{
+    const struct dig_curve_set *const set   = b->set;
+    struct dig_curve_set              less  = *set;
+    const size_t                      slots = set->entries * set->trajectories;
+    for (size_t s = 0; s < slots; s++) {
+        packings[s] = is_on_face(b, s / set->trajectories, axis, face) ? 0 : set->packings[s];
+    }
+    less.packings = packings;
+    less.cell     = cell;
+    less.axis_count[axis]--;
+    less.axis[axis] = set->axis[axis] + (end == 0 ? 1 : 0);
+
+    const size_t *const n     = less.axis_count;
+    const size_t        cells = n[0] * n[1] * n[2];
+    for (size_t i = 0; i < cells; i++) {
+        size_t at[DIG_AXES] = { i / (n[1] * n[2]), i / n[2] % n[1], i % n[2] };
+        at[axis] += end == 0 ? 1 : 0;
+        cell[i] = set->cell[(at[0] * set->axis_count[1] + at[1]) * set->axis_count[2] + at[2]];
+    }
+    return less;
+}
+
+static void look_beyond(struct bench *const b)
+{
+    const size_t slots    = b->set->entries * b->set->trajectories;
+    int *const   packings = malloc(slots * sizeof *packings);
+    int *const cell = malloc(b->set->axis_count[0] * b->set->axis_count[1] * b->set->axis_count[2] *
+                             sizeof *cell);
+    struct tally all = { .digs = 0 };
+    for (int axis = 0; packings != NULL && cell != NULL && axis < DIG_AXES; axis++) {
+        for (int end = 0; end < 2 && b->set->axis_count[axis] > 2; end++) {
+            const double face = b->set->axis[axis][end == 0 ? 0 : b->set->axis_count[axis] - 1];
+            const struct dig_curve_set less  = without(b, axis, end, face, packings, cell);
+            struct tally               tally = { .digs = 0 };
+            for (size_t i = 0; i < b->runs; i++) {
+                if (is_on_face(b, b->run[i].entry, axis, face)) {
+                    judge(b, &less, &b->run[i], &tally);
+                }
+            }
+            char name[64];
+            (void)snprintf(name, sizeof name, "beyond, no %s %g",
+                           dig_axis_name((enum dig_axis)axis), face);
+            tell(name, &tally);
+            add(&all, &tally);
+        }
+    }
+    tell("beyond, all", &all);
+    free(packings);
+    free(cell);
+}
+
+static size_t trajectory_of(const struct dig_curve_set *const set, const char *const name)
+{
+    size_t t = 0;
+    while (t < set->trajectories && strcmp(set->trajectory[t].name, name) != 0) {
+        t++;
+    }
+    return t;
+}
+
+int main(const int argc, char *argv[])
+{
+    struct dig_error    error = { "TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE]" };
+    struct dig_store   *store = NULL;
+    struct bench *const b     = calloc(1, sizeof *b);
+    int                 rc    = 1;
+    if (argc >= 4 && b != NULL && dig_table_load(argv[1], &b->set, &error) == DIG_OK &&
+        dig_store_open(argv[1], &store, &error) == DIG_OK) {
+        b->last                              = argc > 4 ? atof(argv[4]) : 1.0;
+        b->trajectory                        = trajectory_of(b->set, argv[2]);
+        b->other                             = trajectory_of(b->set, argv[3]);
+        const struct dig_run_visitor visitor = { take, b };
+        if (b->trajectory < b->set->trajectories && b->other < b->set->trajectories &&
+            dig_store_walk(store, &visitor, &error) == DIG_OK) {
+            look_inside(b);
+            look_beyond(b);
+            rc = 0;
+        }
+    }
+    if (rc != 0) {
+        (void)fprintf(stderr, "outside: %s\n", error.text);
+    }
+    dig_store_close(store);
+    dig_curve_set_destroy(b != NULL ? b->set : NULL);
+    free(b);
+    return rc;
+}
