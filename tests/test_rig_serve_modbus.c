@@ -69,10 +69,11 @@ static void input_and_holding_registers_read_the_same_board(void **state)
     start_tcp(&rig);
     modbus_t *const client                   = join(&rig);
     uint16_t        found[DIG_RIG_REGISTERS] = { 0 };
-    assert_int_equal(modbus_read_input_registers(client, 0, DIG_RIG_REGISTERS, found), 12);
+    assert_int_equal(modbus_read_input_registers(client, 0, DIG_RIG_REGISTERS, found),
+                     DIG_RIG_REGISTERS);
     assert_memory_equal(found, registers, sizeof registers);
     memset(found, 0, sizeof found);
-    assert_int_equal(modbus_read_registers(client, 0, DIG_RIG_REGISTERS, found), 12);
+    assert_int_equal(modbus_read_registers(client, 0, DIG_RIG_REGISTERS, found), DIG_RIG_REGISTERS);
     assert_memory_equal(found, registers, sizeof registers);
 
     // What is written on the board is read at once, and from the middle too.
@@ -88,7 +89,8 @@ static void input_and_holding_registers_read_the_same_board(void **state)
     assert_memory_equal(found, newer + 4, 8 * sizeof newer[0]);
     assert_int_equal(modbus_read_input_registers(client, DIG_RIG_FAR - 1, 2, found), -1);
     assert_int_equal(errno, EMBXILADD);
-    assert_int_equal(modbus_read_input_registers(client, DIG_RIG_FAR + 11, 2, found), -1);
+    assert_int_equal(
+        modbus_read_input_registers(client, DIG_RIG_FAR + DIG_RIG_REGISTERS - 1, 2, found), -1);
     assert_int_equal(errno, EMBXILADD);
     leave(client);
     stop(&rig);
@@ -140,7 +142,7 @@ static void reads_outside_the_map_are_refused(void **state)
     start_tcp(&rig);
     modbus_t *const client   = join(&rig);
     uint16_t        found[2] = { 42, 42 };
-    assert_int_equal(modbus_read_input_registers(client, 11, 2, found), -1);
+    assert_int_equal(modbus_read_input_registers(client, DIG_RIG_REGISTERS - 1, 2, found), -1);
     assert_int_equal(errno, EMBXILADD);
     assert_int_equal(modbus_read_input_registers(client, 40000, 1, found), -1);
     assert_int_equal(errno, EMBXILADD);

@@ -280,6 +280,10 @@ static void a_rig_with_a_force_sensor_can_be_mapped(void **state)
     assert_close(r.value[DIG_SIGNAL_SENSOR_FZ_N], -0.37, 1e-12);
     assert_close(r.value[DIG_SIGNAL_SENSOR_MY_Nm], 0.027, 1e-12);
 
+    const struct dig_signal_map ours = modbus_map("config/signals/modbus_sensor.yaml");
+    assert_int_equal(dig_signal_map_sensing(&ours), DIG_SENSING_SENSOR);
+    assert_int_equal(ours.group[0].registers, 17);
+
     struct dig_error      error = { "" };
     struct dig_signal_map none;
     char                  bad[1024];

@@ -34,6 +34,23 @@ direct=$(identify "$work/simpleA.csv")
 check "digloop identifies from it as from the dig itself" near "$direct" "$(identify "$work/run.csv" --machine "$machine")"
 check "and from the daemon's log" near "$direct" "$(identify "$work/csv.lcm" --machine "$machine")"
 
+# The same from a bus.
+config bus "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_sensor.yaml}}" \
+    "time_scale: 4"
+log bus
+start "$work/rigbus.err" "$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
+    --modbus-tcp "127.0.0.1:$port" --speed 4 --start-delay 3
+rig=$started
+sleep 0.5
+start "$work/bus.log" "$BIN/digsightd" -c "$work/bus.yaml"
+daemon=$started
+wait "$rig"
+stop "$daemon"
+read_log bus
+check "from Modbus the gravel is identified, too" identified "$work/bus.txt"
+check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
+check "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
+
 refused() { # STATUS WORDS FILE: exit status 2, and the words in the file
     [ "$1" = 2 ] && grep -q "$2" "$3"
 }
@@ -43,8 +60,8 @@ config other "{kind: replay, replay: {file: run.csv}}"
 check "a machine with cylinders is refused for such a recording" refused $? "machine: .* has cylinders" "$work/other.txt"
 "$BIN/digloop" identify "$work/table.sqlite" "$work/run.csv" --machine "$machine" >/dev/null 2>"$work/other.txt"
 check "so it is by digloop" refused $? "readings of a force sensor, expected what machine" "$work/other.txt"
-"$BIN/digrig" serve "$work/simpleA.csv" --machine config/machines/rig_sensor.yaml --modbus-tcp "127.0.0.1:$port" 2>"$work/other.txt"
-check "digrig says that it does not serve a force sensor" refused $? "expected record" "$work/other.txt"
+"$BIN/digrig" serve "$work/simpleA.csv" --machine config/machines/rig_sensor.yaml --can vcan0 2>"$work/other.txt"
+check "digrig says that its CAN layout has no force sensor" refused $? "expected Modbus or record" "$work/other.txt"
 mkdir "$work/campaign"
 cp "$work/run.csv" "$work/campaign"
 cat >"$work/campaign/campaign.yaml" <<YAML

@@ -129,10 +129,10 @@ static int work(const struct dig_rig_options *const options)
     }
 
     enum dig_status status = load(options, &machine, &track_options.scene_tooth_m, digs, &error);
-    if (status == DIG_OK && machine.sensor.fitted && options->command == DIG_RIG_COMMAND_SERVE) {
+    if (status == DIG_OK && machine.sensor.fitted && options->can != NULL) {
         status = dig_error_set(&error, DIG_EINVAL,
-                               "%s: a force sensor has no layout on the buses served here, "
-                               "expected record",
+                               "%s: a force sensor has no layout on the CAN bus served here, "
+                               "expected Modbus or record",
                                machine.name);
     }
     if (status == DIG_OK) {

@@ -104,12 +104,16 @@ double dig_rig_fault_amount(const size_t faults, const struct dig_rig_fault faul
 void dig_rig_fault_spoil(const size_t faults, const struct dig_rig_fault fault[],
                          const double time_s, struct dig_sample *const sample)
 {
-    static const double far_Pa  = 60e6;
-    static const double far_rad = 12.0;
+    static const double far_Pa     = 60e6;
+    static const double far_rad    = 12.0;
+    static const double far_of_rig = 1e6; // m, N, Nm
 
     if (dig_rig_fault_is_on(faults, fault, DIG_RIG_FAULT_OUT_OF_RANGE, time_s)) {
         for (int s = DIG_SIGNAL_BOOM_rad; s <= DIG_SIGNAL_BUCKET_ROD_Pa; s++) {
             sample->value[s] = s < DIG_SIGNAL_BOOM_HEAD_Pa ? far_rad : far_Pa;
+        }
+        for (int s = DIG_SIGNAL_PIN_X_m; s <= DIG_SIGNAL_SENSOR_MY_Nm; s++) {
+            sample->value[s] = far_of_rig;
         }
     }
     if (dig_rig_fault_is_on(faults, fault, DIG_RIG_FAULT_NOT_AVAILABLE, time_s)) {

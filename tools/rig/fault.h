@@ -4,8 +4,8 @@
 //   nan@5:2             the same: neither bus has another way to say it
 //   frozen@5:2          values and alive counter stand still
 //   missing@5:2         no frame is sent, no request answered
-//   out-of-range@5      from 5 s to the end: pressures of 60 MPa, angles of 12 rad, or the most the
-//                       bus can say
+//   out-of-range@5      from 5 s to the end: pressures of 60 MPa, angles of 12 rad, of a force
+//                       sensor's rig 1e6 of all else, or the most the bus can say
 //   stuck-pressures@5:2 the pressures stand, angles and alive counter go on
 //   stuck-angles@5:2    the angles stand, the rest goes on
 //   drop=0.1@5:2        that share of frames is lost, of requests is not answered

@@ -34,4 +34,9 @@ void dig_rig_modbus_encode(const struct dig_sample *const sample, const uint16_t
             unsigned_bits(sample, (enum dig_signal)(DIG_SIGNAL_BOOM_HEAD_Pa + i), 1e3);
     }
     registers[11] = signed_bits(sample, DIG_SIGNAL_TEMPERATURE_degC, 0.1);
+    registers[12] = signed_bits(sample, DIG_SIGNAL_PIN_X_m, 2e-5);
+    registers[13] = signed_bits(sample, DIG_SIGNAL_PIN_Z_m, 2e-5);
+    registers[14] = signed_bits(sample, DIG_SIGNAL_SENSOR_FX_N, 0.01);
+    registers[15] = signed_bits(sample, DIG_SIGNAL_SENSOR_FZ_N, 0.01);
+    registers[16] = signed_bits(sample, DIG_SIGNAL_SENSOR_MY_Nm, 5e-4);
 }

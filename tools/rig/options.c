@@ -11,7 +11,7 @@ static const char help_text[] =
     "\n"
     "Turns recorded digs into the joint angles and cylinder pressures of a machine, or what a "
     "force\n"
-    "sensor that carries the bucket reads (record only), and writes them to a file or serves them\n"
+    "sensor that carries the bucket reads (not on CAN), and writes them to a file or serves them\n"
     "on real buses. Several recordings are dug one after the other.\n"
     "\n"
     "  --machine M.yaml          the machine (config/machines)\n"
