@@ -43,8 +43,8 @@
 #define DIG_POSTERIOR_FX_FZ (-0.39)
 
 /// Digs of moment and forces farther than this from the most probable gravel are of none of the
-/// table's: of digs left out of their own gravel's entry one in 60 is called so (450 digs, whole
-/// and in part, tables/rig.sqlite; tests/bench/outside.c).
+/// table's. Of 450 digs, whole and in part, left out of their own gravel's entry five are called so
+/// (tables/rig.sqlite; tests/bench/outside.c).
 #define DIG_POSTERIOR_OUTSIDE 4.0
 
 /// How much farther digs are from a gravel, over all channels measured, than their errors make
