@@ -17,7 +17,7 @@ static void *grow(void *const old, const size_t used, const size_t room, const s
     return p;
 }
 
-static enum dig_status make_room(struct dig_contacts *const list)
+enum dig_status dig_contacts_grow(struct dig_contacts *const list)
 {
     const size_t        room = 2 * list->room + (size_t)8 * DIG_BLOCK;
     struct dig_contacts more = {
@@ -38,23 +38,6 @@ static enum dig_status make_room(struct dig_contacts *const list)
     }
     dig_contacts_finish(list);
     *list = more;
-    return DIG_OK;
-}
-
-enum dig_status dig_contacts_add(struct dig_contacts *const list, const uint32_t i,
-                                 const uint32_t j, const uint32_t key,
-                                 const struct dig_contacts *const from, const uint32_t at)
-{
-    if (list->n == list->room && make_room(list) != DIG_OK) {
-        return DIG_ENOMEM;
-    }
-    const size_t n = list->n++;
-    list->i[n]     = i;
-    list->j[n]     = j;
-    list->key[n]   = key;
-    for (int m = 0; m < DIG_MEMORIES; m++) {
-        list->memory[m][n] = from == NULL ? 0.0 : from->memory[m][at];
-    }
     return DIG_OK;
 }
 

@@ -22,10 +22,27 @@ struct dig_contacts {
     double   *memory[DIG_MEMORIES]; // sx sy sz mx my mz
 };
 
-/// Appends with these memories (NULL: zero). DIG_ENOMEM leaves the list as it was.
-DIG_MUST_CHECK enum dig_status dig_contacts_add(struct dig_contacts *list, uint32_t i, uint32_t j,
-                                                uint32_t key, const struct dig_contacts *from,
-                                                uint32_t at);
+/// Makes room for more contacts than there are. DIG_ENOMEM leaves the list as it was.
+DIG_MUST_CHECK enum dig_status dig_contacts_grow(struct dig_contacts *list);
+
+/// Appends with the memories that contact `at` of `from` has (NULL: zero). DIG_ENOMEM leaves the
+/// list as it was. Here, because a pick appends every contact there is.
+DIG_MUST_CHECK static inline enum dig_status
+dig_contacts_add(struct dig_contacts *const list, const uint32_t i, const uint32_t j,
+                 const uint32_t key, const struct dig_contacts *const from, const uint32_t at)
+{
+    if (list->n == list->room && dig_contacts_grow(list) != DIG_OK) {
+        return DIG_ENOMEM;
+    }
+    const size_t n = list->n++;
+    list->i[n]     = i;
+    list->j[n]     = j;
+    list->key[n]   = key;
+    for (int m = 0; m < DIG_MEMORIES; m++) {
+        list->memory[m][n] = from == NULL ? 0.0 : from->memory[m][at];
+    }
+    return DIG_OK;
+}
 
 void dig_contacts_finish(struct dig_contacts *list);
 

@@ -22,8 +22,8 @@ struct grid {
 
 static ptrdiff_t clamp_cell(const struct grid *const g, const int axis, const double x_m)
 {
-    const double c = floor((x_m - g->low_m[axis]) / g->cell_m);
-    if (!(c > 0.0)) {
+    const double c = (x_m - g->low_m[axis]) / g->cell_m;
+    if (!(c >= 1.0)) {
         return 0;
     }
     return c < (double)g->count[axis] ? (ptrdiff_t)c : g->count[axis] - 1;
@@ -82,7 +82,7 @@ static enum dig_status fill_grid(const struct dig_grains *const grains, const do
     g->cell_m      = cell_m;
     size_grid(grains, g);
     g->start             = calloc(g->cells + 2, sizeof *g->start);
-    g->member            = malloc((n + 1) * sizeof *g->member);
+    g->member            = calloc(n + 1, sizeof *g->member);
     uint32_t *const cell = malloc((n + 1) * sizeof *cell);
     if (g->start == NULL || g->member == NULL || cell == NULL) {
         free(g->start);
@@ -137,32 +137,57 @@ static enum dig_status make_room(struct dig_neighbours *const list, const size_t
     return DIG_OK;
 }
 
+// What the search reads of a grain, in the order in which it comes by: cell by cell.
+struct spot {
+    double   x_m[3], radius_m, margin_m;
+    uint32_t grain, clump;
+};
+
+static struct spot look_up(const struct dig_grains *const grains, const double margin_m[],
+                           const uint32_t i)
+{
+    const double *const x = grains->motion[i].x_m;
+    return (struct spot){
+        .x_m      = { x[0], x[1], x[2] },
+        .radius_m = grains->kind[grains->of[i]].radius_m,
+        .margin_m = margin_m[i],
+        .grain    = i,
+        .clump    = grains->clump == NULL ? 0 : grains->clump[i],
+    };
+}
+
 // What is looked for around one grain, or around its image beyond a side that is one with the
 // other.
 struct query {
-    const struct dig_grains *grains;
-    const double            *margin_m;
-    double                   radius_max_m;
-    double                   half_m; // of the period: farther images in y are not the nearest
-    uint32_t                 i;
-    double                   x_m[3];
+    const struct spot *all; // in the order of the grid's members
+    double             radius_max_m;
+    double             half_m; // of the period: farther images in y are not the nearest
+    struct spot        own;
+    double             x_m[3]; // of the grain, or of its image
 };
+
+// Whether a grain that is close is listed under the query's. The grain with the larger margin
+// searches far enough to see the pair.
+static bool is_listed(const struct query *const q, const struct spot *const other,
+                      const double dy_m)
+{
+    const struct spot *const own  = &q->own;
+    const bool               mine = other->margin_m < own->margin_m ||
+                      (!(other->margin_m > own->margin_m) && other->grain > own->grain);
+    const bool apart = own->clump == 0 || own->clump != other->clump;
+    return mine && apart && dy_m >= -q->half_m && dy_m < q->half_m;
+}
 
 // The pairs of the query's grain, appended at *used.
 static enum dig_status search(const struct query *const q, const struct grid *const g,
                               struct dig_neighbours *const list, size_t *const used)
 {
-    const struct dig_grains *const grains   = q->grains;
-    const double *const            margin_m = q->margin_m;
-    const double *const            x        = q->x_m;
-    const uint32_t                 i        = q->i;
-    const double                   radius_m = grains->kind[grains->of[i]].radius_m;
-    const double                   far_m    = radius_m + q->radius_max_m + 2.0 * margin_m[i];
-    const double                   own_m    = radius_m + margin_m[i];
-    const uint32_t                 clump    = grains->clump == NULL ? 0 : grains->clump[i];
-    size_t                         count    = *used;
-    ptrdiff_t                      low[3];
-    ptrdiff_t                      high[3];
+    const double *const x     = q->x_m;
+    const double        own_m = q->own.radius_m + q->own.margin_m;
+    const double        far_m = q->own.radius_m + q->radius_max_m + 2.0 * q->own.margin_m;
+    size_t              count = *used;
+    ptrdiff_t           low[3];
+    ptrdiff_t           high[3];
     for (int a = 0; a < 3; a++) {
         low[a]  = clamp_cell(g, a, x[a] - far_m);
         high[a] = clamp_cell(g, a, x[a] + far_m);
@@ -179,19 +204,13 @@ static enum dig_status search(const struct query *const q, const struct grid *co
                 return DIG_ENOMEM;
             }
             for (size_t k = first; k < last; k++) {
-                const uint32_t      j    = g->member[k];
-                const double *const y    = grains->motion[j].x_m;
-                const double        d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
-                const double reach_m = own_m + grains->kind[grains->of[j]].radius_m + margin_m[j];
-                // The grain with the larger margin searches far enough to see the pair. Written
-                // whether it counts or not: a branch would be guessed wrong every third time.
-                const bool mine =
-                    margin_m[j] < margin_m[i] || (!(margin_m[j] > margin_m[i]) && j > i);
-                const bool close   = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;
-                const bool apart   = clump == 0 || clump != grains->clump[j];
-                const bool nearest = d[1] >= -q->half_m && d[1] < q->half_m;
-                list->other[count] = j;
-                count += (size_t)(mine & close & apart & nearest);
+                const struct spot *const y = &q->all[k];
+                const double d[3]    = { x[0] - y->x_m[0], x[1] - y->x_m[1], x[2] - y->x_m[2] };
+                const double reach_m = own_m + y->radius_m + y->margin_m;
+                if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
+                    is_listed(q, y, d[1])) {
+                    list->other[count++] = y->grain;
+                }
             }
         }
     }
@@ -204,10 +223,10 @@ static enum dig_status search_images(struct query *const q, const struct grid *c
                                      const double period_m, struct dig_neighbours *const list,
                                      size_t *const used)
 {
-    memcpy(q->x_m, q->grains->motion[q->i].x_m, sizeof q->x_m);
+    memcpy(q->x_m, q->own.x_m, sizeof q->x_m);
     enum dig_status status = search(q, g, list, used);
     for (int side = -1; period_m > 0.0 && side <= 1 && status == DIG_OK; side += 2) {
-        q->x_m[1] = q->grains->motion[q->i].x_m[1] + side * period_m;
+        q->x_m[1] = q->own.x_m[1] + side * period_m;
         status    = search(q, g, list, used);
     }
     return status;
@@ -247,19 +266,29 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         dig_neighbours_finish(list);
         return status;
     }
+    struct spot *const spot = malloc((n + 1) * sizeof *spot);
+    if (spot == NULL) {
+        status = DIG_ENOMEM;
+        goto done;
+    }
+    for (size_t k = 0; k < n; k++) {
+        spot[k] = look_up(grains, margin_m, g.member[k]);
+    }
     struct query q = {
-        .grains       = grains,
-        .margin_m     = margin_m,
+        .all          = spot,
         .radius_max_m = radius_max_m,
         .half_m       = period_y_m > 0.0 ? 0.5 * period_y_m : (double)INFINITY,
     };
     size_t used = 0;
     for (size_t i = 0; i < n && status == DIG_OK; i++) {
         list->start[i] = (uint32_t)used;
-        q.i            = (uint32_t)i;
+        q.own          = look_up(grains, margin_m, (uint32_t)i);
         status         = search_images(&q, &g, period_y_m, list, &used);
     }
     list->start[n] = (uint32_t)used;
+
+done:
+    free(spot);
     free(g.start);
     free(g.member);
     if (status != DIG_OK) {
