@@ -2,6 +2,8 @@
 
 #include "tests/dem_fixture.h"
 
+#include "offline_dem/random.h"
+
 #include <math.h>
 
 // Hertz's sphere on a wall at the characteristic velocity, stepped through time: the linear spring
@@ -96,6 +98,35 @@ static void the_law_knows_no_direction(void **state)
     assert_close(b.sy_m, a.sx_m, 1e-18);
 }
 
+// The question that saves the roots is asked of springs and torques at their limits, to the last
+// bits on both sides, and well within: there it has to be answered no, or it saves nothing.
+static void no_cap_is_missed_for_want_of_a_root(void **state)
+{
+    (void)state;
+    const struct dig_law_material m      = dem_material(0.3, 0.2);
+    const struct dig_law          law    = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
+    struct dig_random             random = { .state = 7 };
+    size_t                        capped = 0;
+    for (int k = 0; k < 20000; k++) {
+        const double      load_N  = pow(10.0, dig_random_between(&random, -9.0, 3.0));
+        const double      grip_m  = law.friction * load_N / law.normal_Npm;
+        const double      most_Nm = law.rolling_lever_m * load_N;
+        const double      off     = dig_random_between(&random, -4.0, 4.0) * 0x1p-52;
+        struct dig_strain s       = { .normal_N    = k % 2 == 0 ? load_N : -load_N,
+                                      .spring2_m2  = 0.99 * grip_m * grip_m,
+                                      .torque2_Nm2 = 0.99 * most_Nm * most_Nm };
+        assert_false(dig_law_may_cap(law, s));
+        s.spring2_m2 = grip_m * grip_m * (1.0 + off);
+        assert_true(dig_law_may_cap(law, s) || !(dig_law_caps(law, s).spring < 1.0));
+        capped += dig_law_caps(law, s).spring < 1.0;
+        s.spring2_m2  = 0.0;
+        s.torque2_Nm2 = most_Nm * most_Nm * (1.0 + off);
+        assert_true(dig_law_may_cap(law, s) || !(dig_law_caps(law, s).torque < 1.0));
+        capped += dig_law_caps(law, s).torque < 1.0;
+    }
+    assert_in_range(capped, 10000, 30000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -104,6 +135,7 @@ int main(void)
         cmocka_unit_test(no_touch_is_no_force_and_no_memory),
         cmocka_unit_test(friction_and_rolling_torque_are_capped),
         cmocka_unit_test(the_law_knows_no_direction),
+        cmocka_unit_test(no_cap_is_missed_for_want_of_a_root),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
