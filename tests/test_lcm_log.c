@@ -36,8 +36,8 @@ static lcm_eventlog_t *begin(const char *const name)
 
 static void put_sample(lcm_eventlog_t *const log, const int64_t time_ns, const int signals)
 {
-    double value[16]                = { 0.5 };
-    int8_t valid[16]                = { 1 };
+    double value[DIG_SIGNALS + 1]   = { 0.5 };
+    int8_t valid[DIG_SIGNALS + 1]   = { 1 };
     value[DIG_SIGNAL_BOOM_HEAD_Pa]  = 1e6 + (double)time_ns;
     valid[DIG_SIGNAL_BOOM_HEAD_Pa]  = 1;
     value[DIG_SIGNAL_ARM_HEAD_Pa]   = 7.0; // not valid
@@ -213,6 +213,17 @@ static void defects_are_refused_and_write_nothing(void **state)
     put_sample(log, 1, 10);
     lcm_eventlog_destroy(log);
     check_refused("other.lcm", DIG_EINVAL, "event 0: 10 signals, expected 11 to 16");
+    // From before there were force sensors: what was added since has no value.
+    log = begin("before.lcm");
+    put_sample(log, 1, 11);
+    put_sample(log, 2, 11);
+    lcm_eventlog_destroy(log);
+    struct dig_machine_recording before = { 0 };
+    assert_int_equal(dig_lcm_log_read(scratch_path("before.lcm"), &before, NULL), DIG_OK);
+    assert_true(before.rows == 2 && before.row[1].valid[DIG_SIGNAL_BOOM_HEAD_Pa]);
+    assert_false(before.row[1].valid[DIG_SIGNAL_PIN_X_m] ||
+                 before.row[1].valid[DIG_SIGNAL_SENSOR_MY_Nm]);
+    dig_machine_recording_finish(&before);
     log = begin("more.lcm");
     put_sample(log, 1, DIG_SIGNALS + 1);
     lcm_eventlog_destroy(log);
