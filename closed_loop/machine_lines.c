@@ -265,22 +265,32 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     return status;
 }
 
+enum dig_status dig_lines_rest(const struct dig_lines *const lines, const double at[],
+                               double rest[])
+{
+    assert(lines != NULL && at != NULL && rest != NULL);
+    struct dig_correction *const correction =
+        malloc((lines->air->segments + 1) * sizeof *correction);
+    if (correction == NULL) {
+        return DIG_ENOMEM;
+    }
+    correct(lines, at, correction);
+    dig_air_rest(lines->air, correction, false, rest);
+    free(correction);
+    return DIG_OK;
+}
+
 double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
 {
     assert(lines != NULL && at != NULL);
-    struct dig_correction *const correction =
-        malloc((lines->air->segments + 1) * sizeof *correction);
     double *const rest  = malloc((lines->air->rows + 1) * sizeof *rest);
     double        rest2 = INFINITY;
-    if (correction != NULL && rest != NULL) {
-        correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, false, rest);
+    if (rest != NULL && dig_lines_rest(lines, at, rest) == DIG_OK) {
         rest2 = 0.0;
         for (size_t r = 0; r < lines->air->rows; r++) {
             rest2 += pow(lines->trust[r] * rest[r], 2.0);
         }
     }
-    free(correction);
     free(rest);
     return rest2;
 }

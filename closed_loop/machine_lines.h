@@ -59,7 +59,12 @@ DIG_MUST_CHECK enum dig_status dig_lines_update(struct dig_lines *lines, unsigne
 /// for every segment and joint. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_judge(struct dig_lines *lines, double *slow);
 
-/// The sum of rest^2 at other values, not linear. INFINITY when there is no memory.
+/// What is left of every row in its sigmas at other values, not linear, trusted or not: rest[rows].
+/// DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_rest(const struct dig_lines *lines, const double at[],
+                                              double rest[]);
+
+/// The sum of rest^2 at other values, as far as rows are trusted. INFINITY when there is no memory.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);
 
 /// True for a column that only counts once its effect is in: the speed of a Stribeck friction.

@@ -1,6 +1,7 @@
 #include "closed_loop/machine_side.h"
 
 #include "closed_loop/machine_dig.h"
+#include "closed_loop/reading_noise.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -25,14 +26,15 @@ enum dig_status dig_machine_side_create(const struct dig_machine *const   machin
     }
     made->machine = *machine;
     made->set     = set;
+    dig_reading_noise_raise(&made->machine, digs, recording);
     for (size_t d = 0; d < digs; d++) {
         struct dig_error why    = { "" };
-        enum dig_status  status = dig_machine_dig_make(machine, set, &recording[d],
+        enum dig_status  status = dig_machine_dig_make(&made->machine, set, &recording[d],
                                                        measured[d].trajectory, &made->dig[d], &why);
         if (status == DIG_OK) {
             made->digs = d + 1;
             status =
-                dig_machine_dig_measure(machine, set, &made->dig[d],
+                dig_machine_dig_measure(&made->machine, set, &made->dig[d],
                                         &(struct dig_correction){ .delay_s = 0.0 }, &measured[d]);
             (void)dig_error_set(&why, status,
                                 "its moment is not told: a pressure at relief or a "

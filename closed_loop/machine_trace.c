@@ -2,6 +2,7 @@
 // the equations are made linear again where it has led.
 
 #include "closed_loop/machine_fit.h"
+#include "closed_loop/machine_noise.h"
 #include "closed_loop/machine_side.h"
 #include "closed_loop/machine_side_private.h"
 #include "estimator/effects/effect.h"
@@ -19,6 +20,10 @@ static const double unclear_rest2 = 1.2;
 // Nor is air whose means over segments leave this much more than chi-squared should, in its sigmas.
 static const double unclear_sigmas = 5.0;
 
+// Of noise told by the air itself, that of both may be more: it is known from some dozens of
+// blocks, and may still move from one to the next.
+static const double own_noise = 1.4;
+
 // Two sets of effects whose log evidence differs by less cannot be told apart.
 static const double tie = 5.0;
 
@@ -31,6 +36,7 @@ struct search {
     struct dig_fit   fit;
     double          *at, *sigma;
     unsigned         set;
+    double           noise2;     // variance that rows may have without being unclear
     double           least;      // log evidence that an effect must bring
     double           rest2_none; // without any effect, not linear
     double           rest2;      // with the set, not linear, rows as far as they are trusted
@@ -128,17 +134,32 @@ static enum dig_status refine(struct search *const s)
     return status;
 }
 
+// The equations without any effect, rows as far as their own scatter lets them be known.
+static enum dig_status begin(struct search *const s)
+{
+    bool            widened = false;
+    enum dig_status status  = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    if (status == DIG_OK) {
+        struct dig_fit_answer all = { .at = s->at };
+        sum_all(s);
+        dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+        status = dig_machine_noise_widen(&s->lines, s->at, &widened);
+    }
+    if (status == DIG_OK && widened) {
+        status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+        sum_all(s);
+    }
+    s->noise2 = widened ? own_noise : 1.0;
+    return status == DIG_OK ? dig_lines_judge(&s->lines, &s->slow) : status;
+}
+
 // Effects join until none earns its place.
 static enum dig_status select_effects(struct search *const s)
 {
-    enum dig_status status = dig_lines_judge(&s->lines, &s->slow);
-    if (status == DIG_OK) {
-        status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-    }
+    enum dig_status status = begin(s);
     if (status != DIG_OK) {
         return status;
     }
-    sum_all(s);
     s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
     s->rest2      = s->rest2_none;
     for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
@@ -221,7 +242,7 @@ static void write_candidates(struct search *const s, const double inclusion[],
         *out = (struct dig_candidate){
             .effect       = (enum dig_effect_id)e,
             .log_evidence = answer.log_evidence,
-            .p_fit        = answer.rest2 > unclear_rest2 * s->fit.rows ? 0.0 : 1.0,
+            .p_fit        = answer.rest2 > s->noise2 * unclear_rest2 * s->fit.rows ? 0.0 : 1.0,
             .inclusion    = inclusion[e],
             .error        = (double)NAN,
             .seen_in      = DIG_PART_AIR,
@@ -325,8 +346,8 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
     if (status == DIG_OK) {
         const double rows    = (double)s.air.rows;
         const double means   = (double)(DIG_JOINTS * s.air.segments);
-        const bool   unclear = s.rest2 > unclear_rest2 * rows || is_makeshift(&s) ||
-                             s.slow > means + unclear_sigmas * sqrt(2.0 * means);
+        const bool   unclear = s.rest2 > s.noise2 * unclear_rest2 * rows || is_makeshift(&s) ||
+                             s.slow > s.noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
         double inclusion[DIG_MACHINE_EFFECTS];
 
         *finding              = (struct dig_machine_finding){ .unexplained = unclear };

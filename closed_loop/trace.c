@@ -335,8 +335,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK) {
         status = weigh_soil(w);
     }
-    // Nothing was found: nothing changes.
-    if (status == DIG_OK && !w->search->significant && w->air->effects == 0) {
+    // Nothing was found, or nothing that is corrected: nothing changes.
+    const bool uncorrected = w->search->unlisted && w->air->unexplained;
+    if (status == DIG_OK && w->air->effects == 0 && (!w->search->significant || uncorrected)) {
         w->search->chosen = w->before;
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,

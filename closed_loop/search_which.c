@@ -1,0 +1,176 @@
+// Which effect, or which two: the best single effect, pairs beside it, and whether to believe them.
+
+#include "closed_loop/confirm.h"
+#include "closed_loop/search_work.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
+
+// An effect that misfits more than digs of its own would may leave at most so many times what they
+// would; where the plain hypothesis leaves so many times what is expected, see is_matched().
+static const double most_left = 2.0;
+static const double much_left = 4.0;
+
+// Below this chance of its own misfit the plain hypothesis is refuted by itself.
+static const double refuted = 0.001;
+
+// The chosen hypothesis with each other effect beside it.
+static size_t list_additions(const struct dig_search_work *const c,
+                             const struct dig_hypothesis *const  base,
+                             struct dig_hypothesis               added[DIG_NULL_RIVALS])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        if (!dig_search_holds(base, c->single[i].effect[0])) {
+            added[n]                            = *base;
+            added[n].effect[added[n].effects++] = c->single[i].effect[0];
+            n++;
+        }
+    }
+    return n;
+}
+
+// The best pair made with one of the best single effects. False when none is better than single.
+static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const pair)
+{
+    bool   tried[DIG_NULL_RIVALS] = { false };
+    bool   any                    = false;
+    double best                   = INFINITY;
+    for (size_t p = 0; p < PARTNERS && p < c->s->rivals; p++) {
+        size_t first = c->s->rivals;
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            if (!tried[i] &&
+                (first == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[first])) {
+                first = i;
+            }
+        }
+        tried[first] = true;
+        struct dig_hypothesis added[DIG_NULL_RIVALS];
+        struct dig_fitted     fitted[DIG_NULL_RIVALS + 1];
+        struct dig_statistic  statistic;
+        const size_t          n = list_additions(c, &c->single[first], added);
+        dig_null_fit(c->batch, c->soil, &c->single[first], n, added, c->s->rival[first].number,
+                     false, fitted, &statistic);
+        if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
+            best  = fitted[1 + statistic.best].misfit;
+            *pair = fitted[1 + statistic.best];
+            any   = true;
+        }
+    }
+    return any;
+}
+
+// What digs of the chosen hypothesis would show; whether a second effect is significant beside it.
+static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const more)
+{
+    struct dig_hypothesis added[DIG_NULL_RIVALS];
+    struct dig_fitted     fitted[DIG_NULL_RIVALS + 1];
+    struct dig_statistic  statistic;
+    struct dig_null       null;
+    const bool            room = c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
+    const size_t          n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
+    // Digs that differ cost as many times more as there are of them.
+    const size_t draws =
+        dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
+    dig_null_fit(c->batch, c->soil, &c->s->chosen.hypothesis, n, added, c->s->chosen.number, false,
+                 fitted, &statistic);
+    const enum dig_status status =
+        dig_null_draw(c->batch, c->soil, &c->s->chosen, n, added, draws, &c->seed, &null);
+    if (status == DIG_OK) {
+        c->s->p_fit = dig_null_p(&null, 0, statistic.misfit);
+        c->left     = statistic.misfit;
+        c->expected = null.mean[0];
+        *more       = n > 0 && dig_null_p(&null, 2, statistic.gain) < c->false_alarm;
+    }
+    return status;
+}
+
+// Where much is left of the plain hypothesis, the effect's own curves must explain it: not only the
+// noise that an effect of this size, known from few beds, brings along.
+static bool is_matched(const struct dig_search_work *const c)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
+    const double after =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, c->s->plain.noise);
+    return before < much_left * expected ||
+           before - after >= DIG_SEARCH_LEAST_SHARE * (before - expected);
+}
+
+static bool is_believable(const struct dig_search_work *const c)
+{
+    return is_matched(c) && (c->s->p_fit >= DIG_SEARCH_LEAST_FIT ||
+                             (dig_search_share(c, &c->s->chosen) >= DIG_SEARCH_LEAST_SHARE &&
+                              c->left <= most_left * c->expected));
+}
+
+// Beside a plain hypothesis that could be true an effect must be decisive. Where it cannot, an
+// effect need only be the likelier.
+static bool is_decisive(const struct dig_search_work *const c, const double evidence)
+{
+    return evidence >= DIG_SEARCH_TOLD_APART || (evidence > 0.0 && c->s->plain_fit < refuted);
+}
+
+// The best single effect again, from where a pair that holds it has led: a pair must not lead for
+// having been fitted better.
+static void fit_again(struct dig_search_work *const c, const size_t best,
+                      const struct dig_fitted *const pair)
+{
+    double start[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(start, pair->number, sizeof start);
+    for (size_t e = 0; e < pair->hypothesis.effects; e++) {
+        if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
+            struct dig_fitted again;
+            start[DIG_AXES] = pair->number[DIG_AXES + e];
+            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, false, &again);
+            if (again.misfit < c->s->rival[best].misfit) {
+                c->s->rival[best]        = again;
+                c->s->log_evidence[best] = dig_search_evidence(c, &again, 1);
+            }
+        }
+    }
+}
+
+static void give_up(struct dig_search_work *const c)
+{
+    c->s->unlisted = true;
+    c->s->chosen   = c->s->plain;
+}
+
+enum dig_status dig_search_which(struct dig_search_work *const c)
+{
+    enum dig_status status =
+        dig_unlisted_find(c->batch, c->soil, &c->s->plain, &c->s->without_name);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (c->s->rivals == 0) {
+        give_up(c);
+        return DIG_OK;
+    }
+    const size_t best = dig_search_best_rival(c->s);
+    c->s->chosen      = c->s->rival[best];
+    bool more         = false;
+    status            = weigh_chosen(c, &more);
+    struct dig_fitted pair;
+    if (status == DIG_OK && more && find_pair(c, &pair)) {
+        fit_again(c, best, &pair);
+        c->s->chosen =
+            dig_search_evidence(c, &pair, 2) > c->s->log_evidence[best] + DIG_SEARCH_TOLD_APART
+                ? pair
+                : c->s->rival[best];
+        status = weigh_chosen(c, &more);
+    }
+    const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
+    if (status == DIG_OK) {
+        status = dig_confirm_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen, &c->s->confirmed);
+    }
+    if (status == DIG_OK &&
+        (!is_decisive(c, evidence) || c->s->confirmed < 0.0 || !is_believable(c))) {
+        give_up(c);
+    }
+    return status;
+}

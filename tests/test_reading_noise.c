@@ -1,0 +1,79 @@
+#include "closed_loop/reading_noise.h"
+
+#include "files/machine_yaml.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+
+enum { ROWS = 20000 };
+
+static struct dig_machine machine;
+
+static int read_machine(void **state)
+{
+    struct dig_error error = { "" };
+    (void)state;
+    return dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) == DIG_OK ? 0
+                                                                                             : 1;
+}
+
+// A machine that moves, read by sensors of these sigmas: the arm's pressures, and all angles.
+static struct dig_machine_recording record(const double arm_Pa, const double angle_rad)
+{
+    struct dig_machine_recording r    = { ROWS, calloc(ROWS, sizeof(struct dig_sample)) };
+    uint64_t                     seed = 3;
+    for (size_t i = 0; i < ROWS; i++) {
+        const double t_s = 0.005 * (double)i;
+        for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
+            r.row[i].value[s] = 0.8 * sin(0.9 * t_s + s) + angle_rad * model_normal(&seed);
+        }
+        for (int s = DIG_SIGNAL_BOOM_HEAD_Pa; s <= DIG_SIGNAL_BUCKET_ROD_Pa; s++) {
+            const bool of_arm = s == DIG_SIGNAL_ARM_HEAD_Pa || s == DIG_SIGNAL_ARM_ROD_Pa;
+            r.row[i].value[s] =
+                8e6 + 3e6 * sin(0.7 * t_s + s) + (of_arm ? arm_Pa : 1e4) * model_normal(&seed);
+        }
+        r.row[i].time_ns = llround(t_s * 1e9);
+    }
+    r.row[700].value[DIG_SIGNAL_ARM_HEAD_Pa] = (double)NAN;
+    return r;
+}
+
+static void sensors_louder_than_the_file_are_believed(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r   = record(5e5, 1.5e-3);
+    struct dig_machine           was = machine;
+    struct dig_machine           m   = machine;
+    dig_reading_noise_raise(&m, 1, &r);
+    // All that is seen, the step's share with it.
+    assert_close(
+        hypot(m.cylinder[DIG_JOINT_ARM].pressure_sigma_Pa, was.pressure_step_Pa / sqrt(12.0)), 5e5,
+        2e4);
+    assert_close(hypot(m.angle_sigma_rad, was.angle_step_rad / sqrt(12.0)), 1.5e-3, 6e-5);
+    assert_close(m.cylinder[DIG_JOINT_BOOM].pressure_sigma_Pa,
+                 was.cylinder[DIG_JOINT_BOOM].pressure_sigma_Pa, 0.0);
+    dig_machine_recording_finish(&r);
+}
+
+static void quieter_ones_are_not(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r = record(1e4, 1e-5);
+    struct dig_machine           m = machine;
+    dig_reading_noise_raise(&m, 1, &r);
+    assert_close(m.angle_sigma_rad, machine.angle_sigma_rad, 0.0);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        assert_close(m.cylinder[j].pressure_sigma_Pa, machine.cylinder[j].pressure_sigma_Pa, 0.0);
+    }
+    dig_machine_recording_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sensors_louder_than_the_file_are_believed),
+        cmocka_unit_test(quieter_ones_are_not),
+    };
+    return cmocka_run_group_tests_name("reading_noise", tests, read_machine, NULL);
+}
