@@ -7,9 +7,9 @@
 //
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
 // density; s = log(amplitude of My / density), -1 … 1 over the base gravels; terms for which the
-// beds are too few are left out, and all but c0 are drawn towards nothing as far as the beds allow. Two effects have a reduced form instead, a factor on the plain dig
-// (estimator/effects/): rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts
-// pass - 1 fold.
+// beds are too few are left out, and all but c0 are drawn towards nothing as far as the beds allow.
+// Two effects have a reduced form instead, a factor on the plain dig (estimator/effects/):
+// rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts pass - 1 fold.
 
 #ifndef DIG_CLOSED_LOOP_SOIL_H
 #define DIG_CLOSED_LOOP_SOIL_H
@@ -48,7 +48,8 @@ struct dig_soil {
 };
 
 /// Fits the templates. effects may be NULL (scatter then, too): the reduced forms alone are known
-/// then. Some megabytes; free with free(). DIG_EINVAL: effects of another table's scene or trajectories.
+/// then. Some megabytes; free with free(). DIG_EINVAL: effects of another table's scene or
+/// trajectories.
 DIG_MUST_CHECK enum dig_status dig_soil_create(const struct dig_surface    *surface,
                                                const struct dig_effect_set *effects,
                                                const struct dig_scatter    *scatter,

@@ -1,6 +1,7 @@
 #!/bin/bash
-# How right a table is on digs of another code: every LIGGGHTS gravel of tests/data/reference is
-# identified from its simpleA dig, its actual dig is predicted and compared. One line a case; then the
+# How right a table is on digs of another code: every LIGGGHTS gravel of tests/data/reference, and
+# every plain one of tests/data/liggghts_more, is identified from its simpleA dig, its actual dig is
+# predicted and compared. One line a case; then the
 # packings of one gravel pooled, each of their actual digs predicted. All by moment and forces, and again
 # by the moment alone, as where the bucket's cylinder only is measured.
 #   BIN=build/bin scripts/evaluate.sh [TABLE.sqlite]
@@ -36,7 +37,7 @@ for options in "" "--moment-alone"; do
     printf '%-30s %22s %22s %6s %6s\n' "$([ -z "$options" ] && echo moment and forces || echo moment alone)" \
         "identified" "nearest" error floor
     : >"$work/lines"
-    for simple in "$data"/*__simpleA.csv; do
+    for simple in "$data"/*__simpleA.csv tests/data/liggghts_more/mu*__simpleA.csv; do
         judge "$(basename "${simple%__simpleA.csv}")" "${simple%__simpleA.csv}"
     done
     sort -k8 -n "$work/lines" | awk '{ e[NR] = $8; f[NR] = $9; s += $8; r += ($8 / $9) ^ 2 } END {

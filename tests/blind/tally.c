@@ -39,13 +39,28 @@ double blind_size_of(const struct blind_result *const result)
     return result->order.effects == 0 ? 0.0 : least;
 }
 
-static int class_of(const struct blind_result *const result)
+// What is left of it in the soil after the best refit of the gravel, alone.
+static double size_in_soil(const struct blind_result *const result)
+{
+    double least = (double)INFINITY;
+    for (size_t e = 0; e < result->order.effects; e++) {
+        least = fmin(least, result->truth.size[e]);
+    }
+    return result->order.effects == 0 ? 0.0 : least;
+}
+
+static int class_of_size(const double size)
 {
     int c = CLASSES - 1;
-    while (c > 0 && blind_size_of(result) < class_low[c]) {
+    while (c > 0 && size < class_low[c]) {
         c--;
     }
     return c;
+}
+
+static int class_of(const struct blind_result *const result)
+{
+    return class_of_size(blind_size_of(result));
 }
 
 static bool says(const struct blind_result *const r, const char *const name)
@@ -168,6 +183,22 @@ static bool is_faint(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && class_of(r) == 0;
 }
+static bool is_single_in_soil(const struct blind_result *const r, const int class)
+{
+    return r->order.kind == BLIND_SINGLE && class_of_size(size_in_soil(r)) == class;
+}
+static bool is_clear_in_soil(const struct blind_result *const r)
+{
+    return is_single_in_soil(r, 3);
+}
+static bool is_middling_in_soil(const struct blind_result *const r)
+{
+    return is_single_in_soil(r, 1);
+}
+static bool is_faint_in_soil(const struct blind_result *const r)
+{
+    return is_single_in_soil(r, 0);
+}
 static bool is_right(const struct blind_result *const r)
 {
     return blind_answer_of(r) == BLIND_RIGHT || blind_answer_of(r) == BLIND_IN_SET;
@@ -223,6 +254,10 @@ static const struct criterion criteria[] = {
     { "one effect, size 3 and more: named or in a small set", is_clear, is_right, 0.95, true },
     { "one effect, size about 1.5: named or in a small set", is_middling, is_right, 0.70, true },
     { "one effect, size below 1: something named with p > .5", is_faint, sure_of_any, 0.05, false },
+    { "the same by the size in the soil alone: 3 and more", is_clear_in_soil, is_right, 0.95,
+      true },
+    { "  about 1.5", is_middling_in_soil, is_right, 0.70, true },
+    { "  below 1: something named with p > .5", is_faint_in_soil, sure_of_any, 0.05, false },
     { "pairs, each of size 3 and more: both named", is_clear_pair, has_both, 0.80, true },
     { "outside the catalogue: a wrong name with p > .5", is_outside, sure_of_wrong, 0.05, false },
     { "outside the catalogue, size 3 and more: unlisted", is_clear_outside, is_unlisted, 0.80,

@@ -1,0 +1,45 @@
+#!/bin/bash
+# digloop trace on digs of another DEM code, of gravels off the table's grid and with an effect in
+# them, one bed each: what it is to find there, with its values, and what not.
+set -u
+. tests/system/check.bash
+BIN=${BIN:-build/bin}
+table=${TABLE:-tables/rig.sqlite}
+data=$PWD/tests/data/liggghts_more
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+trace() { # GRAVEL: into $work/GRAVEL.json
+    mkdir -p "$work/$1"
+    {
+        echo "scene: rig"
+        echo "recordings:"
+        echo "  - {file: $data/${1}_seed1__simpleA.csv, trajectory: simpleA, role: identify}"
+        echo "  - {file: $data/${1}_seed1__actual.csv, trajectory: actual, role: fit}"
+    } >"$work/$1/campaign.yaml"
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" >/dev/null 2>"$work/err" || cat "$work/err"
+}
+verdict() { tr -d ' \n' <"$work/$1.json" | sed -nE 's/.*"verdict":\[([^]]*)\].*/\1/p'; }
+number() { # GRAVEL KEY FIELD: a field of the first object of that key
+    tr -d ' \n' <"$work/$1.json" | sed -nE "s/.*\"$2\":\{[^}]*\"$3\":([-0-9.e+]+).*/\1/p"
+}
+
+for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
+    trace "$gravel"
+    check "$gravel: nothing is missing" [ "$(verdict "$gravel")" = '"none"' ]
+done
+
+trace slope_up
+check "ground that rises by 8 degrees is a slope" [ "$(verdict slope_up)" = '"ground_slope"' ]
+check "... of 8 degrees, within its interval" within 8 "$(number slope_up slope_deg low)" "$(number slope_up slope_deg high)"
+check "... which is narrower than 5 degrees" within \
+    "$(awk -v l="$(number slope_up slope_deg low)" -v h="$(number slope_up slope_deg high)" 'BEGIN { print h - l }')" 0.5 5
+check "... in gravel of friction .5, to .1" within "$(number slope_up friction value)" 0.4 0.6
+check "... and of 2500 kg/m3, to a tenth" within "$(number slope_up density_kgpm3 value)" 2250 2750
+
+# Cohesion of this size and a gravel of more rolling friction dig alike: no claim is made.
+trace cohesion
+check "cohesion that another gravel stands in for is not named" [ "$(verdict cohesion)" = '"none"' ]
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
