@@ -90,14 +90,14 @@ static void mean_curve(const struct dig_gravel *const gravel, const enum made_tr
                        const double magnitude, const int packings, uint64_t *const seed,
                        struct dig_curve *const curve)
 {
+    const double size = size_of(gravel, which);
     memset(curve, 0, sizeof *curve);
     for (int p = 0; p < packings; p++) {
         const struct dig_measured m = made_dig(gravel, which, effects, &effect, &magnitude, seed);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 curve->mean[c][k] += (float)(m.value[c][k] / packings);
-                curve->sd[c][k] =
-                    (float)(MADE_SCATTER * fabs(channel_size[c]) * size_of(gravel, which));
+                curve->sd[c][k] = (float)(MADE_SCATTER * fabs(channel_size[c]) * size);
             }
         }
     }

@@ -49,12 +49,27 @@ static double sigma_at(const double progress)
     return 0.5 + progress;
 }
 
+// Rig time that every point stands for; none beyond what was measured.
+static void fill_times(const double last, double time_s[DIG_CURVE_POINTS])
+{
+    const struct dig_trajectory *const path = &world.set->trajectory[MADE_ACTUAL];
+    const double                       half = 0.5 / (DIG_CURVE_POINTS - 1);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        time_s[k]       = at > last
+                              ? 0.0
+                              : dig_trajectory_time_s(path, world.set->tooth_m, fmin(at + half, 1.0)) -
+                              dig_trajectory_time_s(path, world.set->tooth_m, fmax(at - half, 0.0));
+    }
+}
+
 // How often a dig drawn about the curve after is nearer to the curve before, point by point.
 static double fraction_worse(const double size, const double last)
 {
-    const struct dig_trajectory *const path  = &world.set->trajectory[MADE_ACTUAL];
-    uint64_t                           seed  = 11;
-    int                                worse = 0;
+    double   time_s[DIG_CURVE_POINTS];
+    uint64_t seed  = 11;
+    int      worse = 0;
+    fill_times(last, time_s);
     for (int draw = 0; draw < DRAWS; draw++) {
         double z[DIG_FEATURE_BINS + 1];
         for (size_t b = 0; b <= DIG_FEATURE_BINS; b++) {
@@ -67,16 +82,10 @@ static double fraction_worse(const double size, const double last)
             size_t to;
             dig_feature_bin(b, &from, &to);
             for (size_t k = from; k < to; k++) {
-                const double at   = (double)k / (DIG_CURVE_POINTS - 1);
-                const double half = 0.5 / (DIG_CURVE_POINTS - 1);
-                const double t_s =
-                    dig_trajectory_time_s(path, world.set->tooth_m, fmin(at + half, 1.0)) -
-                    dig_trajectory_time_s(path, world.set->tooth_m, fmax(at - half, 0.0));
+                const double at     = (double)k / (DIG_CURVE_POINTS - 1);
                 const double off_Nm = sigma_at(at) * (z[b] + z[b + 1]) / sqrt(2.0);
-                if (at <= last) {
-                    before += t_s * pow(off_Nm + change_at(size, at), 2.0);
-                    after += t_s * off_Nm * off_Nm;
-                }
+                before += time_s[k] * pow(off_Nm + change_at(size, at), 2.0);
+                after += time_s[k] * off_Nm * off_Nm;
             }
         }
         worse += after > before ? 1 : 0;
