@@ -317,8 +317,8 @@ static void set_interval(const struct dig_levenberg *const l, const double norma
 static double misfit_at(struct problem *const p, const struct dig_levenberg *const l,
                         const double x[], struct dig_fitted *const f)
 {
-    double r[RESIDUALS_MAX];
-    double squares = 0.0;
+    double r[RESIDUALS_MAX] = { 0.0 };
+    double squares          = 0.0;
     weigh(p, x, f->noise);
     residual(p, x, r);
     for (size_t i = 0; i < l->residuals; i++) {
@@ -334,8 +334,8 @@ static void fit_from(struct problem *const p, struct dig_levenberg *const l, con
                      struct dig_fitted *const f)
 {
     double            x[DIG_HYPOTHESIS_NUMBERS];
-    double            normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
-    struct dig_fitted tried = *f;
+    double            normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
+    struct dig_fitted tried                                                   = *f;
     for (size_t j = 0; j < l->unknowns; j++) {
         x[j] = fmin(fmax(start[j], l->low[j]), l->high[j]);
     }

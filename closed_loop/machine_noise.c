@@ -4,8 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Blocks that far apart share little noise; that many differences tell their size to a sixth.
-enum { APART = 2, LEAST = 16 };
+// So many differences of blocks tell their size to a sixth.
+enum { LEAST = 16 };
+
+// Blocks two apart share little noise; neighbours share so much of it that those two apart differ
+// by so much more. What differs by more than that is no noise but goes on: a ripple of seconds.
+static const double more_two_apart = 1.2;
 
 // The median of the size of a normal number, in its sigmas.
 static const double median_size = 0.6745;
@@ -20,19 +24,20 @@ static int ascending(const void *const a, const void *const b)
     return (x > y) - (x < y);
 }
 
-// What the rows of a joint scatter by, in their sigmas; 1 where too few tell. room: [rows].
-static double scatter_of(const struct dig_air *const air, const double rest[],
-                         const enum dig_joint joint, double room[])
+// What the rows of a joint differ by so many blocks apart, in the sigmas of one; 1 where too few
+// tell. room: [rows].
+static double difference(const struct dig_air *const air, const double rest[],
+                         const enum dig_joint joint, const size_t apart, double room[])
 {
     size_t n = 0;
     for (size_t a = 0; a < air->rows; a++) {
         const struct dig_air_row *const row = &air->row[a];
         for (size_t b = a + 1;
              row->joint == joint && b < air->rows && air->row[b].segment == row->segment &&
-             air->row[b].first <= row->first + APART * row->points;
+             air->row[b].first <= row->first + apart * row->points;
              b++) {
             if (air->row[b].joint == joint &&
-                air->row[b].first == row->first + APART * row->points) {
+                air->row[b].first == row->first + apart * row->points) {
                 room[n++] = fabs(rest[b] - rest[a]);
             }
         }
@@ -42,6 +47,13 @@ static double scatter_of(const struct dig_air *const air, const double rest[],
     }
     qsort(room, n, sizeof room[0], ascending);
     return room[n / 2] / (median_size * sqrt(2.0));
+}
+
+static double scatter_of(const struct dig_air *const air, const double rest[],
+                         const enum dig_joint joint, double room[])
+{
+    return fmin(difference(air, rest, joint, 2, room),
+                more_two_apart * difference(air, rest, joint, 1, room));
 }
 
 enum dig_status dig_machine_noise_widen(struct dig_lines *const lines, const double at[],

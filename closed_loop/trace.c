@@ -336,8 +336,8 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = weigh_soil(w);
     }
     // Nothing was found, or nothing that is corrected: nothing changes.
-    const bool uncorrected = w->search->unlisted && w->air->unexplained;
-    if (status == DIG_OK && w->air->effects == 0 && (!w->search->significant || uncorrected)) {
+    if (status == DIG_OK && w->air->effects == 0 &&
+        (!w->search->significant || (w->search->unlisted && w->air->unexplained))) {
         w->search->chosen = w->before;
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,

@@ -27,8 +27,8 @@ static double time_of_s(const struct dig_curve_set *const set, const size_t traj
 static double correlation(const double covariance[DIG_FEATURES][DIG_FEATURES], const size_t a,
                           const size_t b)
 {
-    const size_t i   = DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + a;
-    const size_t j   = DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + b;
+    const size_t i   = (size_t)DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + a;
+    const size_t j   = (size_t)DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + b;
     const double own = covariance[i][i] * covariance[j][j];
     return own > 0.0 ? covariance[i][j] / sqrt(own) : (a == b ? 1.0 : 0.0);
 }
