@@ -29,14 +29,6 @@ static const struct dig_csv_column force_column[] = {
 };
 #define FORCE_COLUMNS (sizeof force_column / sizeof force_column[0])
 
-static const struct dig_csv_column bed_column[] = {
-    { .name = "x_m" },
-    { .name = "y_m" },
-    { .name = "z_m" },
-    { .name = "radius_m" },
-};
-#define BED_COLUMNS (sizeof bed_column / sizeof bed_column[0])
-
 // Time, then one column a signal in the signals' own order: of a machine with cylinders, or of a
 // rig with a force sensor.
 struct machine_columns {
@@ -318,74 +310,6 @@ enum dig_status dig_machine_recording_write(const char *const                   
             }
         }
         (void)fputc('\n', out.file);
-    }
-    dig_c_locale_leave(&locale);
-    return dig_out_commit(&out, error);
-}
-
-static enum dig_status check_bed(const struct dig_csv *const csv, const char *const path,
-                                 struct dig_error *const error)
-{
-    for (size_t i = 0; i < csv->rows; i++) {
-        const double radius_m = csv->value[i * BED_COLUMNS + 3];
-        if (!(radius_m > 0.0)) {
-            return dig_error_set(error, DIG_EINVAL, "%s:%d: column radius_m: %g, expected > 0",
-                                 path, csv->line[i], radius_m);
-        }
-    }
-    return DIG_OK;
-}
-
-enum dig_status dig_bed_read(const char *const path, size_t *const grains, double **const x_m,
-                             double **const y_m, double **const z_m, double **const radius_m,
-                             struct dig_error *const error)
-{
-    struct dig_csv  csv;
-    enum dig_status status = dig_csv_read(path, BED_COLUMNS, bed_column, &csv, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = check_bed(&csv, path, error);
-    double *array[BED_COLUMNS];
-    bool    complete = true;
-    for (size_t c = 0; c < BED_COLUMNS; c++) {
-        array[c] = malloc(csv.rows * sizeof(double));
-        complete = complete && array[c] != NULL;
-    }
-    if (status == DIG_OK && !complete) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu grains", path, csv.rows);
-    }
-    if (status == DIG_OK) {
-        for (size_t i = 0; i < csv.rows * BED_COLUMNS; i++) {
-            array[i % BED_COLUMNS][i / BED_COLUMNS] = csv.value[i];
-        }
-        *grains   = csv.rows;
-        *x_m      = array[0];
-        *y_m      = array[1];
-        *z_m      = array[2];
-        *radius_m = array[3];
-    } else {
-        for (size_t c = 0; c < BED_COLUMNS; c++) {
-            free(array[c]);
-        }
-    }
-    dig_csv_finish(&csv);
-    return status;
-}
-
-enum dig_status dig_bed_write(const char *const path, const size_t grains, const double x_m[],
-                              const double y_m[], const double z_m[], const double radius_m[],
-                              struct dig_error *const error)
-{
-    struct dig_out        out;
-    const enum dig_status status = dig_out_open(&out, path, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_c_locale locale = dig_c_locale_enter();
-    put_header(out.file, BED_COLUMNS, bed_column);
-    for (size_t i = 0; i < grains; i++) {
-        (void)fprintf(out.file, "%.17g,%.17g,%.17g,%.17g\n", x_m[i], y_m[i], z_m[i], radius_m[i]);
     }
     dig_c_locale_leave(&locale);
     return dig_out_commit(&out, error);

@@ -1,4 +1,4 @@
-// Force recordings, machine recordings and beds as CSV (docs/formats.md): a header line, SI, `#`
+// Force recordings and machine recordings as CSV (docs/formats.md): a header line, SI, `#`
 // lines are comments, missing machine samples are empty fields.
 
 #ifndef DIG_FILES_RECORDING_CSV_H
@@ -32,13 +32,5 @@ DIG_MUST_CHECK enum dig_status dig_recording_write(const char                 *p
 DIG_MUST_CHECK enum dig_status
 dig_machine_recording_write(const char *path, const struct dig_machine_recording *recording,
                             struct dig_error *error);
-
-/// A bed: x_m,y_m,z_m,radius_m, one grain a line. Arrays are malloc'ed, each of *grains.
-DIG_MUST_CHECK enum dig_status dig_bed_read(const char *path, size_t *grains, double **x_m,
-                                            double **y_m, double **z_m, double **radius_m,
-                                            struct dig_error *error);
-DIG_MUST_CHECK enum dig_status dig_bed_write(const char *path, size_t grains, const double x_m[],
-                                             const double y_m[], const double z_m[],
-                                             const double radius_m[], struct dig_error *error);
 
 #endif // DIG_FILES_RECORDING_CSV_H

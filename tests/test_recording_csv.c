@@ -199,7 +199,7 @@ static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **
     }
 }
 
-static void defects_of_machine_recordings_and_beds_are_told_too(void **state)
+static void defects_of_machine_recordings_are_told_too(void **state)
 {
     (void)state;
     struct dig_error             error = { "" };
@@ -221,18 +221,6 @@ static void defects_of_machine_recordings_and_beds_are_told_too(void **state)
                      DIG_EINVAL);
     assert_contains(error.text, "bad.csv:3: column t_s: \"\"");
     assert_int_equal(r.rows, 42);
-
-    size_t  grains = 42;
-    double *x = NULL, *y = NULL, *z = NULL, *radius = NULL;
-    assert_int_equal(dig_bed_read(scratch_write("bad.csv", "x_m,y_m,z_m,radius_m\n0,0,0,0\n"),
-                                  &grains, &x, &y, &z, &radius, &error),
-                     DIG_EINVAL);
-    assert_contains(error.text, "bad.csv:2: column radius_m: 0, expected > 0");
-    assert_int_equal(dig_bed_read(scratch_path("absent.csv"), &grains, &x, &y, &z, &radius, &error),
-                     DIG_EIO);
-    assert_contains(error.text, "absent.csv: No such file");
-    assert_int_equal(grains, 42);
-    assert_null(x);
 }
 
 static void what_is_written_is_read_back(void **state)
@@ -303,34 +291,6 @@ static void a_machine_recording_is_read_back_with_its_gaps(void **state)
     assert_null(strstr(text, "pitch_rad"));
     assert_non_null(strstr(text, "temperature_degC"));
     free(text);
-}
-
-static void a_bed_is_read_back_bit_by_bit(void **state)
-{
-    (void)state;
-    const double x[] = { 0.1, 1.0 / 3 }, y[] = { -0.05, 1e-17 }, z[] = { 0.03, 2.0 / 7 },
-                 radius[]     = { 0.00375, 0.003 };
-    size_t            grains  = 0;
-    double           *read[4] = { NULL };
-    const char *const path    = scratch_path("bed.csv");
-    assert_int_equal(dig_bed_write(path, 2, x, y, z, radius, NULL), DIG_OK);
-    assert_int_equal(dig_bed_read(path, &grains, &read[0], &read[1], &read[2], &read[3], NULL),
-                     DIG_OK);
-    assert_int_equal(grains, 2);
-    assert_memory_equal(read[0], x, sizeof x);
-    assert_memory_equal(read[1], y, sizeof y);
-    assert_memory_equal(read[2], z, sizeof z);
-    assert_memory_equal(read[3], radius, sizeof radius);
-    for (size_t i = 0; i < 4; i++) {
-        free(read[i]);
-    }
-    assert_int_equal(dig_bed_read("tests/data/formats/bed.csv", &grains, &read[0], &read[1],
-                                  &read[2], &read[3], NULL),
-                     DIG_OK);
-    assert_int_equal(grains, 3);
-    for (size_t i = 0; i < 4; i++) {
-        free(read[i]);
-    }
 }
 
 static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state)
@@ -432,10 +392,9 @@ int main(void)
         cmocka_unit_test(a_rig_s_recording_holds_its_force_sensor),
         cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
         cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
-        cmocka_unit_test(defects_of_machine_recordings_and_beds_are_told_too),
+        cmocka_unit_test(defects_of_machine_recordings_are_told_too),
         cmocka_unit_test(what_is_written_is_read_back),
         cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
-        cmocka_unit_test(a_bed_is_read_back_bit_by_bit),
         cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
         cmocka_unit_test(standard_output_is_written_to_and_not_replaced),
         cmocka_unit_test(a_link_is_followed_and_stays_a_link),

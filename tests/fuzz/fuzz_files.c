@@ -6,6 +6,7 @@
 // Prints, per reader, how many files it took and refused. A crash leaves the file in the work
 // folder.
 
+#include "files/bed_csv.h"
 #include "files/grid_yaml.h"
 #include "files/identity_json.h"
 #include "files/lcm_log.h"
@@ -63,13 +64,14 @@ static enum dig_status read_machine_recording(const char *const path, struct dig
 
 static enum dig_status read_bed(const char *const path, struct dig_error *const e)
 {
-    size_t                n         = 0;
-    double               *column[4] = { NULL, NULL, NULL, NULL };
-    const enum dig_status status =
-        dig_bed_read(path, &n, &column[0], &column[1], &column[2], &column[3], e);
-    for (int i = 0; i < 4; i++) {
-        free(column[i]);
-    }
+    struct dig_bed_columns bed    = { 0 };
+    const enum dig_status  status = dig_bed_read(path, &bed, e);
+    free(bed.x_m);
+    free(bed.y_m);
+    free(bed.z_m);
+    free(bed.radius_m);
+    free(bed.material);
+    free(bed.clump);
     return status;
 }
 

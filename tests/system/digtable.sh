@@ -20,6 +20,14 @@ digtable dig $scene "${dig[@]}" --seed 4 -o "$work/c.csv"
 check "another seed gives another dig" eval '! cmp -s $work/a.csv $work/c.csv'
 digtable dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$work/d.csv"
 check "the bed saved, dug again, gives the dig it was saved from" cmp "$work/a.csv" "$work/d.csv"
+ore='materials: [{name: ore, friction: 0.9, rolling: 0.8, density_kgpm3: 4000, restitution: 0.3}]'
+pear='clump: [{centre: [-0.25, 0, 0], radius: 0.5}, {centre: [0.25, 0, 0], radius: 0.4}]'
+for kind in "$ore, layers: [{material: ore, z_m: [0.1, 0.4]}]" "$pear"; do
+    sed "\$a bed: {$kind}" $scene >"$work/kind.yaml"
+    digtable dig "$work/kind.yaml" "${dig[@]}" --seed 3 --save-bed "$work/kind_bed.csv" -o "$work/k.csv"
+    digtable dig "$work/kind.yaml" "${dig[@]}" --bed "$work/kind_bed.csv" -o "$work/l.csv"
+    check "and so does a bed of ${kind%%:*}" eval 'is $code 0 && cmp $work/k.csv $work/l.csv && ! cmp -s $work/k.csv $work/a.csv'
+done
 digtable dig $scene "${dig[@]}" --seed 3 --young 2e7 -o "$work/e.csv"
 check "stiffer grains give another dig" eval 'is $code 0 && ! cmp -s $work/a.csv $work/e.csv'
 digtable dig $scene "${dig[@]}" --seed 3 --vtk "$work/pictures" -o "$work/f.csv"

@@ -100,6 +100,18 @@ refused "a bed without radii" 'bed.csv:1: column radius_m: missing, expected' di
 printf 'x_m,y_m,z_m,radius_m\n0.5,0,0.03,0.03\n0.6,0,zero,0.03\n' >"$work/bed.csv"
 refused "a bed with a text" 'bed.csv:3: column z_m: "zero", expected a finite number' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
 refused "a bed that is not there" 'absent.csv: No such file' dig $scene "${dig[@]}" --bed "$work/absent.csv" -o "$out"
+printf 'x_m,y_m,z_m,radius_m,material\n0.5,0,0.03,0.03,0.5\n' >"$work/bed.csv"
+refused "a bed of half a material" 'bed.csv:2: column material: 0.5, expected a whole number' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+ore='materials: [{name: ore, friction: 0.9, rolling: 0.8, density_kgpm3: 4000, restitution: 0.3}]'
+sed "\$a bed: {$ore, layers: [{material: ore, z_m: [0.1, 0.4]}]}" $scene >"$work/s.yaml"
+refused "layers and a bed without materials" 'bed.csv:1: column material: missing, expected one' \
+    dig "$work/s.yaml" "${dig[@]}" --bed tests/data/formats/bed.csv -o "$out"
+rock='{shape: sphere, centre_m: [0.5, 0, 0.05], diameter_m: 0.08, movable: true, density_kgpm3: 2600}'
+sed "\$a bed: {obstacles: [$rock]}" $scene >"$work/s.yaml"
+refused "a rock that may move, and a bed to keep" 'bed.obstacles.0..movable: a bed file does not hold' \
+    dig "$work/s.yaml" "${dig[@]}" --save-bed "$work/kept.csv" -o "$out"
+refused "such a rock, and a kept bed" 'bed.obstacles.0..movable: a bed file does not hold' \
+    dig "$work/s.yaml" "${dig[@]}" --bed tests/data/formats/bed.csv -o "$out"
 
 # Tables.
 printf 'friction: [0.3]\nrolling: [0.1]\ndensity_kgpm3: [2500]\npackings: 2\n' >"$work/small.yaml"

@@ -10,6 +10,7 @@
 #include "tools/digtable/commands.h"
 #include "tools/digtable/plan.h"
 #include "tools/digtable/progress.h"
+#include "tools/digtable/saved_bed.h"
 
 #include <errno.h>
 #include <math.h>
@@ -51,8 +52,7 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
                                struct dig_error *const error)
 {
     if (a->bed != NULL) {
-        return dig_bed_read(a->bed, &bed->grains, &bed->x_m, &bed->y_m, &bed->z_m, &bed->radius_m,
-                            error);
+        return dig_cli_bed_read(a->bed, scene, bed, error);
     }
     struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "bed", a->stop };
     const struct dig_progress progress = { watch_dig, &watch };
@@ -73,8 +73,7 @@ static enum dig_status dig_and_write(const struct dig_arguments *const a,
     struct dig_recording      recording = { 0 };
     enum dig_status           status    = DIG_OK;
     if (a->save_bed != NULL) {
-        status = dig_bed_write(a->save_bed, bed->grains, bed->x_m, bed->y_m, bed->z_m,
-                               bed->radius_m, error);
+        status = dig_cli_bed_write(a->save_bed, bed, error);
     }
     if (status == DIG_OK) {
         status = engine_of(a).dig(scene, gravel, bed, dig_scene_find(scene, a->trajectory), a->vtk,
@@ -125,6 +124,10 @@ int dig_cli_dig(const struct dig_arguments *const a)
     }
     if (!isnan(a->young_Pa)) {
         scene.material.young_Pa = a->young_Pa;
+    }
+
+    if (a->save_bed != NULL && dig_cli_bed_fits_file(&scene, &error) != DIG_OK) {
+        return dig_cli_bad_input(DIG_EINVAL, &error);
     }
 
     // Before the minutes of pouring: a folder that cannot be should not cost them.

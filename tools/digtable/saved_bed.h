@@ -1,0 +1,23 @@
+// Beds that digtable dig writes with --save-bed and reads with --bed.
+
+#ifndef DIG_TOOLS_DIGTABLE_SAVED_BED_H
+#define DIG_TOOLS_DIGTABLE_SAVED_BED_H
+
+#include "core/error.h"
+#include "core/scene.h"
+#include "offline_dem/bed.h"
+
+/// DIG_EINVAL where a file cannot hold all of such a bed: one with a rock that may have moved.
+DIG_MUST_CHECK enum dig_status dig_cli_bed_fits_file(const struct dig_scene *scene,
+                                                     struct dig_error       *error);
+
+/// DIG_EINVAL as dig_cli_bed_fits_file() and dig_bed_read() of files/bed_csv.h, and where the scene
+/// has layers and the file does not say what its grains are made of. *bed is written on success
+/// only.
+DIG_MUST_CHECK enum dig_status dig_cli_bed_read(const char *path, const struct dig_scene *scene,
+                                                struct dig_bed *bed, struct dig_error *error);
+
+DIG_MUST_CHECK enum dig_status dig_cli_bed_write(const char *path, const struct dig_bed *bed,
+                                                 struct dig_error *error);
+
+#endif // DIG_TOOLS_DIGTABLE_SAVED_BED_H
