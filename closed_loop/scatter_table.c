@@ -82,7 +82,8 @@ static enum dig_status gather(void *const context, const struct dig_run *const r
 {
     struct gathering *const           g   = context;
     const struct dig_curve_set *const set = g->surface->set;
-    if (run->origin.effect[0] != '\0' || run->origin.trajectory >= set->trajectories) {
+    if (run->origin.effect[0] != '\0' || !dig_approach_is_plain(&run->origin.approach) ||
+        run->origin.trajectory >= set->trajectories) {
         return DIG_OK;
     }
     enum dig_status status = DIG_OK;

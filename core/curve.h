@@ -91,6 +91,8 @@ struct dig_curve {
     float sd[DIG_CHANNELS][DIG_CURVE_POINTS];
 };
 
+struct dig_approach_set; // core/approach_set.h
+
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
 /// that lacks a trajectory has packings 0 there.
 struct dig_curve_set {
@@ -111,6 +113,8 @@ struct dig_curve_set {
     size_t  axis_count[DIG_AXES];
     double *axis[DIG_AXES];
     int    *cell;
+    // The same digs deeper or with the bucket turned; NULL: the table holds none.
+    struct dig_approach_set *approaches;
 };
 
 #endif // DIG_CORE_CURVE_H

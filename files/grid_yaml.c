@@ -1,14 +1,17 @@
 #include "files/grid_yaml.h"
 
+#include "core/units.h"
 #include "files/yaml.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#define PACKINGS_MAX 1000
+#define PACKINGS_MAX    1000
+#define ATTACK_MOST_rad (DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))
 
 struct name_text {
     char text[DIG_NAME_SIZE];
@@ -16,8 +19,14 @@ struct name_text {
 
 struct point_text {
     double   friction, rolling, density_kgpm3;
+    double   depth, attack_deg; // depth 0: not given
     uint32_t packings;
 };
+
+enum design { DESIGN_CROSS, DESIGN_PRODUCT };
+
+static const cyaml_strval_t designs[] = { { "cross", DESIGN_CROSS },
+                                          { "product", DESIGN_PRODUCT } };
 
 struct effect_text {
     char     name[DIG_NAME_SIZE];
@@ -31,6 +40,11 @@ struct grid_text {
     double             density_kgpm3[DIG_AXIS_VALUES_MAX];
     uint32_t           friction_count, rolling_count, density_kgpm3_count;
     uint32_t           packings;
+    double             depth[DIG_APPROACH_VALUES_MAX];
+    double             attack_deg[DIG_APPROACH_VALUES_MAX];
+    uint32_t           depth_count, attack_deg_count;
+    enum design        design;
+    uint32_t           varied_packings;
     struct point_text  points[DIG_GRID_POINTS_MAX];
     uint32_t           points_count;
     struct effect_text effects[DIG_GRID_EFFECTS_MAX];
@@ -50,6 +64,8 @@ static const cyaml_schema_field_t point_fields[] = {
     CYAML_FIELD_FLOAT("friction", REQUIRED, struct point_text, friction),
     CYAML_FIELD_FLOAT("rolling", REQUIRED, struct point_text, rolling),
     CYAML_FIELD_FLOAT("density_kgpm3", REQUIRED, struct point_text, density_kgpm3),
+    CYAML_FIELD_FLOAT("depth", OPTIONAL, struct point_text, depth),
+    CYAML_FIELD_FLOAT("attack_deg", OPTIONAL, struct point_text, attack_deg),
     CYAML_FIELD_UINT("packings", REQUIRED, struct point_text, packings),
     CYAML_FIELD_END,
 };
@@ -75,6 +91,13 @@ static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_SEQUENCE("density_kgpm3", OPTIONAL, struct grid_text, density_kgpm3, &number, 1,
                          DIG_AXIS_VALUES_MAX),
     CYAML_FIELD_UINT("packings", OPTIONAL, struct grid_text, packings),
+    CYAML_FIELD_SEQUENCE("depth", OPTIONAL, struct grid_text, depth, &number, 1,
+                         DIG_APPROACH_VALUES_MAX),
+    CYAML_FIELD_SEQUENCE("attack_deg", OPTIONAL, struct grid_text, attack_deg, &number, 1,
+                         DIG_APPROACH_VALUES_MAX),
+    CYAML_FIELD_ENUM("design", OPTIONAL | CYAML_FLAG_STRICT, struct grid_text, design, designs,
+                     sizeof designs / sizeof designs[0]),
+    CYAML_FIELD_UINT("varied_packings", OPTIONAL, struct grid_text, varied_packings),
     CYAML_FIELD_SEQUENCE("points", OPTIONAL, struct grid_text, points, &point, 0,
                          DIG_GRID_POINTS_MAX),
     CYAML_FIELD_SEQUENCE("effects", OPTIONAL, struct grid_text, effects, &effect, 0,
@@ -169,11 +192,28 @@ static enum dig_status check_point(const char *const path, const struct dig_grid
         }
     }
     for (size_t k = 0; k < i; k++) {
-        if (same_gravel(&grid->point[i].gravel, &grid->point[k].gravel)) {
+        if (same_gravel(&grid->point[i].gravel, &grid->point[k].gravel) &&
+            dig_approach_is_same(&grid->point[i].approach, &grid->point[k].approach)) {
             (void)snprintf(key, sizeof key, "points[%zu]", i);
             return dig_yaml_refuse(path, key, error, "the gravel of points[%zu], expected another",
                                    k);
         }
+    }
+    if (grid->point[i].states && grid->effects > 0) {
+        (void)snprintf(key, sizeof key, "points[%zu]", i);
+        return dig_yaml_refuse(path, key, error,
+                               "depth or attack_deg, expected neither beside effects");
+    }
+    const double depth = grid->point[i].approach.depth;
+    if (!(depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST)) {
+        (void)snprintf(key, sizeof key, "points[%zu].depth", i);
+        return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", depth,
+                               DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST);
+    }
+    if (!(fabs(grid->point[i].approach.attack_rad) <= ATTACK_MOST_rad)) {
+        (void)snprintf(key, sizeof key, "points[%zu].attack_deg", i);
+        return dig_yaml_refuse(path, key, error, "%g, expected -45 to 45",
+                               grid->point[i].approach.attack_rad / DIG_RAD_PER_DEG);
     }
     (void)snprintf(key, sizeof key, "points[%zu].packings", i);
     return check_packings(path, key, grid->point[i].packings, error);
@@ -260,6 +300,78 @@ static enum dig_status convert_effects(const char *const path, const struct grid
     return DIG_OK;
 }
 
+// One list of depths or attacks: ascending, within the range, the plain value among them.
+static enum dig_status check_list(const char *const path, const char *const list,
+                                  const size_t count, const double value[], const double plain,
+                                  const double least, const double most,
+                                  struct dig_error *const error)
+{
+    bool has_plain = count == 0;
+    for (size_t i = 0; i < count; i++) {
+        char key[64];
+        (void)snprintf(key, sizeof key, "%s[%zu]", list, i);
+        if (!(value[i] >= least && value[i] <= most)) {
+            return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", value[i], least,
+                                   most);
+        }
+        if (i > 0 && !(value[i] > value[i - 1])) {
+            return dig_yaml_refuse(path, key, error, "%g after %g, expected ascending values",
+                                   value[i], value[i - 1]);
+        }
+        has_plain = has_plain || !(value[i] < plain || value[i] > plain);
+    }
+    return has_plain ? DIG_OK
+                     : dig_yaml_refuse(path, list, error,
+                                       "without %g, expected it among the values: the digs as the "
+                                       "scene has them",
+                                       plain);
+}
+
+static enum dig_status check_approaches(const char *const path, const struct grid_text *const text,
+                                        struct dig_error *const error)
+{
+    enum dig_status status = check_list(path, "depth", text->depth_count, text->depth, 1.0,
+                                        DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, error);
+    if (status == DIG_OK) {
+        status = check_list(path, "attack_deg", text->attack_deg_count, text->attack_deg, 0.0,
+                            -45.0, 45.0, error);
+    }
+    const bool lists = text->depth_count + text->attack_deg_count > 0;
+    if (status == DIG_OK && lists && text->effects_count > 0) {
+        return dig_yaml_refuse(path, text->depth_count > 0 ? "depth" : "attack_deg", error,
+                               "beside effects, expected either");
+    }
+    if (status == DIG_OK && dig_yaml_line(path, "varied_packings") > 0) {
+        return lists ? check_packings(path, "varied_packings", text->varied_packings, error)
+                     : dig_yaml_refuse(path, "varied_packings", error,
+                                       "without depth or attack_deg, expected one of them");
+    }
+    return status;
+}
+
+// The cross has one axis at a time, the product every combination.
+static void convert_approaches(const struct grid_text *const text, struct dig_grid *const grid)
+{
+    const size_t depths  = text->depth_count > 0 ? text->depth_count : 1;
+    const size_t attacks = text->attack_deg_count > 0 ? text->attack_deg_count : 1;
+    for (size_t d = 0; d < depths; d++) {
+        for (size_t a = 0; a < attacks; a++) {
+            const struct dig_approach approach = {
+                .depth = text->depth_count > 0 ? text->depth[d] : 1.0,
+                .attack_rad =
+                    (text->attack_deg_count > 0 ? text->attack_deg[a] : 0.0) * DIG_RAD_PER_DEG,
+            };
+            const struct dig_approach deep   = { .depth = approach.depth };
+            const struct dig_approach turned = { .attack_rad = approach.attack_rad };
+            const bool on_axis = dig_approach_is_plain(&deep) || dig_approach_is_plain(&turned);
+            if (!dig_approach_is_plain(&approach) && (on_axis || text->design == DESIGN_PRODUCT)) {
+                grid->approach[grid->approaches++] = approach;
+            }
+        }
+    }
+    grid->varied_packings = text->varied_packings;
+}
+
 static void convert(const struct grid_text *const text, struct dig_grid *const grid)
 {
     *grid = (struct dig_grid){
@@ -273,12 +385,18 @@ static void convert(const struct grid_text *const text, struct dig_grid *const g
     memcpy(grid->value[DIG_AXIS_DENSITY_kgpm3], text->density_kgpm3, sizeof text->density_kgpm3);
     for (size_t i = 0; i < grid->points; i++) {
         const struct point_text *const p = &text->points[i];
-        grid->point[i] = (struct dig_grid_point){ { { p->friction, p->rolling, p->density_kgpm3 } },
-                                                  p->packings };
+        grid->point[i]                   = (struct dig_grid_point){
+                              .gravel   = { { p->friction, p->rolling, p->density_kgpm3 } },
+                              .packings = p->packings,
+                              .states   = fabs(p->depth) > 0.0 || fabs(p->attack_deg) > 0.0,
+                              .approach = { p->depth, p->attack_deg * DIG_RAD_PER_DEG },
+        };
+        grid->point[i].approach = dig_approach_told(&grid->point[i].approach);
     }
     for (size_t i = 0; i < grid->trajectories; i++) {
         memcpy(grid->trajectory[i], text->trajectories[i].text, DIG_NAME_SIZE);
     }
+    convert_approaches(text, grid);
 }
 
 enum dig_status dig_grid_read(const char *const path, struct dig_grid *const grid,
@@ -294,6 +412,9 @@ enum dig_status dig_grid_read(const char *const path, struct dig_grid *const gri
     struct dig_grid loaded;
     convert(data, &loaded);
     status = convert_effects(path, data, &loaded, error);
+    if (status == DIG_OK) {
+        status = check_approaches(path, data, error);
+    }
     dig_yaml_free(&schema, data);
     if (status == DIG_OK) {
         status = check(path, &loaded, error);

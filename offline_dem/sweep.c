@@ -51,13 +51,15 @@ static void note_failure(struct sweep *const s, const struct dig_job *const job,
     s->state->failed += digs;
     if (s->status == DIG_OK) {
         char effect[64] = "";
+        char how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&job->approach, how);
         if (job->effect[0] != '\0') {
             (void)snprintf(effect, sizeof effect, ", %s %g", job->effect, job->magnitude);
         }
         s->status = dig_error_set(s->error, DIG_EIO,
-                                  "friction %g, rolling %g, %g kg/m3%s, packing %zu: %.400s",
+                                  "friction %g, rolling %g, %g kg/m3%s%s, packing %zu: %.400s",
                                   job->gravel.value[0], job->gravel.value[1], job->gravel.value[2],
-                                  effect, job->packing, why);
+                                  effect, how, job->packing, why);
     }
 }
 
@@ -110,6 +112,7 @@ static enum dig_status store_curve(struct sweep *const s, struct dig_worker *con
     struct dig_run_origin origin = {
         .gravel     = w->job.gravel,
         .magnitude  = w->job.magnitude,
+        .approach   = w->job.approach,
         .packing    = w->job.packing,
         .trajectory = m->trajectory,
         .seed       = w->job.seed,

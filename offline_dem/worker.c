@@ -98,13 +98,17 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
         if (i > 0 && dig_sweep_now_s() >= child->deadline_s) {
             return true;
         }
-        const size_t                       at        = child->job->trajectory[i];
-        const struct dig_trajectory *const t         = &child->scene->trajectory[at];
-        struct dig_recording               recording = { 0 };
-        struct dig_error                   error     = { "" };
-        child->share_s                               = dig_trajectory_duration_s(t);
-        const enum dig_status status = child->engine->dig(child->scene, &child->job->gravel, bed, t,
-                                                          NULL, progress, &recording, &error);
+        const size_t          at = child->job->trajectory[i];
+        struct dig_trajectory t;
+        struct dig_recording  recording = { 0 };
+        struct dig_error      error     = { "" };
+        enum dig_status status = dig_approach_make(child->scene, &child->scene->trajectory[at],
+                                                   &child->job->approach, &t, &error);
+        if (status == DIG_OK) {
+            child->share_s = dig_trajectory_duration_s(&t);
+            status = child->engine->dig(child->scene, &child->job->gravel, bed, &t, NULL, progress,
+                                        &recording, &error);
+        }
         if (status != DIG_OK) {
             send_failure(child, status, &error);
             return false;

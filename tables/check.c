@@ -58,18 +58,31 @@ static enum dig_status check_entry(struct dig_store *const         store,
                       (runs == 0 || agree(&stored->mean[0][0], &actual->mean[0][0])) &&
                       (runs < 2 || agree(&stored->sd[0][0], &actual->sd[0][0]));
     if (!same) {
+        char how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&g->approach, how);
         return dig_error_set(error, DIG_EINVAL,
-                             "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s: of %d "
+                             "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d "
                              "packings, differs from its %zu runs, expected their mean and spread",
                              store->path, g->gravel.value[0], g->gravel.value[1],
                              g->gravel.value[2], g->effect[0] != '\0' ? " with " : "", g->effect,
-                             store->head.trajectory[trajectory].name, all->packings[at], runs);
+                             store->head.trajectory[trajectory].name, how, all->packings[at], runs);
     }
     return DIG_OK;
 }
 
+// Entries are compared with those of their kind: plain, with an effect, or dug another way.
+enum kind { KIND_PLAIN, KIND_VARIED, KIND_APPROACHED, KINDS };
+
+static enum kind kind_of(const struct dig_grounds *const all, const size_t ground)
+{
+    if (all->ground[ground].effect[0] != '\0') {
+        return KIND_VARIED;
+    }
+    return dig_approach_is_plain(&all->ground[ground].approach) ? KIND_PLAIN : KIND_APPROACHED;
+}
+
 // The number of packings that most entries of the kind have; of two as frequent, the larger.
-static int usual_packings(const struct dig_grounds *const all, const bool varied)
+static int usual_packings(const struct dig_grounds *const all, const enum kind kind)
 {
     int    usual = 0;
     size_t best  = 0;
@@ -77,8 +90,8 @@ static int usual_packings(const struct dig_grounds *const all, const bool varied
         size_t    times = 0;
         const int n     = all->packings[i];
         for (size_t k = 0; k < all->grounds * all->trajectories; k++) {
-            const bool kind = all->ground[k / all->trajectories].effect[0] != '\0';
-            times += kind == varied && all->packings[k] == n ? 1 : 0;
+            const bool same = kind_of(all, k / all->trajectories) == kind;
+            times += same && all->packings[k] == n ? 1 : 0;
         }
         if (n > 0 && (times > best || (times == best && n > usual))) {
             usual = n;
@@ -91,24 +104,28 @@ static int usual_packings(const struct dig_grounds *const all, const bool varied
 static void count_entries(const struct dig_grounds *const all,
                           struct dig_store_report *const  report)
 {
-    bool      used[2][DIG_TRAJECTORY_MAX] = { { false } };
-    const int usual[2] = { usual_packings(all, false), usual_packings(all, true) };
+    bool used[KINDS][DIG_TRAJECTORY_MAX] = { { false } };
+    int  usual[KINDS];
+    for (int kind = 0; kind < KINDS; kind++) {
+        usual[kind] = usual_packings(all, (enum kind)kind);
+    }
     for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
-        const bool varied = all->ground[i / all->trajectories].effect[0] != '\0';
         report->entries += all->packings[i] > 0 ? 1 : 0;
         report->runs += (size_t)all->packings[i];
-        used[varied][i % all->trajectories] |= all->packings[i] > 0;
+        used[kind_of(all, i / all->trajectories)][i % all->trajectories] |= all->packings[i] > 0;
     }
     // A trajectory no ground was dug with is not missing: the grid did not ask for it.
     for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
-        const bool varied = all->ground[i / all->trajectories].effect[0] != '\0';
+        const enum kind kind = kind_of(all, i / all->trajectories);
         report->incomplete +=
-            used[varied][i % all->trajectories] && all->packings[i] < usual[varied] ? 1 : 0;
+            used[kind][i % all->trajectories] && all->packings[i] < usual[kind] ? 1 : 0;
     }
     for (size_t g = 0; g < all->grounds; g++) {
-        report->effects += all->ground[g].effect[0] != '\0' ? 1 : 0;
+        const enum kind kind = kind_of(all, g);
+        report->points += kind == KIND_PLAIN ? 1 : 0;
+        report->effects += kind == KIND_VARIED ? 1 : 0;
+        report->approaches += kind == KIND_APPROACHED ? 1 : 0;
     }
-    report->points = all->grounds - report->effects;
 }
 
 static size_t count_holes(const struct dig_curve_set *const set)

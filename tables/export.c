@@ -1,5 +1,8 @@
 #include "tables/export.h"
 
+#include "core/units.h"
+#include "tables/listed.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -16,10 +19,10 @@ static double progress_of(const size_t k)
     return (double)k / (DIG_CURVE_POINTS - 1);
 }
 
-static double time_of(const struct dig_curve_set *const set, const size_t trajectory,
+static double time_of(const struct dig_trajectory *const trajectory, const double tooth_m,
                       const size_t k)
 {
-    return dig_trajectory_time_s(&set->trajectory[trajectory], set->tooth_m, progress_of(k));
+    return dig_trajectory_time_s(trajectory, tooth_m, progress_of(k));
 }
 
 static void put_gravel(const struct dig_gravel *const gravel, FILE *const file)
@@ -38,30 +41,37 @@ static void put_number(const double value, FILE *const file)
     }
 }
 
-static void put_point(const struct dig_curve_set *const set, const struct dig_curve *const curve,
-                      const size_t trajectory, const size_t k, FILE *const file)
+static void put_point(const struct dig_trajectory *const trajectory, const double tooth_m,
+                      const struct dig_curve *const curve, const size_t k, FILE *const file)
 {
-    (void)fprintf(file, "%.9g,%.9g", progress_of(k), time_of(set, trajectory, k));
+    (void)fprintf(file, "%.9g,%.9g", progress_of(k), time_of(trajectory, tooth_m, k));
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
         put_number((double)curve->mean[c][k], file);
         put_number((double)curve->sd[c][k], file);
     }
-    (void)fputc('\n', file);
+}
+
+static double degrees(const double rad)
+{
+    return rad / DIG_RAD_PER_DEG;
 }
 
 #define POINT_COLUMNS                                                                              \
-    "progress,t_s,My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N,carried_kg,carried_sd_kg\n"
+    "progress,t_s,My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N,carried_kg,carried_sd_kg"
 
 void dig_export_curves(const struct dig_curve_set *const set, FILE *const file)
 {
-    (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS);
-    for (size_t e = 0; e < set->entries; e++) {
+    (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS
+                        ",depth,attack_deg\n");
+    for (size_t e = 0; e < dig_listed_count(set); e++) {
         for (size_t t = 0; t < set->trajectories; t++) {
-            const size_t at = e * set->trajectories + t;
-            for (size_t k = 0; set->packings[at] > 0 && k < DIG_CURVE_POINTS; k++) {
-                put_gravel(&set->gravel[e], file);
-                (void)fprintf(file, ",%s,%d,", set->trajectory[t].name, set->packings[at]);
-                put_point(set, &set->curve[at], t, k, file);
+            const struct dig_listed one = dig_listed_at(set, e, t);
+            for (size_t k = 0; one.packings > 0 && k < DIG_CURVE_POINTS; k++) {
+                put_gravel(&one.gravel, file);
+                (void)fprintf(file, ",%s,%d,", one.trajectory.name, one.packings);
+                put_point(&one.trajectory, set->tooth_m, one.curve, k, file);
+                (void)fprintf(file, ",%.9g,%.9g\n", one.approach.depth,
+                              degrees(one.approach.attack_rad));
             }
         }
     }
@@ -71,7 +81,8 @@ void dig_export_effects(const struct dig_curve_set *const  set,
                         const struct dig_effect_set *const effects, FILE *const file)
 {
     (void)fprintf(
-        file, "effect,magnitude,friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS);
+        file,
+        "effect,magnitude,friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS "\n");
     for (size_t e = 0; e < effects->entries; e++) {
         const struct dig_effect_entry *const entry = &effects->entry[e];
         for (size_t t = 0; t < effects->trajectories; t++) {
@@ -80,7 +91,8 @@ void dig_export_effects(const struct dig_curve_set *const  set,
                 (void)fprintf(file, "%s,%.9g,", dig_effect_name(entry->effect), entry->magnitude);
                 put_gravel(&entry->gravel, file);
                 (void)fprintf(file, ",%s,%d,", set->trajectory[t].name, effects->packings[at]);
-                put_point(set, &effects->curve[at], t, k, file);
+                put_point(&set->trajectory[t], set->tooth_m, &effects->curve[at], k, file);
+                (void)fputc('\n', file);
             }
         }
     }
@@ -105,7 +117,8 @@ static enum dig_status put_run(void *const context, const struct dig_run *const 
         for (size_t c = 0; c < DIG_CHANNELS; c++) {
             put_number((double)run->value[c * run->windows + i], x->file);
         }
-        (void)fprintf(x->file, ",%s,%.9g\n", o->effect, o->magnitude);
+        (void)fprintf(x->file, ",%s,%.9g,%.9g,%.9g\n", o->effect, o->magnitude, o->approach.depth,
+                      degrees(o->approach.attack_rad));
     }
     return DIG_OK;
 }
@@ -116,8 +129,9 @@ enum dig_status dig_export_runs(struct dig_store *const store, FILE *const file,
     size_t                       count   = 0;
     struct export_context        context = { dig_store_trajectories(store, &count), file };
     const struct dig_run_visitor visitor = { put_run, &context };
-    (void)fprintf(file, "friction,rolling,density_kgpm3,trajectory,packing,seed,engine,version,"
-                        "grains,t_s,My_Nm,Fx_N,Fz_N,carried_kg,effect,magnitude\n");
+    (void)fprintf(file,
+                  "friction,rolling,density_kgpm3,trajectory,packing,seed,engine,version,"
+                  "grains,t_s,My_Nm,Fx_N,Fz_N,carried_kg,effect,magnitude,depth,attack_deg\n");
     return dig_store_walk(store, &visitor, error);
 }
 
@@ -126,7 +140,14 @@ static void put_packings(const size_t trajectories, const int packings[], FILE *
     for (size_t t = 0; t < trajectories; t++) {
         (void)fprintf(file, "  %10d", packings[t]);
     }
-    (void)fputc('\n', file);
+}
+
+// Of each trajectory.
+static const int *packings_of(const struct dig_curve_set *const set, const size_t entry)
+{
+    return entry < set->entries
+               ? set->packings + entry * set->trajectories
+               : set->approaches->packings + (entry - set->entries) * set->trajectories;
 }
 
 void dig_export_list(const struct dig_curve_set *const  set,
@@ -140,20 +161,22 @@ void dig_export_list(const struct dig_curve_set *const  set,
         (void)fprintf(file, "  %10s", set->trajectory[t].name);
     }
     (void)fputs("   (packings)\n", file);
-    for (size_t e = 0; e < set->entries; e++) {
-        const double *const v = set->gravel[e].value;
+    for (size_t e = 0; e < dig_listed_count(set); e++) {
+        const struct dig_listed one = dig_listed_at(set, e, 0);
+        const double *const     v   = one.gravel.value;
         (void)fprintf(file, "%5zu  %8g  %8g  %8g ", e, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
                       v[DIG_AXIS_DENSITY_kgpm3]);
-        put_packings(set->trajectories, set->packings + e * set->trajectories, file);
+        put_packings(set->trajectories, packings_of(set, e), file);
+        char how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&one.approach, how);
+        (void)fprintf(file, "%s%s\n", how[0] != '\0' ? "  " : "", how[0] != '\0' ? how + 2 : "");
     }
     for (size_t e = 0; e < effects->entries; e++) {
         const struct dig_effect_entry *const x = &effects->entry[e];
         const double *const                  v = x->gravel.value;
         (void)fprintf(file, "%5s  %8g  %8g  %8g ", "", v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
                       v[DIG_AXIS_DENSITY_kgpm3]);
-        for (size_t t = 0; t < set->trajectories; t++) {
-            (void)fprintf(file, "  %10d", effects->packings[e * set->trajectories + t]);
-        }
+        put_packings(set->trajectories, effects->packings + e * set->trajectories, file);
         (void)fprintf(file, "  %s %g\n", dig_effect_name(x->effect), x->magnitude);
     }
 }
@@ -180,6 +203,12 @@ static void put_json_gravel(const struct dig_gravel *const gravel, FILE *const f
         (void)fprintf(file, "%s\"%s\": %.9g", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
                       gravel->value[a]);
     }
+}
+
+static void put_json_approach(const struct dig_approach *const approach, FILE *const file)
+{
+    (void)fprintf(file, ", \"depth\": %.9g, \"attack_deg\": %.9g", approach->depth,
+                  degrees(approach->attack_rad));
 }
 
 static void put_json_scene(const struct dig_curve_set *const set, FILE *const file)
@@ -216,10 +245,12 @@ void dig_export_list_json(const struct dig_curve_set *const  set,
         put_json_text(set->trajectory[t].name, file);
     }
     (void)fputs("],\n \"entries\": [", file);
-    for (size_t e = 0; e < set->entries; e++) {
+    for (size_t e = 0; e < dig_listed_count(set); e++) {
+        const struct dig_listed one = dig_listed_at(set, e, 0);
         (void)fprintf(file, "%s\n  {\"entry\": %zu, ", e == 0 ? "" : ",", e);
-        put_json_gravel(&set->gravel[e], file);
-        put_json_packings(set, set->packings + e * set->trajectories, file);
+        put_json_gravel(&one.gravel, file);
+        put_json_approach(&one.approach, file);
+        put_json_packings(set, packings_of(set, e), file);
     }
     (void)fputs("\n ],\n \"effects\": [", file);
     for (size_t e = 0; e < effects->entries; e++) {
@@ -234,9 +265,11 @@ void dig_export_list_json(const struct dig_curve_set *const  set,
 void dig_export_curve_csv(const struct dig_curve_set *const set, const size_t entry,
                           const size_t trajectory, FILE *const file)
 {
-    (void)fputs(POINT_COLUMNS, file);
+    const struct dig_listed one = dig_listed_at(set, entry, trajectory);
+    (void)fputs(POINT_COLUMNS "\n", file);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        put_point(set, &set->curve[entry * set->trajectories + trajectory], trajectory, k, file);
+        put_point(&one.trajectory, set->tooth_m, one.curve, k, file);
+        (void)fputc('\n', file);
     }
 }
 
@@ -258,28 +291,30 @@ static void put_json_array(const char *const name, const float value[const DIG_C
 void dig_export_curve_json(const struct dig_curve_set *const set, const size_t entry,
                            const size_t trajectory, FILE *const file)
 {
-    const size_t at = entry * set->trajectories + trajectory;
+    const struct dig_listed one = dig_listed_at(set, entry, trajectory);
     (void)fputc('{', file);
     put_json_scene(set, file);
     (void)fprintf(file, ",\n \"entry\": %zu, ", entry);
-    put_json_gravel(&set->gravel[entry], file);
+    put_json_gravel(&one.gravel, file);
+    put_json_approach(&one.approach, file);
     (void)fputs(", \"trajectory\": ", file);
-    put_json_text(set->trajectory[trajectory].name, file);
-    (void)fprintf(file, ", \"packings\": %d,\n \"progress\": [", set->packings[at]);
+    put_json_text(one.trajectory.name, file);
+    (void)fprintf(file, ", \"packings\": %d,\n \"progress\": [", one.packings);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", progress_of(k));
     }
     (void)fputs("],\n \"t_s\": [", file);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", time_of(set, trajectory, k));
+        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ",
+                      time_of(&one.trajectory, set->tooth_m, k));
     }
     (void)fputc(']', file);
     static const char *const mean_name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N", "carried_kg" };
     static const char *const sd_name[DIG_CHANNELS]   = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N",
                                                          "carried_sd_kg" };
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        put_json_array(mean_name[c], set->curve[at].mean[c], file);
-        put_json_array(sd_name[c], set->curve[at].sd[c], file);
+        put_json_array(mean_name[c], one.curve->mean[c], file);
+        put_json_array(sd_name[c], one.curve->sd[c], file);
     }
     (void)fputs("}\n", file);
 }
@@ -291,9 +326,9 @@ void dig_export_curve_plot(const struct dig_curve_set *const set, const size_t e
                            const size_t trajectory, const enum dig_channel channel,
                            const size_t width, FILE *const file)
 {
-    const size_t                  at    = entry * set->trajectories + trajectory;
-    const struct dig_curve *const curve = &set->curve[at];
-    const double *const           v     = set->gravel[entry].value;
+    const struct dig_listed       one   = dig_listed_at(set, entry, trajectory);
+    const struct dig_curve *const curve = one.curve;
+    const double *const           v     = one.gravel.value;
     double                        low   = 0.0;
     double                        high  = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -304,9 +339,11 @@ void dig_export_curve_plot(const struct dig_curve_set *const set, const size_t e
     }
     const double step = high > low ? (high - low) / (PLOT_ROWS - 1) : 1.0;
 
-    (void)fprintf(file, "entry %zu: friction %g, rolling %g, %g kg/m3; %s, %d packings\n%s\n",
+    char how[DIG_APPROACH_TEXT_SIZE];
+    dig_approach_text(&one.approach, how);
+    (void)fprintf(file, "entry %zu: friction %g, rolling %g, %g kg/m3; %s%s, %d packings\n%s\n",
                   entry, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING], v[DIG_AXIS_DENSITY_kgpm3],
-                  set->trajectory[trajectory].name, set->packings[at], channel_name[channel]);
+                  one.trajectory.name, how, one.packings, channel_name[channel]);
     for (int row = PLOT_ROWS - 1; row >= 0; row--) {
         const double level = low + step * row;
         (void)fprintf(file, "%9.3g |", level);

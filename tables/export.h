@@ -12,14 +12,15 @@
 
 #include <stdio.h>
 
-/// CSV: one line a point of every curve.
+/// CSV: one line a point of every curve, those of other approaches behind the plain ones.
 void dig_export_curves(const struct dig_curve_set *set, FILE *file);
 
 /// CSV: one line a sample of every run.
 DIG_MUST_CHECK enum dig_status dig_export_runs(struct dig_store *store, FILE *file,
                                                struct dig_error *error);
 
-/// The entries and their packings, as a text table or as JSON. Either may have no entries.
+/// The entries, numbered, and their packings, as a text table or as JSON. Either may have no
+/// entries.
 void dig_export_list(const struct dig_curve_set *set, const struct dig_effect_set *effects,
                      FILE *file);
 void dig_export_list_json(const struct dig_curve_set *set, const struct dig_effect_set *effects,
@@ -29,7 +30,8 @@ void dig_export_list_json(const struct dig_curve_set *set, const struct dig_effe
 void dig_export_effects(const struct dig_curve_set *set, const struct dig_effect_set *effects,
                         FILE *file);
 
-/// One curve of an entry: CSV, JSON, or drawn with characters `width` columns wide.
+/// One curve of an entry, by its number in the list (tables/listed.h): CSV, JSON, or drawn with
+/// characters `width` columns wide.
 void dig_export_curve_csv(const struct dig_curve_set *set, size_t entry, size_t trajectory,
                           FILE *file);
 void dig_export_curve_json(const struct dig_curve_set *set, size_t entry, size_t trajectory,

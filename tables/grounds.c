@@ -19,6 +19,8 @@
 // differs from the mean in the reference digs (relative L2 of two runs .13 to .35, over root two).
 #define SPREAD_WITHOUT_PACKINGS 0.2
 
+#define PLAINLY "depth = 1 AND attack_rad = 0"
+
 struct loader {
     const char         *path;
     sqlite3            *db;
@@ -30,8 +32,9 @@ struct loader {
 static const char *where_of(const enum dig_grounds_kind kind)
 {
     switch (kind) {
-    case DIG_GROUNDS_PLAIN: return "effect = ''";
-    case DIG_GROUNDS_VARIED: return "effect <> ''";
+    case DIG_GROUNDS_PLAIN: return "effect = '' AND " PLAINLY;
+    case DIG_GROUNDS_VARIED: return "effect <> '' AND " PLAINLY;
+    case DIG_GROUNDS_APPROACHED: return "effect = '' AND NOT (" PLAINLY ")";
     case DIG_GROUNDS_ALL: break;
     }
     return "1";
@@ -101,15 +104,22 @@ static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *c
                              l->path, effect != NULL ? effect : "", ground->magnitude);
     }
     (void)snprintf(ground->effect, sizeof ground->effect, "%s", effect);
+    ground->approach = (struct dig_approach){ sqlite3_column_double(s, DIG_AXES + 3),
+                                              sqlite3_column_double(s, DIG_AXES + 4) };
+    if (!(ground->approach.depth > 0.0) || !isfinite(ground->approach.attack_rad)) {
+        return dig_error_set(l->error, DIG_EINVAL,
+                             "%s: ground.depth: %g, attack_rad: %g, expected > 0, and finite",
+                             l->path, ground->approach.depth, ground->approach.attack_rad);
+    }
     return DIG_OK;
 }
 
 static enum dig_status read_grounds(const struct loader *const l)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(l, "id, friction, rolling, density_kgpm3, effect, magnitude", "ground",
-                "ORDER BY friction, rolling, density_kgpm3, effect, magnitude", &s);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = prepare(
+        l, "id, friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad", "ground",
+        "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad", &s);
     size_t i = 0;
     while (status == DIG_OK && i < l->into->grounds) {
         if (sqlite3_step(s) != SQLITE_ROW) {
@@ -237,10 +247,15 @@ static double mean_square(const float y[const DIG_CURVE_POINTS])
     return sum / DIG_CURVE_POINTS;
 }
 
-static void pool_channel(struct dig_grounds *const g, const size_t trajectory, const size_t c)
+// Variances at each point, relative to the curve's mean square, times their degrees of freedom.
+struct pool {
+    double variance[DIG_CURVE_POINTS];
+    double freedom;
+};
+
+static void add_channel(const struct dig_grounds *const g, const size_t trajectory, const size_t c,
+                        struct pool *const pool)
 {
-    double variance[DIG_CURVE_POINTS] = { 0.0 };
-    double freedom                    = 0.0;
     for (size_t e = 0; e < g->grounds; e++) {
         const size_t                  at    = e * g->trajectories + trajectory;
         const struct dig_curve *const curve = &g->curve[at];
@@ -251,10 +266,15 @@ static void pool_channel(struct dig_grounds *const g, const size_t trajectory, c
         const double weight = (double)(g->packings[at] - 1);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double sd = (double)curve->sd[c][k];
-            variance[k] += weight * sd * sd / scale;
+            pool->variance[k] += weight * sd * sd / scale;
         }
-        freedom += weight;
+        pool->freedom += weight;
     }
+}
+
+static void spread_channel(struct dig_grounds *const g, const size_t trajectory, const size_t c,
+                           const struct pool *const pool)
+{
     for (size_t e = 0; e < g->grounds; e++) {
         const size_t            at    = e * g->trajectories + trajectory;
         struct dig_curve *const curve = &g->curve[at];
@@ -263,18 +283,29 @@ static void pool_channel(struct dig_grounds *const g, const size_t trajectory, c
         }
         const double rms = sqrt(mean_square(curve->mean[c]));
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double relative =
-                freedom > 0.0 ? sqrt(variance[k] / freedom) : SPREAD_WITHOUT_PACKINGS;
-            curve->sd[c][k] = (float)(relative * rms);
+            const double relative = pool->freedom > 0.0 ? sqrt(pool->variance[k] / pool->freedom)
+                                                        : SPREAD_WITHOUT_PACKINGS;
+            curve->sd[c][k]       = (float)(relative * rms);
+        }
+    }
+}
+
+void dig_grounds_pool_spread_with(const struct dig_grounds *const others,
+                                  struct dig_grounds *const       grounds)
+{
+    for (size_t t = 0; t < grounds->trajectories; t++) {
+        for (size_t c = 0; c < DIG_CHANNELS; c++) {
+            struct pool pool = { .freedom = 0.0 };
+            add_channel(grounds, t, c, &pool);
+            if (others != NULL) {
+                add_channel(others, t, c, &pool);
+            }
+            spread_channel(grounds, t, c, &pool);
         }
     }
 }
 
 void dig_grounds_pool_spread(struct dig_grounds *const grounds)
 {
-    for (size_t t = 0; t < grounds->trajectories; t++) {
-        for (size_t c = 0; c < DIG_CHANNELS; c++) {
-            pool_channel(grounds, t, c);
-        }
-    }
+    dig_grounds_pool_spread_with(NULL, grounds);
 }

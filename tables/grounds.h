@@ -3,6 +3,7 @@
 #ifndef DIG_TABLES_GROUNDS_H
 #define DIG_TABLES_GROUNDS_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
 #include "tables/schema.h"
@@ -10,19 +11,21 @@
 #include <stdbool.h>
 
 enum dig_grounds_kind {
-    DIG_GROUNDS_PLAIN,  // without an effect
-    DIG_GROUNDS_VARIED, // with one
+    DIG_GROUNDS_PLAIN,      // without an effect, as the trajectories stand
+    DIG_GROUNDS_VARIED,     // with an effect, likewise
+    DIG_GROUNDS_APPROACHED, // without an effect, at another depth or attack
     DIG_GROUNDS_ALL,
 };
 
 struct dig_ground {
-    sqlite3_int64     id;
-    struct dig_gravel gravel;
-    char              effect[DIG_NAME_SIZE]; // "": none
-    double            magnitude;
+    sqlite3_int64       id;
+    struct dig_gravel   gravel;
+    char                effect[DIG_NAME_SIZE]; // "": none
+    double              magnitude;
+    struct dig_approach approach;
 };
 
-/// Ordered by gravel, effect, magnitude. packings 0: not dug.
+/// Ordered by gravel, effect, magnitude, depth, attack. packings 0: not dug.
 struct dig_grounds {
     size_t             grounds, trajectories;
     struct dig_ground *ground;   // [grounds]
@@ -39,6 +42,9 @@ dig_grounds_load(sqlite3 *db, const char *path, const struct dig_table_head *hea
 /// Gives entries with one packing the spread the others have at the same point of the path,
 /// relative to the curve's rms: variances pooled by their degrees of freedom.
 void dig_grounds_pool_spread(struct dig_grounds *grounds);
+
+/// The same with the spread of others' entries added to the pool; their trajectories are the same.
+void dig_grounds_pool_spread_with(const struct dig_grounds *others, struct dig_grounds *grounds);
 
 void dig_grounds_finish(struct dig_grounds *grounds);
 

@@ -1,10 +1,12 @@
 // Whether a file is a table of ours, whole and of this version, and what it says of itself.
 
+#include "core/approach.h"
 #include "core/sha256.h"
 #include "tables/schema.h"
 
 #include <assert.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,14 +25,13 @@ static enum dig_status pragma_int(sqlite3 *const db, const char *const path, con
     return DIG_OK;
 }
 
-static enum dig_status check_identity(sqlite3 *const db, const char *const path,
+static enum dig_status check_identity(sqlite3 *const db, const char *const path, int *const version,
                                       struct dig_error *const error)
 {
-    int             id      = 0;
-    int             version = 0;
-    enum dig_status status  = pragma_int(db, path, "PRAGMA application_id", &id, error);
+    int             id     = 0;
+    enum dig_status status = pragma_int(db, path, "PRAGMA main.application_id", &id, error);
     if (status == DIG_OK) {
-        status = pragma_int(db, path, "PRAGMA user_version", &version, error);
+        status = pragma_int(db, path, "PRAGMA main.user_version", version, error);
     }
     if (status != DIG_OK) {
         return status;
@@ -40,11 +41,12 @@ static enum dig_status check_identity(sqlite3 *const db, const char *const path,
                              "%s: not a digsight table (application_id %d, expected %d)", path, id,
                              DIG_TABLE_APPLICATION_ID);
     }
-    if (version != DIG_TABLE_VERSION) {
+    if (*version != DIG_TABLE_VERSION && *version != DIG_TABLE_VERSION_PLAIN) {
         return dig_error_set(error, DIG_ESCHEMA,
-                             "%s: user_version: table format %d, expected %d as this program knows "
-                             "it (the digtable generate command that made the table makes it anew)",
-                             path, version, DIG_TABLE_VERSION);
+                             "%s: user_version: table format %d, expected %d or %d as this program "
+                             "knows them (the digtable generate command that made the table makes "
+                             "it anew)",
+                             path, *version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
     }
     return DIG_OK;
 }
@@ -223,15 +225,41 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     return strncmp(rest, first, strlen(first)) != 0 && strncmp(rest, "phase=", 6) != 0;
 }
 
+// The ground as the canonical text has it: box_m's upper end, or its profile.
+static void read_ground(const char *const canonical, struct dig_scene *const scene)
+{
+    static const char box[]     = "\nbox_m=";
+    static const char surface[] = "\nsurface_m=";
+    const char       *at        = strstr(canonical, box);
+    if (at != NULL) {
+        (void)sscanf(at + sizeof box - 1, "%*f %*f %*f %*f %*f %lf", &scene->box.z_max_m);
+    }
+    for (at = strstr(canonical, surface); at != NULL && scene->bed.surface < DIG_SURFACE_MAX;
+         at = strstr(at + 1, surface)) {
+        const size_t i = scene->bed.surface++;
+        (void)sscanf(at + sizeof surface - 1, "%lf %lf", &scene->bed.surface_x_m[i],
+                     &scene->bed.surface_z_m[i]);
+    }
+}
+
+static void measure_depths(struct dig_table_head *const head, const char *const canonical)
+{
+    struct dig_scene scene = { .bucket = { .points = 1, .z_m = { -head->tooth_m } } };
+    read_ground(canonical, &scene);
+    for (size_t t = 0; t < head->trajectories; t++) {
+        head->depth_m[t] = dig_approach_depth_m(&scene, &head->trajectory[t]);
+    }
+}
+
 enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
                                  struct dig_table_head *const head, struct dig_error *const error)
 {
-    enum dig_status status = check_identity(db, path, error);
+    struct dig_table_head read      = { .trajectories = 0 };
+    char                 *canonical = NULL;
+    enum dig_status       status    = check_identity(db, path, &read.version, error);
     if (status == DIG_OK) {
         status = check_integrity(db, path, error);
     }
-    struct dig_table_head read      = { .trajectories = 0 };
-    char                 *canonical = NULL;
     if (status == DIG_OK) {
         status = read_scene(db, path, &read, &canonical, error);
     }
@@ -242,7 +270,13 @@ enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
         status = damaged(
             path, "trajectory: the rows differ from scene.canonical, expected the same", error);
     }
+    if (status == DIG_OK && canonical != NULL) {
+        measure_depths(&read, canonical);
+    }
     free(canonical);
+    if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {
+        status = dig_schema_view(db, path, "main", "ground", error);
+    }
     if (status == DIG_OK) {
         *head = read;
     }

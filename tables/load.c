@@ -1,6 +1,7 @@
 #include "tables/load.h"
 
 #include "tables/grounds.h"
+#include "tables/load_approaches.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
@@ -163,6 +164,9 @@ enum dig_status dig_table_list(const char *const path, struct dig_curve_set **co
     if (status == DIG_OK) {
         status = dig_sql_load(db, path, &head, &set, error);
     }
+    if (status == DIG_OK && set != NULL) {
+        status = dig_sql_load_approaches(db, path, &head, &set->approaches, error);
+    }
     if (status == DIG_OK && effects != NULL) {
         status = dig_sql_load_effects(db, path, &head, &varied, error);
     }
@@ -209,6 +213,7 @@ void dig_curve_set_destroy(struct dig_curve_set *const set)
             free(set->axis[a]);
         }
         free(set->cell);
+        dig_approach_set_destroy(set->approaches);
         free(set);
     }
 }

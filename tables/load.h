@@ -8,9 +8,11 @@
 #include "core/error.h"
 
 /// Opens path read-only, checks version and integrity, and builds the curve set of what was dug
-/// without an effect. The curves are smoothed with +-0.16 s of rig time, mapped to path progress,
-/// averaged over packings. Allocates; free with dig_curve_set_destroy(). DIG_ESCHEMA: a version
-/// this build does not know, both named. DIG_EINVAL: nothing was dug without an effect.
+/// without an effect, as the trajectories stand; what was dug deeper or with the bucket turned is
+/// in set->approaches, or NULL there. The curves are smoothed with +-0.16 s of rig time, mapped to
+/// path progress, averaged over packings. Allocates; free with dig_curve_set_destroy().
+/// DIG_ESCHEMA: a version this build does not know, both named. DIG_EINVAL: nothing was dug without
+/// an effect.
 DIG_MUST_CHECK enum dig_status dig_table_load(const char *path, struct dig_curve_set **set,
                                               struct dig_error *error);
 

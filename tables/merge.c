@@ -8,25 +8,25 @@
 #include <string.h>
 #include <unistd.h>
 
-#define KEY  "friction, rolling, density_kgpm3, effect, magnitude, trajectory, packing"
+#define DUG  "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad"
+#define KEY  DUG ", trajectory, packing"
 #define DATA "seed, engine, version, grains, windows, first_s, step_s, curve"
 
 // Runs of all inputs, by key. Temporary: the table itself is written once, in order.
 static const char gather_sql[] =
-    "CREATE TEMP TABLE gather (friction, rolling, density_kgpm3, effect, magnitude, trajectory, "
-    "packing, seed, engine, version, grains, windows, first_s, step_s, curve, made_utc, wall_s, "
-    "UNIQUE (" KEY "))";
+    "CREATE TEMP TABLE gather (" KEY ", " DATA ", made_utc, wall_s, UNIQUE (" KEY "))";
 
 static const char conflict_sql[] =
-    "SELECT g.friction, g.rolling, g.density_kgpm3, g.effect, a.trajectory, a.packing FROM "
-    "src.run r JOIN src.ground g ON g.id = r.ground JOIN gather a ON (a.friction, a.rolling, "
-    "a.density_kgpm3, a.effect, a.magnitude, a.trajectory, a.packing) = (g.friction, g.rolling, "
-    "g.density_kgpm3, g.effect, g.magnitude, r.trajectory, r.packing) WHERE (r.seed, r.engine, "
+    "SELECT g.friction, g.rolling, g.density_kgpm3, g.effect, a.trajectory, a.packing, g.depth, "
+    "g.attack_rad FROM src.run r JOIN src_ground g ON g.id = r.ground JOIN gather a ON "
+    "(a.friction, a.rolling, a.density_kgpm3, a.effect, a.magnitude, a.depth, a.attack_rad, "
+    "a.trajectory, a.packing) = (g.friction, g.rolling, g.density_kgpm3, g.effect, g.magnitude, "
+    "g.depth, g.attack_rad, r.trajectory, r.packing) WHERE (r.seed, r.engine, "
     "r.version, r.grains, r.windows, r.first_s, r.step_s, r.curve) <> (a.seed, a.engine, "
     "a.version, a.grains, a.windows, a.first_s, a.step_s, a.curve) LIMIT 1";
 
 static const char take_sql[] =
-    "INSERT INTO gather SELECT " KEY ", " DATA ", made_utc, wall_s FROM src.run JOIN src.ground g "
+    "INSERT INTO gather SELECT " KEY ", " DATA ", made_utc, wall_s FROM src.run JOIN src_ground g "
     "ON g.id = run.ground WHERE true ON CONFLICT DO UPDATE SET made_utc = excluded.made_utc, "
     "wall_s = excluded.wall_s WHERE (excluded.made_utc, excluded.wall_s) < (made_utc, wall_s)";
 
@@ -35,12 +35,11 @@ static const char head_sql[] = "INSERT INTO main.scene SELECT * FROM src.scene;"
                                "INSERT INTO main.phase SELECT * FROM src.phase ORDER BY 1, 2;";
 
 static const char write_sql[] =
-    "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude) SELECT DISTINCT "
-    "friction, rolling, density_kgpm3, effect, magnitude FROM gather ORDER BY 1, 2, 3, 4, 5;"
+    "INSERT INTO ground (" DUG ") SELECT DISTINCT " DUG " FROM gather ORDER BY 1, 2, 3, 4, 5, 6, 7;"
     "INSERT INTO run (ground, trajectory, packing, " DATA ", made_utc, wall_s) SELECT g.id, "
     "trajectory, packing, " DATA ", made_utc, wall_s FROM gather a JOIN ground g ON (g.friction, "
-    "g.rolling, g.density_kgpm3, g.effect, g.magnitude) = (a.friction, a.rolling, "
-    "a.density_kgpm3, a.effect, a.magnitude) ORDER BY 1, 2, 3;";
+    "g.rolling, g.density_kgpm3, g.effect, g.magnitude, g.depth, g.attack_rad) = (a.friction, "
+    "a.rolling, a.density_kgpm3, a.effect, a.magnitude, a.depth, a.attack_rad) ORDER BY 1, 2, 3;";
 
 static enum dig_status run(struct dig_store *const store, const char *const sql,
                            struct dig_error *const error)
@@ -73,17 +72,22 @@ static enum dig_status check_conflict(const struct dig_store *const store, const
     enum dig_status status = DIG_OK;
     const int       step   = sqlite3_step(s);
     if (step == SQLITE_ROW) {
-        const char *const effect = (const char *)sqlite3_column_text(s, 3);
-        const bool        plain  = effect == NULL || effect[0] == '\0';
-        const int         at     = sqlite3_column_int(s, 4);
-        status                   = dig_error_set(
-                              error, DIG_EINVAL,
-                              "%s: run: packing %lld of friction %g, rolling %g, %g kg/m3%s%s on %s differs from "
-                                                "another input's, expected the same run or another",
-                              input, (long long)sqlite3_column_int64(s, 5), sqlite3_column_double(s, 0),
-                              sqlite3_column_double(s, 1), sqlite3_column_double(s, 2), plain ? "" : " with ",
+        const char *const         effect = (const char *)sqlite3_column_text(s, 3);
+        const bool                plain  = effect == NULL || effect[0] == '\0';
+        const int                 at     = sqlite3_column_int(s, 4);
+        char                      how[DIG_APPROACH_TEXT_SIZE];
+        const struct dig_approach approach = { sqlite3_column_double(s, 6),
+                                               sqlite3_column_double(s, 7) };
+        dig_approach_text(&approach, how);
+        status = dig_error_set(
+            error, DIG_EINVAL,
+            "%s: run: packing %lld of friction %g, rolling %g, %g kg/m3%s%s on %s%s differs from "
+            "another input's, expected the same run or another",
+            input, (long long)sqlite3_column_int64(s, 5), sqlite3_column_double(s, 0),
+            sqlite3_column_double(s, 1), sqlite3_column_double(s, 2), plain ? "" : " with ",
             plain ? "" : effect,
-            at >= 0 && at < (int)store->head.trajectories ? store->head.trajectory[at].name : "?");
+            at >= 0 && at < (int)store->head.trajectories ? store->head.trajectory[at].name : "?",
+            how);
     } else if (step != SQLITE_DONE) {
         status = dig_sql_refuse(store->db, input, error);
     }
@@ -103,12 +107,16 @@ static enum dig_status take(struct dig_store *const store, const char *const inp
         status = run(store, head_sql, error);
     }
     if (status == DIG_OK) {
+        status = dig_schema_view(store->db, input, "src", "src_ground", error);
+    }
+    if (status == DIG_OK) {
         status = check_conflict(store, input, error);
     }
     if (status == DIG_OK) {
         status = run(store, take_sql, error);
     }
-    (void)sqlite3_exec(store->db, "DETACH src", NULL, NULL, NULL);
+    (void)sqlite3_exec(store->db, "DROP VIEW IF EXISTS temp.src_ground; DETACH src", NULL, NULL,
+                       NULL);
     return status;
 }
 

@@ -32,6 +32,14 @@ static enum dig_status check_origin(const struct dig_run_origin *const o,
         return dig_error_set(error, DIG_EINVAL, "run: magnitude %g of effect \"%s\", expected %s",
                              o->magnitude, o->effect, plain ? "0" : "a finite one");
     }
+    const struct dig_approach told = dig_approach_told(&o->approach);
+    if (!(told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST) ||
+        !(fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "run: depth %g, attack %g rad, expected %g to %g and at most %g",
+                             told.depth, told.attack_rad, DIG_APPROACH_DEPTH_LEAST,
+                             DIG_APPROACH_DEPTH_MOST, DIG_APPROACH_ATTACK_MOST_rad);
+    }
     return DIG_OK;
 }
 
@@ -94,8 +102,8 @@ static enum dig_status make_ground(struct dig_store *const            store,
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
         prepare(store,
-                "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude) "
-                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO NOTHING",
+                "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
+                "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO NOTHING",
                 &s, error);
     if (status == DIG_OK) {
         dig_ground_bind(s, origin);
@@ -136,13 +144,15 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     const int step = sqlite3_step(s);
     if (step == SQLITE_CONSTRAINT &&
         sqlite3_extended_errcode(store->db) == SQLITE_CONSTRAINT_UNIQUE) {
+        char how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&origin->approach, how);
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: run: packing %zu of friction %g, rolling %g, %g kg/m3%s%s on "
-                               "%s is there already, expected a new one",
+                               "%s%s is there already, expected a new one",
                                store->path, origin->packing, origin->gravel.value[0],
                                origin->gravel.value[1], origin->gravel.value[2],
                                origin->effect[0] != '\0' ? " with " : "", origin->effect,
-                               store->head.trajectory[origin->trajectory].name);
+                               store->head.trajectory[origin->trajectory].name, how);
     } else if (step != SQLITE_DONE) {
         status = refuse(store, error);
     }
@@ -218,6 +228,19 @@ static enum dig_status put_in_transaction(struct dig_store *const            sto
     return status == DIG_OK ? dig_sql_run(store->db, store->path, "COMMIT", error) : status;
 }
 
+// The first run added to a table from before digs had an approach makes it one of today's.
+static enum dig_status bring_up(struct dig_store *const store, struct dig_error *const error)
+{
+    if (store->head.version == DIG_TABLE_VERSION) {
+        return DIG_OK;
+    }
+    const enum dig_status status = dig_schema_upgrade(store->db, store->path, error);
+    if (status == DIG_OK) {
+        store->head.version = DIG_TABLE_VERSION;
+    }
+    return status;
+}
+
 enum dig_status dig_store_put(struct dig_store *const            store,
                               const struct dig_run_origin *const origin,
                               const struct dig_recording *const  recording,
@@ -244,7 +267,10 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     if (bytes == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
     }
-    status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+    status = bring_up(store, error);
+    if (status == DIG_OK) {
+        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+    }
     if (status == DIG_OK) {
         status = put_in_transaction(store, origin, recording, step_s, bytes, error);
         if (status != DIG_OK) {

@@ -38,6 +38,7 @@ static enum dig_status find_missing(struct dig_store *const      store,
     struct dig_run_origin key = {
         .gravel    = job->gravel,
         .magnitude = job->magnitude,
+        .approach  = job->approach,
         .packing   = job->packing,
     };
     memcpy(key.effect, job->effect, sizeof key.effect);
@@ -60,6 +61,7 @@ static struct dig_job job_of(const struct dig_plan_point *const point, const siz
     struct dig_job job = {
         .gravel    = point->gravel,
         .magnitude = point->magnitude,
+        .approach  = point->approach,
         .packing   = packing,
         .seed      = dig_bed_seed(&point->gravel, packing),
     };

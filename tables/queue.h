@@ -14,12 +14,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// What is dug in: a gravel, perhaps with an effect, in `packings` beds.
+/// What is dug in and how: a gravel, perhaps with an effect, in `packings` beds.
 struct dig_plan_point {
-    struct dig_gravel gravel;
-    char              effect[DIG_NAME_SIZE]; // "": none
-    double            magnitude;             // 0 without an effect
-    size_t            packings;
+    struct dig_gravel   gravel;
+    char                effect[DIG_NAME_SIZE]; // "": none
+    double              magnitude;             // 0 without an effect
+    struct dig_approach approach;              // of every trajectory
+    size_t              packings;
 };
 
 /// Points, all different, each bed of which is dug by these trajectories (indices in the scene).
@@ -35,13 +36,14 @@ struct dig_plan {
 
 /// One bed and the digs it still lacks.
 struct dig_job {
-    struct dig_gravel gravel;
-    char              effect[DIG_NAME_SIZE];
-    double            magnitude;
-    size_t            packing;
-    uint64_t          seed;
-    size_t            digs;
-    size_t            trajectory[DIG_TRAJECTORY_MAX]; // [digs]
+    struct dig_gravel   gravel;
+    char                effect[DIG_NAME_SIZE];
+    double              magnitude;
+    struct dig_approach approach;
+    size_t              packing;
+    uint64_t            seed;
+    size_t              digs;
+    size_t              trajectory[DIG_TRAJECTORY_MAX]; // [digs]
 };
 
 struct dig_queue {
@@ -53,8 +55,8 @@ struct dig_queue {
 
 /// The seed of a gravel's k-th bed: the first 63 bits of the SHA-256 of
 /// "bed friction=%.17g rolling=%.17g density_kgpm3=%.17g packing=%zu", so that the same gravel and
-/// packing has the same bed in every table of the scene, and a bed with an effect is poured from
-/// the same seed as the plain one.
+/// packing has the same bed in every table of the scene, and a bed with an effect, or for another
+/// approach, is poured from the same seed as the plain one.
 uint64_t dig_bed_seed(const struct dig_gravel *gravel, size_t packing);
 
 /// Free with dig_queue_finish(). Writes on success only.

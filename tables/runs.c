@@ -27,10 +27,14 @@ void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const o
     }
     (void)sqlite3_bind_text(s, DIG_AXES + 1, origin->effect, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, DIG_AXES + 2, origin->magnitude);
+    const struct dig_approach told = dig_approach_told(&origin->approach);
+    (void)sqlite3_bind_double(s, DIG_AXES + 3, told.depth);
+    (void)sqlite3_bind_double(s, DIG_AXES + 4, told.attack_rad);
 }
 
 #define SAME_GROUND                                                                                \
-    "friction = ?1 AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5"
+    "friction = ?1 AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "    \
+    "AND depth = ?6 AND attack_rad = ?7"
 
 enum dig_status dig_ground_find(const struct dig_store *const      store,
                                 const struct dig_run_origin *const origin, sqlite3_int64 *const id,
@@ -58,14 +62,14 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     enum dig_status status =
         prepare(store,
                 "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE " SAME_GROUND
-                " AND packing = ?6 AND trajectory = ?7",
+                " AND packing = ?8 AND trajectory = ?9",
                 &s, error);
     if (status != DIG_OK) {
         return status;
     }
     dig_ground_bind(s, origin);
-    (void)sqlite3_bind_int64(s, 6, (sqlite3_int64)origin->packing);
-    (void)sqlite3_bind_int64(s, 7, (sqlite3_int64)origin->trajectory);
+    (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)origin->packing);
+    (void)sqlite3_bind_int64(s, 9, (sqlite3_int64)origin->trajectory);
     const int step = sqlite3_step(s);
     if (step == SQLITE_ROW || step == SQLITE_DONE) {
         *there = step == SQLITE_ROW;
@@ -86,7 +90,7 @@ static void column_text(sqlite3_stmt *const s, const int column, const size_t si
 
 #define RUN_COLUMNS                                                                                \
     "friction, rolling, density_kgpm3, packing, trajectory, seed, engine, version, grains, "       \
-    "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude"
+    "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude, depth, attack_rad"
 
 // The row a statement over RUN_COLUMNS stands on; *value is malloc'ed and is run->value.
 static enum dig_status read_run(const struct dig_store *const store, sqlite3_stmt *const s,
@@ -110,6 +114,8 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
     column_text(s, 10, sizeof o->made_utc, o->made_utc);
     column_text(s, 15, sizeof o->effect, o->effect);
     o->magnitude = sqlite3_column_double(s, 16);
+    o->approach =
+        (struct dig_approach){ sqlite3_column_double(s, 17), sqlite3_column_double(s, 18) };
     run->first_s = sqlite3_column_double(s, 12);
     run->step_s  = sqlite3_column_double(s, 13);
 
@@ -170,7 +176,8 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
     enum dig_status status =
         prepare(store,
                 "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground ORDER BY "
-                "friction, rolling, density_kgpm3, effect, magnitude, trajectory, packing",
+                "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
+                "trajectory, packing",
                 &s, error);
     if (status == DIG_OK) {
         status = walk(store, s, visitor, error);

@@ -11,8 +11,23 @@
 #include <sqlite3.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
-#define DIG_TABLE_VERSION        2          // PRAGMA user_version
+#define DIG_TABLE_VERSION        3          // PRAGMA user_version
+#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack: every dig is plain
 #define DIG_CANONICAL_SIZE       16384      // eight trajectories of eight phases stay well below
+
+/// What was dug in, and how: the key of a dig but for its trajectory and packing.
+#define DIG_GROUND_SQL(name)                                                                       \
+    "CREATE TABLE " name " ("                                                                      \
+    "  id INTEGER PRIMARY KEY,"                                                                    \
+    "  friction REAL NOT NULL,"                                                                    \
+    "  rolling REAL NOT NULL,"                                                                     \
+    "  density_kgpm3 REAL NOT NULL,"                                                               \
+    "  effect TEXT NOT NULL,"                                                                      \
+    "  magnitude REAL NOT NULL CHECK (effect <> '' OR magnitude = 0),"                             \
+    "  depth REAL NOT NULL CHECK (depth > 0),"                                                     \
+    "  attack_rad REAL NOT NULL,"                                                                  \
+    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad)"            \
+    ") STRICT;"
 
 /// What a table says of itself, read once at opening.
 struct dig_table_head {
@@ -21,6 +36,8 @@ struct dig_table_head {
     double                tooth_m, bucket_width_m, young_Pa, smooth_half_s;
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX]; // all of the scene, in its order
+    double                depth_m[DIG_TRAJECTORY_MAX];    // dig_approach_depth_m() of each
+    int                   version;                        // of the file
 };
 
 /// What a scene's table says of itself.
@@ -46,10 +63,22 @@ DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
                                                  const struct dig_scene *scene,
                                                  struct dig_error       *error);
 
-/// Refuses what is no table (DIG_EINVAL), a version other than ours (DIG_ESCHEMA, both named), and
-/// a damaged file; then reads the head. Writes *head on success only. Reads the whole file.
+/// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
+/// damaged file; then reads the head. Writes *head on success only. Reads the whole file. From then
+/// on the connection reads `ground` with depth and attack_rad whatever the file's version: where
+/// the file has none, in a temporary view.
 DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
                                                 struct dig_table_head *head,
                                                 struct dig_error      *error);
+
+/// Makes the temporary view that shows database.ground with depth and attack_rad, whatever the
+/// version of its file: a dig of DIG_TABLE_VERSION_PLAIN is plain.
+DIG_MUST_CHECK enum dig_status dig_schema_view(sqlite3 *db, const char *path, const char *database,
+                                               const char *view, struct dig_error *error);
+
+/// Gives a table of DIG_TABLE_VERSION_PLAIN the columns of ours, every dig plain. In no
+/// transaction; all or nothing.
+DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path,
+                                                  struct dig_error *error);
 
 #endif // DIG_TABLES_SCHEMA_H

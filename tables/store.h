@@ -7,6 +7,7 @@
 #ifndef DIG_TABLES_STORE_H
 #define DIG_TABLES_STORE_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
 #include "core/recording.h"
@@ -19,19 +20,20 @@ struct dig_store;
 
 #define DIG_STORE_TEXT_SIZE 40
 
-/// Where a run came from. Gravel, effect, magnitude, packing and trajectory are its key.
+/// Where a run came from. Gravel, effect, magnitude, approach, packing and trajectory are its key.
 struct dig_run_origin {
-    struct dig_gravel gravel;
-    char              effect[DIG_NAME_SIZE]; // put into the scene at this magnitude; "": none
-    double            magnitude;             // 0 without an effect
-    size_t            packing;               // 0 … ; which of the gravel's beds
-    size_t            trajectory;            // index in the scene
-    uint64_t          seed;                  // below 2^63
-    char              engine[DIG_STORE_TEXT_SIZE];
-    char              version[DIG_STORE_TEXT_SIZE];
-    size_t            grains;
-    double            wall_s;
-    char              made_utc[DIG_STORE_TEXT_SIZE]; // ISO 8601
+    struct dig_gravel   gravel;
+    char                effect[DIG_NAME_SIZE]; // put into the scene at this magnitude; "": none
+    double              magnitude;             // 0 without an effect
+    struct dig_approach approach;              // of the trajectory
+    size_t              packing;               // 0 … ; which of the gravel's beds
+    size_t              trajectory;            // index in the scene
+    uint64_t            seed;                  // below 2^63
+    char                engine[DIG_STORE_TEXT_SIZE];
+    char                version[DIG_STORE_TEXT_SIZE];
+    size_t              grains;
+    double              wall_s;
+    char                made_utc[DIG_STORE_TEXT_SIZE]; // ISO 8601
 };
 
 /// A run as stored: DIG_CHANNELS arrays of `windows` samples, the i-th at first_s + i step_s. The
@@ -44,8 +46,8 @@ struct dig_run {
 };
 
 /// Opens path for writing, and makes it first where there is none. DIG_EINVAL when it holds another
-/// scene (both named) or is no table; DIG_ESCHEMA when its version is another; DIG_EIO when another
-/// process writes to it or the disk refuses. Nothing is left behind when a new table fails.
+/// scene (both named) or is no table; DIG_ESCHEMA when its version is not known; DIG_EIO when
+/// another process writes to it or the disk refuses. Nothing is left behind when a new table fails.
 DIG_MUST_CHECK enum dig_status dig_store_create(const char *path, const struct dig_scene *scene,
                                                 struct dig_store **store, struct dig_error *error);
 
@@ -64,8 +66,10 @@ void dig_store_forget(struct dig_store *store);
 const struct dig_trajectory *dig_store_trajectories(const struct dig_store *store, size_t *count);
 
 /// Stores one dig and refreshes its entry, both or neither. The recording's samples must be evenly
-/// spaced (within 1 % of the spacing). DIG_EINVAL for a recording that is not finite, not even, or
-/// for a run that is there already; for an effect core/effect.h does not name. A carried mass that
+/// spaced (within 1 % of the spacing). A table from before digs had an approach is brought to
+/// today's format first. DIG_EINVAL for a recording that is not finite, not even, or
+/// for a run that is there already; for an effect core/effect.h does not name; for an approach out
+/// of range. A carried mass that
 /// is missing in one row is stored as not known in any.
 DIG_MUST_CHECK enum dig_status dig_store_put(struct dig_store            *store,
                                              const struct dig_run_origin *origin,
@@ -77,7 +81,8 @@ DIG_MUST_CHECK enum dig_status dig_store_has(struct dig_store            *store,
                                              const struct dig_run_origin *origin, bool *there,
                                              struct dig_error *error);
 
-/// Called for each run, ordered by gravel, effect (none first), magnitude, trajectory, packing.
+/// Called for each run, ordered by gravel, effect (none first), magnitude, depth, attack,
+/// trajectory, packing.
 /// Anything but DIG_OK ends the walk and is returned.
 struct dig_run_visitor {
     enum dig_status (*visit)(void *context, const struct dig_run *run, struct dig_error *error);
@@ -93,8 +98,9 @@ struct dig_store_report {
     size_t entries; // (gravel, effect, magnitude) x trajectory
     size_t runs;
     size_t builds;     // engines and versions of them that made the runs
-    size_t points;     // gravels without an effect
-    size_t effects;    // gravels with one
+    size_t points;     // gravels dug plainly: without an effect, as the trajectory stands
+    size_t effects;    // gravels with an effect
+    size_t approaches; // gravels without one, at another depth or attack
     size_t holes;      // grid points between the axes' values that hold no gravel
     size_t incomplete; // entries with fewer packings than most others of their kind have
 };

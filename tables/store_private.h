@@ -36,7 +36,8 @@ DIG_MUST_CHECK enum dig_status dig_sql_load_effects(sqlite3 *db, const char *pat
                                                     struct dig_effect_set      **set,
                                                     struct dig_error            *error);
 
-/// Binds the parameters 1 … 5 of a statement to friction, rolling, density, effect and magnitude.
+/// Binds the parameters 1 … 7 of a statement to friction, rolling, density, effect, magnitude,
+/// depth and attack.
 void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
 
 /// The key of the ground's row that *origin was dug in; DIG_EIO when there is none.

@@ -2,8 +2,13 @@
 
 #include "files/grid_yaml.h"
 
+#include "core/units.h"
 #include "files/scene_yaml.h"
 #include "tests/scratch.h"
+
+#define AXES "friction: [.3, .5]\nrolling: [0]\ndensity_kgpm3: [2500]\n"
+
+#define POINT "points:\n  - {friction: .3, rolling: 0, density_kgpm3: 2500, packings: 1}\n"
 
 static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 {
@@ -38,6 +43,38 @@ static void points_and_effects_load_as_they_are_written(void **state)
     assert_int_equal(grid.trajectories, 0);
 }
 
+static void depths_and_attacks_load_as_a_cross_or_a_product(void **state)
+{
+    (void)state;
+    struct dig_grid grid;
+    assert_int_equal(dig_grid_read("tests/data/formats/grid_approaches.yaml", &grid, NULL), DIG_OK);
+    static const double cross[][2]   = { { 0.8, 0.0 }, { 1.0, 5.0 }, { 1.2, 0.0 } };
+    static const double product[][2] = {
+        { 0.8, 0.0 }, { 0.8, 5.0 }, { 1.0, 5.0 }, { 1.2, 0.0 }, { 1.2, 5.0 }
+    };
+    assert_int_equal(grid.approaches, 3);
+    for (size_t i = 0; i < 3; i++) {
+        assert_close(grid.approach[i].depth, cross[i][0], 0.0);
+        assert_close(grid.approach[i].attack_rad, cross[i][1] * DIG_RAD_PER_DEG, 1e-15);
+    }
+    assert_int_equal(grid.varied_packings, 1);
+    assert_true(grid.point[0].states);
+    assert_close(grid.point[0].approach.depth, 1.2, 0.0);
+    assert_close(grid.point[0].approach.attack_rad, 5.0 * DIG_RAD_PER_DEG, 1e-15);
+
+    const char *const path =
+        scratch_write("grid.yaml", AXES "packings: 1\ndepth: [.8, 1, 1.2]\nattack_deg: [0, 5]\n"
+                                        "design: product\n" POINT);
+    assert_int_equal(dig_grid_read(path, &grid, NULL), DIG_OK);
+    assert_int_equal(grid.approaches, 5);
+    for (size_t i = 0; i < 5; i++) {
+        assert_close(grid.approach[i].depth, product[i][0], 0.0);
+        assert_close(grid.approach[i].attack_rad, product[i][1] * DIG_RAD_PER_DEG, 1e-15);
+    }
+    assert_false(grid.point[0].states);
+    assert_int_equal(grid.varied_packings, 0);
+}
+
 static void every_grid_that_is_shipped_fits_the_rig(void **state)
 {
     (void)state;
@@ -61,10 +98,6 @@ static void every_grid_that_is_shipped_fits_the_rig(void **state)
     }
     (void)closedir(dir);
 }
-
-#define AXES "friction: [.3, .5]\nrolling: [0]\ndensity_kgpm3: [2500]\n"
-
-#define POINT "points:\n  - {friction: .3, rolling: 0, density_kgpm3: 2500, packings: 1}\n"
 
 static void trajectories_are_found_in_the_scene_or_refused(void **state)
 {
@@ -136,6 +169,20 @@ static void what_is_no_grid_is_refused_with_line_and_key(void **state)
           ":4: effects[0].magnitudes[2]: 1 again, expected another" },
         { POINT "effects:\n  - {name: cohesion, magnitudes: []}\n",
           ":4: effects[0].magnitudes: 0 values, expected 1 to 16" },
+        { AXES "packings: 1\ndepth: [.8, 1.2]\n", ":5: depth: without 1, expected it among" },
+        { AXES "packings: 1\ndepth: [.1, 1]\n", ":5: depth[0]: 0.1, expected 0.2 to 3" },
+        { AXES "packings: 1\nattack_deg: [0, 60]\n", ":5: attack_deg[1]: 60, expected -45 to 45" },
+        { AXES "packings: 1\nattack_deg: [5, 0]\n", ":5: attack_deg[1]: 0 after 5, expected asc" },
+        { AXES "packings: 1\ndepth: [1]\ndesign: star\n", ":6: design: \"star\", expected" },
+        { AXES "packings: 1\nvaried_packings: 2\n", ":5: varied_packings: without depth or" },
+        { AXES "packings: 1\ndepth: [1]\nvaried_packings: 0\n",
+          ":6: varied_packings: 0, expected 1 to 1000" },
+        { POINT "depth: [1, 2]\neffects:\n  - {name: cohesion, magnitudes: [1]}\n",
+          ":3: depth: beside effects, expected either" },
+        { POINT "  - {friction: .3, rolling: .1, density_kgpm3: 900, depth: 7, packings: 1}\n",
+          ":3: points[1].depth: 7, expected 0.2 to 3" },
+        { POINT "  - {friction: .3, rolling: 0, density_kgpm3: 2500, depth: 1, packings: 1}\n",
+          ":3: points[1]: the gravel of points[0], expected another" },
         { AXES "packings: 0\n", ":4: packings: 0, expected 1 to 1000" },
         { AXES "packings: -1\n", ":4: packings: \"-1\", expected a whole number" },
         { AXES, ":1: packings: missing, expected a whole number" },
@@ -161,6 +208,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(points_and_effects_load_as_they_are_written),
+        cmocka_unit_test(depths_and_attacks_load_as_a_cross_or_a_product),
         cmocka_unit_test(every_grid_that_is_shipped_fits_the_rig),
         cmocka_unit_test(trajectories_are_found_in_the_scene_or_refused),
         cmocka_unit_test(what_is_no_grid_is_refused_with_line_and_key),

@@ -185,7 +185,7 @@ static void damage_is_refused_and_named(void **state)
         enum dig_status status;
         const char     *says;
     } bad[] = {
-        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 2" },
+        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 2 or 3" },
         { "PRAGMA application_id = 99", DIG_EINVAL, "not a digsight table (application_id 99" },
         { "UPDATE scene SET hash = replace(hash, substr(hash, 1, 1), 'x')", DIG_EINVAL,
           "scene.hash: " },

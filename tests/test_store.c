@@ -39,7 +39,7 @@ static void a_new_table_says_what_it_is(void **state)
     (void)state;
     dig_store_close(fixture_create("new.sqlite"));
     assert_int_equal(ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
-    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 2);
+    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 3);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
     assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
@@ -180,10 +180,10 @@ static void what_cannot_become_a_table_is_left_as_it_was(void **state)
     assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
 
     dig_store_close(fixture_create("newer.sqlite"));
-    run_sql("newer.sqlite", "PRAGMA user_version = 3");
+    run_sql("newer.sqlite", "PRAGMA user_version = 4");
     assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
                      DIG_ESCHEMA);
-    assert_contains(error.text, "newer.sqlite: user_version: table format 3, expected 2");
+    assert_contains(error.text, "newer.sqlite: user_version: table format 4, expected 2 or 3");
 
     assert_int_equal(
         dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);

@@ -15,10 +15,11 @@ static const char help_text[] =
     "\n"
     "usage:\n"
     "  digtable dig SCENE.yaml --trajectory NAME --friction F --rolling R --density KGPM3\n"
-    "               [--young PA] [--seed 1] [--engine kernel|ode] [--bed BED.csv] [--save-bed "
-    "BED.csv]\n"
-    "               [--vtk DIR] -o CURVE.csv\n"
-    "      one dig; the curve is a force recording\n"
+    "               [--depth F] [--attack-deg A] [--young PA] [--seed 1] [--engine kernel|ode]\n"
+    "               [--bed BED.csv] [--save-bed BED.csv] [--vtk DIR] -o CURVE.csv\n"
+    "      one dig; the curve is a force recording. --depth: factor on how far the tooth goes "
+    "down\n"
+    "      in the first phase; --attack-deg: the bucket turned about its tooth, positive curls\n"
     "  digtable generate SCENE.yaml GRID.yaml -o TABLE.sqlite\n"
     "               [-j N] [--packings N] [--time-limit S] [--shard I/N] [--engine kernel|ode]\n"
     "      every dig of the grid, on all cores; what the table holds already is not computed "
@@ -27,7 +28,8 @@ static const char help_text[] =
     "  digtable list TABLE.sqlite [--json]\n"
     "      the entries and how many packings each has\n"
     "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
-    "               [--trajectory NAME] [--channel My|Fx|Fz|carried] [--csv|--json]\n"
+    "               [--depth F] [--attack-deg A] [--trajectory NAME] [--channel My|Fx|Fz|carried]\n"
+    "               [--csv|--json]\n"
     "      one curve of the table\n"
     "  digtable import CURVES.csv --map MAP.yaml -o TABLE.sqlite\n"
     "      digs that something else measured or computed; the map says which column holds what\n"
@@ -56,13 +58,14 @@ static const char help_text[] =
 
 static const struct dig_command commands[] = {
     { "dig", dig_cli_dig, 1, 1, "SCENE.yaml",
-      " trajectory friction rolling density young seed engine bed save-bed vtk output " },
+      " trajectory friction rolling density depth attack-deg young seed engine bed save-bed vtk "
+      "output " },
     { "generate", dig_cli_generate, 2, 2, "SCENE.yaml GRID.yaml",
       " output jobs packings time-limit shard engine " },
     { "list", dig_cli_list, 1, 1, "TABLE.sqlite", " json " },
     { "check", dig_cli_check, 1, 1, "TABLE.sqlite", " json complete " },
     { "show", dig_cli_show, 1, 2, "TABLE.sqlite",
-      " friction rolling density trajectory channel csv json " },
+      " friction rolling density depth attack-deg trajectory channel csv json " },
     { "import", dig_cli_import, 1, 1, "CURVES.csv", " map output " },
     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
     { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs effects output " },

@@ -54,7 +54,8 @@ static enum dig_status take(void *const context, const struct dig_run *const run
                             struct dig_error *const error)
 {
     struct bench *const b = context;
-    if (run->origin.trajectory != b->trajectory || run->origin.effect[0] != '\0') {
+    if (run->origin.trajectory != b->trajectory || run->origin.effect[0] != '\0' ||
+        !dig_approach_is_plain(&run->origin.approach)) {
         return DIG_OK;
     }
     if (b->runs == RUNS_MAX) {

@@ -31,7 +31,7 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
 {
     struct paper_table *const         table = context;
     const struct dig_curve_set *const set   = table->set;
-    if (run->origin.effect[0] != '\0') {
+    if (run->origin.effect[0] != '\0' || !dig_approach_is_plain(&run->origin.approach)) {
         return DIG_OK;
     }
     struct paper_run *const more = realloc(table->run, (table->runs + 1) * sizeof *more);

@@ -42,7 +42,7 @@ check "generate fills a table" eval 'is $code 0 && grep -q "12 of 12 digs" $work
 digtable check "$work/whole.sqlite" --complete
 check "which is sound and complete" eval 'is $code 0 && grep -q "6 points, 6 entries, 12 runs; 0 holes" $work/out'
 digtable check "$work/whole.sqlite" --json
-check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1}"'
+check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1, \"approaches\": 0}"'
 digtable generate $scene $grid -o "$work/whole.sqlite"
 check "a second time there is nothing to do" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
 
@@ -129,6 +129,32 @@ digtable dig "$work/short.yaml" "${dig[@]}" --seed 3 --engine ode -o "$work/ode.
 check "--engine ode digs the same dig" eval 'is $code 0 && head -1 $work/ode.csv | grep -q "^t_s,pin_x_m"'
 
 # What SQLite's own tool sees, for those who look with it.
+# Depth and attack angle as axes, on their own and on top of a table that had none.
+approaches=tests/data/formats/grid_approaches.yaml # 2 points x 2 packings, 2 x 3 dug otherwise, 1 twice
+digtable dig $scene "${dig[@]}" --seed 3 --depth 1 --attack-deg 0 -o "$work/plain.csv"
+check "depth 1, attack 0 is the dig as the scene has it" cmp "$work/a.csv" "$work/plain.csv"
+digtable dig $scene "${dig[@]}" --seed 3 --depth 1.2 --attack-deg 5 -o "$work/deep.csv"
+check "deeper and turned is another, that starts turned" eval 'is $code 0 && awk -F, "NR == 3 { exit !(\$4 > -10.2 && \$4 < -9.8) }" $work/deep.csv'
+digtable generate $scene $approaches -o "$work/approaches.sqlite" -j 2
+check "generate digs a cross of depths and attacks" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
+digtable check "$work/approaches.sqlite" --complete
+check "which is sound and complete" eval 'is $code 0 && grep -q "2 points, 9 entries, 12 runs; 0 holes.*; 7 points at another depth or attack" $work/out'
+digtable list "$work/approaches.sqlite"
+check "list tells them" eval 'is $code 0 && grep -qE "^ +5 .* 2  depth 1.2, attack 5 deg$" $work/out'
+digtable list "$work/approaches.sqlite" --json
+check "list --json too" grep -q '"entry": 5, .*"depth": 1.2, "attack_deg": 5, "packings": {"scrape": 2}' "$work/out"
+digtable show "$work/approaches.sqlite" --friction .3 --rolling .2 --density 2500 --depth 1.2 --attack-deg 5
+check "show finds one" grep -q "^entry 5: .*scrape, depth 1.2, attack 5 deg, 2 packings" "$work/out"
+digtable export "$work/approaches.sqlite"
+check "export has their curves behind the plain ones" eval 'is $code 0 && is $(wc -l <$work/out) $((1 + 9 * 256)) && is $(grep -c ",1.2,5$" $work/out) 256'
+for i in 3 1 2; do
+    digtable generate $scene $approaches -o "$work/approach$i.sqlite" --shard $i/3 -j 1
+done
+digtable merge "$work/approaches3.sqlite" "$work"/approach[123].sqlite
+digtable export "$work/approaches.sqlite" --runs -o "$work/approaches.csv"
+digtable export "$work/approaches3.sqlite" --runs
+check "shards merged hold the same runs" cmp "$work/out" "$work/approaches.csv"
+
 check "sqlite3 finds the table intact" is "$(sqlite3 "$work/whole.sqlite" 'PRAGMA integrity_check')" ok
 check "and every run's origin" is "$(sqlite3 "$work/whole.sqlite" "SELECT count(*) FROM run WHERE engine = 'kernel' AND version GLOB '[0-9]*.[0-9]*.[0-9]*+[0-9a-f]*' AND grains > 0 AND wall_s > 0 AND made_utc LIKE '20__-__-__T__:__:__Z'")" 12
 check "no file is left beside a table" eval '! ls $work | grep -E "journal$|wal$|\.part$"'

@@ -94,6 +94,17 @@ refused "a grid's trajectory the scene lacks" 'g.yaml:5: trajectories\[0\]: "wal
 changed '/packings/d' $grid g.yaml
 refused "a grid without packings" 'g.yaml:1: packings: missing, expected a whole number' generate $scene "$work/g.yaml" -o "$out"
 
+changed 's/^packings: 2/packings: 2\ndepth: [0.8, 1.2]/' $grid g.yaml
+refused "depths without the plain one" 'g.yaml:5: depth: without 1, expected it among the values' generate $scene "$work/g.yaml" -o "$out"
+changed 's/vz_mps: -0.1/vz_mps: -0.3/' $scene s.yaml
+changed 's/^packings: 2/packings: 2\ndepth: [1, 2.5]/' $grid g.yaml
+refused "a depth that leaves the box" 'grid, depth 2.5, attack 0 deg: trajectory scrape: at .* s the bucket is .* m outside box_m.z, expected a path' generate "$work/s.yaml" "$work/g.yaml" -o "$out"
+changed 's/start_pin_m: .*/start_pin_m: [0.3, 0.525]/' $scene low.yaml
+changed 's/^packings: 2/packings: 2\nattack_deg: [0, 45]/' $grid g.yaml
+refused "an attack that starts in the bed" 'grid, depth 1, attack 45 deg: trajectory scrape.*: the bucket starts .* m in the ground, expected it clear' generate "$work/low.yaml" "$work/g.yaml" -o "$out"
+refused "a dig that leaves the box" 'trajectory scrape: at .* outside box_m.z' dig "$work/s.yaml" "${dig[@]}" --depth 2.5 -o "$out"
+refused "a depth out of range" '[-]-depth 9: expected a factor, 0.2 to 3' dig $scene "${dig[@]}" --depth 9 -o "$out"
+
 # Beds.
 printf 'x_m,y_m,z_m\n0,0,0\n' >"$work/bed.csv"
 refused "a bed without radii" 'bed.csv:1: column radius_m: missing, expected' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"

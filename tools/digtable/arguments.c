@@ -1,5 +1,7 @@
 #include "tools/digtable/arguments.h"
 
+#include "core/units.h"
+
 #include <getopt.h>
 #include <math.h>
 #include <stdarg.h>
@@ -15,6 +17,8 @@ enum option_id {
     OPTION_FRICTION,
     OPTION_ROLLING,
     OPTION_DENSITY,
+    OPTION_DEPTH,
+    OPTION_ATTACK,
     OPTION_YOUNG,
     OPTION_SEED,
     OPTION_ENGINE,
@@ -38,6 +42,8 @@ static const struct option long_options[] = {
     { "friction", required_argument, NULL, OPTION_FRICTION },
     { "rolling", required_argument, NULL, OPTION_ROLLING },
     { "density", required_argument, NULL, OPTION_DENSITY },
+    { "depth", required_argument, NULL, OPTION_DEPTH },
+    { "attack-deg", required_argument, NULL, OPTION_ATTACK },
     { "young", required_argument, NULL, OPTION_YOUNG },
     { "seed", required_argument, NULL, OPTION_SEED },
     { "engine", required_argument, NULL, OPTION_ENGINE },
@@ -165,6 +171,13 @@ static const char *take_option(const int option, const char *const value,
     case OPTION_DENSITY:
         ok = number(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3]);
         return ok ? NULL : "kg/m3, 100 to 20000";
+    case OPTION_DEPTH:
+        ok = number(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, &a->approach.depth);
+        return ok ? NULL : "a factor, 0.2 to 3";
+    case OPTION_ATTACK:
+        ok = number(value, -45.0, 45.0, &a->approach.attack_rad);
+        a->approach.attack_rad *= DIG_RAD_PER_DEG;
+        return ok ? NULL : "degrees, -45 to 45";
     case OPTION_YOUNG:
         ok = number(value, 1.0, 1e12, &a->young_Pa);
         return ok ? NULL : "Pa, 1 to 1e12";
@@ -219,6 +232,7 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
 {
     *a = (struct dig_arguments){
         .gravel       = { (double)NAN, (double)NAN, (double)NAN },
+        .approach     = dig_approach_plain(),
         .young_Pa     = (double)NAN,
         .seed         = 1,
         .workers      = all_cores(),

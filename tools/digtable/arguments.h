@@ -3,6 +3,7 @@
 #ifndef DIG_TOOLS_DIGTABLE_ARGUMENTS_H
 #define DIG_TOOLS_DIGTABLE_ARGUMENTS_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
 
@@ -15,17 +16,18 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {
-    const char      *positional[DIG_POSITIONALS_MAX];
-    int              positionals;
-    const char      *output, *trajectory, *bed, *save_bed, *vtk, *map;
-    double           gravel[DIG_AXES];        // NaN: not given
-    double           young_Pa;                // NaN: the scene's
-    unsigned long    seed, workers, packings; // 0 packings: the grid's
-    unsigned long    shard, shards;           // from 0; 0 shards: all
-    double           time_limit_s;
-    enum dig_channel channel;
-    bool             ode; // the engine; false: the kernel
-    bool             csv, json, runs, effects, complete;
+    const char         *positional[DIG_POSITIONALS_MAX];
+    int                 positionals;
+    const char         *output, *trajectory, *bed, *save_bed, *vtk, *map;
+    double              gravel[DIG_AXES];        // NaN: not given
+    struct dig_approach approach;                // plain: not given
+    double              young_Pa;                // NaN: the scene's
+    unsigned long       seed, workers, packings; // 0 packings: the grid's
+    unsigned long       shard, shards;           // from 0; 0 shards: all
+    double              time_limit_s;
+    enum dig_channel    channel;
+    bool                ode; // the engine; false: the kernel
+    bool                csv, json, runs, effects, complete;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };

@@ -5,6 +5,7 @@
 #include "files/scene_yaml.h"
 #include "offline_dem/dig.h"
 #include "offline_dem/engine_ode.h"
+#include "offline_dem/refuse.h"
 #include "offline_dem/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
@@ -63,10 +64,10 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
     return status;
 }
 
-static enum dig_status dig_and_write(const struct dig_arguments *const a,
-                                     const struct dig_scene *const     scene,
-                                     const struct dig_gravel *const    gravel,
-                                     const struct dig_bed *const bed, struct dig_error *const error)
+static enum dig_status
+dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const scene,
+              const struct dig_gravel *const gravel, const struct dig_bed *const bed,
+              const struct dig_trajectory *const trajectory, struct dig_error *const error)
 {
     struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "dig", a->stop };
     const struct dig_progress progress  = { watch_dig, &watch };
@@ -76,8 +77,8 @@ static enum dig_status dig_and_write(const struct dig_arguments *const a,
         status = dig_cli_bed_write(a->save_bed, bed, error);
     }
     if (status == DIG_OK) {
-        status = engine_of(a).dig(scene, gravel, bed, dig_scene_find(scene, a->trajectory), a->vtk,
-                                  &progress, &recording, error);
+        status =
+            engine_of(a).dig(scene, gravel, bed, trajectory, a->vtk, &progress, &recording, error);
     }
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);
@@ -89,6 +90,23 @@ static enum dig_status dig_and_write(const struct dig_arguments *const a,
         dig_progress_end(&watch.line, true);
     }
     dig_recording_finish(&recording);
+    return status;
+}
+
+// The trajectory asked for, dug as asked for; refused before the minutes of pouring.
+static enum dig_status approach(const struct dig_scene *const     scene,
+                                const struct dig_arguments *const a,
+                                struct dig_trajectory *const made, struct dig_error *const error)
+{
+    struct dig_trajectory dug;
+    enum dig_status       status =
+        dig_approach_make(scene, dig_scene_find(scene, a->trajectory), &a->approach, &dug, error);
+    if (status == DIG_OK && !dig_approach_is_plain(&a->approach)) {
+        status = dig_refuse_path(scene, &dug, error);
+    }
+    if (status == DIG_OK) {
+        *made = dug;
+    }
     return status;
 }
 
@@ -125,6 +143,11 @@ int dig_cli_dig(const struct dig_arguments *const a)
     if (!isnan(a->young_Pa)) {
         scene.material.young_Pa = a->young_Pa;
     }
+    struct dig_trajectory trajectory;
+    status = approach(&scene, a, &trajectory, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
 
     if (a->save_bed != NULL && dig_cli_bed_fits_file(&scene, &error) != DIG_OK) {
         return dig_cli_bad_input(DIG_EINVAL, &error);
@@ -142,7 +165,7 @@ int dig_cli_dig(const struct dig_arguments *const a)
         return a->bed != NULL ? dig_cli_bad_input(status, &error)
                               : dig_cli_work_failed(status, &error);
     }
-    status = dig_and_write(a, &scene, &gravel, &bed, &error);
+    status = dig_and_write(a, &scene, &gravel, &bed, &trajectory, &error);
     dig_bed_finish(&bed);
     return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
 }

@@ -1,5 +1,7 @@
 #include "tools/digtable/plan.h"
 
+#include "offline_dem/refuse.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +24,21 @@ static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *c
     return equal == DIG_AXES;
 }
 
+// A single point among n points: in place of the same, or behind them. Returns how many there are.
+static size_t put(const struct dig_grid_point *const one, const size_t n,
+                  struct dig_plan_point point[const])
+{
+    size_t at = 0;
+    while (at < n && !(is_same(&point[at].gravel, &one->gravel) &&
+                       dig_approach_is_same(&point[at].approach, &one->approach))) {
+        at++;
+    }
+    point[at] = (struct dig_plan_point){ .gravel   = one->gravel,
+                                         .approach = one->approach,
+                                         .packings = one->packings };
+    return at == n ? n + 1 : n;
+}
+
 // The plain points: the axes' product, then what stands beside it.
 static size_t fill_plain(const struct dig_grid *const grid, const size_t product,
                          struct dig_plan_point point[const])
@@ -32,13 +49,33 @@ static size_t fill_plain(const struct dig_grid *const grid, const size_t product
             (struct dig_plan_point){ .gravel = gravel_at(grid, n), .packings = grid->packings };
     }
     for (size_t i = 0; i < grid->points; i++) {
-        size_t at = 0;
-        while (at < n && !is_same(&point[at].gravel, &grid->point[i].gravel)) {
-            at++;
+        if (!grid->point[i].states) {
+            n = put(&grid->point[i], n, point);
         }
-        point[at] = (struct dig_plan_point){ .gravel   = grid->point[i].gravel,
-                                             .packings = grid->point[i].packings };
-        n += at == n ? 1 : 0;
+    }
+    return n;
+}
+
+// Behind the plain points the same in every approach, then the single digs that state theirs: a
+// sweep cut short has the plain ones first.
+static size_t fill_approached(const struct dig_grid *const grid, const size_t plain,
+                              struct dig_plan_point point[const])
+{
+    size_t n = plain;
+    for (size_t i = 0; i < plain; i++) {
+        for (size_t k = 0; k < grid->approaches; k++) {
+            point[n]          = point[i];
+            point[n].approach = grid->approach[k];
+            if (grid->varied_packings > 0) {
+                point[n].packings = grid->varied_packings;
+            }
+            n++;
+        }
+    }
+    for (size_t i = 0; i < grid->points; i++) {
+        if (grid->point[i].states) {
+            n = put(&grid->point[i], n, point);
+        }
     }
     return n;
 }
@@ -82,11 +119,13 @@ struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const 
     for (size_t e = 0; e < grid->effects; e++) {
         times += grid->effect[e].magnitudes;
     }
-    struct dig_plan_point *point = calloc(product + grid->points, sizeof *point);
+    struct dig_plan_point *point =
+        calloc((product + grid->points) * (1 + grid->approaches), sizeof *point);
     if (point == NULL) {
         return NULL;
     }
     size_t n = fill_plain(grid, product, point);
+    n        = fill_approached(grid, n, point);
     if (grid->effects > 0) {
         struct dig_plan_point *const varied = calloc(n * times + 1, sizeof *varied);
         n = varied != NULL ? fill_varied(grid, n, point, varied) : 0;
@@ -100,6 +139,28 @@ struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const 
     return point;
 }
 
+// Every trajectory of the plan, dug so.
+static enum dig_status check_approach(const struct dig_plan *const       plan,
+                                      const struct dig_plan_point *const point,
+                                      const struct dig_scene *const      scene,
+                                      struct dig_error *const            error)
+{
+    enum dig_status status = DIG_OK;
+    for (size_t i = 0; status == DIG_OK && i < plan->trajectories; i++) {
+        struct dig_trajectory dug;
+        struct dig_error      why = { "" };
+        status = dig_approach_make(scene, &scene->trajectory[plan->trajectory[i]], &point->approach,
+                                   &dug, &why);
+        status = status == DIG_OK ? dig_refuse_path(scene, &dug, &why) : status;
+        if (status != DIG_OK) {
+            char how[DIG_APPROACH_TEXT_SIZE];
+            dig_approach_text(&point->approach, how);
+            return dig_error_set(error, status, "grid%s: %.300s", how, why.text);
+        }
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_plan_check(const struct dig_plan *const   plan,
                                const struct dig_scene *const  scene,
                                const struct dig_engine *const engine, struct dig_error *const error)
@@ -107,6 +168,12 @@ enum dig_status dig_plan_check(const struct dig_plan *const   plan,
     for (size_t i = 0; i < plan->points; i++) {
         const struct dig_plan_point *const p      = &plan->point[i];
         const int                          effect = dig_effect_find(p->effect);
+        if (!dig_approach_is_plain(&p->approach)) {
+            const enum dig_status status = check_approach(plan, p, scene, error);
+            if (status != DIG_OK) {
+                return status;
+            }
+        }
         if (p->effect[0] == '\0') {
             continue;
         }

@@ -7,12 +7,13 @@
 #include "offline_dem/sweep.h"
 #include "tables/queue.h"
 
-/// The points of a grid, free() them: every gravel of the axes and every single point, plain or
-/// with each effect at each magnitude. packings overrides the grid's numbers unless it is 0. NULL
-/// without memory.
+/// The points of a grid, free() them: every gravel of the axes and every single point, plain and in
+/// every approach, or with each effect at each magnitude. packings overrides the grid's numbers
+/// unless it is 0. NULL without memory.
 struct dig_plan_point *dig_plan_points(const struct dig_grid *grid, size_t packings, size_t *count);
 
-/// Refuses a point whose effect the engine cannot put into the scene at that magnitude.
+/// Refuses a point whose effect the engine cannot put into the scene at that magnitude, and one
+/// whose approach takes a trajectory of the plan out of the box or starts it in the ground.
 DIG_MUST_CHECK enum dig_status dig_plan_check(const struct dig_plan   *plan,
                                               const struct dig_scene  *scene,
                                               const struct dig_engine *engine,

@@ -2,6 +2,7 @@
 
 #include "files/whole.h"
 #include "tables/export.h"
+#include "tables/listed.h"
 #include "tables/load.h"
 #include "tables/load_effects.h"
 #include "tables/store.h"
@@ -63,10 +64,11 @@ int dig_cli_check(const struct dig_arguments *const a)
         return dig_cli_bad_input(status, &error);
     }
     if (a->json) {
-        (void)printf("{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
-                     "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu}\n",
-                     report.points, report.entries, report.runs, report.holes, report.incomplete,
-                     report.effects, report.builds);
+        (void)printf(
+            "{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
+            "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu, \"approaches\": %zu}\n",
+            report.points, report.entries, report.runs, report.holes, report.incomplete,
+            report.effects, report.builds, report.approaches);
     } else {
         (void)printf("%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
                      "entries with fewer packings",
@@ -75,24 +77,29 @@ int dig_cli_check(const struct dig_arguments *const a)
         if (report.effects > 0) {
             (void)printf("; %zu points with an effect", report.effects);
         }
+        if (report.approaches > 0) {
+            (void)printf("; %zu points at another depth or attack", report.approaches);
+        }
         (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
     }
     return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
 }
 
-// The entry asked for, by number or by gravel; set->entries when there is none.
+// The entry asked for, by number or by gravel and approach; their number when there is none.
 static size_t find_entry(const struct dig_arguments *const a, const struct dig_curve_set *const set)
 {
+    const size_t entries = dig_listed_count(set);
     if (a->positionals == 2) {
         unsigned long number = 0;
-        return dig_cli_count(a->positional[1], 0, set->entries - 1, &number) ? number
-                                                                             : set->entries;
+        return dig_cli_count(a->positional[1], 0, entries - 1, &number) ? number : entries;
     }
     size_t e = 0;
-    for (; e < set->entries; e++) {
-        bool same = true;
+    for (; e < entries; e++) {
+        const struct dig_listed one  = dig_listed_at(set, e, 0);
+        bool                    same = fabs(one.approach.depth - a->approach.depth) <= 1e-9 &&
+                    fabs(one.approach.attack_rad - a->approach.attack_rad) <= 1e-9;
         for (int i = 0; i < DIG_AXES; i++) {
-            same = same && fabs(set->gravel[e].value[i] - a->gravel[i]) <= 1e-9 * a->gravel[i];
+            same = same && fabs(one.gravel.value[i] - a->gravel[i]) <= 1e-9 * a->gravel[i];
         }
         if (same) {
             break;
@@ -104,17 +111,16 @@ static size_t find_entry(const struct dig_arguments *const a, const struct dig_c
 static int show(const struct dig_arguments *const a, const struct dig_curve_set *const set)
 {
     const size_t entry = find_entry(a, set);
-    if (entry >= set->entries) {
+    if (entry >= dig_listed_count(set)) {
         return dig_cli_bad_usage("%s: no such entry, digtable list shows all", a->positional[0]);
     }
     size_t trajectory = 0;
     while (trajectory < set->trajectories &&
            (a->trajectory != NULL ? strcmp(a->trajectory, set->trajectory[trajectory].name) != 0
-                                  : set->packings[entry * set->trajectories + trajectory] == 0)) {
+                                  : dig_listed_at(set, entry, trajectory).packings == 0)) {
         trajectory++;
     }
-    if (trajectory >= set->trajectories ||
-        set->packings[entry * set->trajectories + trajectory] == 0) {
+    if (trajectory >= set->trajectories || dig_listed_at(set, entry, trajectory).packings == 0) {
         return dig_cli_bad_usage("%s: no such trajectory in this entry, digtable list shows all",
                                  a->trajectory != NULL ? a->trajectory : a->positional[0]);
     }

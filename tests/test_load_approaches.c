@@ -1,0 +1,303 @@
+// Tests for tables/load_approaches.c, upgrade.c and listed.c: digs at another depth or attack in a
+// table, and tables from before there were any.
+
+#include "tables/load_approaches.h"
+
+#include "core/units.h"
+#include "files/scene_yaml.h"
+#include "tables/listed.h"
+#include "tables/load.h"
+#include "tables/merge.h"
+#include "tests/tables_fixture.h"
+
+#define TURNED (10.0 * DIG_RAD_PER_DEG)
+
+static void put_turned(struct dig_store *const store, const double friction,
+                       const double attack_rad, const size_t packing, const double my_Nm)
+{
+    struct dig_run_origin origin      = fixture_origin(friction, .5, 2500.0, packing, 0);
+    origin.approach.attack_rad        = attack_rad;
+    const struct dig_recording record = fixture_recording(400, my_Nm);
+    struct dig_error           error  = { "" };
+    if (dig_store_put(store, &origin, &record, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+}
+
+static struct dig_curve_set *load(const char *const name)
+{
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return set;
+}
+
+static void make_table(const char *const name)
+{
+    struct dig_store *const store = fixture_create(name);
+    put_turned(store, .9, TURNED, 0, 8.0);
+    put_turned(store, .3, TURNED, 0, 3.0);
+    put_turned(store, .3, -TURNED, 0, 2.0);
+    fixture_put(store, .3, .5, 0, 0, 1.0);
+    fixture_put(store, .3, .5, 1, 0, 1.4);
+    fixture_put(store, .9, .5, 0, 0, 5.0);
+    dig_store_close(store);
+}
+
+static void turned_digs_stand_beside_the_plain_ones(void **state)
+{
+    (void)state;
+    make_table("both.sqlite");
+    struct dig_curve_set *const set = load("both.sqlite");
+    assert_int_equal(set->entries, 2);
+    assert_close((double)set->curve[0].mean[0][100], 1.2, 1e-6);
+    const struct dig_approach_set *const other = set->approaches;
+    assert_non_null(other);
+    assert_int_equal(other->entries, 3);
+    static const struct {
+        double friction, attack_rad, my_Nm;
+    } expected[] = { { .3, -TURNED, 2.0 }, { .3, TURNED, 3.0 }, { .9, TURNED, 8.0 } };
+    for (size_t i = 0; i < 3; i++) {
+        assert_close(other->entry[i].gravel.value[0], expected[i].friction, 0.0);
+        assert_close(other->entry[i].approach.attack_rad, expected[i].attack_rad, 0.0);
+        assert_close(other->entry[i].approach.depth, 1.0, 0.0);
+        assert_int_equal(other->packings[2 * i], 1);
+        assert_int_equal(other->packings[2 * i + 1], 0);
+        const struct dig_curve *const curve = &other->curve[2 * i];
+        assert_close((double)curve->mean[0][7], expected[i].my_Nm, 1e-6);
+
+        // One packing: the spread is that of the plain dig with two, relative to the moment.
+        assert_close((double)curve->sd[0][7], 0.2 * sqrt(2.0) / 1.2 * expected[i].my_Nm, 1e-5);
+
+        const struct dig_listed one = dig_listed_at(set, 2 + i, 0);
+        assert_ptr_equal(one.curve, curve);
+        assert_close(one.trajectory.theta0_rad - set->trajectory[0].theta0_rad,
+                     expected[i].attack_rad, 1e-15);
+    }
+    assert_int_equal(dig_listed_count(set), 5);
+    assert_ptr_equal(dig_listed_at(set, 1, 0).curve, &set->curve[2]);
+    dig_curve_set_destroy(set);
+}
+
+static void a_table_without_them_has_no_such_set(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("plain.sqlite");
+    fixture_put(store, .3, .5, 0, 0, 1.0);
+    dig_store_close(store);
+    struct dig_curve_set *const set = load("plain.sqlite");
+    assert_null(set->approaches);
+    assert_int_equal(dig_listed_count(set), 1);
+    dig_curve_set_destroy(set);
+}
+
+static void a_run_is_there_in_its_own_approach_only(void **state)
+{
+    (void)state;
+    make_table("has.sqlite");
+    struct dig_store *store = NULL;
+    bool              there = false;
+    assert_int_equal(dig_store_open(scratch_path("has.sqlite"), &store, NULL), DIG_OK);
+    struct dig_run_origin key = fixture_origin(.3, .5, 2500.0, 1, 0);
+    assert_int_equal(dig_store_has(store, &key, &there, NULL), DIG_OK);
+    assert_true(there);
+    key.approach.attack_rad = TURNED;
+    assert_int_equal(dig_store_has(store, &key, &there, NULL), DIG_OK);
+    assert_false(there);
+    key.packing = 0;
+    assert_int_equal(dig_store_has(store, &key, &there, NULL), DIG_OK);
+    assert_true(there);
+    key.approach.depth = 1.1;
+    assert_int_equal(dig_store_has(store, &key, &there, NULL), DIG_OK);
+    assert_false(there);
+
+    struct dig_store_report report;
+    assert_int_equal(dig_store_check(store, &report, NULL), DIG_OK);
+    assert_int_equal(report.points, 2);
+    assert_int_equal(report.approaches, 3);
+    assert_int_equal(report.entries, 5);
+    assert_int_equal(report.runs, 6);
+    dig_store_close(store);
+}
+
+// The formats' example is a table of version 2: seven grounds, one of them with an effect.
+#define OLD "tests/data/formats/table.sqlite"
+
+static void copy_old(const char *const to)
+{
+    size_t      size  = 0;
+    char *const whole = scratch_read(OLD, &size);
+    (void)scratch_write_bytes(to, whole, size);
+    free(whole);
+}
+
+static sqlite3_int64 ask(const char *const name, const char *const sql)
+{
+    sqlite3      *db = NULL;
+    sqlite3_stmt *s  = NULL;
+    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &s, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
+    const sqlite3_int64 answer = sqlite3_column_int64(s, 0);
+    (void)sqlite3_finalize(s);
+    (void)sqlite3_close(db);
+    return answer;
+}
+
+struct first {
+    struct dig_run_origin origin;
+    size_t                rows;
+    double                first_s, step_s;
+    float                *value;
+};
+
+static enum dig_status keep_first(void *const context, const struct dig_run *const run,
+                                  struct dig_error *const error)
+{
+    (void)error;
+    struct first *const f = context;
+    assert_true(dig_approach_is_plain(&run->origin.approach));
+    if (f->value == NULL) {
+        *f       = (struct first){ run->origin, run->windows, run->first_s, run->step_s, NULL };
+        f->value = malloc(run->windows * DIG_CHANNELS * sizeof *f->value);
+        memcpy(f->value, run->value, run->windows * DIG_CHANNELS * sizeof *f->value);
+    }
+    return DIG_OK;
+}
+
+// The scene an old table is of, to open it for writing.
+static struct dig_store *open_old(const char *const name)
+{
+    struct dig_scene  scene;
+    struct dig_store *store = NULL;
+    struct dig_error  error = { "" };
+    assert_int_equal(dig_scene_read("tests/data/formats/scene.yaml", &scene, &error), DIG_OK);
+    if (dig_store_create(scratch_path(name), &scene, &store, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return store;
+}
+
+static void an_old_table_is_read_as_plain_and_left_alone(void **state)
+{
+    (void)state;
+    copy_old("old.sqlite");
+    assert_int_equal(ask("old.sqlite", "PRAGMA user_version"), 2);
+    struct dig_curve_set *const set = load("old.sqlite");
+    assert_int_equal(set->entries, 6);
+    assert_null(set->approaches);
+    dig_curve_set_destroy(set);
+    struct dig_store *const      store = open_old("old.sqlite"); // to write, but nothing is written
+    struct first                 one   = { .value = NULL };
+    const struct dig_run_visitor visitor = { keep_first, &one };
+    bool                         there   = false;
+    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
+    assert_int_equal(dig_store_has(store, &one.origin, &there, NULL), DIG_OK);
+    assert_true(there);
+    one.origin.approach.depth = 1.2;
+    assert_int_equal(dig_store_has(store, &one.origin, &there, NULL), DIG_OK);
+    assert_false(there);
+    dig_store_close(store);
+    free(one.value);
+
+    size_t      a_size = 0, b_size = 0;
+    char *const a = scratch_read(OLD, &a_size);
+    char *const b = scratch_read(scratch_path("old.sqlite"), &b_size);
+    assert_int_equal(a_size, b_size);
+    assert_memory_equal(a, b, a_size);
+    free(a);
+    free(b);
+}
+
+static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
+{
+    (void)state;
+    copy_old("old.sqlite");
+    struct dig_store *const      store   = open_old("old.sqlite");
+    struct first                 one     = { .value = NULL };
+    const struct dig_run_visitor visitor = { keep_first, &one };
+    struct dig_error             error   = { "" };
+    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
+    struct dig_force_row *const row = calloc(one.rows, sizeof *row);
+    for (size_t i = 0; i < one.rows; i++) {
+        row[i].t_s        = one.first_s + (double)i * one.step_s;
+        row[i].My_Nm      = 1.0;
+        row[i].carried_kg = 2.0;
+    }
+    const struct dig_recording recording = { .rows = one.rows, .row = row };
+    one.origin.approach                  = (struct dig_approach){ 1.2, 0.0 };
+    if (dig_store_put(store, &one.origin, &recording, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(dig_store_put(store, &one.origin, &recording, &error), DIG_EINVAL);
+    assert_contains(error.text, "depth 1.2, attack 0 deg is there already");
+    struct dig_store_report report;
+    assert_int_equal(dig_store_check(store, &report, &error), DIG_OK);
+    dig_store_close(store);
+    assert_int_equal(report.points, 6);
+    assert_int_equal(report.effects, 1);
+    assert_int_equal(report.approaches, 1);
+    assert_int_equal(ask("old.sqlite", "PRAGMA user_version"), 3);
+    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM ground WHERE depth = 1"), 7);
+    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_check"), 0);
+    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_list('run') WHERE "
+                                       "\"table\" = 'ground'"),
+                     1);
+    struct dig_curve_set *const set = load("old.sqlite");
+    assert_int_equal(set->approaches->entries, 1);
+    assert_close((double)set->approaches->curve[0].mean[0][50], 1.0, 1e-6);
+    assert_true(set->approaches->depth_m[0] > 0.0);
+    dig_curve_set_destroy(set);
+
+    // Old and new merge: the old one's runs are there once, in their plain approach.
+    copy_old("other.sqlite");
+    char a[512], b[512], out[512];
+    (void)snprintf(a, sizeof a, "%s", scratch_path("other.sqlite"));
+    (void)snprintf(b, sizeof b, "%s", scratch_path("old.sqlite"));
+    (void)snprintf(out, sizeof out, "%s", scratch_path("merged.sqlite"));
+    const char *const input[] = { a, b };
+    if (dig_store_merge(out, 2, input, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(ask("merged.sqlite", "SELECT count(*) FROM run"),
+                     ask("old.sqlite", "SELECT count(*) FROM run"));
+    assert_int_equal(ask("merged.sqlite", "SELECT count(*) FROM ground WHERE depth = 1.2"), 1);
+    free(one.value);
+    free(row);
+}
+
+static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
+{
+    (void)state;
+    struct dig_store *const          store     = fixture_create("range.sqlite");
+    struct dig_run_origin            origin    = fixture_origin(.3, .5, 2500.0, 0, 0);
+    const struct dig_recording       recording = fixture_recording(400, 1.0);
+    struct dig_error                 error     = { "" };
+    static const struct dig_approach bad[]     = {
+            { 9.0, 0.0 }, { -1.0, 0.0 }, { NAN, 0.0 }, { 1.0, 2.0 }, { 1.0, NAN }
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        origin.approach = bad[i];
+        assert_int_equal(dig_store_put(store, &origin, &recording, &error), DIG_EINVAL);
+        assert_contains(error.text, "run: depth");
+    }
+    dig_store_close(store);
+    assert_int_equal(ask("range.sqlite", "SELECT count(*) FROM ground"), 0);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, scratch_setup, scratch_teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(turned_digs_stand_beside_the_plain_ones),
+        TEST(a_table_without_them_has_no_such_set),
+        TEST(a_run_is_there_in_its_own_approach_only),
+        TEST(an_old_table_is_read_as_plain_and_left_alone),
+        TEST(the_first_run_added_makes_an_old_table_one_of_todays),
+        TEST(an_approach_out_of_range_is_refused_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests_name("load_approaches", tests, NULL, NULL);
+}
