@@ -103,10 +103,12 @@ static void curves_are_one_line_a_point(void **state)
     dig_export_curves(set, file);
     char *text = end(file);
     assert_int_equal(lines_of(text, second), 1 + 3 * DIG_CURVE_POINTS);
-    assert_ptr_equal(strstr(text,
-                            "friction,rolling,density_kgpm3,trajectory,packings,progress,t_s,"
-                            "My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N,carried_kg,carried_sd_kg,depth,attack_deg\n"),
-                     text);
+    assert_ptr_equal(
+        strstr(
+            text,
+            "friction,rolling,density_kgpm3,trajectory,packings,progress,t_s,"
+            "My_Nm,My_sd_Nm,Fx_N,Fx_sd_N,Fz_N,Fz_sd_N,carried_kg,carried_sd_kg,depth,attack_deg\n"),
+        text);
     assert_string_equal(second, "0.3,0.5,2500,pull,2,0,0,1.5,0.707106769,3,1.41421354,-4.5,"
                                 "2.12132025,7.5,3.53553391,1,0");
     free(text);
