@@ -121,7 +121,7 @@ $(BUILD)/offline_dem/%.o:   CPPFLAGS += -fopenmp-simd -fno-math-errno -fno-trapp
 $(BUILD)/estimator/likelihood.o: CPPFLAGS += -fno-math-errno
 # What the numbers of a dig depend on, told apart in every run of a table.
 numerics_src := $(filter-out $(addprefix offline_dem/,sweep.c sweep.h worker.c worker.h vtk.c vtk.h engine_ode.c \
-                engine_ode.h),$(wildcard offline_dem/*.[ch])) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
+                engine_ode.h watched_pour.c watched_pour.h),$(wildcard offline_dem/*.[ch])) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
 numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLAGS)'; $(CC) -dumpfullversion -dumpmachine; } \
                 | sha256sum | cut -c1-12)
 $(BUILD)/offline_dem/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'

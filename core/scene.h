@@ -147,6 +147,7 @@ struct dig_scene {
     double                output_s;    // width of the averaging window of a curve, 0.005
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
+    bool                  may_tremble; // a step that heats is not refused; no part of the identity
 };
 
 /// Bucket pin to tooth, m.

@@ -44,6 +44,7 @@ struct scene_text {
     struct dig_packing     packing;
     struct dig_material    material;
     double                 gravity_mps2, time_step_s, output_s;
+    bool                   may_tremble;
     struct trajectory_text trajectories[DIG_TRAJECTORY_MAX];
     uint32_t               trajectories_count;
     struct laws_text       laws;
@@ -127,6 +128,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING("material", REQUIRED, struct scene_text, material, material_fields),
     CYAML_FIELD_FLOAT("gravity_mps2", REQUIRED, struct scene_text, gravity_mps2),
     CYAML_FIELD_FLOAT("time_step_s", REQUIRED, struct scene_text, time_step_s),
+    CYAML_FIELD_BOOL("may_tremble", CYAML_FLAG_OPTIONAL, struct scene_text, may_tremble),
     CYAML_FIELD_FLOAT("output_s", REQUIRED, struct scene_text, output_s),
     CYAML_FIELD_SEQUENCE("trajectories", REQUIRED, struct scene_text, trajectories, &trajectory, 1,
                          DIG_TRAJECTORY_MAX),
@@ -177,6 +179,7 @@ static struct dig_scene convert(const struct scene_text *const text)
         .material     = text->material,
         .gravity_mps2 = text->gravity_mps2,
         .time_step_s  = text->time_step_s,
+        .may_tremble  = text->may_tremble,
         .output_s     = text->output_s,
         .trajectories = text->trajectories_count,
     };

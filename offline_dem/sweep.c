@@ -1,6 +1,7 @@
 #include "offline_dem/sweep.h"
 
 #include "offline_dem/variant.h"
+#include "offline_dem/watched_pour.h"
 #include "offline_dem/worker.h"
 
 #include <assert.h>
@@ -20,7 +21,7 @@ struct dig_engine dig_engine_kernel(void)
     return (struct dig_engine){
         .name       = "kernel",
         .version    = DIG_VERSION "+" DIG_NUMERICS,
-        .pour       = dig_bed_pour,
+        .pour       = dig_bed_pour_watched,
         .dig        = dig_dig_run,
         .bed_finish = dig_bed_finish,
         .vary       = dig_variant_make,

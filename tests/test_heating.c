@@ -4,6 +4,7 @@
 
 #include "offline_dem/dig.h"
 #include "offline_dem/heating.h"
+#include "offline_dem/watched_pour.h"
 
 #define WATCH_s  0.06
 #define SETTLE_s 0.3
@@ -93,12 +94,44 @@ static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
     dig_world_finish(&world);
 }
 
+static void a_scene_whose_step_heats_is_refused_by_name(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+    struct dig_scene        scene  = dem_small_scene();
+    struct dig_error        error  = { "" };
+    struct dig_bed          bed    = { 0 };
+    scene.time_step_s              = 1.2e-4;
+    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_EINVAL);
+    assert_non_null(
+        strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving, expected at"));
+    assert_null(bed.x_m);
+
+    scene.may_tremble = true;
+    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
+    dig_bed_finish(&bed);
+}
+
+static void what_is_watched_is_poured_as_ever(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+    const struct dig_scene  scene  = dem_small_scene();
+    struct dig_bed          bed    = { 0 };
+    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(bed.grains, poured.grains);
+    assert_memory_equal(bed.x_m, poured.x_m, bed.grains * sizeof *bed.x_m);
+    dig_bed_finish(&bed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_safe_step_leaves_a_resting_bed_alone),
         cmocka_unit_test(a_step_that_heats_is_noticed),
         cmocka_unit_test(a_bed_that_comes_to_rest_does_not_count),
+        cmocka_unit_test(a_scene_whose_step_heats_is_refused_by_name),
+        cmocka_unit_test(what_is_watched_is_poured_as_ever),
         cmocka_unit_test(a_step_that_explodes_is_an_error_and_writes_nothing),
     };
     return cmocka_run_group_tests(tests, pour, empty);

@@ -117,6 +117,7 @@ static void the_canonical_text_changes_with_every_number(void **state)
         assert_string_not_equal(before, after);
         *number[i] = kept;
     }
+    s.may_tremble = true; // allows, and changes no number
     (void)dig_scene_canonical(&s, sizeof after, after);
     assert_string_equal(before, after);
 }

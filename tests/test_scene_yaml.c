@@ -30,6 +30,7 @@ static void the_rig_is_the_scene_of_the_reference_digs(void **state)
                  0.31 * 0.12 * 0.085, 1e-15);
     assert_close(rig.material.young_Pa, 5e6, 0.0);
     assert_close(rig.time_step_s, 6.25e-5, 0.0);
+    assert_true(rig.may_tremble);
     // The grains poured fill a region 0.196747 m high to .3, over a bed 0.085 m high.
     assert_close(rig.packing.fill_factor * rig.box.z_max_m, 0.3 * 0.196747, 1e-6);
 }

@@ -1,0 +1,18 @@
+// Pouring, and a look at whether the time step lets what was poured lie still. It only refuses:
+// what it lets pass is bit for bit what dig_bed_pour() gives.
+
+#ifndef DIG_OFFLINE_DEM_WATCHED_POUR_H
+#define DIG_OFFLINE_DEM_WATCHED_POUR_H
+
+#include "offline_dem/dig.h"
+
+/// dig_bed_pour(), and, where the scene asks for a longer step than dig_time_step_limit_s() derives
+/// for its grains and does not say may_tremble, 0.1 s of a copy of the bed under
+/// dig_heating_watch(): some per cent of what the pouring costs. DIG_EINVAL when it heats; *error
+/// names the key, the step and the longest one that is sure not to. Then *bed is not written.
+DIG_MUST_CHECK enum dig_status dig_bed_pour_watched(const struct dig_scene  *scene,
+                                                    const struct dig_gravel *gravel, uint64_t seed,
+                                                    const struct dig_progress *progress,
+                                                    struct dig_bed *bed, struct dig_error *error);
+
+#endif // DIG_OFFLINE_DEM_WATCHED_POUR_H
