@@ -13,6 +13,7 @@
 #ifndef DIG_ESTIMATOR_ESTIMATOR_H
 #define DIG_ESTIMATOR_ESTIMATOR_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/machine.h"
 #include "core/sample.h"
@@ -53,15 +54,16 @@ struct dig_estimate {
 
 /// A finished dig on the table's grid, in rig units: what is matched.
 struct dig_observation {
-    uint32_t dig_count;
-    int      trajectory;
-    double   off_path_m;                  // rms distance of path and trajectory, rig scale
-    double   first, last;                 // progress range that was measured
-    double   moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
-    double   sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
-    bool     forces;                      // Fx and Fz were measured, too, as far as the moment
-    double   force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
-    double   force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    uint32_t            dig_count;
+    int                 trajectory;
+    double              off_path_m;  // rms distance of path and trajectory, rig scale
+    struct dig_approach approach;    // how the trajectory was dug; zeroed: as it stands
+    double              first, last; // progress range that was measured
+    double              moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
+    double              sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
+    bool                forces; // Fx and Fz were measured, too, as far as the moment
+    double              force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double              force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
 };
 
 #define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
