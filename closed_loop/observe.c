@@ -1,6 +1,9 @@
 #include "closed_loop/observe.h"
 
 #include "core/units.h"
+#include "estimator/approach_fit.h"
+#include "estimator/approach_slots.h"
+#include "estimator/approaches.h"
 
 #include <assert.h>
 #include <math.h>
@@ -90,6 +93,41 @@ static double path_distance(const struct dig_recording *const recording,
     return sqrt(sum_m2 / POINTS) / tooth_m;
 }
 
+// The way at equal steps of progress.
+static void lay_out(const struct dig_recording *const recording, const struct columns *const c,
+                    const double tooth_m, struct dig_path_point way[const DIG_APPROACH_FIT_POINTS])
+{
+    size_t i = 0;
+    for (int k = 0; k < DIG_APPROACH_FIT_POINTS; k++) {
+        const double progress = (double)k / (DIG_APPROACH_FIT_POINTS - 1);
+        i                     = row_at(c, progress, i);
+        const double f        = fraction_at(c, i, progress);
+
+        const struct dig_force_row *const a = &recording->row[i];
+        const struct dig_force_row *const b = a + 1;
+        way[k]                              = (struct dig_path_point){
+                                         .x_m = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m),
+                                         .z_m = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m),
+                                         .turn_m =
+                                             tooth_m * DIG_RAD_PER_DEG * (a->theta_deg + f * (b->theta_deg - a->theta_deg)),
+        };
+    }
+}
+
+// The same as path_distance() from the trajectory dug as the way was, with what of that the table
+// does not reach in quadrature.
+static double fit_distance(const struct dig_recording *const recording,
+                           const struct columns *const c, const struct dig_curve_set *const set,
+                           const size_t trajectory, struct dig_approach *const approach)
+{
+    struct dig_path_point way[DIG_APPROACH_FIT_POINTS];
+    struct dig_approach   made;
+    lay_out(recording, c, set->tooth_m, way);
+    const double off_m = dig_approach_fit(&set->trajectory[trajectory], set->tooth_m,
+                                          set->approaches->depth_m[trajectory], way, &made);
+    return hypot(off_m, dig_approach_clamp(set, trajectory, &made, approach)) / set->tooth_m;
+}
+
 static double channel_of(const struct dig_force_row *const row, const enum dig_channel channel)
 {
     if (channel == DIG_CHANNEL_MY_Nm) {
@@ -124,16 +162,21 @@ static bool read_channel(const struct dig_curve_set *const set,
 
 static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        const struct dig_recording *const recording,
-                                       const struct columns *const c, int *const trajectory,
-                                       double *const distance, struct dig_error *const error)
+                                       const struct columns *const c, const bool as_dug,
+                                       struct dig_observed *const observed,
+                                       struct dig_error *const    error)
 {
     int    best          = -1;
     double best_distance = INFINITY;
     for (size_t t = 0; t < set->trajectories; t++) {
-        const double away = path_distance(recording, c, &set->trajectory[t], set->tooth_m);
+        struct dig_approach approach = dig_approach_plain();
+        const double        away     = as_dug && dig_approach_varies(set, t)
+                                           ? fit_distance(recording, c, set, t, &approach)
+                                           : path_distance(recording, c, &set->trajectory[t], set->tooth_m);
         if (away < best_distance) {
-            best          = (int)t;
-            best_distance = away;
+            best               = (int)t;
+            best_distance      = away;
+            observed->approach = approach;
         }
     }
     if (best < 0 || !(best_distance <= DIG_OBSERVE_PATH_LIMIT)) {
@@ -143,29 +186,26 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                              best < 0 ? "" : set->trajectory[best].name, best_distance,
                              DIG_OBSERVE_PATH_LIMIT);
     }
-    *trajectory = best;
-    *distance   = best_distance;
+    observed->trajectory = best;
+    observed->off_path_m = best_distance * set->tooth_m;
     return DIG_OK;
 }
 
 static enum dig_status observe(const struct dig_curve_set *const set,
                                const struct dig_recording *const recording,
-                               const struct columns *const c, struct dig_observed *const observed,
-                               struct dig_error *const error)
+                               const struct columns *const c, const bool as_dug,
+                               struct dig_observed *const observed, struct dig_error *const error)
 {
     if (!(fill_columns(recording, set->tooth_m, c) > 0.1 * set->tooth_m)) {
         return dig_error_set(error, DIG_EINVAL,
                              "the recording's bucket hardly moves, expected a dig");
     }
-    struct dig_observed   o        = { .trajectory = 0 };
-    double                distance = 0.0;
-    const enum dig_status status =
-        find_trajectory(set, recording, c, &o.trajectory, &distance, error);
+    struct dig_observed   o      = { .trajectory = 0 };
+    const enum dig_status status = find_trajectory(set, recording, c, as_dug, &o, error);
     if (status != DIG_OK) {
         return status;
     }
-    o.off_path_m = distance * set->tooth_m;
-    o.pace       = dig_trajectory_duration_s(&set->trajectory[o.trajectory]) /
+    o.pace = dig_trajectory_duration_s(&set->trajectory[o.trajectory]) /
              (c->t_s[c->rows - 1] - c->t_s[0]);
     for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
         o.measured[channel] =
@@ -178,9 +218,10 @@ static enum dig_status observe(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
-                                const struct dig_recording *const recording,
-                                struct dig_observed *const observed, struct dig_error *const error)
+static enum dig_status observe_any(const struct dig_curve_set *const set,
+                                   const struct dig_recording *const recording, const bool as_dug,
+                                   struct dig_observed *const observed,
+                                   struct dig_error *const    error)
 {
     assert(set != NULL && recording != NULL && observed != NULL);
     if (recording->rows < 2) {
@@ -193,9 +234,24 @@ enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     const struct columns  columns = { n, memory, memory + n, memory + 2 * n, memory + 3 * n };
-    const enum dig_status status  = observe(set, recording, &columns, observed, error);
+    const enum dig_status status  = observe(set, recording, &columns, as_dug, observed, error);
     free(memory);
     return status;
+}
+
+enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
+                                const struct dig_recording *const recording,
+                                struct dig_observed *const observed, struct dig_error *const error)
+{
+    return observe_any(set, recording, false, observed, error);
+}
+
+enum dig_status dig_observe_as_dug(const struct dig_curve_set *const set,
+                                   const struct dig_recording *const recording,
+                                   struct dig_observed *const        observed,
+                                   struct dig_error *const           error)
+{
+    return observe_any(set, recording, true, observed, error);
 }
 
 enum dig_status dig_observe_recording(const struct dig_curve_set *const set,

@@ -1,5 +1,6 @@
 #include "firmware_host/load_model.h"
 
+#include "core/approach_set.h"
 #include "estimator/effects/effect.h"
 #include "files/model_json.h"
 #include "files/yaml.h"
@@ -7,6 +8,7 @@
 #include "tables/load_effects.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -34,6 +36,47 @@ static bool needs_curves(const struct dig_model *const model)
     return needs;
 }
 
+static double rms(const float y[const DIG_CURVE_POINTS])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += (double)y[k] * (double)y[k];
+    }
+    return sqrt(sum / DIG_CURVE_POINTS);
+}
+
+// What the effects did to the plain curve is done to one dug otherwise, in proportion to its size.
+static void follow(const struct dig_curve *const before, const struct dig_curve *const after,
+                   struct dig_curve *const curve)
+{
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        const double plain = rms(before->mean[c]);
+        const double scale = plain > 0.0 ? rms(curve->mean[c]) / plain : 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double change = (double)after->mean[c][k] - (double)before->mean[c][k];
+            curve->mean[c][k] += (float)(scale * change);
+        }
+    }
+}
+
+static void change_approaches(const struct dig_curve_set *const before,
+                              const struct dig_curve_set *const after)
+{
+    const struct dig_approach_set *const other = after->approaches;
+    for (size_t i = 0; other != NULL && i < other->entries; i++) {
+        size_t e = 0;
+        while (e < after->entries &&
+               memcmp(&after->gravel[e], &other->entry[i].gravel, sizeof after->gravel[e]) != 0) {
+            e++;
+        }
+        for (size_t t = 0; e < after->entries && t < after->trajectories; t++) {
+            const size_t slot = e * after->trajectories + t;
+            follow(&before->curve[slot], &after->curve[slot],
+                   &other->curve[i * other->trajectories + t]);
+        }
+    }
+}
+
 // Every curve of *set with the model's effects in it; the table is read once more, as it is.
 static enum dig_status change_curves(const char *const model_path, const char *const table_path,
                                      const struct dig_model *const model,
@@ -56,6 +99,9 @@ static enum dig_status change_curves(const char *const model_path, const char *c
             dig_yaml_refuse(model_path, "effects", error,
                             "an effect of the soil that no table at hand tells, or a parameter "
                             "it does not have; expected those of the table of effects");
+    }
+    if (status == DIG_OK && plain != NULL) {
+        change_approaches(plain, set);
     }
     dig_effect_set_destroy(effects);
     dig_curve_set_destroy(plain);

@@ -2,6 +2,7 @@
 
 #include "closed_loop/observe.h"
 
+#include "core/approach_set.h"
 #include "core/units.h"
 #include "tests/testlib.h"
 
@@ -83,6 +84,81 @@ static void pace_and_place_do_not_matter(void **state)
     }
 }
 
+// The table of two digs, the first of which was made deeper and with the bucket turned, too; with
+// depths in metres of the trajectory's own.
+static struct dig_curve_set dug_otherwise(struct dig_approach_set *const others)
+{
+    static struct dig_approach_entry entry[]    = { { .approach = { 1.2, 0.0 } },
+                                                    { .approach = { 1.0, 0.1 } } };
+    static int                       packings[] = { 1, 0, 1, 0 };
+    *others                                     = (struct dig_approach_set){ .trajectories = 2,
+                                                                             .depth_m      = { 0.02616, 0.032 },
+                                                                             .entries      = 2,
+                                                                             .entry        = entry,
+                                                                             .packings     = packings };
+    struct dig_curve_set set                    = two_digs();
+    set.approaches                              = others;
+    return set;
+}
+
+static struct dig_recording drive_so(const struct dig_curve_set *const set, const size_t t,
+                                     const double depth, const double attack_rad)
+{
+    const struct dig_approach approach = { depth, attack_rad };
+    struct dig_trajectory     dug;
+    assert_int_equal(dig_approach_apply(&set->trajectory[t], 0.09, set->approaches->depth_m[t],
+                                        &approach, &dug, NULL),
+                     DIG_OK);
+    return drive(&dug, 1.3, slow_wave);
+}
+
+static void depth_and_attack_of_a_dig_are_told_where_the_table_has_them(void **state)
+{
+    (void)state;
+    struct dig_approach_set    others;
+    const struct dig_curve_set set = dug_otherwise(&others);
+    struct dig_observed        o;
+    struct dig_recording       r = drive_so(&set, 0, 1.1, 0.03);
+    assert_int_equal(dig_observe_as_dug(&set, &r, &o, NULL), DIG_OK);
+    assert_int_equal(o.trajectory, 0);
+    assert_close(o.approach.depth, 1.1, 1e-3);
+    assert_close(o.approach.attack_rad, 0.03, 1e-4);
+    assert_true(o.off_path_m < 1e-4);
+    // Who wants plain digs alone sees one that is off by so much.
+    assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+    assert_true(dig_approach_is_plain(&o.approach));
+    assert_true(o.off_path_m > 2.7e-3);
+    dig_recording_finish(&r);
+
+    // Of the other trajectory the table has nothing but the plain dig.
+    r = drive_so(&set, 1, 1.05, 0.0);
+    assert_int_equal(dig_observe_as_dug(&set, &r, &o, NULL), DIG_OK);
+    assert_int_equal(o.trajectory, 1);
+    assert_true(dig_approach_is_plain(&o.approach));
+    dig_recording_finish(&r);
+}
+
+static void what_lies_beyond_the_table_is_distance(void **state)
+{
+    (void)state;
+    struct dig_approach_set    others;
+    const struct dig_curve_set set = dug_otherwise(&others);
+    struct dig_observed        o   = { .pace = 42.0 };
+    struct dig_error           e   = { "" };
+    struct dig_recording       r   = drive_so(&set, 0, 1.3, 0.0);
+    assert_int_equal(dig_observe_as_dug(&set, &r, &o, &e), DIG_OK);
+    assert_close(o.approach.depth, 1.2, 1e-3);
+    assert_close(o.off_path_m, 0.1 * 0.02616, 5e-5);
+    dig_recording_finish(&r);
+
+    o = (struct dig_observed){ .pace = 42.0 };
+    r = drive_so(&set, 0, 1.4, 0.0); // 0.2 of 26 mm is more than a twentieth of 90 mm
+    assert_int_equal(dig_observe_as_dug(&set, &r, &o, &e), DIG_ENOMATCH);
+    assert_non_null(strstr(e.text, "nearest is \"short\", 0.058 bucket lengths away"));
+    assert_close(o.pace, 42.0, 0.0);
+    dig_recording_finish(&r);
+}
+
 static void a_path_of_another_kind_is_refused_and_writes_nothing(void **state)
 {
     (void)state;
@@ -137,6 +213,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pace_and_place_do_not_matter),
+        cmocka_unit_test(depth_and_attack_of_a_dig_are_told_where_the_table_has_them),
+        cmocka_unit_test(what_lies_beyond_the_table_is_distance),
         cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
         cmocka_unit_test(the_mean_is_over_digs_of_one_trajectory_only),
     };

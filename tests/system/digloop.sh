@@ -135,6 +135,26 @@ sed 's/"digs": 5/"digs": many/' "$work/id.json" >"$work/broken.json"
 check "a broken identity is named by file, line and key" refuses "broken.json:2" "digs" "expected" -- \
     "$BIN/digloop" predict "$table" --identified "$work/broken.json" --trajectory actual -o "$work/never"
 
+# A table dug at several depths and attacks: a coarse tub, half a second a dig.
+tub=tests/data/formats/scene.yaml
+"$BIN/digtable" generate $tub tests/data/formats/grid_approaches.yaml -o "$work/ways.sqlite" 2>"$work/err"
+dig() { # FILE OPTIONS…
+    "$BIN/digtable" dig $tub --trajectory scrape --friction .3 --rolling .2 --density 2500 --seed 7 -o "$@" 2>"$work/err"
+}
+dig "$work/deep.csv" --depth 1.1 --attack-deg 2
+"$BIN/digloop" identify "$work/ways.sqlite" "$work/deep.csv" >"$work/out"
+check "how deep and how turned a dig was is told" eval 'grep -qE "^  dig 1 at depth 1\.(09|10)[0-9], attack (1\.9|2\.0)[0-9] deg" "$work/out"'
+"$BIN/digloop" identify "$work/ways.sqlite" "$work/deep.csv" --json >"$work/ways.json"
+"$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" --trajectory scrape --depth 1.1 --attack-deg 2 --json >"$work/ways.out"
+"$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" --trajectory scrape --json >"$work/plain.out"
+check "a prediction may be of a dig as deep, which is another" eval 'grep -q "\"depth\": 1.1, \"attack_deg\": 2" "$work/ways.out" && ! cmp -s <(tail -4 "$work/ways.out") <(tail -4 "$work/plain.out")'
+check "and is compared with a dig as it was made" eval '"$BIN/digloop" predict "$work/ways.sqlite" \
+    --identified "$work/ways.json" --trajectory scrape --measured "$work/deep.csv" | grep -q "error against"'
+check "a depth off the table is no prediction" eval '! "$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" \
+    --trajectory scrape --depth 1.9 -o "$work/never" >"$work/out" 2>"$work/err" && grep -qE "scrape, depth 1.9, attack 0 deg: off the table by 0\.[0-9]+ bucket lengths" "$work/err" && [ ! -e "$work/never" ]'
+check "a table that was dug plainly alone has none" eval '! "$BIN/digloop" predict "$table" --identified "$work/id.json" \
+    --trajectory actual --depth 1.2 >"$work/out" 2>"$work/err" && grep -q "off the table" "$work/err"'
+
 check "digreport without a log is bad usage" refuses "NAME=LOG.lcm" -- "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml
 check "a truth that is no gravel is named" refuses "--truth" "expected FRICTION" -- \
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --truth 1,2 "a=b"

@@ -4,6 +4,7 @@
 #define DIG_TOOLS_DIGLOOP_COMMANDS_H
 
 #include "closed_loop/trace.h"
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/effect_set.h"
 #include "core/error.h"
@@ -14,14 +15,15 @@
 #define DIGLOOP_PATH_SIZE      1024
 
 struct digloop_options {
-    const char *command, *table;
-    int         recordings; // or campaign folders: what stands after the table
-    char      **recording;
-    const char *machine, *model, *trajectory;    // identify, predict
-    const char *identified, *out, *measured;     // predict
-    const char *effects, *json_out, *html, *add; // trace
-    bool        moment_alone;                    // identify
-    bool        json;
+    const char         *command, *table;
+    int                 recordings; // or campaign folders: what stands after the table
+    char              **recording;
+    const char         *machine, *model, *trajectory;    // identify, predict
+    const char         *identified, *out, *measured;     // predict
+    const char         *effects, *json_out, *html, *add; // trace
+    bool                moment_alone;                    // identify
+    struct dig_approach approach;                        // predict: the plain one if not given
+    bool                json;
 };
 
 /// Reads the command line; prints help or version and exits where asked to. *error says what is

@@ -1,5 +1,7 @@
+#include "core/units.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
+#include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 
@@ -144,6 +146,21 @@ static void show_measured(const struct dig_curve_set *const set, const struct po
     (void)fputs("\n", to);
 }
 
+// "dug at depth 1.08, attack 2 deg", each dig of a table that knows such.
+static void show_approaches(const struct dig_curve_set *const set, const struct pool *const pool,
+                            FILE *const to)
+{
+    for (size_t d = 0; d < pool->digs; d++) {
+        const struct dig_observation *const dig  = &pool->dig[d];
+        const struct dig_approach           told = dig_approach_told(&dig->approach);
+        if (dig_approach_varies(set, (size_t)dig->trajectory)) {
+            (void)fprintf(to, "  dig %zu at depth %.3f, attack %.2f deg, %.1f mm off that path\n",
+                          d + 1, told.depth, told.attack_rad / DIG_RAD_PER_DEG,
+                          1e3 * dig->off_path_m);
+        }
+    }
+}
+
 static void show_identity(const struct dig_identity *const id, FILE *const to)
 {
     for (int a = 0; a < DIG_AXES; a++) {
@@ -187,18 +204,25 @@ enum dig_status digloop_identify(const struct digloop_options *const options,
                                  const struct digloop_machine *const machine,
                                  struct dig_error *const             error)
 {
-    struct pool      pool = { .digs = 0 };
-    struct dig_match match;
-    enum dig_status  status = observe_all(options, set, machine, &pool, error);
+    struct pool           pool  = { .digs = 0 };
+    struct digloop_as_dug table = { .set = NULL };
+    struct dig_match      match;
+    enum dig_status       status = observe_all(options, set, machine, &pool, error);
     if (status == DIG_OK) {
-        status = match_all(options, set, &pool, &match, error);
+        status = digloop_as_dug_make(set, pool.digs, pool.dig, &table, error);
     }
+    if (status == DIG_OK) {
+        status = match_all(options, table.set, &pool, &match, error);
+        digloop_as_dug_restore(&table, pool.digs, pool.dig);
+    }
+    digloop_as_dug_finish(&table);
     if (status == DIG_OK) {
         const struct dig_identity id = identity_of(set, &pool.dig[pool.digs - 1], &match);
         if (options->json) {
             dig_identity_write(stdout, &id);
         } else {
             show_measured(set, &pool, match.forces, stdout);
+            show_approaches(set, &pool, stdout);
             show_identity(&id, stdout);
         }
     }

@@ -1,5 +1,7 @@
 #include "tools/digloop/commands.h"
 
+#include "core/units.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,10 +20,13 @@ static const char help[] =
     "      the daemon, which may hold several digs. They are to be along one trajectory, or along\n"
     "      such as begin with \"simple\"; --trajectory takes those along one\n"
     "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
-    "                  [-o CURVE.csv] [--measured RECORDING [--machine MACHINE.yaml]]\n"
-    "                  [--model MODEL.json] [--json]\n"
-    "      what that gravel will resist along another trajectory, at the table's scale; with digs\n"
-    "      measured, how wrong that was: relative Euclidean norm of the moment, +-0.16 s\n"
+    "                  [--depth F] [--attack-deg A] [-o CURVE.csv]\n"
+    "                  [--measured RECORDING [--machine MACHINE.yaml]] [--model MODEL.json] "
+    "[--json]\n"
+    "      what that gravel will resist along another trajectory, at the table's scale, dug "
+    "deeper\n"
+    "      or with the bucket turned where the table was; with digs measured, how wrong that was,\n"
+    "      each as it was dug: relative Euclidean norm of the moment, +-0.16 s\n"
     "      --model, here and above: table and machine with the effects that a trace has added\n"
     "  digloop trace TABLE.sqlite CAMPAIGN/ [--effects EFFECTS.sqlite]\n"
     "                [--json OUT.json] [--html OUT.html] [--add MODEL.json]\n"
@@ -57,7 +62,8 @@ static bool has_trace_options(const struct digloop_options *const o)
 
 static bool has_predict_options(const struct digloop_options *const o)
 {
-    return o->identified != NULL || o->measured != NULL || o->out != NULL;
+    return o->identified != NULL || o->measured != NULL || o->out != NULL ||
+           !dig_approach_is_plain(&o->approach);
 }
 
 // What reads digs of its own takes.
@@ -102,6 +108,18 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                          o->command);
 }
 
+static bool number(const char *const text, const double least, const double most,
+                   double *const value)
+{
+    char        *end   = NULL;
+    const double found = strtod(text, &end);
+    if (end == text || *end != '\0' || !(found >= least && found <= most)) {
+        return false;
+    }
+    *value = found;
+    return true;
+}
+
 // trace takes a file after --json, the other commands write to standard output.
 static bool is_trace(const int argc, char *argv[])
 {
@@ -118,6 +136,8 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         MODEL,
         MOMENT_ALONE,
         MEASURED,
+        DEPTH,
+        ATTACK,
         EFFECTS,
         JSON,
         HTML,
@@ -132,6 +152,8 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         { "model", required_argument, NULL, MODEL },
         { "moment-alone", no_argument, NULL, MOMENT_ALONE },
         { "measured", required_argument, NULL, MEASURED },
+        { "depth", required_argument, NULL, DEPTH },
+        { "attack-deg", required_argument, NULL, ATTACK },
         { "effects", required_argument, NULL, EFFECTS },
         { "json", is_trace(argc, argv) ? required_argument : no_argument, NULL, JSON },
         { "html", required_argument, NULL, HTML },
@@ -140,7 +162,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         { "version", no_argument, NULL, VERSION },
         { NULL, 0, NULL, 0 },
     };
-    struct digloop_options o = { 0 };
+    struct digloop_options o = { .approach = dig_approach_plain() };
     opterr                   = 0;
     for (int c; (c = getopt_long(argc, argv, "o:", known, NULL)) != -1;) {
         switch (c) {
@@ -151,6 +173,19 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         case MOMENT_ALONE: o.moment_alone = true; break;
         case 'o': o.out = optarg; break;
         case MEASURED: o.measured = optarg; break;
+        case DEPTH:
+            if (!number(optarg, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
+                        &o.approach.depth)) {
+                return dig_error_set(error, DIG_EINVAL, "--depth %s: expected 0.2 to 3", optarg);
+            }
+            break;
+        case ATTACK:
+            if (!number(optarg, -45.0, 45.0, &o.approach.attack_rad)) {
+                return dig_error_set(error, DIG_EINVAL, "--attack-deg %s: expected -45 to 45",
+                                     optarg);
+            }
+            o.approach.attack_rad *= DIG_RAD_PER_DEG;
+            break;
         case EFFECTS: o.effects = optarg; break;
         case JSON:
             o.json     = true;

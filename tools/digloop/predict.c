@@ -1,8 +1,11 @@
 #include "estimator/predict.h"
+
 #include "closed_loop/score.h"
+#include "core/units.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
 #include "files/recording_csv.h"
+#include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 
@@ -79,31 +82,127 @@ static void put_array(FILE *const to, const char *const name, const float curve[
     (void)fputs("]", to);
 }
 
-// How wrong the predicted curve is against the digs measured along its trajectory.
-static enum dig_status score_measured(const struct digloop_options *const options,
-                                      const struct dig_curve_set *const   set,
-                                      const struct digloop_machine *const machine, const int t,
-                                      const struct dig_curve *const curve,
-                                      struct dig_score *const score, struct dig_error *const error)
+// How wrong the prediction is of one dig, made as it was.
+static enum dig_status score_dig(const struct dig_curve_set *const   set,
+                                 const struct dig_match *const       match,
+                                 const struct dig_observation *const dig,
+                                 struct dig_score *const score, struct dig_error *const error)
 {
-    struct dig_observed_digs seen = { .digs = 0 };
-    const enum dig_status    status =
-        digloop_read_digs(options->measured, machine, set, t, &seen, error);
+    struct digloop_as_dug table = { .set = NULL };
+    struct dig_curve      curve;
+    size_t                at = 0;
+    enum dig_status       status =
+        digloop_as_dug_at(set, (size_t)dig->trajectory, &dig->approach, &table, &at, error);
     if (status != DIG_OK) {
         return status;
     }
-    double predicted_Nm[DIG_CURVE_POINTS];
-    double sigma_Nm[DIG_CURVE_POINTS];
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        predicted_Nm[k] = (double)curve->mean[DIG_CHANNEL_MY_Nm][k];
-        sigma_Nm[k]     = (double)curve->sd[DIG_CHANNEL_MY_Nm][k];
+    status = dig_predict_curve(table.set, match, at, &curve);
+    if (status == DIG_OK) {
+        double predicted_Nm[DIG_CURVE_POINTS];
+        double sigma_Nm[DIG_CURVE_POINTS];
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            predicted_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
+            sigma_Nm[k]     = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
+        }
+        dig_score_add(score, &table.set->trajectory[at], set->tooth_m, dig->first, dig->last,
+                      dig->moment_Nm, predicted_Nm, sigma_Nm);
+    } else {
+        (void)dig_error_set(error, status, "%s", dig_status_str(status));
     }
-    for (size_t i = 0; i < seen.digs; i++) {
-        dig_score_add(score, &set->trajectory[t], set->tooth_m, seen.dig[i].first, seen.dig[i].last,
-                      seen.dig[i].moment_Nm, predicted_Nm, sigma_Nm);
+    digloop_as_dug_finish(&table);
+    return status;
+}
+
+// How wrong the prediction is against the digs measured along its trajectory.
+static enum dig_status score_measured(const struct digloop_options *const options,
+                                      const struct dig_curve_set *const   set,
+                                      const struct digloop_machine *const machine, const int t,
+                                      const struct dig_match *const match,
+                                      struct dig_score *const score, struct dig_error *const error)
+{
+    struct dig_observed_digs seen = { .digs = 0 };
+    enum dig_status status = digloop_read_digs(options->measured, machine, set, t, &seen, error);
+    for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
+        status = score_dig(set, match, &seen.dig[i], score, error);
     }
     dig_observed_digs_finish(&seen);
-    return DIG_OK;
+    return status;
+}
+
+// What is predicted, and how wrong it was.
+struct prediction {
+    struct dig_trajectory trajectory; // as dug
+    struct dig_curve      curve;
+    struct dig_score      score;
+};
+
+static void print(const struct digloop_options *const options,
+                  const struct dig_curve_set *const set, const struct prediction *const p)
+{
+    const double peak_Nm  = dig_predict_peak_Nm(&p->curve);
+    const double energy_J = dig_predict_energy_J(&p->trajectory, set->tooth_m, &p->curve);
+    const struct dig_curve *const curve = &p->curve;
+    char                          how[DIG_APPROACH_TEXT_SIZE];
+    dig_approach_text(&options->approach, how);
+    if (!options->json) {
+        (void)printf("  %s%s: peak %.3f N·m, energy %.3f J at the table's scale\n",
+                     p->trajectory.name, how, peak_Nm, energy_J);
+        if (options->measured != NULL) {
+            (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
+                         dig_score_error(&p->score), dig_score_noise_floor(&p->score));
+        }
+        return;
+    }
+    (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",
+                 p->trajectory.name, peak_Nm, energy_J);
+    if (how[0] != '\0') {
+        (void)printf(", \"depth\": %.6g, \"attack_deg\": %.6g", options->approach.depth,
+                     options->approach.attack_rad / DIG_RAD_PER_DEG);
+    }
+    if (options->measured != NULL) {
+        (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&p->score),
+                     dig_score_noise_floor(&p->score));
+    }
+    put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
+    put_array(stdout, "sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
+    put_array(stdout, "force_x_N", curve->mean[DIG_CHANNEL_FX_N]);
+    put_array(stdout, "force_z_N", curve->mean[DIG_CHANNEL_FZ_N]);
+    (void)puts("}");
+}
+
+// The trajectory asked for, dug as asked for.
+static enum dig_status predict(const struct digloop_options *const options,
+                               const struct dig_curve_set *const set, const int t,
+                               const struct dig_match *const match, struct prediction *const p,
+                               struct dig_error *const error)
+{
+    struct digloop_as_dug table = { .set = NULL };
+    size_t                at    = 0;
+    enum dig_status       status =
+        digloop_as_dug_at(set, (size_t)t, &options->approach, &table, &at, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    p->trajectory = table.set->trajectory[at];
+    status        = dig_predict_curve(table.set, match, at, &p->curve);
+    digloop_as_dug_finish(&table);
+    return status == DIG_OK
+               ? DIG_OK
+               : dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+}
+
+static enum dig_status read_identity(const struct digloop_options *const options,
+                                     const struct dig_curve_set *const   set,
+                                     struct dig_identity *const id, struct dig_error *const error)
+{
+    const enum dig_status status = dig_identity_read(options->identified, id, error);
+    if (status == DIG_OK && strcmp(id->scene_hash, set->scene_hash) != 0) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "
+                             "one scene",
+                             options->identified, id->scene_hash, options->table, set->scene_hash);
+    }
+    return status;
 }
 
 enum dig_status digloop_predict(const struct digloop_options *const options,
@@ -113,56 +212,25 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
 {
     assert(options->identified != NULL && options->trajectory != NULL);
     struct dig_identity id;
-    enum dig_status     status = dig_identity_read(options->identified, &id, error);
+    int                 t      = 0;
+    enum dig_status     status = read_identity(options, set, &id, error);
+    if (status == DIG_OK) {
+        status = digloop_find_trajectory(options, set, &t, error);
+    }
     if (status != DIG_OK) {
         return status;
     }
-    if (strcmp(id.scene_hash, set->scene_hash) != 0) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "
-                             "one scene",
-                             options->identified, id.scene_hash, options->table, set->scene_hash);
-    }
-    int t  = 0;
-    status = digloop_find_trajectory(options, set, &t, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-
     const struct dig_match match = match_of(&id);
-    struct dig_curve       curve;
-    status = dig_predict_curve(set, &match, (size_t)t, &curve);
-    if (status != DIG_OK) {
-        return dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+    struct prediction      p     = { .score = { 0 } };
+    status                       = predict(options, set, t, &match, &p, error);
+    if (status == DIG_OK && options->out != NULL) {
+        status = write_curve(options->out, set, &p.trajectory, &p.curve, error);
     }
-    const double peak_Nm  = dig_predict_peak_Nm(&curve);
-    const double energy_J = dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &curve);
-    if (options->out != NULL) {
-        status = write_curve(options->out, set, &set->trajectory[t], &curve, error);
-    }
-    struct dig_score score = { 0 };
     if (status == DIG_OK && options->measured != NULL) {
-        status = score_measured(options, set, machine, t, &curve, &score, error);
+        status = score_measured(options, set, machine, t, &match, &p.score, error);
     }
-    if (status == DIG_OK && options->json) {
-        (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",
-                     set->trajectory[t].name, peak_Nm, energy_J);
-        if (options->measured != NULL) {
-            (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&score),
-                         dig_score_noise_floor(&score));
-        }
-        put_array(stdout, "moment_Nm", curve.mean[DIG_CHANNEL_MY_Nm]);
-        put_array(stdout, "sigma_Nm", curve.sd[DIG_CHANNEL_MY_Nm]);
-        put_array(stdout, "force_x_N", curve.mean[DIG_CHANNEL_FX_N]);
-        put_array(stdout, "force_z_N", curve.mean[DIG_CHANNEL_FZ_N]);
-        (void)puts("}");
-    } else if (status == DIG_OK) {
-        (void)printf("  %s: peak %.3f N·m, energy %.3f J at the table's scale\n",
-                     set->trajectory[t].name, peak_Nm, energy_J);
-        if (options->measured != NULL) {
-            (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
-                         dig_score_error(&score), dig_score_noise_floor(&score));
-        }
+    if (status == DIG_OK) {
+        print(options, set, &p);
     }
     return status;
 }

@@ -132,7 +132,7 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
                                      struct dig_error *const           error)
 {
     struct dig_observed   seen;
-    const enum dig_status status = dig_observe_dig(set, recording, &seen, error);
+    const enum dig_status status = dig_observe_as_dug(set, recording, &seen, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -140,6 +140,7 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
         .dig_count  = 1,
         .trajectory = seen.trajectory,
         .off_path_m = seen.off_path_m,
+        .approach   = seen.approach,
         .first      = 0.0,
         .last       = 1.0,
         .forces     = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
