@@ -1,6 +1,9 @@
 #include "estimator/estimator.h"
 
 #include "core/units.h"
+#include "estimator/approach_route.h"
+#include "estimator/approach_slots.h"
+#include "estimator/approaches.h"
 #include "estimator/cylinder.h"
 #include "estimator/estimator_state.h"
 #include "estimator/linkage.h"
@@ -108,7 +111,7 @@ void dig_estimator_adopt(struct dig_estimator *const       estimator,
     estimator->forecast = NULL;
     estimator->lambda   = estimator->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t t = 0; t < set->trajectories; t++) {
-        estimator->route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
+        estimator->route[t] = dig_approach_route(set, t);
     }
     forget_dig(estimator);
 }
@@ -166,8 +169,9 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
     const double behind = fmin(fmin(e->progress, 1.0), track->progress) - 0.1;
     const double ahead  = fmax(fmax(e->progress, 0.0), track->progress) + 0.2;
 
-    const struct dig_place place =
-        dig_route_place(&e->route[told], track->dx_m, track->dz_m, point, behind, fmin(ahead, 1.0));
+    const struct dig_path_point at = dig_track_turned(track, point);
+    const struct dig_place      place =
+        dig_route_place(&e->route[told], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
 }
@@ -176,6 +180,41 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
 static bool path_is_over(const struct dig_estimator *const e)
 {
     return e->choice.told >= 0 && e->progress >= 1.0 && e->off_path_m > e->settings.path_limit_m;
+}
+
+// A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
+// the depth is told by where the soil began to resist, looked for along the way of the deepest dig.
+// What of the two lies beyond the table counts as distance.
+static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
+                                      const struct dig_track *const track,
+                                      struct dig_raw *const raw, struct dig_observation *const out)
+{
+    const size_t           t       = (size_t)out->trajectory;
+    const double           deepest = dig_approach_deepest(set, t);
+    const struct dig_route deep    = dig_approach_route_deep(set, t, deepest);
+    struct dig_observation seen    = *out;
+    enum dig_status        status =
+        dig_window_observe(&raw->window, &deep, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_approach made = {
+        .depth      = dig_approach_depth(set, t, deepest, seen.first, seen.last, seen.moment_Nm),
+        .attack_rad = track->turn_m / set->tooth_m,
+    };
+    const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
+    const struct dig_route route    = dig_approach_route_deep(set, t, seen.approach.depth);
+    const double           off_m    = hypot(track->rms_m, beyond_m);
+    if (!(off_m <= limit_m)) {
+        return DIG_ENOMATCH;
+    }
+    status =
+        dig_window_observe(&raw->window, &route, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    if (status == DIG_OK) {
+        seen.off_path_m = off_m;
+        *out            = seen;
+    }
+    return status;
 }
 
 // The whole path decides which trajectory it was; an observation is made if it was one.
@@ -194,9 +233,12 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
     if (chosen < 0) {
         return DIG_ENOMATCH;
     }
-    struct dig_observation out   = { .dig_count = raw->dig_count, .trajectory = chosen };
-    const enum dig_status status = dig_window_observe(&raw->window, &route[chosen], &fitted[chosen],
-                                                      2.0 * limit_m, set->smooth_half_s, &out);
+    struct dig_observation out = { .dig_count = raw->dig_count, .trajectory = chosen };
+    const enum dig_status  status =
+        dig_approach_varies(set, (size_t)chosen)
+             ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
+             : dig_window_observe(&raw->window, &route[chosen], &fitted[chosen], 2.0 * limit_m,
+                                  set->smooth_half_s, &out);
     if (status != DIG_OK) {
         return status;
     }
@@ -215,7 +257,7 @@ enum dig_status dig_raw_observe(const struct dig_curve_set *const          set,
     assert(set != NULL && settings != NULL && raw != NULL && observation != NULL);
     struct dig_route route[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < set->trajectories; t++) {
-        route[t] = dig_route_make(&set->trajectory[t], set->tooth_m);
+        route[t] = dig_approach_route(set, t);
     }
     return observe(set, settings->path_limit_m, route, raw, observation);
 }

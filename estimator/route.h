@@ -35,11 +35,13 @@ static inline double dig_path_point_dot(const struct dig_path_point a,
     return a.x_m * b.x_m + a.z_m * b.z_m + a.turn_m * b.turn_m;
 }
 
-/// A trajectory as a polyline.
+/// A trajectory as a polyline, and by how much the bucket may stand otherwise all along it: 0 and 0
+/// unless said.
 struct dig_route {
     size_t                corners;
     struct dig_path_point corner[DIG_PHASES_MAX + 1];
     double                at_m[DIG_PHASES_MAX + 1]; // path length up to each corner
+    double                turn_least_m, turn_most_m;
 };
 
 struct dig_route dig_route_make(const struct dig_trajectory *trajectory, double tooth_m);

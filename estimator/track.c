@@ -48,9 +48,10 @@ struct dig_track dig_track_start(const struct dig_route *const route,
     };
 }
 
-// Normal equations of the shift: 2 x 2, symmetric.
+// Normal equations of the shift, symmetric, and of the turn where the route lets it be one.
 struct normal {
     double xx, xz, zz, bx, bz;
+    double xt, zt, tt, bt;
 };
 
 static void add_equation(struct normal *const normal, const struct dig_place *const place)
@@ -61,6 +62,29 @@ static void add_equation(struct normal *const normal, const struct dig_place *co
     normal->zz += 1.0 - t.z_m * t.z_m;
     normal->bx += place->off.x_m;
     normal->bz += place->off.z_m;
+    normal->xt -= t.x_m * t.turn_m;
+    normal->zt -= t.z_m * t.turn_m;
+    normal->tt += 1.0 - t.turn_m * t.turn_m;
+    normal->bt += place->off.turn_m;
+}
+
+// Moves the turn, and takes what that explains off the shift's side of the equations.
+static void turn(const struct dig_route *const route, struct normal *const n,
+                 struct dig_track *const track)
+{
+    if (!(route->turn_most_m > route->turn_least_m)) {
+        return;
+    }
+    // What is left of the turn's equation when the shift is eliminated.
+    const double det  = n->xx * n->zz - n->xz * n->xz;
+    const double px   = (n->zz * n->xt - n->xz * n->zt) / det;
+    const double pz   = (n->xx * n->zt - n->xz * n->xt) / det;
+    const double left = n->tt - n->xt * px - n->zt * pz;
+    const double by   = (n->bt - n->bx * px - n->bz * pz) / left;
+    const double to   = fmin(fmax(track->turn_m + by, route->turn_least_m), route->turn_most_m);
+    n->bx -= n->xt * (to - track->turn_m);
+    n->bz -= n->zt * (to - track->turn_m);
+    track->turn_m = to;
 }
 
 static void refine(const struct dig_route *const route, const struct dig_path *const path,
@@ -74,15 +98,18 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
         .zz = anchor_weight,
         .bx = anchor_weight * (track->anchor_dx_m - track->dx_m),
         .bz = anchor_weight * (track->anchor_dz_m - track->dz_m),
+        .tt = anchor_weight,
+        .bt = -anchor_weight * track->turn_m,
     };
     double lead_m2 = 0.0;
     double sum_m2  = 0.0;
     double last    = 0.0;
     for (size_t i = 0; i < path->end; i++) {
-        const double           from = last - look_behind;
-        const double           to   = last + look_ahead;
-        const struct dig_place place =
-            dig_route_place(route, track->dx_m, track->dz_m, &path->vertex[i], from, fmin(to, 1.0));
+        const double                from = last - look_behind;
+        const double                to   = last + look_ahead;
+        const struct dig_path_point at   = dig_track_turned(track, &path->vertex[i]);
+        const struct dig_place      place =
+            dig_route_place(route, track->dx_m, track->dz_m, &at, from, fmin(to, 1.0));
 
         if (i < path->contact) {
             if (i + LEAD_VERTICES >= path->contact) {
@@ -106,6 +133,7 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
         last = place.progress;
     }
 
+    turn(route, &normal, track);
     const double det = normal.xx * normal.zz - normal.xz * normal.xz;
     track->dx_m += (normal.zz * normal.bx - normal.xz * normal.bz) / det;
     track->dz_m += (normal.xx * normal.bz - normal.xz * normal.bx) / det;

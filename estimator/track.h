@@ -1,7 +1,8 @@
 // Which trajectory of the table a bucket is on, and how far along.
 //
 // Where the ground lies and where the dig began is not known, so a trajectory fits up to a shift
-// (dx, dz). theta is absolute and needs none.
+// (dx, dz). theta is absolute and needs none, unless the table was dug with the bucket turned, too:
+// then the turn is fitted within what it was dug at, by the same steps.
 //
 //     measured vertices     o  o                     shift: Gauss-Newton on the distances from
 //                          o    \                    vertices to the polyline (normal to it only,
@@ -21,6 +22,7 @@
 /// How a route fits the vertices.
 struct dig_track {
     double dx_m, dz_m;
+    double turn_m; // by how much the bucket stands otherwise, within the route's range
     double anchor_dx_m, anchor_dz_m; // the shift that puts the contact at the start
     double rms_m;   // of the vertices from contact to end, NaN until fitted; those past the route's
                     // end count limit_m at most. What trajectories are compared by
@@ -28,6 +30,13 @@ struct dig_track {
                     // anchor, in quadrature. What shifts of one trajectory are compared by
     double progress; // of the last vertex
 };
+
+/// A point as the route has it: the turn taken off.
+static inline struct dig_path_point dig_track_turned(const struct dig_track      *track,
+                                                     const struct dig_path_point *point)
+{
+    return (struct dig_path_point){ point->x_m, point->z_m, point->turn_m - track->turn_m };
+}
 
 /// A track kept up to date while the dig goes on, and a second fit from another start that replaces
 /// it when it turns out better: a Gauss-Newton fit alone can be caught at a wrong leg.
