@@ -34,7 +34,7 @@ static inline double approach_moment_Nm(const size_t g, const size_t t, const do
 {
     const double whole_s = t == 0 ? 3.0 : 6.8;
     return approach_strength(g) * factor * sin(DIG_PI * time_s / whole_s) *
-           (1.0 + 0.2 * sin(9.0 * time_s / whole_s + (double)g));
+           (1.0 + 0.1 * sin(9.0 * time_s / whole_s + (double)g));
 }
 
 static inline void approach_curve(const size_t g, const size_t t, const struct dig_trajectory *dug,

@@ -113,8 +113,8 @@ static void depth_is_told_by_where_the_soil_begins_to_resist(void **state)
     for (double depth = 0.75; depth < 1.2; depth += 0.1) {
         for (size_t g = 0; g < CUBE_GRAVELS; g += 3) {
             over_deepest(g, 0, (struct dig_approach){ depth, 2.0 * DEG }, moment_Nm);
-            // The gravels of this table begin to resist each in a way of its own.
-            assert_close(dig_approach_depth(set, 0, 1.2, 0.0, 1.0, moment_Nm), depth, 0.05);
+            // Each gravel of this table begins to resist in a way of its own.
+            assert_close(dig_approach_depth(set, 0, 1.2, 0.0, 1.0, moment_Nm), depth, 0.03);
         }
     }
     // Measured from behind the first leg on, or not so far: it cannot be told.
