@@ -85,6 +85,9 @@ bool dig_response_own(const struct dig_curve_set *const set, const size_t entry,
     struct dig_response         made = { .inverse_packings = 0.0 };
     double                      place[DIG_CURVE_POINTS];
     for (size_t i = 0; i < nodes.nodes; i++) {
+        if (i > 0 && !(fabs(weight[i]) > 0.0)) {
+            continue;
+        }
         const struct dig_trajectory other =
             dig_response_trajectory(set, trajectory, &nodes.approach[i]);
         warp(&dug, &other, set->tooth_m, place);

@@ -119,6 +119,7 @@ static void fill(const struct dig_curve_set *const       set,
 const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *const       set,
                                                 const size_t                            slots,
                                                 const struct dig_approached_slot *const slot,
+                                                const struct dig_approach_error *const  measured,
                                                 void *const                             memory)
 {
     assert(set != NULL && slot != NULL && memory != NULL && slots >= 1 &&
@@ -136,7 +137,9 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
         struct dig_approach_error  error = { .farthest_m = 0.0 };
         told.approach                    = dig_approach_told(&told.approach);
         made->trajectory[s] = dig_response_trajectory(set, told.trajectory, &told.approach);
-        if (!dig_approach_is_plain(&told.approach)) {
+        if (measured != NULL) {
+            error = measured[told.trajectory];
+        } else if (!dig_approach_is_plain(&told.approach)) {
             dig_approach_error_measure(set, told.trajectory, &error);
         }
         for (size_t e = 0; e < set->entries; e++) {

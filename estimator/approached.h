@@ -11,6 +11,7 @@
 
 #include "core/approach.h"
 #include "core/curve.h"
+#include "estimator/approach_error.h"
 
 #include <stddef.h>
 
@@ -28,8 +29,11 @@ size_t dig_approached_size(const struct dig_curve_set *set, size_t slots);
 /// plain has the set's curves bit by bit. An entry for which neither its own nor others' digs reach
 /// lacks the trajectory. About 0.1 ms an entry and slot; where gravels borrow, that times those
 /// that lend.
+/// error: of each of the set's trajectories, as dig_approach_error_measure() has it; NULL: measured
+/// here, which takes longer than all else.
 const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *set, size_t slots,
                                                 const struct dig_approached_slot slot[],
+                                                const struct dig_approach_error  error[],
                                                 void                            *memory);
 
 #endif // DIG_ESTIMATOR_APPROACHED_H

@@ -96,7 +96,12 @@ bool dig_estimator_is_idle(const struct dig_estimator *const estimator)
 bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
-    bool off = estimator->raw->window.open && estimator->set->trajectories > 0;
+    const int told = estimator->choice.told;
+    bool      off  = estimator->raw->window.open && estimator->set->trajectories > 0;
+    if (off && told >= 0 && estimator->forecast != NULL &&
+        estimator->forecast->along[told].off_table) {
+        return true;
+    }
     for (size_t t = 0; off && t < estimator->set->trajectories; t++) {
         off = estimator->follower[t].track.rms_m > estimator->settings.path_limit_m;
     }

@@ -106,7 +106,8 @@ struct dig_prediction {
 struct dig_forecast {
     struct dig_expected {
         bool             valid;
-        struct dig_curve curve;
+        bool             off_table; // the dig going on is: none valid
+        struct dig_curve curve;     // over the progress that a tick tells
         double           peak_Nm, energy_J;
     } along[DIG_TRAJECTORY_MAX];
 };
@@ -160,7 +161,8 @@ DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estim
 /// True while no dig goes on.
 bool dig_estimator_is_idle(const struct dig_estimator *estimator);
 
-/// True while a dig goes on that is farther than path_limit_m from each of the table's.
+/// True while a dig goes on that is farther than path_limit_m from each of the table's, or of which
+/// the forecast given says so.
 bool dig_estimator_is_off_table(const struct dig_estimator *estimator);
 
 /// Exchanges the table while idle; what was forecast is forgotten. The set must be one that an
@@ -202,6 +204,23 @@ bool dig_estimator_take_dig(struct dig_estimator *estimator, struct dig_observat
 /// that is not. About a millisecond.
 void dig_forecast_make(const struct dig_curve_set *set, double lambda,
                        const struct dig_match *match, struct dig_forecast *forecast);
+
+struct dig_approach_error; // estimator/approach_error.h
+
+/// What a match predicts of one dig along a trajectory, deeper or with the bucket turned; over the
+/// path of the trajectory dug so, as an observation of such a dig has it. valid = false where the
+/// table does not tell. Memory as dig_approached_size() of one slot; error as
+/// dig_approached_make() takes it.
+void dig_forecast_as_dug(const struct dig_curve_set *set, double lambda,
+                         const struct dig_match *match, size_t trajectory,
+                         const struct dig_approach       *approach,
+                         const struct dig_approach_error *error, void *memory,
+                         struct dig_expected *expected);
+
+/// The same curve over the progress that a tick tells, which is along the plain trajectory: legs
+/// behind the first lie where they lie, the first begins earlier or later.
+void dig_forecast_along_plain(const struct dig_curve_set *set, size_t trajectory,
+                              const struct dig_approach *approach, struct dig_expected *expected);
 
 /// What predictions are made from, from now on; NULL ends them. The forecast must stay as it is
 /// until another is given. Constant time.

@@ -1,5 +1,7 @@
 // The estimator's last stage: from the gravel given to predictions of digs.
 
+#include "estimator/approach_response.h"
+#include "estimator/approached.h"
 #include "estimator/estimator.h"
 #include "estimator/estimator_state.h"
 #include "estimator/match.h"
@@ -8,6 +10,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 void dig_forecast_make(const struct dig_curve_set *const set, const double lambda,
                        const struct dig_match *const match, struct dig_forecast *const forecast)
@@ -16,6 +19,7 @@ void dig_forecast_make(const struct dig_curve_set *const set, const double lambd
     const double lambda4 = pow(lambda, 4.0);
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
         struct dig_expected *const along = &forecast->along[t];
+        along->off_table                 = false;
         along->valid =
             t < set->trajectories && dig_predict_curve(set, match, t, &along->curve) == DIG_OK;
         if (along->valid) {
@@ -23,6 +27,58 @@ void dig_forecast_make(const struct dig_curve_set *const set, const double lambd
             along->energy_J =
                 lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &along->curve);
         }
+    }
+}
+
+void dig_forecast_as_dug(const struct dig_curve_set *const set, const double lambda,
+                         const struct dig_match *const match, const size_t trajectory,
+                         const struct dig_approach *const       approach,
+                         const struct dig_approach_error *const error, void *const memory,
+                         struct dig_expected *const expected)
+{
+    assert(set != NULL && match != NULL && approach != NULL && expected != NULL);
+    const struct dig_approached_slot  slot = { trajectory, *approach };
+    const struct dig_curve_set *const dug  = dig_approached_make(set, 1, &slot, error, memory);
+    expected->off_table                    = false;
+    expected->valid = dig_predict_curve(dug, match, 0, &expected->curve) == DIG_OK;
+    if (expected->valid) {
+        const double lambda4 = pow(lambda, 4.0);
+        expected->peak_Nm    = lambda4 * dig_predict_peak_Nm(&expected->curve);
+        expected->energy_J =
+            lambda4 * dig_predict_energy_J(&dug->trajectory[0], set->tooth_m, &expected->curve);
+    }
+}
+
+static double path_m(const struct dig_curve_set *const set, const struct dig_trajectory *const t)
+{
+    return dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
+}
+
+// Read at the places of points further apart, or nearer, that end together.
+static void stretch(const double own_m, const double plain_m, float curve[const DIG_CURVE_POINTS])
+{
+    float out[DIG_CURVE_POINTS];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double before_m = plain_m * (1.0 - (double)k / (DIG_CURVE_POINTS - 1));
+        const double place    = fmax(1.0 - before_m / own_m, 0.0) * (DIG_CURVE_POINTS - 1);
+        const size_t i        = (size_t)fmin(floor(place), DIG_CURVE_POINTS - 2);
+        const double f        = place - (double)i;
+        out[k]                = (float)((1.0 - f) * (double)curve[i] + f * (double)curve[i + 1]);
+    }
+    memcpy(curve, out, sizeof out);
+}
+
+void dig_forecast_along_plain(const struct dig_curve_set *const set, const size_t trajectory,
+                              const struct dig_approach *const approach,
+                              struct dig_expected *const       expected)
+{
+    assert(set != NULL && approach != NULL && expected != NULL);
+    const struct dig_trajectory dug     = dig_response_trajectory(set, trajectory, approach);
+    const double                own_m   = path_m(set, &dug);
+    const double                plain_m = path_m(set, &set->trajectory[trajectory]);
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        stretch(own_m, plain_m, expected->curve.mean[c]);
+        stretch(own_m, plain_m, expected->curve.sd[c]);
     }
 }
 

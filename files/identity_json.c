@@ -1,5 +1,6 @@
 #include "files/identity_json.h"
 
+#include "core/units.h"
 #include "files/yaml.h"
 
 #include <assert.h>
@@ -49,6 +50,10 @@ static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
 {
     (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g,", dig->trajectory,
                   dig->first, dig->last);
+    if (!dig_approach_is_plain(&dig->approach)) {
+        (void)fprintf(to, " \"depth\": %.9g, \"attack_deg\": %.9g,", dig->approach.depth,
+                      dig->approach.attack_rad / DIG_RAD_PER_DEG);
+    }
     put_numbers(to, "moment_Nm", dig->moment_Nm);
     (void)fputs(",", to);
     put_numbers(to, "sigma_Nm", dig->sigma_Nm);
@@ -101,6 +106,7 @@ struct force_text {
 struct dig_text {
     char               trajectory[DIG_NAME_SIZE];
     double             first, last;
+    double             depth, attack_deg; // depth 0: not given
     double             moment_Nm[DIG_CURVE_POINTS];
     double             sigma_Nm[DIG_CURVE_POINTS];
     struct force_text *force; // NULL: not measured
@@ -150,6 +156,8 @@ static const cyaml_schema_field_t dig_fields[] = {
     CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, last),
     NUMBERS(moment_Nm, struct dig_text),
     NUMBERS(sigma_Nm, struct dig_text),
+    CYAML_FIELD_FLOAT("depth", CYAML_FLAG_OPTIONAL, struct dig_text, depth),
+    CYAML_FIELD_FLOAT("attack_deg", CYAML_FLAG_OPTIONAL, struct dig_text, attack_deg),
     CYAML_FIELD_MAPPING_PTR("force", CYAML_FLAG_OPTIONAL, struct dig_text, force, force_fields),
     CYAML_FIELD_END,
 };
@@ -206,17 +214,21 @@ static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DI
 
 static bool is_dig(const struct dig_identity_dig *const dig)
 {
-    return dig->first >= 0.0 && dig->last > dig->first && dig->last <= 1.0 &&
-           is_curve(dig->moment_Nm, dig->sigma_Nm) &&
+    const struct dig_approach made = dig_approach_told(&dig->approach);
+    return made.depth >= DIG_APPROACH_DEPTH_LEAST && made.depth <= DIG_APPROACH_DEPTH_MOST &&
+           fabs(made.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad && dig->first >= 0.0 &&
+           dig->last > dig->first && dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
            is_curve(dig->force_N[0], dig->force_sigma_N[0]) &&
            is_curve(dig->force_N[1], dig->force_sigma_N[1]);
 }
 
 static void take_dig(const struct dig_text *const text, struct dig_identity_dig *const dig)
 {
-    *dig = (struct dig_identity_dig){ .first  = text->first,
-                                      .last   = text->last,
-                                      .forces = text->force != NULL };
+    *dig =
+        (struct dig_identity_dig){ .first    = text->first,
+                                   .last     = text->last,
+                                   .approach = { text->depth, text->attack_deg * DIG_RAD_PER_DEG },
+                                   .forces   = text->force != NULL };
     memcpy(dig->trajectory, text->trajectory, sizeof dig->trajectory);
     memcpy(dig->moment_Nm, text->moment_Nm, sizeof dig->moment_Nm);
     memcpy(dig->sigma_Nm, text->sigma_Nm, sizeof dig->sigma_Nm);

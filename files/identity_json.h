@@ -4,6 +4,7 @@
 #ifndef DIG_FILES_IDENTITY_JSON_H
 #define DIG_FILES_IDENTITY_JSON_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
 
@@ -16,13 +17,14 @@
 /// A dig it was identified from, as it was observed (docs/numerics/estimator.md): rig scale, on the
 /// table's grid of progress, 0 where nothing was measured.
 struct dig_identity_dig {
-    char   trajectory[DIG_NAME_SIZE];
-    double first, last; // progress that was measured
-    double moment_Nm[DIG_CURVE_POINTS];
-    double sigma_Nm[DIG_CURVE_POINTS];
-    bool   forces; // the forces were measured, too: Fx and Fz, below; else 0
-    double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
-    double force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    char                trajectory[DIG_NAME_SIZE];
+    struct dig_approach approach;    // how it was dug; zeroed: as the trajectory stands
+    double              first, last; // progress that was measured
+    double              moment_Nm[DIG_CURVE_POINTS];
+    double              sigma_Nm[DIG_CURVE_POINTS];
+    bool                forces; // the forces were measured, too: Fx and Fz, below; else 0
+    double              force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double              force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
 };
 
 struct dig_identity {

@@ -1,5 +1,7 @@
 #include "firmware_host/early.h"
 
+#include "estimator/approach_slots.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -11,6 +13,7 @@ void dig_early_forget(struct dig_early *const early, const struct dig_curve_set 
     assert(early != NULL && set != NULL);
     early->last = (struct dig_estimate){ .trajectory = -1 };
     early->next = 0.0;
+    early->off  = -1;
     dig_shadow_forget(&early->shadow, set);
 }
 
@@ -24,20 +27,27 @@ bool dig_early_look(struct dig_early *const early, const struct dig_curve_set *c
     }
     if (!early->shadow.on) {
         early->next = config->match_early_path;
+        early->off  = -1;
         return false;
     }
     const struct dig_estimate *const e = &early->last;
     if (e->trajectory < 0 || (size_t)e->trajectory >= set->trajectories ||
         !(e->progress >= early->next) || config->match_early_path >= 1.0 ||
-        !dig_config_identifies(config, set->trajectory[e->trajectory].name)) {
+        !(dig_config_identifies(config, set->trajectory[e->trajectory].name) ||
+          dig_approach_varies(set, (size_t)e->trajectory))) {
         return false;
     }
     early->next = e->progress + short_step;
 
     struct dig_observation seen;
-    if (dig_shadow_observe(set, &config->estimator, &early->shadow, &early->scratch, &seen) !=
-            DIG_OK ||
-        seen.trajectory != e->trajectory || seen.last - seen.first < config->match_early_path) {
+    const enum dig_status  status =
+        dig_shadow_observe(set, &config->estimator, &early->shadow, &early->scratch, &seen);
+    early->off = status == DIG_ENOMATCH && e->progress >= config->match_early_path &&
+                         dig_approach_varies(set, (size_t)e->trajectory)
+                     ? e->trajectory
+                     : -1;
+    if (status != DIG_OK || seen.trajectory != e->trajectory ||
+        seen.last - seen.first < config->match_early_path) {
         return false;
     }
     early->next = e->progress + DIG_EARLY_STEP;

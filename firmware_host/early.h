@@ -16,6 +16,7 @@ struct dig_early {
     struct dig_ring    *estimates; // in: struct dig_estimate, every one the tick made
     struct dig_estimate last;
     double              next; // progress at which the dig is looked at again
+    int                 off;  // trajectory of the table it was along, dug as the table was not; -1
     struct dig_shadow   shadow;
     struct dig_raw      scratch;
 };
@@ -24,9 +25,10 @@ struct dig_early {
 void dig_early_forget(struct dig_early *early, const struct dig_curve_set *set);
 
 /// Takes up what the tick told since the last turn. True when the dig going on is worth a look: of
-/// a trajectory that identifies, at least match_early_path of it measured, and DIG_EARLY_STEP
-/// farther than at the last look. Then *dig is what was dug so far; a look is two to three
-/// milliseconds.
+/// a trajectory that identifies or that the table was dug along in several ways, at least
+/// match_early_path of it measured, and DIG_EARLY_STEP farther than at the last look. early->off
+/// says when a look saw a dig off the table. Then *dig is what was dug so far; a look is two to
+/// three milliseconds.
 bool dig_early_look(struct dig_early *early, const struct dig_curve_set *set, double lambda,
                     const struct dig_config *config, struct dig_observation *dig);
 

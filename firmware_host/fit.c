@@ -1,5 +1,6 @@
 #include "firmware_host/fit.h"
 
+#include "estimator/approach_slots.h"
 #include "estimator/doubt.h"
 #include "firmware_host/load.h"
 #include "tables/load.h"
@@ -43,6 +44,42 @@ static void offer(struct dig_fit *const fit, const struct dig_known *const k)
     // Until the tick has the table, what belongs to it goes with it.
     const bool adopted = atomic_load(fit->tick_generation) == fit->generation;
     dig_latest_put(adopted ? fit->offer : fit->table, next);
+    fit->dug = false;
+}
+
+// What was expected of a dig, made as it was.
+static const struct dig_expected *expected_of(struct dig_fit *const               fit,
+                                              const struct dig_observation *const dig)
+{
+    const size_t t = (size_t)dig->trajectory;
+    if (dig_approach_is_plain(&dig->approach) || !fit->known.valid) {
+        return &fit->next.forecast.along[t];
+    }
+    dig_matcher_expect(&fit->matcher, fit->set, fit->lambda, &fit->known.match, t, &dig->approach,
+                       &fit->own);
+    return &fit->own;
+}
+
+// To the tick, of the dig going on: what it resists with as it is dug, or that the table was not
+// dug so (dig NULL).
+static void offer_as_dug(struct dig_fit *const fit, const struct dig_known *const k,
+                         const size_t trajectory, const struct dig_observation *const dig)
+{
+    struct dig_expected *const along = &fit->next.forecast.along[trajectory];
+    if (!k->valid || (dig == NULL && along->off_table) ||
+        atomic_load(fit->tick_generation) != fit->generation) {
+        return;
+    }
+    if (dig != NULL) {
+        dig_matcher_expect(&fit->matcher, fit->set, fit->lambda, &k->match, trajectory,
+                           &dig->approach, along);
+        dig_forecast_along_plain(fit->set, trajectory, &dig->approach, along);
+    } else {
+        along->valid     = false;
+        along->off_table = true;
+    }
+    dig_latest_put(fit->offer, &fit->next);
+    fit->dug = true;
 }
 
 // Tells tick and publisher what is known now.
@@ -93,7 +130,7 @@ static bool is_too_short(struct dig_fit *const fit, const struct dig_observation
 
 // The entry nearest to a pool, or to its youngest dig alone where no entry has all of their
 // trajectories.
-static enum dig_status match_pool(const struct dig_fit *const fit, struct dig_pool *const pool,
+static enum dig_status match_pool(struct dig_fit *const fit, struct dig_pool *const pool,
                                   struct dig_match *const match)
 {
     const double          floors = fit->config->estimator.outside_floors;
@@ -119,9 +156,9 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
     if (is_too_short(fit, dig)) {
         return;
     }
-    struct dig_known       judged  = fit->known;
-    const enum dig_kinship kinship = dig_known_judge(
-        &judged, dig, &fit->next.forecast.along[dig->trajectory], &fit->known_settings);
+    struct dig_known       judged = fit->known;
+    const enum dig_kinship kinship =
+        dig_known_judge(&judged, dig, expected_of(fit, dig), &fit->known_settings);
     if (kinship == DIG_DOUBTED) {
         fit->known = judged;
         tell(fit);
@@ -180,6 +217,25 @@ static void match_early(struct dig_fit *const fit, const struct dig_observation 
     (void)dig_ring_push(fit->results, &result);
 }
 
+// The dig going on: what it tells of the gravel, and what it will resist with as it is dug.
+static void look(struct dig_fit *const fit)
+{
+    struct dig_observation dig;
+    if (dig_early_look(fit->early, fit->set, fit->lambda, fit->config, &dig)) {
+        const size_t t = (size_t)dig.trajectory;
+        doubt(fit, &dig);
+        if (dig_config_identifies(fit->config, fit->set->trajectory[t].name)) {
+            match_early(fit, &dig);
+        }
+        if (dig_approach_varies(fit->set, t)) {
+            offer_as_dug(fit, fit->known.valid ? &fit->known : &fit->hunch, t, &dig);
+        }
+    } else if (fit->early->off >= 0) {
+        offer_as_dug(fit, fit->known.valid ? &fit->known : &fit->hunch, (size_t)fit->early->off,
+                     NULL);
+    }
+}
+
 // The dig is over and was not matched: what it told is taken back.
 static void end_hunch(struct dig_fit *const fit)
 {
@@ -200,8 +256,7 @@ void dig_fit_take(struct dig_fit *const fit, const struct dig_observation *const
     }
     if (dig_config_identifies(fit->config, fit->set->trajectory[dig->trajectory].name)) {
         match_dig(fit, dig);
-    } else if (dig_known_watch(&fit->known, dig, &fit->next.forecast.along[dig->trajectory],
-                               &fit->known_settings)) {
+    } else if (dig_known_watch(&fit->known, dig, expected_of(fit, dig), &fit->known_settings)) {
         tell(fit);
     }
 }
@@ -223,11 +278,13 @@ static enum dig_status check_table(const struct dig_fit *const       fit,
                                             dig_status_str(status));
 }
 
+// The same trajectories, and dug in several ways or not.
 static bool has_same_digs(const struct dig_curve_set *const a, const struct dig_curve_set *const b)
 {
     bool same = a->trajectories == b->trajectories;
     for (size_t t = 0; same && t < a->trajectories; t++) {
-        same = strcmp(a->trajectory[t].name, b->trajectory[t].name) == 0;
+        same = strcmp(a->trajectory[t].name, b->trajectory[t].name) == 0 &&
+               dig_approach_varies(a, t) == dig_approach_varies(b, t);
     }
     return same;
 }
@@ -314,10 +371,8 @@ bool dig_fit_once(struct dig_fit *const fit)
         tell(fit);
     }
     struct dig_observation dig;
-    if (fit->early != NULL &&
-        dig_early_look(fit->early, fit->set, fit->lambda, fit->config, &dig)) {
-        doubt(fit, &dig);
-        match_early(fit, &dig);
+    if (fit->early != NULL) {
+        look(fit);
     }
     const bool any = dig_ring_pop(fit->digs, &raw);
     if (any) {
@@ -330,6 +385,9 @@ bool dig_fit_once(struct dig_fit *const fit)
     }
     if (fit->early != NULL && fit->hunch.any && !fit->early->shadow.on) {
         end_hunch(fit);
+    }
+    if (fit->dug && !fit->early->shadow.on) {
+        offer(fit, &fit->known);
     }
     atomic_store(&fit->busy, false);
     return any;

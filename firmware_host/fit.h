@@ -54,11 +54,13 @@ struct dig_fit {
     atomic_bool               busy;
 
     // the thread's own
-    struct dig_matcher matcher; // of set; zeroed: without a summary
-    struct dig_known   known;
-    struct dig_known   hunch; // of the dig going on
-    struct dig_pool    pool;  // the digs it is known from; none: restored without them
-    struct dig_offer   next;  // what is offered
+    struct dig_matcher  matcher; // of set; zeroed: without a summary
+    struct dig_known    known;
+    struct dig_known    hunch; // of the dig going on
+    struct dig_pool     pool;  // the digs it is known from; none: restored without them
+    struct dig_offer    next;  // what is offered
+    bool                dug;   // it is of the dig going on, as that is dug
+    struct dig_expected own;   // what was expected of a dig as it was dug
 };
 
 /// Takes up what the state file knows, if there is one, and offers it. Before the thread starts.

@@ -1,5 +1,6 @@
 #include "firmware_host/known.h"
 
+#include "estimator/approach_slots.h"
 #include "estimator/match.h"
 #include "files/identity_json.h"
 #include "files/whole.h"
@@ -145,9 +146,10 @@ static void put_pool(const struct dig_curve_set *const set, const struct dig_poo
         memcpy(to->trajectory, set->trajectory[dig->trajectory].name, sizeof to->trajectory);
         memcpy(to->moment_Nm, dig->moment_Nm, sizeof to->moment_Nm);
         memcpy(to->sigma_Nm, dig->sigma_Nm, sizeof to->sigma_Nm);
-        to->first  = dig->first;
-        to->last   = dig->last;
-        to->forces = dig->forces;
+        to->approach = dig->approach;
+        to->first    = dig->first;
+        to->last     = dig->last;
+        to->forces   = dig->forces;
         if (dig->forces) {
             memcpy(to->force_N, dig->force_N, sizeof to->force_N);
             memcpy(to->force_sigma_N, dig->force_sigma_N, sizeof to->force_sigma_N);
@@ -255,7 +257,8 @@ static enum dig_status check_age(const char *const path, const double most_s, do
     return DIG_OK;
 }
 
-// The digs of the file, unless one is of a trajectory the table does not have.
+// The digs of the file, unless one is of a trajectory the table does not have, or made in a way the
+// table knows nothing of.
 static void take_pool(const struct dig_curve_set *const set,
                       const struct dig_identity *const identity, struct dig_pool *const pool)
 {
@@ -272,10 +275,14 @@ static void take_pool(const struct dig_curve_set *const set,
         memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
         memcpy(dig.force_N, from->force_N, sizeof dig.force_N);
         memcpy(dig.force_sigma_N, from->force_sigma_N, sizeof dig.force_sigma_N);
-        dig.first  = from->first;
-        dig.last   = from->last;
-        dig.forces = from->forces;
-        if (dig_observation_check(set, &dig) != DIG_OK) {
+        dig.approach    = from->approach;
+        dig.first       = from->first;
+        dig.last        = from->last;
+        dig.forces      = from->forces;
+        const bool held = dig_observation_check(set, &dig) == DIG_OK &&
+                          (dig_approach_is_plain(&dig.approach) ||
+                           dig_approach_varies(set, (size_t)dig.trajectory));
+        if (!held) {
             pool->digs = 0;
             return;
         }

@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "tests/cube_table.h"
 #include "tests/made_table.h"
+#include "tests/testlib.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,6 +5,7 @@
 
 #include "estimator/approaches.h"
 #include "estimator/match.h"
+#include "estimator/predict.h"
 #include "tests/scratch.h"
 
 #include "tests/approach_table.h"
@@ -49,7 +50,7 @@ static const struct dig_curve_set *make(const size_t trajectory, const double de
     free(memory);
     memory = malloc(dig_approached_size(&table.cube.set, 1));
     assert_non_null(memory);
-    return dig_approached_make(&table.cube.set, 1, &slot, memory);
+    return dig_approached_make(&table.cube.set, 1, &slot, NULL, memory);
 }
 
 static int tear_down(void **state)
@@ -249,9 +250,10 @@ static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void
     }
     const struct dig_approached_slot slot[] = { { 0, approach }, { 1, approach } };
     free(memory);
-    memory                                 = malloc(dig_approached_size(&table.cube.set, 2));
-    const struct dig_curve_set *const made = dig_approached_make(&table.cube.set, 2, slot, memory);
-    struct dig_match                  plain, deep;
+    memory = malloc(dig_approached_size(&table.cube.set, 2));
+    const struct dig_curve_set *const made =
+        dig_approached_make(&table.cube.set, 2, slot, NULL, memory);
+    struct dig_match plain, deep;
     assert_int_equal(dig_match_nearest(&table.cube.set, &seen, 3.0, &plain), DIG_OK);
     assert_int_equal(dig_match_nearest(made, &seen, 3.0, &deep), DIG_OK);
     assert_int_equal(deep.nearest, 2);
@@ -270,6 +272,33 @@ static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void
     assert_true(sqrt(off) < 0.1 * sqrt(nominal_off));
 }
 
+static void a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do(void **state)
+{
+    (void)state;
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, straight, 1e-4, 3);
+    const struct dig_approach         approach = { 1.15, 0.0 };
+    const struct dig_curve_set *const set      = &table.cube.set;
+    const struct dig_match match = { .valid = true, .gravel = table.cube.gravel[4], .nearest = 4 };
+    struct dig_expected    expected;
+    free(memory);
+    memory = malloc(dig_approached_size(set, 1));
+    dig_forecast_as_dug(set, 10.0, &match, 0, &approach, NULL, memory, &expected);
+    assert_true(expected.valid && !expected.off_table);
+    assert_close(expected.peak_Nm, 1e4 * dig_predict_peak_Nm(&expected.curve), 1e-6);
+    dig_forecast_along_plain(set, 0, &approach, &expected);
+    const struct dig_trajectory dug   = approach_dug(0, approach);
+    const struct dig_trajectory plain = approach_dug(0, dig_approach_plain());
+    for (int k = 60; k < DIG_CURVE_POINTS; k += 20) { // behind the first leg: at equal times
+        const double t_s = dig_trajectory_time_s(&plain, 0.09, k / (DIG_CURVE_POINTS - 1.0));
+        assert_true(t_s > dug.phase[0].duration_s);
+        assert_close((double)expected.curve.mean[0][k],
+                     approach_moment_Nm(4, 0, t_s, straight(1.15, 0.0)),
+                     READ_OFF * approach_strength(4));
+    }
+    // At the plain start it is under way already.
+    assert_true((double)expected.curve.mean[0][0] > 0.05);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +308,7 @@ int main(void)
         cmocka_unit_test(the_spread_grows_by_what_leaving_out_says),
         cmocka_unit_test(gravels_that_were_dug_plainly_alone_borrow_the_change),
         cmocka_unit_test(outside_the_hull_the_nearest_place_in_it_counts),
+        cmocka_unit_test(a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do),
         cmocka_unit_test(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth),
     };
     return cmocka_run_group_tests_name("approached", tests, NULL, tear_down);

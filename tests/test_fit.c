@@ -3,6 +3,7 @@
 #include "firmware_host/fit.h"
 
 #include "files/identity_json.h"
+#include "tests/approach_table.h"
 #include "tests/cube_table.h"
 #include "tests/scratch.h"
 #include "tests/wires.h"
@@ -537,9 +538,104 @@ static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
     free(b);
 }
 
+// A table dug at several depths, on a bench of its own.
+struct deep_bench {
+    struct dig_config     config;
+    struct approach_table table;
+    struct wires          wires;
+    struct dig_fit        fit;
+};
+
+static double growing(const double depth, const double attack_rad)
+{
+    return depth * depth - 1.5 * attack_rad;
+}
+
+static struct deep_bench *deep_bench_create(void)
+{
+    static const struct dig_approach way[] = { { 0.8, 0.0 }, { 1.0, 0.1 }, { 1.2, 0.0 } };
+    struct deep_bench *const         b     = calloc(1, sizeof *b);
+    assert_non_null(b);
+    approach_table_init(&b->table, CUBE_GRAVELS, 3, way, growing, 0.05, 3);
+    b->config.estimator         = dig_estimator_settings_default();
+    b->config.match_evaluations = 300;
+    b->config.match_least_path  = 0.6;
+    b->config.match_expires_s   = 3600.0;
+    b->config.drift_floors      = 3.0;
+    wires_init(&b->wires);
+    wires_init_fit(&b->wires, &b->config, &b->table.cube.set, &b->fit);
+    dig_matcher_take_up(&b->fit.matcher, &b->table.cube.set);
+    return b;
+}
+
+static void deep_bench_destroy(struct deep_bench *const b)
+{
+    dig_matcher_finish(&b->fit.matcher);
+    free(b);
+}
+
+static void dig_deep(struct deep_bench *const b, const size_t gravel, const size_t t,
+                     const double depth, const double told)
+{
+    static uint32_t             count;
+    const struct dig_trajectory dug = approach_dug(t, (struct dig_approach){ depth, 0.0 });
+    struct dig_curve            curve;
+    approach_curve(gravel, t, &dug, growing(depth, 0.0), 0.05, &curve);
+    struct dig_observation dig = { .dig_count  = ++count,
+                                   .trajectory = (int)t,
+                                   .approach   = { told, 0.0 },
+                                   .first      = 0.0,
+                                   .last       = 1.0 };
+    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+        dig.moment_Nm[p] = (double)curve.mean[DIG_CHANNEL_MY_Nm][p];
+        dig.sigma_Nm[p]  = 0.005;
+    }
+    dig_fit_take(&b->fit, &dig);
+}
+
+static void digs_of_different_depths_are_matched_together(void **state)
+{
+    (void)state;
+    struct deep_bench *const b = deep_bench_create();
+    dig_deep(b, 5, 0, 0.9, 0.9);
+    dig_deep(b, 5, 0, 1.15, 1.15);
+    dig_deep(b, 5, 0, 1.0, 1.0);
+    assert_true(b->fit.known.valid);
+    assert_int_equal(b->fit.pool.digs, 3); // none was a stranger to what the others let expect
+    assert_int_equal(b->fit.known.match.digs, 3);
+    assert_int_equal(b->fit.known.match.nearest, 5);
+    assert_true(b->fit.known.match.distance < 0.02);
+    assert_int_equal(b->fit.known.differed, 0);
+
+    // The same digs taken for plain ones contradict each other.
+    b->fit.known = (struct dig_known){ .any = false };
+    dig_deep(b, 5, 0, 0.8, 1.0);
+    dig_deep(b, 5, 0, 1.2, 1.0);
+    assert_true(b->fit.pool.digs < 2 || b->fit.known.match.distance > 0.1);
+    deep_bench_destroy(b);
+}
+
+static void a_deep_dig_is_no_sign_of_other_ground(void **state)
+{
+    (void)state;
+    struct deep_bench *const b = deep_bench_create();
+    dig_deep(b, 2, 0, 1.0, 1.0);
+    assert_true(b->fit.known.valid);
+    for (int i = 0; i < 3; i++) {
+        dig_deep(b, 2, 1, 1.2, 1.2);
+        assert_true(b->fit.known.valid);
+        assert_true(b->fit.known.drift < 1.0);
+    }
+    dig_deep(b, 2, 1, 1.2, 1.0); // taken for a plain one it is
+    assert_true(b->fit.known.drift > 1.5);
+    deep_bench_destroy(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(digs_of_different_depths_are_matched_together),
+        cmocka_unit_test(a_deep_dig_is_no_sign_of_other_ground),
         cmocka_unit_test(a_simple_dig_identifies_the_gravel_it_was_made_of),
         cmocka_unit_test(a_dig_that_does_not_identify_is_passed_over),
         cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),

@@ -29,6 +29,9 @@ static struct dig_identity example(void)
         (void)strcpy(dig->trajectory, i == 0 ? "simpleA" : "simpleB");
         dig->first = 0.125;
         dig->last  = 0.875;
+        if (i == 1) {
+            dig->approach = (struct dig_approach){ 1.15, 0.05 };
+        }
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
             dig->moment_Nm[k] = 0.001 * k * (1 + i);
             dig->sigma_Nm[k]  = 0.75;
@@ -72,6 +75,9 @@ static void what_was_written_is_read_back(void **state)
     assert_close(back.noise_floor, 0.2, 1e-9);
     assert_int_equal(back.recorded, 2);
     assert_string_equal(back.recording[1].trajectory, "simpleB");
+    assert_close(back.recording[1].approach.depth, 1.15, 1e-9);
+    assert_close(back.recording[1].approach.attack_rad, 0.05, 1e-9);
+    assert_true(dig_approach_is_plain(&back.recording[0].approach));
     assert_close(back.recording[1].first, 0.125, 0.0);
     assert_close(back.recording[1].last, 0.875, 0.0);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {

@@ -7,7 +7,7 @@
 
 static const struct made_options options = { .relative_sd = 0.15, .packings = 3 };
 
-static struct dig_match match_by(const struct dig_matcher *const   matcher,
+static struct dig_match match_by(struct dig_matcher *const         matcher,
                                  const struct dig_curve_set *const set)
 {
     const struct dig_gravel      gravel = { { 0.55, 0.3, 2200 } };

@@ -15,7 +15,7 @@ static enum dig_status make(const struct dig_curve_set *const      set,
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     *table = (struct digloop_as_dug){
-        .set    = dig_approached_make(set, slots->slots, slots->slot, memory),
+        .set    = dig_approached_make(set, slots->slots, slots->slot, NULL, memory),
         .slots  = *slots,
         .memory = memory,
     };
