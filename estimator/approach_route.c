@@ -11,7 +11,7 @@
 static const double behind = 0.05;
 
 // Of that moment, where the soil counts as resisting.
-static const double level[] = { 0.125, 0.25, 0.5 };
+static const double level[] = { 0.25, 0.5 };
 
 enum { LEVELS = sizeof level / sizeof level[0] };
 
@@ -92,21 +92,20 @@ static double ramp_m(const double moment_Nm[const DIG_CURVE_POINTS], const doubl
     return sum_m;
 }
 
-// The same of the table's curves at one depth, a mean over its gravels.
+// The same of the table's curves at one approach, a mean over its gravels.
 static double table_ramp_m(const struct dig_curve_set *const set, const size_t trajectory,
-                           const double depth)
+                           const struct dig_approach *const approach)
 {
     const struct dig_approach_set *const other = set->approaches;
-    const struct dig_approach            deep  = { .depth = depth };
-    const struct dig_route               route = dig_approach_route_deep(set, trajectory, depth);
-    const bool                           plain = dig_approach_is_plain(&deep);
-    const size_t                         n     = plain ? set->entries : other->entries;
-    double                               sum_m = 0.0;
-    double                               count = 0.0;
+    const struct dig_route route = dig_approach_route_deep(set, trajectory, approach->depth);
+    const bool             plain = dig_approach_is_plain(approach);
+    const size_t           n     = plain ? set->entries : other->entries;
+    double                 sum_m = 0.0;
+    double                 count = 0.0;
     for (size_t i = 0; i < n; i++) {
         const size_t slot = i * set->trajectories + trajectory;
         if ((plain ? set->packings[slot] : other->packings[slot]) <= 0 ||
-            (!plain && !dig_approach_is_same(&other->entry[i].approach, &deep))) {
+            (!plain && !dig_approach_is_same(&other->entry[i].approach, approach))) {
             continue;
         }
         const struct dig_curve *const curve = plain ? &set->curve[slot] : &other->curve[slot];
@@ -123,52 +122,71 @@ static double table_ramp_m(const struct dig_curve_set *const set, const size_t t
     return count > 0.0 ? sum_m / count : (double)NAN;
 }
 
-// The line through the depths dug and their ramps, least squares over those that can be told.
+// A line of ramps over depth, or over attack, least squares over those that can be told.
 struct line {
-    double n, depth, ramp_m, dd, dr;
+    double n, x, ramp_m, xx, xr;
 };
 
-static void add(struct line *const line, const double depth, const double ramp_m)
+static void add(struct line *const line, const double x, const double ramp_m)
 {
     if (isfinite(ramp_m)) {
         line->n += 1.0;
-        line->depth += depth;
+        line->x += x;
         line->ramp_m += ramp_m;
-        line->dd += ramp_m * ramp_m;
-        line->dr += depth * ramp_m;
+        line->xx += x * x;
+        line->xr += x * ramp_m;
     }
 }
 
-double dig_approach_depth(const struct dig_curve_set *const set, const size_t trajectory,
-                          const double deepest, const double first, const double last,
-                          const double moment_Nm[const DIG_CURVE_POINTS])
+// Its slope; 0 of fewer than two points.
+static double slope_of(const struct line *const line)
 {
-    assert(set != NULL && trajectory < set->trajectories && moment_Nm != NULL);
+    const double spread = line->n * line->xx - line->x * line->x;
+    return line->n >= 2.0 && spread > 0.0 ? (line->n * line->xr - line->x * line->ramp_m) / spread
+                                          : 0.0;
+}
+
+// The ramps over depth at attack 0, or over attack at depth 1.
+static struct line line_of(const struct dig_curve_set *const set, const size_t trajectory,
+                           const bool attack)
+{
     const struct dig_approach_set *const other = set->approaches;
+    const struct dig_approach            plain = dig_approach_plain();
     struct line                          line  = { .n = 0.0 };
-    if (other == NULL) {
-        return 1.0;
-    }
-    add(&line, 1.0, table_ramp_m(set, trajectory, 1.0));
+    add(&line, attack ? 0.0 : 1.0, table_ramp_m(set, trajectory, &plain));
     for (size_t i = 0; i < other->entries; i++) {
-        const struct dig_approach *const at   = &other->entry[i].approach;
-        const struct dig_approach        deep = { .depth = at->depth };
-        bool new                              = dig_approach_is_same(at, &deep) &&
+        const struct dig_approach *const at     = &other->entry[i].approach;
+        const struct dig_approach        deep   = { .depth = at->depth };
+        const struct dig_approach        turned = { .attack_rad = at->attack_rad };
+
+        bool new = dig_approach_is_same(at, attack ? &turned : &deep) &&
                    other->packings[i * other->trajectories + trajectory] > 0;
         for (size_t k = 0; new &&k < i; k++) {
             new = !dig_approach_is_same(at, &other->entry[k].approach);
         }
         if (new) {
-            add(&line, at->depth, table_ramp_m(set, trajectory, at->depth));
+            add(&line, attack ? at->attack_rad : at->depth, table_ramp_m(set, trajectory, at));
         }
     }
-    const struct dig_route route  = dig_approach_route_deep(set, trajectory, deepest);
-    const double           own_m  = ramp_m(moment_Nm, first, last, &route);
-    const double           spread = line.n * line.dd - line.ramp_m * line.ramp_m;
-    if (line.n < 2.0 || !isfinite(own_m) || !(spread > 0.0)) {
+    return line;
+}
+
+double dig_approach_depth(const struct dig_curve_set *const set, const size_t trajectory,
+                          const double deepest, const double attack_rad, const double first,
+                          const double last, const double moment_Nm[const DIG_CURVE_POINTS])
+{
+    assert(set != NULL && trajectory < set->trajectories && moment_Nm != NULL);
+    if (set->approaches == NULL) {
         return 1.0;
     }
-    const double slope = (line.n * line.dr - line.depth * line.ramp_m) / spread;
-    const double depth = (line.depth + slope * (line.n * own_m - line.ramp_m)) / line.n;
+    const struct line      deep   = line_of(set, trajectory, false);
+    const struct line      turned = line_of(set, trajectory, true);
+    const struct dig_route route  = dig_approach_route_deep(set, trajectory, deepest);
+    const double           slope  = slope_of(&deep);
+    const double own_m = ramp_m(moment_Nm, first, last, &route) - slope_of(&turned) * attack_rad;
+    if (!(slope > 0.0) || !isfinite(own_m)) {
+        return 1.0;
+    }
+    const double depth = (deep.x + (deep.n * own_m - deep.ramp_m) / slope) / deep.n;
     return fmin(fmax(depth, DIG_APPROACH_DEPTH_LEAST), DIG_APPROACH_DEPTH_MOST);
 }

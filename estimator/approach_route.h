@@ -18,13 +18,15 @@ struct dig_route dig_approach_route_deep(const struct dig_curve_set *set, size_t
                                          double depth);
 
 /// How deep a dig was, by where its soil began to resist: the way from there to the end of the
-/// first leg, against that of the table's own digs at several depths. The moment is over the path
-/// of dig_approach_route_deep() at deepest, measured from first to last. Resisting begins at an
-/// eighth, a quarter and a half of the moment just behind the first leg; the mean of the three
-/// counts, over all gravels of the table. 1 where the table was dug at one depth, or too little of
-/// the way was measured to tell.
+/// first leg, against that of the table's own digs at several depths, and at several attacks. The
+/// moment is over the path of dig_approach_route_deep() at deepest, measured from first to last.
+/// Resisting begins at a quarter and at a half of the moment just behind the first leg; the mean of
+/// the two counts, over all gravels of the table. 1 where the table was dug at one depth, or too
+/// little of the way was measured to tell. The scatter of one dig makes it uncertain by about a
+/// tenth.
 double dig_approach_depth(const struct dig_curve_set *set, size_t trajectory, double deepest,
-                          double first, double last, const double moment_Nm[DIG_CURVE_POINTS]);
+                          double attack_rad, double first, double last,
+                          const double moment_Nm[DIG_CURVE_POINTS]);
 
 /// The greatest depth the table was dug at along the trajectory, at least 1.
 double dig_approach_deepest(const struct dig_curve_set *set, size_t trajectory);

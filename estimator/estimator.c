@@ -204,7 +204,8 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
         return status;
     }
     const struct dig_approach made = {
-        .depth      = dig_approach_depth(set, t, deepest, seen.first, seen.last, seen.moment_Nm),
+        .depth      = dig_approach_depth(set, t, deepest, track->turn_m / set->tooth_m, seen.first,
+                                         seen.last, seen.moment_Nm),
         .attack_rad = track->turn_m / set->tooth_m,
     };
     const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
