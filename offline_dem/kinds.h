@@ -25,7 +25,8 @@ double dig_kinds_density(const struct dig_scene *scene, const struct dig_gravel 
 
 /// Constants of contacts between two materials, the bucket and the walls among them: the scene's
 /// pair, else the smaller frictions and the geometric mean of restitution; of grains with bucket or
-/// walls, else the grains' own.
+/// walls, else the grains' own. Grains cohere with each other, adhere to the bucket, and neither
+/// to walls.
 struct dig_law_material dig_kinds_between(const struct dig_scene  *scene,
                                           const struct dig_gravel *gravel, size_t a, size_t b);
 

@@ -23,6 +23,7 @@ static void cohere(const struct dig_gravel *const gravel, const double magnitude
 {
     (void)gravel;
     scene->laws.cohesion_Jpm3 = magnitude;
+    scene->laws.adhesion_Jpm3 = magnitude; // what sticks to itself sticks to steel
 }
 
 static void adhere(const struct dig_gravel *const gravel, const double magnitude,

@@ -2,7 +2,8 @@
 // computed of.
 //
 //   effect          magnitude                                     absent at
-//   cohesion        J/m3   SJKR between grains                    0
+//   cohesion        J/m3   SJKR between grains, and between       0
+//                          grains and bucket
 //   adhesion        J/m3   SJKR between grains and bucket         0
 //   polydispersity  1      largest / smallest diameter; three     1
 //                          classes, 30, 40 and 30 % by mass,

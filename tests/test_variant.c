@@ -61,6 +61,17 @@ static void every_effect_of_a_bed_makes_another_scene(void **state)
     }
 }
 
+static void what_sticks_to_itself_sticks_to_the_bucket(void **state)
+{
+    (void)state;
+    const struct dig_scene cohesive = make(DIG_EFFECT_COHESION, 2e4);
+    assert_close(cohesive.laws.cohesion_Jpm3, 2e4, 0.0);
+    assert_close(cohesive.laws.adhesion_Jpm3, 2e4, 0.0);
+    const struct dig_scene adhesive = make(DIG_EFFECT_ADHESION, 2e4);
+    assert_close(adhesive.laws.cohesion_Jpm3, 0.0, 0.0);
+    assert_close(adhesive.laws.adhesion_Jpm3, 2e4, 0.0);
+}
+
 static void sizes_are_mixed_as_in_the_reference(void **state)
 {
     (void)state;
@@ -169,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_effect_of_a_bed_makes_another_scene),
+        cmocka_unit_test(what_sticks_to_itself_sticks_to_the_bucket),
         cmocka_unit_test(sizes_are_mixed_as_in_the_reference),
         cmocka_unit_test(a_slope_passes_below_every_tooth_and_touches_one),
         cmocka_unit_test(a_layer_is_unlike_the_gravel_over_it),

@@ -1,11 +1,11 @@
-// Grains stick to each other: the cohesion energy density of an SJKR contact, as a bed was dug
-// with.
+// Grains stick to each other and to the bucket alike: the cohesion energy density of an SJKR
+// contact, as a bed was dug with.
 
 #include "estimator/effects/list.h"
 
 const struct dig_effect dig_effect_cohesion = {
     .id         = DIG_EFFECT_COHESION,
-    .summary    = "grains that stick to each other",
+    .summary    = "grains that stick to each other and to the bucket",
     .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
     .parameters = 1,

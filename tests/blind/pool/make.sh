@@ -19,6 +19,7 @@ scene() {
 
 "$bin/digtable" generate config/scenes/rig.yaml "$here/plain.yaml" -o "$out/plain.sqlite" -j 1
 "$bin/digtable" generate config/scenes/rig.yaml "$here/effects.yaml" -o "$out/effects.sqlite" -j 1
+"$bin/digtable" generate config/scenes/rig.yaml "$here/effects_2.yaml" -o "$out/effects.sqlite" -j 1
 for name in trench bouncy smooth_walls; do
     "$bin/digtable" generate "$work/$name.yaml" "$here/outside.yaml" -o "$out/$name.sqlite" -j 1
 done
