@@ -96,6 +96,10 @@ static bool is_clear_outside(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_OUTSIDE && blind_class_of(r) == 3;
 }
+static bool is_clear_outside_in_soil(const struct blind_result *const r)
+{
+    return is_outside(r) && blind_class_of_size(blind_size_in_soil(r)) == 3;
+}
 static bool is_unlisted(const struct blind_result *const r)
 {
     return blind_says(r, "unlisted");
@@ -138,6 +142,8 @@ const struct blind_criterion blind_criterion[BLIND_CRITERIA] = {
     { "pairs, each of size 3 and more: both named", is_clear_pair, has_both, 0.80, true },
     { "outside the catalogue: a wrong name with p > .5", is_outside, sure_of_wrong, 0.05, false },
     { "outside the catalogue, size 3 and more: unlisted", is_clear_outside, is_unlisted, 0.80,
+      true },
+    { "  the same by the size in the soil alone", is_clear_outside_in_soil, is_unlisted, 0.80,
       true },
     { "one effect, size 3 and more: error after <= 1.15 of the oracle's", is_known, is_near_oracle,
       0.50, true },

@@ -5,7 +5,7 @@
 
 #include "tests/blind/answer.h"
 
-#define BLIND_CRITERIA 13
+#define BLIND_CRITERIA 14
 
 /// A share with its 95 % interval (Wilson, 1927).
 struct blind_share {
