@@ -76,9 +76,9 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
-tables: all ## Compute what tables/rig.sqlite and rig_effects.sqlite lack of their grids (hours of all cores)
-	$(Q)for table in rig rig_effects; do \
-	    $(BUILD)/bin/digtable generate config/scenes/rig.yaml config/grids/$$table.yaml \
+tables: all ## Compute what the tables rig, rig_effects and product lack of their grids (many hours of all cores)
+	$(Q)for table in rig rig_effects product; do \
+	    $(BUILD)/bin/digtable generate config/scenes/$${table%_effects}.yaml config/grids/$$table.yaml \
 	        -o tables/$$table.sqlite || exit 1; \
 	    $(BUILD)/bin/digtable check tables/$$table.sqlite || exit 1; done
 

@@ -3,7 +3,7 @@
 # deep and long must a bed be before the bucket stops feeling its box? Varies config/scenes/rig.yaml one
 # thing at a time and prints a line for every variant (docs/numerics/dem.md has them): grains, beds, mean of
 # the moment in time with its standard error, scatter of one dig's mean, and of its moment after
-# +-0.16 s (relative L2 against the beds' mean, 1 sigma), user seconds a dig. What lies in OUT
+# +-0.16 s (relative L2 against the beds' mean, 1 sigma), user seconds a dig, of actual the mean while it turns up. What lies in OUT
 # is not dug again, so it may be stopped and started, also with more BEDS.
 #   BIN=build/bin OUT=build/bed_study scripts/bed_study.sh [across] [finest] [room] [hard] [firm] [shipped]
 # On one of two busy threads of a core `across` takes half an hour, `finest` (20 grains; never run) an hour, `room` 25 minutes, `hard` and
@@ -36,6 +36,7 @@ line() { # NAME
         -v grains="$(cat "${digs[@]/%.csv/.log}" | awk '/grains/ { s += $1; n++ } END { printf "%.0f", s / n }')" '
         FNR == 1 { for (i = 1; i <= NF; i++) if ($i == "My_Nm") my = i; beds++; n = 0; next }
         { t[n] = $1; moment[beds, n++] = $my }
+        $1 >= 4.1 && $1 < 6.1 { turn += $my; turning++ } # the second turn of actual
         function smoothed(bed, i,    sum, k, j) {
             for (j = i; j >= 0 && t[i] - t[j] <= half_s; j--) { sum += moment[bed, j]; k++ }
             for (j = i + 1; j < n && t[j] - t[i] <= half_s; j++) { sum += moment[bed, j]; k++ }
@@ -53,8 +54,10 @@ line() { # NAME
             }
             for (b = 1; b <= beds; b++) { s += of[b] / beds; q += of[b] * of[b] }
             sd = beds > 1 ? sqrt((q - beds * s * s) / (beds - 1)) : 0
-            printf "%-24s %6d grains %2d beds  mean %.4f +- %.4f Nm  one mean %.3f  one dig %.3f  %6.1f s\n", name, grains, beds,
+            printf "%-24s %6d grains %2d beds  mean %.4f +- %.4f Nm  one mean %.3f  one dig %.3f  %6.1f s", name, grains, beds,
                 s, sd / sqrt(beds), sd / s, sqrt(scatter / norm), user_s
+            if (turning > 0) printf "  second turn %.3f Nm", turn / turning
+            print ""
         }' "${digs[@]}" | tee -a "$out/lines.txt"
 }
 
@@ -66,7 +69,7 @@ stiff() { echo "s/^  young_Pa: .*/  young_Pa: $1/"; }
 join() { printf '%s\n' "$@"; }
 seven=$(grain 0.01) nine=$(grain 0.0075) periodic='$a bed: {periodic_y: true}'
 
-plain() { study across_7 16 simpleA .5 "$(join "$seven" "$periodic")"; } # what the others are compared with
+plain() { study across_7 11 simpleA .5 "$(join "$seven" "$periodic")"; } # what the others are compared with
 
 across() { # Grains across the bucket; the rig's box with sides that are one.
     plain
@@ -82,9 +85,10 @@ room() { # Walls or sides that are one so many mm beside the bucket; the floor; 
     study walls_25_across_9 4 simpleA .5 "$nine"
     plain
     study periodic_50 8 simpleA .5 "$(join "$seven" "$periodic" "$(beside 50)")"
-    study deeper_25 16 simpleA .5 "$(join "$seven" "$periodic" "$(floor -0.025)")"
+    study deeper_25 8 simpleA .5 "$(join "$seven" "$periodic" "$(floor -0.025)")"
     study across_7_actual 4 actual .5 "$(join "$seven" "$periodic")" # whose heap reaches the far end
     study longer_actual 4 actual .5 "$(join "$seven" "$periodic" "$(ends -0.04 0.39)")"
+    study longest_actual 3 actual .5 "$(join "$seven" "$periodic" "$(ends -0.04 0.47)")"
 }
 
 shipped() { # The rig's own digs, nine grains and walls, as tables/rig.sqlite holds them: nothing is dug.

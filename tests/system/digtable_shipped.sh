@@ -7,6 +7,8 @@ digtable check $table
 check "$table is sound" is "$code" 0
 digtable check tables/rig_effects.sqlite
 check "tables/rig_effects.sqlite is sound" is "$code" 0
+digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/product.sqlite" --time-limit 0
+check "every dig of the product grid can be begun" eval 'is $code 0 && grep -q "0 of 78 digs" $work/err'
 
 # The first run of a build that names its numerics: tables may hold older ones, carried over.
 gravel=$(sqlite3 -separator , $table "SELECT friction, rolling, density_kgpm3 FROM run JOIN ground g ON g.id = ground
