@@ -96,7 +96,9 @@ static void leave_out(const struct dig_curve_set *const set, const size_t entry,
         below.depth = low;
         above.depth = high;
     }
-    struct dig_response here, one, two;
+    struct dig_response here;
+    struct dig_response one;
+    struct dig_response two;
     if (!dig_response_own(set, entry, trajectory, &at, &plain, &here) ||
         !dig_response_own(set, entry, trajectory, &below, &plain, &one) ||
         !dig_response_own(set, entry, trajectory, &above, &plain, &two)) {
@@ -169,7 +171,8 @@ static void measure_borrowed(const struct dig_curve_set *const set, const size_t
         struct dig_nodes nodes;
         dig_nodes_of(set, e, trajectory, &nodes);
         for (size_t i = 1; i < nodes.nodes; i++) {
-            struct dig_response own, others;
+            struct dig_response own;
+            struct dig_response others;
             error->farthest_m =
                 fmax(error->farthest_m,
                      dig_approach_distance_m(set, trajectory, &nodes.approach[i], &plain));

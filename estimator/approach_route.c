@@ -59,8 +59,8 @@ double dig_approach_deepest(const struct dig_curve_set *const set, const size_t 
     return deepest;
 }
 
-// The way from where the moment reaches the levels to the end of the first leg, m; NaN when it does
-// not, or the curve lacks what must be known.
+// The way from where the moment reaches the levels to the end of the first leg, m, at most that
+// leg; NaN when it does not, or the curve lacks what must be known.
 static double ramp_m(const double moment_Nm[const DIG_CURVE_POINTS], const double first,
                      const double last, const struct dig_route *const route)
 {
@@ -83,10 +83,13 @@ static double ramp_m(const double moment_Nm[const DIG_CURVE_POINTS], const doubl
         while (k > 0 && moment_Nm[k] > level[l] * full_Nm && (double)k * step > first) {
             k--;
         }
-        if (!(full_Nm > 0.0) || moment_Nm[k] > level[l] * full_Nm || k == at) {
+        const bool above = moment_Nm[k] > level[l] * full_Nm;
+        if (!(full_Nm > 0.0) || k == at || (above && first > step)) {
             return (double)NAN;
         }
-        const double f = (level[l] * full_Nm - moment_Nm[k]) / (moment_Nm[k + 1] - moment_Nm[k]);
+        // It resists from the very start: at least so far.
+        const double f =
+            above ? 0.0 : (level[l] * full_Nm - moment_Nm[k]) / (moment_Nm[k + 1] - moment_Nm[k]);
         sum_m += (corner - ((double)k + f) * step) * whole_m / LEVELS;
     }
     return sum_m;

@@ -119,7 +119,7 @@ static void fill(const struct dig_curve_set *const       set,
 const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *const       set,
                                                 const size_t                            slots,
                                                 const struct dig_approached_slot *const slot,
-                                                const struct dig_approach_error *const  measured,
+                                                const struct dig_approach_error *const  error,
                                                 void *const                             memory)
 {
     assert(set != NULL && slot != NULL && memory != NULL && slots >= 1 &&
@@ -133,18 +133,17 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
     made->curve                      = (struct dig_curve *)(void *)((uint8_t *)memory + l.curve);
     for (size_t s = 0; s < slots; s++) {
         assert(slot[s].trajectory < set->trajectories);
-        struct dig_approached_slot told  = slot[s];
-        struct dig_approach_error  error = { .farthest_m = 0.0 };
-        told.approach                    = dig_approach_told(&told.approach);
+        struct dig_approached_slot told = slot[s];
+        struct dig_approach_error  own  = { .farthest_m = 0.0 };
+        told.approach                   = dig_approach_told(&told.approach);
         made->trajectory[s] = dig_response_trajectory(set, told.trajectory, &told.approach);
-        if (measured != NULL) {
-            error = measured[told.trajectory];
+        if (error != NULL) {
+            own = error[told.trajectory];
         } else if (!dig_approach_is_plain(&told.approach)) {
-            dig_approach_error_measure(set, told.trajectory, &error);
+            dig_approach_error_measure(set, told.trajectory, &own);
         }
         for (size_t e = 0; e < set->entries; e++) {
-            fill(set, &told, &error, e, &made->packings[e * slots + s],
-                 &made->curve[e * slots + s]);
+            fill(set, &told, &own, e, &made->packings[e * slots + s], &made->curve[e * slots + s]);
         }
     }
     return made;

@@ -136,9 +136,9 @@ double dig_approach_clamp(const struct dig_curve_set *const set, const size_t tr
 {
     assert(set != NULL && approach != NULL && nearest != NULL && trajectory < set->trajectories);
     struct place point[DIG_NODES_MAX];
-    struct place hull[2 * DIG_NODES_MAX];
-    const size_t n       = collect(set, trajectory, point);
-    const size_t corners = chain(n, point, hull);
+    struct place hull[2 * DIG_NODES_MAX] = { { 0.0, 0.0 } };
+    const size_t n                       = collect(set, trajectory, point);
+    const size_t corners                 = chain(n, point, hull);
 
     const struct place p      = place_of(set, trajectory, approach);
     struct place       best   = hull[0];

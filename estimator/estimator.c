@@ -20,6 +20,9 @@ static const double tie_share = 0.125;
 // A dig shorter than this share of its trajectory is not worth matching.
 static const double least_progress = 0.2;
 
+// The soil is looked for from so much deeper than the table was dug, to see what is off it.
+static const double probe_deeper = 1.5;
+
 // Rates of the joints come from the angles of so long.
 static const double rates_window_s = 0.25;
 
@@ -194,10 +197,11 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
                                       const struct dig_track *const track,
                                       struct dig_raw *const raw, struct dig_observation *const out)
 {
-    const size_t           t       = (size_t)out->trajectory;
-    const double           deepest = dig_approach_deepest(set, t);
-    const struct dig_route deep    = dig_approach_route_deep(set, t, deepest);
-    struct dig_observation seen    = *out;
+    const size_t t = (size_t)out->trajectory;
+    const double deepest =
+        fmin(probe_deeper * dig_approach_deepest(set, t), DIG_APPROACH_DEPTH_MOST);
+    const struct dig_route deep = dig_approach_route_deep(set, t, deepest);
+    struct dig_observation seen = *out;
     enum dig_status        status =
         dig_window_observe(&raw->window, &deep, track, 2.0 * limit_m, set->smooth_half_s, &seen);
     if (status != DIG_OK) {

@@ -386,7 +386,7 @@ bool dig_fit_once(struct dig_fit *const fit)
     if (fit->early != NULL && fit->hunch.any && !fit->early->shadow.on) {
         end_hunch(fit);
     }
-    if (fit->dug && !fit->early->shadow.on) {
+    if (fit->early != NULL && fit->dug && !fit->early->shadow.on) {
         offer(fit, &fit->known);
     }
     atomic_store(&fit->busy, false);

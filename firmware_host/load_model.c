@@ -59,14 +59,22 @@ static void follow(const struct dig_curve *const before, const struct dig_curve 
     }
 }
 
+static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
+{
+    bool same = true;
+    for (int i = 0; i < DIG_AXES; i++) {
+        same = same && fabs(a->value[i] - b->value[i]) <= 0.0;
+    }
+    return same;
+}
+
 static void change_approaches(const struct dig_curve_set *const before,
                               const struct dig_curve_set *const after)
 {
     const struct dig_approach_set *const other = after->approaches;
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         size_t e = 0;
-        while (e < after->entries &&
-               memcmp(&after->gravel[e], &other->entry[i].gravel, sizeof after->gravel[e]) != 0) {
+        while (e < after->entries && !is_same(&after->gravel[e], &other->entry[i].gravel)) {
             e++;
         }
         for (size_t t = 0; e < after->entries && t < after->trajectories; t++) {

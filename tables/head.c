@@ -5,8 +5,8 @@
 #include "tables/schema.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -225,20 +225,34 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     return strncmp(rest, first, strlen(first)) != 0 && strncmp(rest, "phase=", 6) != 0;
 }
 
+// The n-th number, from 0, behind a key of the canonical text; NaN when there is none.
+static double number_behind(const char *const at, const size_t n)
+{
+    const char *from  = at;
+    double      value = (double)NAN;
+    for (size_t i = 0; i <= n; i++) {
+        char *end = NULL;
+        value     = strtod(from, &end);
+        if (end == from) {
+            return (double)NAN;
+        }
+        from = end;
+    }
+    return value;
+}
+
 // The ground as the canonical text has it: box_m's upper end, or its profile.
 static void read_ground(const char *const canonical, struct dig_scene *const scene)
 {
     static const char box[]     = "\nbox_m=";
     static const char surface[] = "\nsurface_m=";
     const char       *at        = strstr(canonical, box);
-    if (at != NULL) {
-        (void)sscanf(at + sizeof box - 1, "%*f %*f %*f %*f %*f %lf", &scene->box.z_max_m);
-    }
+    scene->box.z_max_m          = at != NULL ? number_behind(at + sizeof box - 1, 5) : (double)NAN;
     for (at = strstr(canonical, surface); at != NULL && scene->bed.surface < DIG_SURFACE_MAX;
          at = strstr(at + 1, surface)) {
-        const size_t i = scene->bed.surface++;
-        (void)sscanf(at + sizeof surface - 1, "%lf %lf", &scene->bed.surface_x_m[i],
-                     &scene->bed.surface_z_m[i]);
+        const size_t i            = scene->bed.surface++;
+        scene->bed.surface_x_m[i] = number_behind(at + sizeof surface - 1, 0);
+        scene->bed.surface_z_m[i] = number_behind(at + sizeof surface - 1, 1);
     }
 }
 

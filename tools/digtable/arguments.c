@@ -153,6 +153,19 @@ static unsigned long all_cores(void)
     return cores > 0 ? (unsigned long)cores : 1;
 }
 
+static const char *take_approach(const int option, const char *const value,
+                                 struct dig_approach *const approach)
+{
+    if (option == OPTION_DEPTH) {
+        const bool ok =
+            number(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, &approach->depth);
+        return ok ? NULL : "a factor, 0.2 to 3";
+    }
+    const bool ok = number(value, -45.0, 45.0, &approach->attack_rad);
+    approach->attack_rad *= DIG_RAD_PER_DEG;
+    return ok ? NULL : "degrees, -45 to 45";
+}
+
 // One option into the arguments; NULL, or what was expected instead of its value.
 static const char *take_option(const int option, const char *const value,
                                struct dig_arguments *const a)
@@ -172,12 +185,7 @@ static const char *take_option(const int option, const char *const value,
         ok = number(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3]);
         return ok ? NULL : "kg/m3, 100 to 20000";
     case OPTION_DEPTH:
-        ok = number(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, &a->approach.depth);
-        return ok ? NULL : "a factor, 0.2 to 3";
-    case OPTION_ATTACK:
-        ok = number(value, -45.0, 45.0, &a->approach.attack_rad);
-        a->approach.attack_rad *= DIG_RAD_PER_DEG;
-        return ok ? NULL : "degrees, -45 to 45";
+    case OPTION_ATTACK: return take_approach(option, value, &a->approach);
     case OPTION_YOUNG:
         ok = number(value, 1.0, 1e12, &a->young_Pa);
         return ok ? NULL : "Pa, 1 to 1e12";
