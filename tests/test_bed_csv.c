@@ -108,5 +108,5 @@ int main(void)
         cmocka_unit_test(the_bed_of_the_formats_loads),
         cmocka_unit_test(defects_are_told_and_nothing_is_written),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests_name("bed_csv", tests, scratch_setup, scratch_teardown);
 }
