@@ -7,7 +7,8 @@
 
 enum { DIGS = 4, WORLDS = 10, MANY = 400 };
 
-// What two DEM codes may differ by stands in the noise of every group: docs/numerics/closed_loop.md.
+// What two DEM codes may differ by stands in the noise of every group:
+// docs/numerics/closed_loop.md.
 static const double discrepancy = 0.05;
 
 static struct dig_measured measured[DIGS];

@@ -36,10 +36,10 @@ static void walls_and_bucket_have_the_grains_own_friction(void **state)
 static void unlike_grains_share_the_smoother_surface(void **state)
 {
     (void)state;
-    const struct dig_scene        scene   = { .material = { .restitution = 0.2 },
-                                              .bed      = { .materials = 1,
-                                                            .material  = { { "layer", 0.9, 0.1, 4000.0,
-                                                                             0.8 } } } };
+    const struct dig_scene scene = {
+        .material = { .restitution = 0.2 },
+        .bed      = { .materials = 1, .material = { { "layer", 0.9, 0.1, 4000.0, 0.8 } } }
+    };
     const struct dig_law_material between = dig_kinds_between(&scene, &gravel, 0, 1);
     assert_close(between.friction, 0.5, 0.0);
     assert_close(between.rolling, 0.1, 0.0);

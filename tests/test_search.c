@@ -226,9 +226,9 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     for (size_t i = 0; i < s.rivals; i++) {
         c.single[i] = s.rival[i].hypothesis;
     }
-    assert_int_equal(dig_null_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS, &c.seed,
-                                   &c.plain_null),
-                     DIG_OK);
+    assert_int_equal(
+        dig_null_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS, &c.seed, &c.plain_null),
+        DIG_OK);
     const size_t best   = dig_search_best_rival(&s);
     const double before = s.log_evidence[best];
     assert_int_equal(s.rival[best].hypothesis.effect[0], slope);
