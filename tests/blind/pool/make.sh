@@ -1,5 +1,5 @@
 #!/bin/sh
-# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 26 beds. Goes on where it was stopped.
+# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 38 beds. Goes on where it was stopped.
 # usage, from the root of the sources: BIN=build/bin tests/blind/pool/make.sh
 set -eu
 here=$(dirname "$0")
