@@ -41,5 +41,15 @@ check "... and of 2500 kg/m3, to a tenth" within "$(number slope_up density_kgpm
 trace cohesion
 check "cohesion that another gravel stands in for is not named" [ "$(verdict cohesion)" = '"none"' ]
 
+trace cohesion_all
+check "nor is what sticks to the bucket, too" [ "$(verdict cohesion_all)" = '"none"' ]
+trace cohesion_2e5
+check "twice as much is noticed" [ "$(verdict cohesion_2e5)" != '"none"' ]
+case "$(verdict cohesion_2e5)" in
+'"unlisted"' | '"cohesion"') named=right ;;
+*) named=wrong ;;
+esac
+check "... and gets no other name" [ "$named" = right ]
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

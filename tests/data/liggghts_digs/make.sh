@@ -31,6 +31,7 @@ plain) ;;
 poly) radii=".003 .00375 .005" shares=".3 .4 .3" ;;
 cohesion) pull=1e5 ;;
 cohesion_all) pull=1e5 stick=1e5 ;;
+cohesion_2e5) pull=2e5 stick=2e5 ;;
 clump) clump=yes ;;
 other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
