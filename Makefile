@@ -162,8 +162,8 @@ check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
-# Two tests repeat, for statistics, what smaller ones do once: minutes under a sanitizer, for nothing new.
-statistics := tests/test_round_trip.c tests/test_rig_track.c
+# Tests that repeat, for statistics, what smaller ones do once: minutes under a sanitizer, for nothing new.
+statistics := tests/test_round_trip.c tests/test_rig_track.c tests/test_slump.c
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
@@ -227,9 +227,12 @@ coverage: ## Line and branch coverage per source file
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/cov CFLAGS="-O0 -g --coverage"
 	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
 
+# The analyzer reads what ships; tests are run under sanitizers instead.
 lint: layers $(BUILD)/messages/.made ## Layering, the compiler's analyzer, clang-tidy
-	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
+	$(Q)printf '%s\n' $(filter-out tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
+	$(Q)printf '%s\n' $(filter tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
+	    $(CC) $(STD) $(WARN) -Werror $(lint_flags) -fsyntax-only {}
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
 	    clang-tidy --quiet {} -- $(STD) $(lint_flags) 2>/dev/null
 
