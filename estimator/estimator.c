@@ -212,6 +212,7 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
                                          seen.last, seen.moment_Nm),
         .attack_rad = track->turn_m / set->tooth_m,
     };
+    seen.made                       = made;
     const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
     const struct dig_route route    = dig_approach_route_deep(set, t, seen.approach.depth);
     const double           off_m    = hypot(track->rms_m, beyond_m);

@@ -56,14 +56,17 @@ struct dig_estimate {
 struct dig_observation {
     uint32_t            dig_count;
     int                 trajectory;
-    double              off_path_m;  // rms distance of path and trajectory, rig scale
-    struct dig_approach approach;    // how the trajectory was dug; zeroed: as it stands
-    double              first, last; // progress range that was measured
-    double              moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
-    double              sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
-    bool                forces; // Fx and Fz were measured, too, as far as the moment
-    double              force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
-    double              force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double              off_path_m; // rms distance of path and trajectory, rig scale
+    struct dig_approach made;       // how it was dug, as the dig itself tells; depth 0: not told,
+                                    // the table was dug in one way alone
+    struct dig_approach approach;   // the nearest to that the table knows, which it is laid along
+                                    // and matched at; zeroed: the trajectory as it stands
+    double first, last;             // progress range that was measured
+    double moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
+    double sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing
+    bool   forces;                      // Fx and Fz were measured, too, as far as the moment
+    double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
 };
 
 #define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
@@ -91,9 +94,10 @@ struct dig_match {
 
 /// What the real dig will resist, along one trajectory, machine scale, rig axes.
 struct dig_prediction {
-    bool   valid;
-    int    trajectory;
-    double progress_now;
+    bool                valid;
+    int                 trajectory;
+    struct dig_approach approach; // how that is dug; zeroed: as it stands
+    double              progress_now;
     double from_progress, to_progress; // the points below are equally spaced over this range
     double moment_Nm[DIG_PREDICTION_POINTS];
     double sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
@@ -105,10 +109,11 @@ struct dig_prediction {
 /// numbers, rig scale for the curves.
 struct dig_forecast {
     struct dig_expected {
-        bool             valid;
-        bool             off_table; // the dig going on is: none valid
-        struct dig_curve curve;     // over the progress that a tick tells
-        double           peak_Nm, energy_J;
+        bool                valid;
+        bool                off_table; // the dig going on is: none valid
+        struct dig_approach approach;  // of the dig expected; zeroed: as the trajectory stands
+        struct dig_curve    curve;     // over the progress that a tick tells
+        double              peak_Nm, energy_J;
     } along[DIG_TRAJECTORY_MAX];
 };
 

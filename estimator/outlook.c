@@ -20,6 +20,7 @@ void dig_forecast_make(const struct dig_curve_set *const set, const double lambd
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
         struct dig_expected *const along = &forecast->along[t];
         along->off_table                 = false;
+        along->approach                  = dig_approach_plain();
         along->valid =
             t < set->trajectories && dig_predict_curve(set, match, t, &along->curve) == DIG_OK;
         if (along->valid) {
@@ -40,6 +41,7 @@ void dig_forecast_as_dug(const struct dig_curve_set *const set, const double lam
     const struct dig_approached_slot  slot = { trajectory, *approach };
     const struct dig_curve_set *const dug  = dig_approached_make(set, 1, &slot, error, memory);
     expected->off_table                    = false;
+    expected->approach                     = *approach;
     expected->valid = dig_predict_curve(dug, match, 0, &expected->curve) == DIG_OK;
     if (expected->valid) {
         const double lambda4 = pow(lambda, 4.0);
@@ -109,6 +111,7 @@ static struct dig_prediction predict_from(const struct dig_estimator *const esti
         p.progress_now                         = progress;
         p.from_progress                        = progress;
         p.to_progress                          = 1.0;
+        p.approach                             = along->approach;
         p.peak_Nm                              = along->peak_Nm;
         p.energy_J                             = along->energy_J;
         dig_predict_points(&along->curve, estimator->lambda, &p);

@@ -8,90 +8,6 @@
 #include <stdint.h>
 #include <string.h>
 
-static void put_gravel(FILE *const to, const struct dig_gravel *const g)
-{
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "{" : ", ", dig_axis_name((enum dig_axis)a),
-                      g->value[a]);
-    }
-    (void)fputs("}", to);
-}
-
-static void put_named(FILE *const to, const char *const name, const struct dig_gravel *const g)
-{
-    (void)fprintf(to, "\"%s\": ", name);
-    put_gravel(to, g);
-    (void)fputs(",\n ", to);
-}
-
-static void put_numbers(FILE *const to, const char *const name, const double number[])
-{
-    (void)fprintf(to, "\n   \"%s\": [", name);
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(to, "%s%.7g", k == 0 ? "" : k % 16 == 0 ? ",\n    " : ", ", number[k]);
-    }
-    (void)fputs("]", to);
-}
-
-static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
-{
-    (void)fputs(",\n   \"force\": {", to);
-    put_numbers(to, "x_N", dig->force_N[0]);
-    (void)fputs(",", to);
-    put_numbers(to, "z_N", dig->force_N[1]);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_x_N", dig->force_sigma_N[0]);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_z_N", dig->force_sigma_N[1]);
-    (void)fputs("}", to);
-}
-
-static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
-{
-    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g,", dig->trajectory,
-                  dig->first, dig->last);
-    if (!dig_approach_is_plain(&dig->approach)) {
-        (void)fprintf(to, " \"depth\": %.9g, \"attack_deg\": %.9g,", dig->approach.depth,
-                      dig->approach.attack_rad / DIG_RAD_PER_DEG);
-    }
-    put_numbers(to, "moment_Nm", dig->moment_Nm);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_Nm", dig->sigma_Nm);
-    if (dig->forces) {
-        put_forces(to, dig);
-    }
-    (void)fputs("}", to);
-}
-
-void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
-{
-    assert(to != NULL && identity != NULL);
-    (void)fprintf(
-        to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu, \"forces\": %s,\n ",
-        identity->scene_hash, identity->trajectory, identity->digs,
-        identity->forces ? "true" : "false");
-    put_named(to, "gravel", &identity->gravel);
-    put_named(to, "mean", &identity->mean);
-    put_named(to, "low", &identity->low);
-    put_named(to, "high", &identity->high);
-    put_named(to, "nearest", &identity->nearest);
-    (void)fprintf(to,
-                  "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
-                  "\"outside\": %s,\n \"samples\": [",
-                  identity->distance, identity->nearest_distance, identity->noise_floor,
-                  identity->outside ? "true" : "false");
-    for (size_t i = 0; i < identity->samples; i++) {
-        (void)fputs(i == 0 ? "" : ",\n  ", to);
-        put_gravel(to, &identity->sample[i]);
-    }
-    (void)fputs(identity->recorded > 0 ? "],\n \"recorded\": [" : "]", to);
-    for (size_t i = 0; i < identity->recorded; i++) {
-        (void)fputs(i == 0 ? "" : ",\n  ", to);
-        put_dig(to, &identity->recording[i]);
-    }
-    (void)fputs(identity->recorded > 0 ? "]}\n" : "}\n", to);
-}
-
 #define REQUIRED CYAML_FLAG_DEFAULT
 
 struct gravel_text {
@@ -117,6 +33,8 @@ struct identity_text {
     char               trajectory[DIG_NAME_SIZE];
     uint32_t           digs;
     bool               forces;
+    double             depth, attack_deg;                 // depth 0: not given
+    double             matched_depth, matched_attack_deg; // the same
     struct gravel_text gravel, mean, low, high, nearest;
     double             distance, nearest_distance, noise_floor;
     bool               outside;
@@ -165,6 +83,9 @@ static const cyaml_schema_field_t dig_fields[] = {
 static const cyaml_schema_value_t recorded = { CYAML_VALUE_MAPPING(REQUIRED, struct dig_text,
                                                                    dig_fields) };
 
+#define NUMBER_PERHAPS(name)                                                                       \
+    CYAML_FIELD_FLOAT(#name, CYAML_FLAG_OPTIONAL, struct identity_text, name)
+
 #define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
 
 static const cyaml_schema_field_t fields[] = {
@@ -172,6 +93,10 @@ static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, trajectory, 1),
     CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, digs),
     CYAML_FIELD_BOOL("forces", CYAML_FLAG_OPTIONAL, struct identity_text, forces),
+    NUMBER_PERHAPS(depth),
+    NUMBER_PERHAPS(attack_deg),
+    NUMBER_PERHAPS(matched_depth),
+    NUMBER_PERHAPS(matched_attack_deg),
     GRAVEL(gravel),
     GRAVEL(mean),
     GRAVEL(low),
@@ -212,12 +137,18 @@ static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DI
     return is;
 }
 
+// Depth 0 is none given.
+static bool is_approach(const struct dig_approach *const approach)
+{
+    const struct dig_approach told = dig_approach_told(approach);
+    return told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST &&
+           fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
+}
+
 static bool is_dig(const struct dig_identity_dig *const dig)
 {
-    const struct dig_approach made = dig_approach_told(&dig->approach);
-    return made.depth >= DIG_APPROACH_DEPTH_LEAST && made.depth <= DIG_APPROACH_DEPTH_MOST &&
-           fabs(made.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad && dig->first >= 0.0 &&
-           dig->last > dig->first && dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
+    return is_approach(&dig->approach) && dig->first >= 0.0 && dig->last > dig->first &&
+           dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
            is_curve(dig->force_N[0], dig->force_sigma_N[0]) &&
            is_curve(dig->force_N[1], dig->force_sigma_N[1]);
 }
@@ -238,6 +169,31 @@ static void take_dig(const struct dig_text *const text, struct dig_identity_dig 
         memcpy(dig->force_sigma_N[0], text->force->sigma_x_N, sizeof dig->force_sigma_N[0]);
         memcpy(dig->force_sigma_N[1], text->force->sigma_z_N, sizeof dig->force_sigma_N[1]);
     }
+}
+
+// False when it is out of range, or an attack comes without a depth.
+static bool take_approach(const double depth, const double attack_deg,
+                          struct dig_approach *const approach)
+{
+    *approach = (struct dig_approach){ depth, attack_deg * DIG_RAD_PER_DEG };
+    return is_approach(approach) && (depth > 0.0 || fabs(attack_deg) <= 0.0);
+}
+
+static enum dig_status take_made(const char *const path, const struct identity_text *const text,
+                                 struct dig_identity *const identity, struct dig_error *const error)
+{
+    static const char expected[] =
+        "expected a depth of 0.2 to 3 with an attack of at most 45 deg either way";
+    if (!take_approach(text->depth, text->attack_deg, &identity->made)) {
+        return dig_yaml_refuse(path, "depth", error, "%s", expected);
+    }
+    if (!take_approach(text->matched_depth, text->matched_attack_deg, &identity->matched)) {
+        return dig_yaml_refuse(path, "matched_depth", error, "%s", expected);
+    }
+    if (!(text->matched_depth > 0.0)) {
+        identity->matched = identity->made;
+    }
+    return DIG_OK;
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
@@ -268,6 +224,7 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     };
     memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
     memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
+    status = take_made(path, text, &read, error);
     for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
         read.sample[i] = gravel_of(&text->samples[i]);
         if (!is_gravel(&read.sample[i])) {

@@ -36,6 +36,8 @@ struct dig_known dig_known_of(const struct dig_curve_set *const   set,
         .drift      = (double)NAN,
 
         .path_measured = dig->last - dig->first,
+        .made          = dig->made,
+        .matched       = dig->approach,
     };
     (void)snprintf(known.trajectory, sizeof known.trajectory, "%s",
                    set->trajectory[dig->trajectory].name);
@@ -178,6 +180,8 @@ enum dig_status dig_known_write(const char *const path, const struct dig_known *
                   .noise_floor      = m->noise_floor,
                   .outside          = m->outside,
                   .samples          = m->samples,
+                  .made             = known->made,
+                  .matched          = known->matched,
     };
     memcpy(identity.scene_hash, known->table, sizeof identity.scene_hash);
     memcpy(identity.trajectory, known->trajectory, sizeof identity.trajectory);
@@ -313,6 +317,8 @@ enum dig_status dig_known_read(const char *const path, const struct dig_curve_se
         .drift      = (double)NAN,
 
         .path_measured = (double)NAN,
+        .made          = i.made,
+        .matched       = i.matched,
     };
     struct dig_match *const m = &read.match;
     m->digs                   = i.digs;

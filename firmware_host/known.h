@@ -37,6 +37,8 @@ struct dig_known {
     char              wanted[96];          // what is to be done, for people; "" nothing
     double            path_measured;       // share of that dig's path; NaN: not known any more
     bool              going_on;            // that dig is not over
+
+    struct dig_approach made, matched; // of that dig: struct dig_observation's made and approach
 };
 
 /// What is known from a match of digs of which dig is the youngest.

@@ -152,6 +152,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     const struct dig_known *const  k       = &result->known;
     const struct dig_match *const  m       = &k->match;
     const struct dig_gravel *const nearest = &k->nearest;
+    const struct dig_approach      matched = dig_approach_told(&k->matched);
     char                           name[TEXT_SIZE];
     char                           table[TEXT_SIZE];
     char                           wanted[TEXT_SIZE];
@@ -204,6 +205,10 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .path_measured         = k->path_measured,
         .going_on              = k->going_on ? 1 : 0,
         .forces                = m->forces ? 1 : 0,
+        .depth                 = k->made.depth > 0.0 ? k->made.depth : (double)NAN,
+        .attack_rad            = k->made.depth > 0.0 ? k->made.attack_rad : (double)NAN,
+        .matched_depth         = matched.depth,
+        .matched_attack_rad    = matched.attack_rad,
         .advice                = advice(),
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
@@ -214,9 +219,10 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
                                    const struct dig_outlook *const   outlook)
 {
     assert(output != NULL && set != NULL && outlook != NULL);
-    struct dig_prediction prediction = outlook->prediction;
-    char                  name[TEXT_SIZE];
-    char                  reason[TEXT_SIZE];
+    struct dig_prediction     prediction = outlook->prediction;
+    const struct dig_approach dug        = dig_approach_told(&prediction.approach);
+    char                      name[TEXT_SIZE];
+    char                      reason[TEXT_SIZE];
     (void)snprintf(reason, sizeof reason, "%s", dig_why_not_str(outlook->why_not));
     (void)snprintf(name, sizeof name, "%s",
                    prediction.valid ? trajectory_name(set, prediction.trajectory) : "");
@@ -238,6 +244,8 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
         .peak_Nm       = prediction.peak_Nm,
         .energy_J      = prediction.energy_J,
         .outside       = outlook->outside ? 1 : 0,
+        .depth         = prediction.valid ? dug.depth : (double)NAN,
+        .attack_rad    = prediction.valid ? dug.attack_rad : (double)NAN,
         .reason        = reason,
         .advice        = advice(),
     };

@@ -1,9 +1,11 @@
 #include "firmware_host/publish.h"
 
+#include "core/units.h"
 #include "firmware_host/notify.h"
 
 #include <assert.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -112,6 +114,26 @@ static void publish_outlook(struct dig_publisher *const p)
     }
 }
 
+// Of a dig of which it was told: how it was made, and what of the table it was matched at, where
+// that is another.
+static void approach_text(const struct dig_known *const k, const size_t size, char text[])
+{
+    static const double       told    = 0.005; // what the last digit of a depth stands for
+    const struct dig_approach matched = dig_approach_told(&k->matched);
+    const struct dig_approach made    = k->made;
+    text[0]                           = '\0';
+    if (!(made.depth > 0.0)) {
+        return;
+    }
+    const int length = snprintf(text, size, ", depth %.2f, attack %.1f deg", made.depth,
+                                made.attack_rad / DIG_RAD_PER_DEG);
+    if (fabs(matched.depth - made.depth) > told ||
+        fabs(matched.attack_rad - made.attack_rad) > told) {
+        (void)snprintf(text + length, size - (size_t)length, ", matched at %.2f and %.1f deg",
+                       matched.depth, matched.attack_rad / DIG_RAD_PER_DEG);
+    }
+}
+
 static void say_known(const struct dig_publisher *const p)
 {
     const struct dig_known *const k = &p->result.known;
@@ -120,15 +142,17 @@ static void say_known(const struct dig_publisher *const p)
         say(p, "no gravel known: %s", k->wanted);
         return;
     }
+    char        how[96];
     char        digs[48] = "";
     const char *forces   = m->forces ? ", by moment and forces" : ", by the moment alone";
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
     }
+    approach_text(k, sizeof how, how);
     say(p,
-        "%s %u (%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
+        "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
         "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s",
-        k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory,
+        k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory, how,
         m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
         m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
         m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],

@@ -10,6 +10,8 @@ static struct dig_identity example(void)
         .trajectory       = "simpleA",
         .digs             = 3,
         .forces           = true,
+        .made             = { 1.25, 0.02 },
+        .matched          = { 1.2, 0.01 },
         .gravel           = { { 0.512345, 0.4, 2345.6 } },
         .mean             = { { 0.52, 0.41, 2300.0 } },
         .low              = { { 0.4, 0.3, 2000.0 } },
@@ -73,6 +75,10 @@ static void what_was_written_is_read_back(void **state)
         assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
     }
     assert_close(back.noise_floor, 0.2, 1e-9);
+    assert_close(back.made.depth, 1.25, 1e-9);
+    assert_close(back.made.attack_rad, 0.02, 1e-9);
+    assert_close(back.matched.depth, 1.2, 1e-9);
+    assert_close(back.matched.attack_rad, 0.01, 1e-9);
     assert_int_equal(back.recorded, 2);
     assert_string_equal(back.recording[1].trajectory, "simpleB");
     assert_close(back.recording[1].approach.depth, 1.15, 1e-9);
@@ -91,6 +97,43 @@ static void what_was_written_is_read_back(void **state)
                         sizeof id.recording[1].force_sigma_N);
 }
 
+// What it was matched at is written where it is another; neither, where it was not told.
+static void a_depth_is_written_once_and_only_where_it_was_told(void **state)
+{
+    (void)state;
+    struct dig_identity id = example();
+    static const struct {
+        struct dig_approach made, matched;
+        bool                says, says_matched;
+    } cases[] = { { { 0.0, 0.0 }, { 0.0, 0.0 }, false, false },
+                  { { 1.1, 0.02 }, { 1.1, 0.02 }, true, false },
+                  { { 1.0, 0.0 }, { 0.0, 0.0 }, true, false },
+                  { { 1.1, 0.02 }, { 1.1, 0.01 }, true, true },
+                  { { 1.1, 0.0 }, { 0.0, 0.0 }, true, true } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        static char         text[65536];
+        struct dig_identity back;
+        id.made          = cases[i].made;
+        id.matched       = cases[i].matched;
+        id.recorded      = 0;
+        FILE *const file = fopen(scratch_path("made.json"), "w+");
+        assert_non_null(file);
+        dig_identity_write(file, &id);
+        rewind(file);
+        text[fread(text, 1, sizeof text - 1, file)] = '\0';
+        (void)fclose(file);
+        assert_true((strstr(text, "\"depth\"") != NULL) == cases[i].says);
+        assert_true((strstr(text, "\"matched_depth\"") != NULL) == cases[i].says_matched);
+        assert_int_equal(dig_identity_read(scratch_path("made.json"), &back, NULL), DIG_OK);
+        const struct dig_approach matched = dig_approach_told(&back.matched);
+        const struct dig_approach was     = dig_approach_told(&cases[i].matched);
+        assert_close(back.made.depth, cases[i].made.depth, 1e-9);
+        assert_close(back.made.attack_rad, cases[i].made.attack_rad, 1e-9);
+        assert_close(matched.depth, was.depth, 1e-9);
+        assert_close(matched.attack_rad, was.attack_rad, 1e-9);
+    }
+}
+
 // Of 0.1.0: without a word of forces.
 static void what_was_written_before_forces_is_read(void **state)
 {
@@ -100,7 +143,7 @@ static void what_was_written_before_forces_is_read(void **state)
     if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_true(read.digs > 0 && !read.forces);
+    assert_true(read.digs > 0 && !read.forces && !(read.made.depth > 0.0));
 }
 
 // Each defect names the file and the key, and leaves what was there.
@@ -134,6 +177,10 @@ static void defects_are_refused_by_name(void **state)
         { "0.375, 0.375", "0.375", "sigma_x_N" },
         { "1.375, 1.375", "1.375, -1.375", "recorded" },
         { "\"z_N\"", "\"y_N\"", "y_N" },
+        { "\"depth\": 1.25", "\"depth\": 3.5", "depth" },
+        { "\"depth\": 1.25,", "", "depth" },
+        { "\"matched_depth\": 1.2", "\"matched_depth\": 0.1", "matched_depth" },
+        { "\"matched_attack_deg\": 0.", "\"matched_attack_deg\": 50.", "matched_depth" },
     };
     for (size_t i = 0; i < sizeof defect / sizeof defect[0]; i++) {
         static char       bad[65536];
@@ -161,6 +208,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_written_is_read_back),
+        cmocka_unit_test(a_depth_is_written_once_and_only_where_it_was_told),
         cmocka_unit_test(what_was_written_before_forces_is_read),
         cmocka_unit_test(defects_are_refused_by_name),
     };

@@ -194,6 +194,8 @@ static void a_match_names_gravel_interval_and_table(void **state)
         .known.trajectory = "simpleA",
         .known.table      = "abc123",
         .known.wanted     = "a simple dig",
+        .known.made       = { 1.25, 0.02 },
+        .known.matched    = { 1.2, 0.01 },
         .known.nearest    = { { 0.6, 0.2, 2500 } },
         .hint_trajectory  = "actual",
         .hint_J_per_kg    = 12.5,
@@ -215,6 +217,10 @@ static void a_match_names_gravel_interval_and_table(void **state)
     dig_output_destroy(output);
     const struct seen seen = read_back("match.lcm");
     assert_int_equal(seen.matches, 1);
+    assert_close(seen.match.depth, 1.25, 0.0);
+    assert_close(seen.match.attack_rad, 0.02, 0.0);
+    assert_close(seen.match.matched_depth, 1.2, 0.0);
+    assert_close(seen.match.matched_attack_rad, 0.01, 0.0);
     assert_string_equal(seen.trajectory[1], "simpleA");
     assert_string_equal(seen.trajectory[3], "abc123");
     assert_int_equal(seen.match.outside, 1);
@@ -238,6 +244,20 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_close(seen.sample[1], 2100, 0.0);
 }
 
+// A table dug in one way alone does not tell how a dig was made; it was matched with the plain one.
+static void a_depth_that_was_not_told_is_not_a_number(void **state)
+{
+    (void)state;
+    struct dig_output *const    output = begin("plain.lcm");
+    const struct dig_fit_result result = { .known.any = true };
+    assert_int_equal(dig_output_match(output, &result), DIG_OK);
+    dig_output_destroy(output);
+    const struct seen seen = read_back("plain.lcm");
+    assert_true(isnan(seen.match.depth) && isnan(seen.match.attack_rad));
+    assert_close(seen.match.matched_depth, 1.0, 0.0);
+    assert_close(seen.match.matched_attack_rad, 0.0, 0.0);
+}
+
 static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state)
 {
     (void)state;
@@ -248,6 +268,7 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     outlook.prediction.from_progress  = 0.25;
     outlook.prediction.to_progress    = 1.0;
     outlook.prediction.peak_Nm        = 64.0;
+    outlook.prediction.approach       = (struct dig_approach){ 1.15, -0.03 };
     for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
         outlook.prediction.moment_Nm[i] = i;
         outlook.prediction.sigma_Nm[i]  = -i;
@@ -263,6 +284,8 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     assert_true(seen.prediction.expires_ns == 9);
     assert_close(seen.prediction.from_progress, 0.25, 0.0);
     assert_close(seen.prediction.peak_Nm, 64.0, 0.0);
+    assert_close(seen.prediction.depth, 1.15, 0.0);
+    assert_close(seen.prediction.attack_rad, -0.03, 0.0);
 
     struct dig_output *const again = begin("outlook.lcm");
     outlook.prediction.valid       = false;
@@ -273,6 +296,7 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     seen = read_back("outlook.lcm");
     assert_int_equal(seen.prediction.valid, 0);
     assert_int_equal(seen.prediction.points, 0);
+    assert_true(isnan(seen.prediction.depth) && isnan(seen.prediction.attack_rad));
     assert_string_equal(seen.text[0], "off the table");
     assert_int_equal(seen.prediction.outside, 1);
     assert_string_equal(seen.trajectory[2], "");
@@ -374,6 +398,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_record_is_a_sample_and_its_estimate),
         cmocka_unit_test(a_match_names_gravel_interval_and_table),
+        cmocka_unit_test(a_depth_that_was_not_told_is_not_a_number),
         cmocka_unit_test(a_prediction_carries_its_points_and_an_invalid_one_none),
         cmocka_unit_test(health_carries_every_counter),
         cmocka_unit_test(latencies_are_counted_where_they_lie),

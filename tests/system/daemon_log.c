@@ -2,15 +2,16 @@
 //   daemon_log LOG.lcm
 //   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING"
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
-//   RESTORED DRIFT "WANTED" FORCES DIGS PATH_MEASURED GOING_ON
-//   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT "REASON"
-//   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
-//   RECONNECTS
+//   RESTORED DRIFT DEPTH ATTACK_deg MATCHED_DEPTH MATCHED_ATTACK_deg "WANTED" FORCES DIGS
+//   PATH_MEASURED GOING_ON prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH
+//   ATTACK_deg "REASON" health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE
+//   FROZEN MISSING RECONNECTS
 //          DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   samples N DURATION_s MAX_GAP_s
 
+#include "core/units.h"
 #include "files/lcm_log.h"
 
 #include <inttypes.h>
@@ -36,12 +37,13 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
     (void)context;
     (void)time_us;
     (void)printf("match %d %d %d %s %.4f %.4f %.4f %.4f %.4f %.4f %.1f %.1f %.1f %.4f %d %.3f "
-                 "\"%s\" %d %d %.3f %d\n",
+                 "%.3f %.2f %.3f %.2f \"%s\" %d %d %.3f %d\n",
                  m->valid, m->outside, m->dig_count, name(m->trajectory), m->friction,
                  m->friction_low, m->friction_high, m->rolling, m->rolling_low, m->rolling_high,
                  m->density_kgpm3, m->density_low_kgpm3, m->density_high_kgpm3, m->distance,
-                 m->restored, m->drift, m->wanted, m->forces, m->digs, m->path_measured,
-                 m->going_on);
+                 m->restored, m->drift, m->depth, m->attack_rad / DIG_RAD_PER_DEG, m->matched_depth,
+                 m->matched_attack_rad / DIG_RAD_PER_DEG, m->wanted, m->forces, m->digs,
+                 m->path_measured, m->going_on);
 }
 
 static void prediction(void *const context, const int64_t time_us,
@@ -49,8 +51,9 @@ static void prediction(void *const context, const int64_t time_us,
 {
     (void)context;
     (void)time_us;
-    (void)printf("prediction %d %s %.5f %d %.6g %.6g \"%s\"\n", m->valid, name(m->trajectory),
-                 m->progress_now, m->points, m->peak_Nm, m->points > 0 ? m->moment_Nm[0] : 0.0,
+    (void)printf("prediction %d %s %.5f %d %.6g %.6g %.3f %.2f \"%s\"\n", m->valid,
+                 name(m->trajectory), m->progress_now, m->points, m->peak_Nm,
+                 m->points > 0 ? m->moment_Nm[0] : 0.0, m->depth, m->attack_rad / DIG_RAD_PER_DEG,
                  m->reason);
 }
 

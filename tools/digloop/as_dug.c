@@ -51,7 +51,9 @@ void digloop_as_dug_restore(const struct digloop_as_dug *const table, const size
                             struct dig_observation dig[])
 {
     for (size_t d = 0; table->slots.slots > 0 && d < digs; d++) {
-        dig[d].trajectory = (int)table->slots.slot[dig[d].trajectory].trajectory;
+        const struct dig_approached_slot *const slot = &table->slots.slot[dig[d].trajectory];
+        dig[d].trajectory                            = (int)slot->trajectory;
+        dig[d].approach                              = slot->approach;
     }
 }
 

@@ -20,7 +20,7 @@ DIG_MUST_CHECK enum dig_status digloop_as_dug_make(const struct dig_curve_set *s
                                                    struct digloop_as_dug *table,
                                                    struct dig_error      *error);
 
-/// Gives the digs their trajectories of the loaded table back.
+/// Gives the digs their trajectories of the loaded table back, and as approach that of their slot.
 void digloop_as_dug_restore(const struct digloop_as_dug *table, size_t digs,
                             struct dig_observation dig[]);
 

@@ -5,6 +5,7 @@
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -146,18 +147,28 @@ static void show_measured(const struct dig_curve_set *const set, const struct po
     (void)fputs("\n", to);
 }
 
-// "dug at depth 1.08, attack 2 deg", each dig of a table that knows such.
-static void show_approaches(const struct dig_curve_set *const set, const struct pool *const pool,
-                            FILE *const to)
+static bool is_shown_alike(const struct dig_approach *const a, const struct dig_approach *const b)
+{
+    return fabs(a->depth - b->depth) < 5e-4 && fabs(a->attack_rad - b->attack_rad) < 1e-4;
+}
+
+// "dig 1 at depth 1.080, attack 2.00 deg, …", each dig of a table that knows such; and what it was
+// matched at, where the table does not go so far.
+static void show_approaches(const struct pool *const pool, FILE *const to)
 {
     for (size_t d = 0; d < pool->digs; d++) {
-        const struct dig_observation *const dig  = &pool->dig[d];
-        const struct dig_approach           told = dig_approach_told(&dig->approach);
-        if (dig_approach_varies(set, (size_t)dig->trajectory)) {
-            (void)fprintf(to, "  dig %zu at depth %.3f, attack %.2f deg, %.1f mm off that path\n",
-                          d + 1, told.depth, told.attack_rad / DIG_RAD_PER_DEG,
-                          1e3 * dig->off_path_m);
+        const struct dig_observation *const dig     = &pool->dig[d];
+        const struct dig_approach           matched = dig_approach_told(&dig->approach);
+        if (!(dig->made.depth > 0.0)) {
+            continue;
         }
+        (void)fprintf(to, "  dig %zu at depth %.3f, attack %.2f deg, ", d + 1, dig->made.depth,
+                      dig->made.attack_rad / DIG_RAD_PER_DEG);
+        if (!is_shown_alike(&dig->made, &matched)) {
+            (void)fprintf(to, "matched at %.3f, %.2f deg, ", matched.depth,
+                          matched.attack_rad / DIG_RAD_PER_DEG);
+        }
+        (void)fprintf(to, "%.1f mm off that path\n", 1e3 * dig->off_path_m);
     }
 }
 
@@ -190,6 +201,8 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
         .noise_floor      = match->noise_floor,
         .outside          = match->outside,
         .samples          = match->samples,
+        .made             = youngest->made,
+        .matched          = youngest->approach,
     };
     _Static_assert(DIG_MATCH_SAMPLES <= DIG_IDENTITY_SAMPLES_MAX, "the posterior must fit");
     memcpy(id.sample, match->sample, match->samples * sizeof match->sample[0]);
@@ -222,7 +235,7 @@ enum dig_status digloop_identify(const struct digloop_options *const options,
             dig_identity_write(stdout, &id);
         } else {
             show_measured(set, &pool, match.forces, stdout);
-            show_approaches(set, &pool, stdout);
+            show_approaches(&pool, stdout);
             show_identity(&id, stdout);
         }
     }

@@ -3,6 +3,7 @@
 #include "closed_loop/clipped.h"
 #include "closed_loop/observe.h"
 #include "core/sample.h"
+#include "estimator/approach_slots.h"
 #include "estimator/doubt.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
@@ -131,8 +132,9 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
                                      struct dig_observation *const     dig,
                                      struct dig_error *const           error)
 {
-    struct dig_observed   seen;
-    const enum dig_status status = dig_observe_as_dug(set, recording, &seen, error);
+    const struct dig_approach none = { .depth = 0.0 };
+    struct dig_observed       seen;
+    const enum dig_status     status = dig_observe_as_dug(set, recording, &seen, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -141,9 +143,11 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
         .trajectory = seen.trajectory,
         .off_path_m = seen.off_path_m,
         .approach   = seen.approach,
-        .first      = 0.0,
-        .last       = 1.0,
-        .forces     = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
+        // As far as the table goes, the way tells it well; what lies beyond is in off_path_m.
+        .made   = dig_approach_varies(set, (size_t)seen.trajectory) ? seen.approach : none,
+        .first  = 0.0,
+        .last   = 1.0,
+        .forces = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
     };
     memcpy(dig->moment_Nm, seen.value[DIG_CHANNEL_MY_Nm], sizeof dig->moment_Nm);
     memcpy(dig->force_N[0], seen.value[DIG_CHANNEL_FX_N], sizeof dig->force_N[0]);

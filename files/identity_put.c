@@ -1,0 +1,121 @@
+// An identity out: the half of files/identity_json.h that writes.
+
+#include "core/units.h"
+#include "files/identity_json.h"
+
+#include <assert.h>
+#include <math.h>
+
+// Depths, and attacks in rad, nearer than this are one.
+static const double alike = 1e-9;
+
+static void put_gravel(FILE *const to, const struct dig_gravel *const g)
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "{" : ", ", dig_axis_name((enum dig_axis)a),
+                      g->value[a]);
+    }
+    (void)fputs("}", to);
+}
+
+static void put_named(FILE *const to, const char *const name, const struct dig_gravel *const g)
+{
+    (void)fprintf(to, "\"%s\": ", name);
+    put_gravel(to, g);
+    (void)fputs(",\n ", to);
+}
+
+static void put_numbers(FILE *const to, const char *const name, const double number[])
+{
+    (void)fprintf(to, "\n   \"%s\": [", name);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        (void)fprintf(to, "%s%.7g", k == 0 ? "" : k % 16 == 0 ? ",\n    " : ", ", number[k]);
+    }
+    (void)fputs("]", to);
+}
+
+static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
+{
+    (void)fputs(",\n   \"force\": {", to);
+    put_numbers(to, "x_N", dig->force_N[0]);
+    (void)fputs(",", to);
+    put_numbers(to, "z_N", dig->force_N[1]);
+    (void)fputs(",", to);
+    put_numbers(to, "sigma_x_N", dig->force_sigma_N[0]);
+    (void)fputs(",", to);
+    put_numbers(to, "sigma_z_N", dig->force_sigma_N[1]);
+    (void)fputs("}", to);
+}
+
+static void put_approach(FILE *const to, const char *const prefix,
+                         const struct dig_approach *const approach)
+{
+    const struct dig_approach told = dig_approach_told(approach);
+    (void)fprintf(to, "\"%sdepth\": %.9g, \"%sattack_deg\": %.9g", prefix, told.depth, prefix,
+                  told.attack_rad / DIG_RAD_PER_DEG);
+}
+
+static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
+{
+    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g,", dig->trajectory,
+                  dig->first, dig->last);
+    if (!dig_approach_is_plain(&dig->approach)) {
+        (void)fputs(" ", to);
+        put_approach(to, "", &dig->approach);
+        (void)fputs(",", to);
+    }
+    put_numbers(to, "moment_Nm", dig->moment_Nm);
+    (void)fputs(",", to);
+    put_numbers(to, "sigma_Nm", dig->sigma_Nm);
+    if (dig->forces) {
+        put_forces(to, dig);
+    }
+    (void)fputs("}", to);
+}
+
+// How the dig was made; what it was matched at, where that is another.
+static void put_made(FILE *const to, const struct dig_identity *const identity)
+{
+    const struct dig_approach *const made    = &identity->made;
+    const struct dig_approach        matched = dig_approach_told(&identity->matched);
+    if (!(made->depth > 0.0)) {
+        return;
+    }
+    put_approach(to, "", made);
+    if (fabs(matched.depth - made->depth) > alike ||
+        fabs(matched.attack_rad - made->attack_rad) > alike) {
+        (void)fputs(", ", to);
+        put_approach(to, "matched_", &matched);
+    }
+    (void)fputs(",\n ", to);
+}
+
+void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
+{
+    assert(to != NULL && identity != NULL);
+    (void)fprintf(
+        to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu, \"forces\": %s,\n ",
+        identity->scene_hash, identity->trajectory, identity->digs,
+        identity->forces ? "true" : "false");
+    put_made(to, identity);
+    put_named(to, "gravel", &identity->gravel);
+    put_named(to, "mean", &identity->mean);
+    put_named(to, "low", &identity->low);
+    put_named(to, "high", &identity->high);
+    put_named(to, "nearest", &identity->nearest);
+    (void)fprintf(to,
+                  "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
+                  "\"outside\": %s,\n \"samples\": [",
+                  identity->distance, identity->nearest_distance, identity->noise_floor,
+                  identity->outside ? "true" : "false");
+    for (size_t i = 0; i < identity->samples; i++) {
+        (void)fputs(i == 0 ? "" : ",\n  ", to);
+        put_gravel(to, &identity->sample[i]);
+    }
+    (void)fputs(identity->recorded > 0 ? "],\n \"recorded\": [" : "]", to);
+    for (size_t i = 0; i < identity->recorded; i++) {
+        (void)fputs(i == 0 ? "" : ",\n  ", to);
+        put_dig(to, &identity->recording[i]);
+    }
+    (void)fputs(identity->recorded > 0 ? "]}\n" : "}\n", to);
+}
