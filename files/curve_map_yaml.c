@@ -20,6 +20,8 @@ static const char *const names[DIG_MAP_FIELDS] = {
     [DIG_MAP_FZ_N]          = "Fz_N",
     [DIG_MAP_CARRIED_kg]    = "carried_kg",
     [DIG_MAP_PACKING]       = "packing",
+    [DIG_MAP_DEPTH]         = "depth",
+    [DIG_MAP_ATTACK_deg]    = "attack_deg",
 };
 
 const char *dig_map_name(const enum dig_map_field field)
@@ -36,7 +38,7 @@ struct column_text {
 
 struct columns_text {
     struct column_text friction, rolling, density_kgpm3, trajectory, t_s, My_Nm, Fx_N, Fz_N,
-        carried_kg, packing;
+        carried_kg, packing, depth, attack_deg;
 };
 
 struct map_text {
@@ -59,10 +61,19 @@ static const cyaml_schema_field_t column_fields[] = {
 #define COLUMN(key, flags) CYAML_FIELD_MAPPING(#key, flags, struct columns_text, key, column_fields)
 
 static const cyaml_schema_field_t columns_fields[] = {
-    COLUMN(friction, REQUIRED),   COLUMN(rolling, REQUIRED), COLUMN(density_kgpm3, REQUIRED),
-    COLUMN(trajectory, REQUIRED), COLUMN(t_s, REQUIRED),     COLUMN(My_Nm, REQUIRED),
-    COLUMN(Fx_N, REQUIRED),       COLUMN(Fz_N, REQUIRED),    COLUMN(carried_kg, OPTIONAL),
-    COLUMN(packing, OPTIONAL),    CYAML_FIELD_END,
+    COLUMN(friction, REQUIRED),
+    COLUMN(rolling, REQUIRED),
+    COLUMN(density_kgpm3, REQUIRED),
+    COLUMN(trajectory, REQUIRED),
+    COLUMN(t_s, REQUIRED),
+    COLUMN(My_Nm, REQUIRED),
+    COLUMN(Fx_N, REQUIRED),
+    COLUMN(Fz_N, REQUIRED),
+    COLUMN(carried_kg, OPTIONAL),
+    COLUMN(packing, OPTIONAL),
+    COLUMN(depth, OPTIONAL),
+    COLUMN(attack_deg, OPTIONAL),
+    CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t fields[] = {
@@ -147,7 +158,9 @@ enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map 
                                [DIG_MAP_FX_N]          = column_of(&c->Fx_N),
                                [DIG_MAP_FZ_N]          = column_of(&c->Fz_N),
                                [DIG_MAP_CARRIED_kg]    = column_of(&c->carried_kg),
-                               [DIG_MAP_PACKING]       = column_of(&c->packing) },
+                               [DIG_MAP_PACKING]       = column_of(&c->packing),
+                               [DIG_MAP_DEPTH]         = column_of(&c->depth),
+                               [DIG_MAP_ATTACK_deg]    = column_of(&c->attack_deg) },
     };
     memcpy(loaded.engine, text->engine, sizeof loaded.engine);
     memcpy(loaded.version, text->version, sizeof loaded.version);

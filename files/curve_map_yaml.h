@@ -22,11 +22,13 @@ enum dig_map_field {
     DIG_MAP_FZ_N,
     DIG_MAP_CARRIED_kg,
     DIG_MAP_PACKING,
+    DIG_MAP_DEPTH, // core/approach.h
+    DIG_MAP_ATTACK_deg,
     DIG_MAP_FIELDS,
     DIG_MAP_NEEDED = DIG_MAP_CARRIED_kg
 };
 
-/// "friction", …, "packing": the key in the YAML.
+/// "friction", …, "attack_deg": the key in the YAML.
 const char *dig_map_name(enum dig_map_field field);
 
 /// A field is a column times a factor, or one value for all rows, or not there (both empty).

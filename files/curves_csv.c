@@ -1,5 +1,6 @@
 #include "files/curves_csv.h"
 
+#include "core/units.h"
 #include "files/whole.h"
 
 #include <assert.h>
@@ -82,7 +83,7 @@ static enum dig_status refuse_field(const struct reader *const r, const enum dig
                          r->line, name[0] != '\0' ? name : dig_map_name(f), found, expected);
 }
 
-// Carried mass that is not there is not known; packing, 0.
+// Carried mass that is not there is not known; packing, depth and attack are 0.
 static enum dig_status number_of(const struct reader *const r, char *const field[const],
                                  const enum dig_map_field f, double *const value)
 {
@@ -97,6 +98,26 @@ static enum dig_status number_of(const struct reader *const r, char *const field
         return refuse_field(r, f, text, "a finite number");
     }
     *value = number * r->map->field[f].factor;
+    return DIG_OK;
+}
+
+// A depth that is not there is 0, which counts as 1; one that is given must be one.
+static enum dig_status approach_of(const struct reader *const r, char *const field[const],
+                                   const double               number[const DIG_MAP_FIELDS],
+                                   struct dig_approach *const approach)
+{
+    const double      depth      = number[DIG_MAP_DEPTH];
+    const double      attack_deg = number[DIG_MAP_ATTACK_deg];
+    const char *const given      = text_of(r, field, DIG_MAP_DEPTH);
+    if (given[0] != '\0' &&
+        !(depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST)) {
+        return refuse_field(r, DIG_MAP_DEPTH, given, "a factor of 0.2 to 3");
+    }
+    if (!(fabs(attack_deg) <= 45.0)) {
+        return refuse_field(r, DIG_MAP_ATTACK_deg, text_of(r, field, DIG_MAP_ATTACK_deg),
+                            "-45 to 45 deg");
+    }
+    *approach = (struct dig_approach){ depth, attack_deg * DIG_RAD_PER_DEG };
     return DIG_OK;
 }
 
@@ -118,6 +139,11 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
     if (status != DIG_OK) {
         return status;
     }
+    struct dig_approach approach;
+    status = approach_of(r, field, number, &approach);
+    if (status != DIG_OK) {
+        return status;
+    }
     const char *const name    = text_of(r, field, DIG_MAP_TRAJECTORY);
     const double      packing = number[DIG_MAP_PACKING];
     if (name[0] == '\0' || strlen(name) >= DIG_NAME_SIZE) {
@@ -128,10 +154,11 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
                             "a whole number from 0");
     }
     *sample = (struct sample){
-        .of  = { .gravel  = { { number[DIG_MAP_FRICTION], number[DIG_MAP_ROLLING],
-                                number[DIG_MAP_DENSITY_kgpm3] } },
-                 .packing = (size_t)packing,
-                 .line    = r->line },
+        .of  = { .gravel   = { { number[DIG_MAP_FRICTION], number[DIG_MAP_ROLLING],
+                                 number[DIG_MAP_DENSITY_kgpm3] } },
+                 .approach = approach,
+                 .packing  = (size_t)packing,
+                 .line     = r->line },
         .row = { .t_s        = number[DIG_MAP_T_s],
                  .Fx_N       = number[DIG_MAP_FX_N],
                  .Fz_N       = number[DIG_MAP_FZ_N],
@@ -145,7 +172,8 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
 static bool is_same_dig(const struct dig_foreign_dig *const a,
                         const struct dig_foreign_dig *const b)
 {
-    bool same = a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0;
+    bool same = a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0 &&
+                dig_approach_is_same(&a->approach, &b->approach);
     for (int i = 0; i < DIG_AXES; i++) {
         const double u = a->gravel.value[i];
         const double v = b->gravel.value[i];

@@ -4,6 +4,7 @@
 #ifndef DIG_FILES_CURVES_CSV_H
 #define DIG_FILES_CURVES_CSV_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/recording.h"
 #include "files/curve_map_yaml.h"
@@ -12,6 +13,7 @@
 struct dig_foreign_dig {
     struct dig_gravel    gravel;
     char                 trajectory[DIG_NAME_SIZE];
+    struct dig_approach  approach; // how the trajectory was dug; zeroed: as it stands
     size_t               packing;
     size_t               line; // of its first sample
     struct dig_recording recording;
@@ -25,9 +27,9 @@ struct dig_foreign_visitor {
     void *context;
 };
 
-/// Columns the map does not name are skipped. A dig ends where gravel, trajectory or packing
-/// change. DIG_EINVAL: "FILE:LINE: column NAME: …"; DIG_EIO; DIG_ENOMEM. What was visited before an
-/// error was visited.
+/// Columns the map does not name are skipped. A dig ends where gravel, trajectory, depth,
+/// attack or packing change. DIG_EINVAL: "FILE:LINE: column NAME: …"; DIG_EIO; DIG_ENOMEM. What was
+/// visited before an error was visited.
 DIG_MUST_CHECK enum dig_status dig_curves_read(const char *path, const struct dig_curve_map *map,
                                                const struct dig_foreign_visitor *visitor,
                                                struct dig_error                 *error);

@@ -85,6 +85,34 @@ static void columns_are_found_scaled_and_cut_into_digs(void **state)
     assert_true(isnan(seen.first[0].carried_kg));
 }
 
+static void a_dig_may_be_deeper_or_turned(void **state)
+{
+    (void)state;
+    const struct dig_curve_map map = map_of(
+        HEAD
+        "  My_Nm: {column: torque}\n  depth: {column: deep, factor: .5}\n  attack_deg: {column: "
+        "turn}\n");
+    const char *const csv  = scratch_write("ways.csv", "dig,mu,rho,ms,torque,X,Z,deep,turn\n"
+                                                        "pull,.3,2.5,0,1,1,1,,\n"
+                                                        "pull,.3,2.5,5,1,1,1,2,0\n"
+                                                        "pull,.3,2.5,0,1,1,1,2.4,0\n"
+                                                        "pull,.3,2.5,0,1,1,1,2.4,-30\n");
+    struct seen       seen = { .digs = 0 };
+    const struct dig_foreign_visitor visitor = { see, &seen };
+    struct dig_error                 error   = { "" };
+    if (dig_curves_read(csv, &map, &visitor, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    // No depth is depth 1: the first two lines are one dig.
+    assert_int_equal(seen.digs, 3);
+    assert_int_equal(seen.dig[0].recording.rows, 2);
+    assert_true(dig_approach_is_plain(&seen.dig[0].approach));
+    assert_close(seen.dig[1].approach.depth, 1.2, 1e-12);
+    assert_close(seen.dig[1].approach.attack_rad, 0.0, 0.0);
+    assert_close(seen.dig[2].approach.depth, 1.2, 1e-12);
+    assert_close(seen.dig[2].approach.attack_rad, -0.5235987755983, 1e-12);
+}
+
 static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
 {
     (void)state;
@@ -117,6 +145,35 @@ static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
     }
 }
 
+static void a_depth_or_attack_that_cannot_be_is_refused_by_its_line(void **state)
+{
+    (void)state;
+    const struct dig_curve_map map =
+        map_of(HEAD "  My_Nm: {value: 1}\n  depth: {column: deep}\n  attack_deg: {column: turn}\n");
+    static const char *const bad[][2] = {
+        { "0.1,0", ":3: column deep: \"0.1\", expected a factor of 0.2 to 3" },
+        { "0,0", ":3: column deep: \"0\", expected a factor of 0.2 to 3" },
+        { "3.5,0", ":3: column deep: \"3.5\", expected a factor of 0.2 to 3" },
+        { "1,-46", ":3: column turn: \"-46\", expected -45 to 45 deg" },
+        { "1,45.1", ":3: column turn: \"45.1\", expected -45 to 45 deg" },
+        { "1,steep", ":3: column turn: \"steep\", expected a finite number" },
+        { "inf,0", ":3: column deep: \"inf\", expected a finite number" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char                             csv[256];
+        struct seen                      seen    = { .digs = 0 };
+        const struct dig_foreign_visitor visitor = { see, &seen };
+        struct dig_error                 error   = { "" };
+        (void)snprintf(
+            csv, sizeof csv,
+            "dig,mu,rho,ms,X,Z,deep,turn\npull,.3,2.5,0,1,1,1,45\npull,.3,2.5,5,1,1,%s\n",
+            bad[i][0]);
+        assert_int_equal(dig_curves_read(scratch_write("bad.csv", csv), &map, &visitor, &error),
+                         DIG_EINVAL);
+        assert_contains(error.text, bad[i][1]);
+    }
+}
+
 static void what_is_no_map_is_refused_by_its_key(void **state)
 {
     (void)state;
@@ -141,6 +198,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(columns_are_found_scaled_and_cut_into_digs),
+        cmocka_unit_test(a_dig_may_be_deeper_or_turned),
+        cmocka_unit_test(a_depth_or_attack_that_cannot_be_is_refused_by_its_line),
         cmocka_unit_test(what_does_not_fit_the_map_is_refused_by_its_line),
         cmocka_unit_test(what_is_no_map_is_refused_by_its_key),
     };

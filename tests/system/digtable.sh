@@ -128,7 +128,6 @@ sed -E "s/duration_s: [0-9.]+/duration_s: 0.011/" $scene >"$work/short.yaml"
 digtable dig "$work/short.yaml" "${dig[@]}" --seed 3 --engine ode -o "$work/ode.csv"
 check "--engine ode digs the same dig" eval 'is $code 0 && head -1 $work/ode.csv | grep -q "^t_s,pin_x_m"'
 
-# What SQLite's own tool sees, for those who look with it.
 # Depth and attack angle as axes, on their own and on top of a table that had none.
 approaches=tests/data/formats/grid_approaches.yaml # 2 points x 2 packings, 2 x 3 dug otherwise, 1 twice
 digtable dig $scene "${dig[@]}" --seed 3 --depth 1 --attack-deg 0 -o "$work/plain.csv"
@@ -154,7 +153,16 @@ digtable merge "$work/approaches3.sqlite" "$work"/approach[123].sqlite
 digtable export "$work/approaches.sqlite" --runs -o "$work/approaches.csv"
 digtable export "$work/approaches3.sqlite" --runs
 check "shards merged hold the same runs" cmp "$work/out" "$work/approaches.csv"
+{ sed "s|^scene: .*|scene: $PWD/$scene|" tests/data/formats/curve_map.yaml
+  printf '  depth: {column: depth}\n  attack_deg: {column: attack_deg}\n'; } >"$work/ways.yaml"
+digtable import "$work/approaches.csv" --map "$work/ways.yaml" -o "$work/approaches_in.sqlite"
+check "import takes digs at their depth and attack" eval 'is $code 0 && grep -q "12 digs of" $work/err'
+digtable check "$work/approaches_in.sqlite" --complete
+check "and puts them where they belong" eval 'is $code 0 && grep -q "2 points, 9 entries, 12 runs; 0 holes.*; 7 points at another depth or attack" $work/out'
+digtable export "$work/approaches_in.sqlite" --runs
+check "with their samples" cmp <(cut -d, -f1-5,11-14,17- "$work/approaches.csv") <(cut -d, -f1-5,11-14,17- "$work/out")
 
+# What SQLite's own tool sees, for those who look with it.
 check "sqlite3 finds the table intact" is "$(sqlite3 "$work/whole.sqlite" 'PRAGMA integrity_check')" ok
 check "and every run's origin" is "$(sqlite3 "$work/whole.sqlite" "SELECT count(*) FROM run WHERE engine = 'kernel' AND version GLOB '[0-9]*.[0-9]*.[0-9]*+[0-9a-f]*' AND grains > 0 AND wall_s > 0 AND made_utc LIKE '20__-__-__T__:__:__Z'")" 12
 check "no file is left beside a table" eval '! ls $work | grep -E "journal$|wal$|\.part$"'

@@ -38,8 +38,13 @@ refused "a shard of none" "--shard 4/3: expected I/N" generate $scene $grid --sh
 refused "a shard that is no fraction" "--shard 3: expected I/N" generate $scene $grid --shard 3
 refused "import without a map" "--map MAP.yaml missing" import x.csv -o "$out"
 refused "import of a map that is not there" "absent.yaml: No such file" import x.csv --map "$work/absent.yaml" -o "$out"
-printf 'friction,rolling,density_kgpm3,packing,t_s,My_Nm,Fx_N,Fz_N,carried_kg\n.5,.5,2500,0,0,1,1,1,1\n.5,.5,2500,0,.005,1,1,one,1\n' >"$work/curves.csv"
+printf 'friction,rolling,density_kgpm3,packing,t_s,My_Nm,Fx_N,Fz_N,carried_kg,depth,attack_deg\n.5,.5,2500,0,0,1,1,1,1,1,0\n.5,.5,2500,0,.005,1,1,one,1,1,0\n' >"$work/curves.csv"
 refused "import of a CSV with a text" 'curves.csv:3: column Fz_N: "one", expected a finite number' import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$out"
+{ sed 's/^scene: .*/scene: low.yaml/' tests/data/formats/curve_map.yaml
+  printf '  depth: {column: depth}\n  attack_deg: {column: attack_deg}\n'; } >"$work/map.yaml"
+cp $scene "$work/low.yaml"
+sed -i 's/one,1,1,0/1,1,3.2,0/' "$work/curves.csv"
+refused "import of a dig too deep" 'curves.csv:3: column depth: "3.2", expected a factor of 0.2 to 3' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
 refused "merge without inputs" "expected OUT.sqlite IN.sqlite" merge "$out"
 refused "an engine that is not built in" "--engine edem: expected kernel or ode" generate $scene $grid --engine edem -o "$out"
 refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
@@ -102,6 +107,8 @@ refused "a depth that leaves the box" 'grid, depth 2.5, attack 0 deg: trajectory
 changed 's/start_pin_m: .*/start_pin_m: [0.3, 0.525]/' $scene low.yaml
 changed 's/^packings: 2/packings: 2\nattack_deg: [0, 45]/' $grid g.yaml
 refused "an attack that starts in the bed" 'grid, depth 1, attack 45 deg: trajectory scrape.*: the bucket starts .* m in the ground, expected it clear' generate "$work/low.yaml" "$work/g.yaml" -o "$out"
+sed -i 's/3.2,0/1,45/; s/1,0$/1,45/' "$work/curves.csv"
+refused "import of a dig that cannot begin" 'curves.csv:2: trajectory scrape, depth 1, attack 45 deg: the bucket starts .* m in the ground' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
 refused "a dig that leaves the box" 'trajectory scrape: at .* outside box_m.z' dig "$work/s.yaml" "${dig[@]}" --depth 2.5 -o "$out"
 refused "a depth out of range" '[-]-depth 9: expected a factor, 0.2 to 3' dig $scene "${dig[@]}" --depth 9 -o "$out"
 

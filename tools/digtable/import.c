@@ -39,8 +39,13 @@ static enum dig_status store_dig(void *const context, const struct dig_foreign_d
                        dig->trajectory);
         return refuse(import, dig->line, DIG_EINVAL, why, error);
     }
+    struct dig_trajectory dug;
+    if (dig_approach_make(import->scene, t, &dig->approach, &dug, error) != DIG_OK) {
+        return refuse(import, dig->line, DIG_EINVAL, error->text, error);
+    }
     struct dig_run_origin origin = {
         .gravel     = dig->gravel,
+        .approach   = dig->approach,
         .packing    = dig->packing,
         .trajectory = (size_t)(t - import->scene->trajectory),
     };
