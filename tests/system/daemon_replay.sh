@@ -122,4 +122,24 @@ check "and that the prediction was right" \
     within "$(sed -nE 's/.*"error":([0-9.e-]+),.*/\1/p' "$work/page.json")" 0 0.1
 check "that it identified by moment and forces" grep -q "simpleA identified the gravel by moment and forces, then actual" "$work/report.txt" "$work/page.html"
 check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
+
+# A table dug at several depths and attacks: a simple dig at 1.12 of its depth, the same again, one at 1.7.
+"$helpers/daemon_data" "$scene" "$work" ways >"$work/ways.log" 2>&1
+"$BIN/digrig" record "$work/deep.csv" "$work/deep.csv" "$work/far.csv" --machine "$machine" -o "$work/ways.csv" 2>"$work/rig.err"
+config ways "{kind: replay, replay: {file: ways.csv, speed: 20}}" "publish: {estimate_every: 10}"
+sed -i 's/table.sqlite/ways.sqlite/' "$work/ways.yaml"
+log ways
+"$BIN/digsightd" -c "$work/ways.yaml" 2>"$work/daemon.log"
+read_log ways
+# DEPTH, ATTACK_deg, MATCHED_DEPTH, MATCHED_ATTACK_deg of the last match: a dig in the table, whose depth is told to a tenth.
+check "the match says how deep the dig was" within "$(last match "$work/ways.txt" 18)" 1.02 1.22
+check "and how its bucket stood" within "$(last match "$work/ways.txt" 19)" -1 1
+check "and at what it was matched" within "$(last match "$work/ways.txt" 20)" 1.02 1.2
+check "both deep digs are of one gravel, the one told" eval '[ "$(awk "\$1 == \"match\" { n = \$(NF - 2) } END { print n }" "$work/ways.txt")" = 2 ] &&
+    within "$(last match "$work/ways.txt" 6)" 0.35 0.65 && [ "$(last match "$work/ways.txt" 3)" = 0 ]'
+check "the second is predicted as deep as it is dug" \
+    awk '$1 == "prediction" && $2 && $4 > .4 && $8 > 1.02 && $8 < 1.22 { n++ } END { exit !(n >= 2) }' "$work/ways.txt"
+check "one that is too deep is off the table" grep -q '^prediction 0 .* -\?nan -\?nan "off the table"$' "$work/ways.txt"
+check "and is no match" [ "$(last match "$work/ways.txt" 4) $(last health "$work/ways.txt" $h_matches)" = "2 2" ]
+check "the log says it, too" grep -q "dig 1 (simpleA, depth 1\.[0-2][0-9], attack -\?[01]\.[0-9] deg" "$work/daemon.log"
 finish
