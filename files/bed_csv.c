@@ -56,14 +56,17 @@ static enum dig_status check(const struct dig_csv *const csv, const char *const 
     return DIG_OK;
 }
 
-static void let_go(struct dig_bed_columns *const bed)
+void dig_bed_columns_finish(struct dig_bed_columns *const bed)
 {
-    free(bed->x_m);
-    free(bed->y_m);
-    free(bed->z_m);
-    free(bed->radius_m);
-    free(bed->material);
-    free(bed->clump);
+    if (bed != NULL) {
+        free(bed->x_m);
+        free(bed->y_m);
+        free(bed->z_m);
+        free(bed->radius_m);
+        free(bed->material);
+        free(bed->clump);
+        *bed = (struct dig_bed_columns){ .grains = 0 };
+    }
 }
 
 static enum dig_status take(const struct dig_csv *const csv, struct dig_bed_columns *const bed)
@@ -80,7 +83,7 @@ static enum dig_status take(const struct dig_csv *const csv, struct dig_bed_colu
     };
     if (made.x_m == NULL || made.y_m == NULL || made.z_m == NULL || made.radius_m == NULL ||
         (has(csv, MATERIAL) && made.material == NULL) || (has(csv, CLUMP) && made.clump == NULL)) {
-        let_go(&made);
+        dig_bed_columns_finish(&made);
         return DIG_ENOMEM;
     }
     for (size_t i = 0; i < n; i++) {

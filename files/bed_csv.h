@@ -17,6 +17,9 @@ struct dig_bed_columns {
     uint32_t *clump;                      // [grains]; NULL: the column is absent
 };
 
+/// Frees the arrays and zeroes it. NULL and a zeroed struct are allowed.
+void dig_bed_columns_finish(struct dig_bed_columns *bed);
+
 /// Reads a whole file; every array is malloc'ed. DIG_EINVAL names file, line and column: what
 /// dig_csv_read() refuses, a radius that is not > 0, a material that is no whole number from 0 to
 /// 255, a clump that is none from 1 to 2^32 - 1. DIG_EIO, DIG_ENOMEM. *bed is written on success

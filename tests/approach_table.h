@@ -38,6 +38,13 @@ static inline double approach_moment_Nm(const size_t g, const size_t t, const do
            (1.0 + 0.1 * sin(9.0 * time_s / whole_s + (double)g));
 }
 
+/// How a deeper dig, or one with the bucket turned, resists beside the plain one: as the square of
+/// the depth, and less with the attack.
+static inline double approach_growing(const double depth, const double attack_rad)
+{
+    return depth * depth - 1.5 * attack_rad;
+}
+
 static inline void approach_curve(const size_t g, const size_t t, const struct dig_trajectory *dug,
                                   const double factor, const double relative_sd,
                                   struct dig_curve *const curve)

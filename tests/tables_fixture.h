@@ -5,6 +5,7 @@
 
 #include "core/recording.h"
 #include "core/scene.h"
+#include "tables/load.h"
 #include "tables/store.h"
 #include "tests/scratch.h"
 
@@ -93,17 +94,59 @@ static inline struct dig_run_origin fixture_varied(struct dig_run_origin origin,
     return origin;
 }
 
+/// Stores a dig of that origin with one moment all along.
+static inline void fixture_put_run(struct dig_store *const     store,
+                                   const struct dig_run_origin origin, const double my_Nm)
+{
+    const struct dig_recording recording =
+        fixture_recording(origin.trajectory == 0 ? 400 : 200, my_Nm);
+    struct dig_error error = { "" };
+    if (dig_store_put(store, &origin, &recording, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+}
+
 static inline void fixture_put(struct dig_store *const store, const double friction,
                                const double rolling, const size_t packing, const size_t trajectory,
                                const double my_Nm)
 {
-    const struct dig_run_origin origin =
-        fixture_origin(friction, rolling, 2500.0, packing, trajectory);
-    const struct dig_recording recording = fixture_recording(trajectory == 0 ? 400 : 200, my_Nm);
-    struct dig_error           error     = { "" };
-    if (dig_store_put(store, &origin, &recording, &error) != DIG_OK) {
+    fixture_put_run(store, fixture_origin(friction, rolling, 2500.0, packing, trajectory), my_Nm);
+}
+
+/// The table of that name, loaded.
+static inline struct dig_curve_set *fixture_load(const char *const name)
+{
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
+    return set;
+}
+
+/// The first number SQL finds in a table.
+static inline sqlite3_int64 fixture_ask(const char *const name, const char *const sql)
+{
+    sqlite3      *db = NULL;
+    sqlite3_stmt *s  = NULL;
+    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &s, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
+    const sqlite3_int64 answer = sqlite3_column_int64(s, 0);
+    (void)sqlite3_finalize(s);
+    (void)sqlite3_close(db);
+    return answer;
+}
+
+static inline void fixture_run_sql(const char *const name, const char *const sql)
+{
+    sqlite3 *db    = NULL;
+    char    *error = NULL;
+    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, &error) != SQLITE_OK) {
+        fail_msg("%s: %s", sql, error);
+    }
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
 /// A copy of a table under another name, changed by SQL.
@@ -114,13 +157,7 @@ static inline const char *fixture_copy(const char *const from, const char *const
     char *const whole = scratch_read(scratch_path(from), &size);
     (void)scratch_write_bytes(to, whole, size);
     free(whole);
-    sqlite3 *db    = NULL;
-    char    *error = NULL;
-    assert_int_equal(sqlite3_open(scratch_path(to), &db), SQLITE_OK);
-    if (sqlite3_exec(db, sql, NULL, NULL, &error) != SQLITE_OK) {
-        fail_msg("%s: %s", sql, error);
-    }
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+    fixture_run_sql(to, sql);
     return scratch_path(to);
 }
 

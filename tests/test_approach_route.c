@@ -16,11 +16,6 @@ static const struct dig_approach cross[] = {
     { 0.8, 0.0 }, { 1.0, -6.0 * DEG }, { 1.0, 6.0 * DEG }, { 1.2, 0.0 }
 };
 
-static double growing(const double depth, const double attack_rad)
-{
-    return depth * depth - 1.5 * attack_rad;
-}
-
 // The vertices of a bucket that digs so, somewhere, seen with noise.
 static void drive(const size_t t, const struct dig_approach made, const double noise_m,
                   struct dig_path *const path)
@@ -45,7 +40,7 @@ static void a_turned_bucket_is_on_its_path_where_the_table_was_dug_so(void **sta
 {
     (void)state;
     static const double attack[] = { 0.0, 2.5 * DEG, -4.0 * DEG, 5.5 * DEG };
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, growing, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     for (size_t t = 0; t < 2; t++) {
         const struct dig_route turns = dig_approach_route(&table.cube.set, t);
         const struct dig_route plain = dig_route_make(&table.cube.set.trajectory[t], 0.09);
@@ -73,7 +68,7 @@ static void a_turned_bucket_is_on_its_path_where_the_table_was_dug_so(void **sta
 static void a_track_holds_for_the_route_at_another_depth(void **state)
 {
     (void)state;
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, growing, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_route plain = dig_approach_route(&table.cube.set, 1);
     const struct dig_route deep  = dig_approach_route_deep(&table.cube.set, 1, 1.2);
     assert_int_equal(deep.corners, plain.corners);
@@ -100,14 +95,16 @@ static void over_deepest(const size_t g, const size_t t, const struct dig_approa
         const double at_m = deep_m * (double)k / (DIG_CURVE_POINTS - 1) - (deep_m - own_m);
         const double t_s  = dig_trajectory_time_s(&dug, 0.09, at_m / own_m);
         moment_Nm[k] =
-            at_m > 0.0 ? approach_moment_Nm(g, t, t_s, growing(made.depth, made.attack_rad)) : 0.0;
+            at_m > 0.0
+                ? approach_moment_Nm(g, t, t_s, approach_growing(made.depth, made.attack_rad))
+                : 0.0;
     }
 }
 
 static void depth_is_told_by_where_the_soil_begins_to_resist(void **state)
 {
     (void)state;
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, growing, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_curve_set *const set = &table.cube.set;
     double                            moment_Nm[DIG_CURVE_POINTS];
     for (double depth = 0.75; depth < 1.2; depth += 0.1) {
@@ -124,7 +121,7 @@ static void depth_is_told_by_where_the_soil_begins_to_resist(void **state)
     memset(moment_Nm, 0, sizeof moment_Nm);
     assert_close(dig_approach_depth(set, 0, 1.2, 0.0, 0.0, 1.0, moment_Nm), 1.0, 0.0);
     // Dug at one depth alone.
-    approach_table_init(&table, CUBE_GRAVELS, 2, &cross[1], growing, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 2, &cross[1], approach_growing, 0.05, 3);
     over_deepest(0, 0, (struct dig_approach){ 1.15, 0.0 }, moment_Nm);
     assert_close(dig_approach_depth(set, 0, 1.0, 0.0, 0.0, 1.0, moment_Nm), 1.0, 0.0);
 }

@@ -36,11 +36,6 @@ static double twisted(const double depth, const double attack_rad)
     return straight(depth, attack_rad) + 40.0 * (depth - 1.0) * attack_rad;
 }
 
-static double squared(const double depth, const double attack_rad)
-{
-    return depth * depth - 1.5 * attack_rad;
-}
-
 static void *memory;
 
 static const struct dig_curve_set *make(const size_t trajectory, const double depth,
@@ -101,7 +96,7 @@ static void what_is_linear_is_met_everywhere_in_a_cross(void **state)
 static void a_slot_that_is_plain_is_the_table_bit_by_bit(void **state)
 {
     (void)state;
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, squared, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_curve_set *const made = make(1, 0.0, 0.0);
     for (size_t g = 0; g < CUBE_GRAVELS; g++) {
         assert_memory_equal(&made->curve[g], &table.cube.curve[2 * g + 1],
@@ -148,17 +143,17 @@ static void the_spread_grows_by_what_leaving_out_says(void **state)
 {
     (void)state;
     // depth^2 bends by 1 per factor^2: halfway from 1 to 1.15 a straight line is off by .075^2.
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, squared, 1e-4, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 1e-4, 3);
     const struct dig_curve_set *made = make(0, 1.075, 0.0);
     assert_close(widened(made, 3, 0), 0.075 * 0.075, 0.05 * 0.075 * 0.075);
-    assert_close(worst(made, 3, 0, squared(1.075, 0.0) + 0.075 * 0.075), 0.0, 1e-3);
+    assert_close(worst(made, 3, 0, approach_growing(1.075, 0.0) + 0.075 * 0.075), 0.0, 1e-3);
     assert_true(widened(make(0, 1.15, 0.0), 3, 0) < 1e-4);
     assert_true(widened(make(0, 1.0, 2.5), 3, 0) < 3e-4); // attack does not bend
 
     // What is straight is not widened; nor is what bends less than the means scatter.
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, straight, 1e-4, 3);
     assert_true(widened(make(0, 1.075, 0.0), 3, 0) < 3e-4);
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, squared, 0.3, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.3, 3);
     assert_true(widened(make(0, 1.075, 0.0), 3, 0) < 5e-4); // as floats round
 
     // Dug on one side alone: all of the change may be bent.
@@ -239,11 +234,11 @@ static void outside_the_hull_the_nearest_place_in_it_counts(void **state)
 static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void **state)
 {
     (void)state;
-    approach_table_init(&table, CUBE_GRAVELS, 4, cross, squared, 0.05, 3);
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_approach   approach = { 1.1, 1.0 * DEG };
     const struct dig_trajectory dug      = approach_dug(0, approach);
     struct dig_curve            truth;
-    approach_curve(2, 0, &dug, squared(1.1, 1.0 * DEG), 0.05, &truth);
+    approach_curve(2, 0, &dug, approach_growing(1.1, 1.0 * DEG), 0.05, &truth);
     struct dig_observation seen = { .dig_count = 1, .first = 0.0, .last = 1.0 };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         seen.moment_Nm[k] = (double)truth.mean[0][k];
@@ -263,7 +258,7 @@ static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void
     struct dig_curve predicted, nominal;
     assert_int_equal(dig_predict_curve(made, &deep, 1, &predicted), DIG_OK);
     assert_int_equal(dig_predict_curve(&table.cube.set, &deep, 1, &nominal), DIG_OK);
-    approach_curve(2, 1, &made->trajectory[1], squared(1.1, 1.0 * DEG), 0.05, &truth);
+    approach_curve(2, 1, &made->trajectory[1], approach_growing(1.1, 1.0 * DEG), 0.05, &truth);
     double off = 0.0, nominal_off = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         off += pow((double)predicted.mean[0][k] - (double)truth.mean[0][k], 2.0);

@@ -4,17 +4,6 @@
 
 #include "tests/scratch.h"
 
-static void let_go(struct dig_bed_columns *const bed)
-{
-    free(bed->x_m);
-    free(bed->y_m);
-    free(bed->z_m);
-    free(bed->radius_m);
-    free(bed->material);
-    free(bed->clump);
-    *bed = (struct dig_bed_columns){ 0 };
-}
-
 static void a_bed_is_read_back_bit_by_bit(void **state)
 {
     (void)state;
@@ -32,7 +21,7 @@ static void a_bed_is_read_back_bit_by_bit(void **state)
     assert_memory_equal(read.radius_m, radius, sizeof radius);
     assert_null(read.material);
     assert_null(read.clump);
-    let_go(&read);
+    dig_bed_columns_finish(&read);
 }
 
 static void materials_and_clumps_are_kept(void **state)
@@ -57,7 +46,7 @@ static void materials_and_clumps_are_kept(void **state)
         if (read.clump != NULL) {
             assert_memory_equal(read.clump, clump, sizeof clump);
         }
-        let_go(&read);
+        dig_bed_columns_finish(&read);
     }
 }
 
@@ -67,7 +56,7 @@ static void the_bed_of_the_formats_loads(void **state)
     struct dig_bed_columns read = { 0 };
     assert_int_equal(dig_bed_read("tests/data/formats/bed.csv", &read, NULL), DIG_OK);
     assert_int_equal(read.grains, 3);
-    let_go(&read);
+    dig_bed_columns_finish(&read);
 }
 
 static void defects_are_told_and_nothing_is_written(void **state)

@@ -2,7 +2,6 @@
 
 #include "firmware_host/early.h"
 
-#include "core/units.h"
 #include "firmware_host/fit.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
@@ -12,8 +11,6 @@
 #include <string.h>
 
 #define TICK_NS 20000000LL
-
-static const double lambda = 10.0;
 
 static const struct made_options plain = { .relative_sd = 0.1, .packings = 5, .one_density = true };
 static const struct dig_gravel   gravel = { { 0.6, 0.5, 2500 } };
@@ -35,17 +32,12 @@ static struct bench *bench_create(void)
 {
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
-    b->set                      = made_table(&plain);
-    b->raw                      = calloc(1, sizeof *b->raw);
-    b->config.estimator         = dig_estimator_settings_default();
-    b->config.match_evaluations = 200;
-    b->config.match_least_path  = 0.6;
-    b->config.match_early_path  = 0.3;
+    b->set    = made_table(&plain);
+    b->raw    = calloc(1, sizeof *b->raw);
+    b->config = wires_config();
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
-    b->fit.early       = &b->early;
-    b->early.estimates = &b->wires.estimates;
-    dig_early_forget(&b->early, b->set);
+    wires_init_early(&b->wires, &b->early, &b->fit);
     dig_shadow_forget(&b->shadow, b->set);
     return b;
 }
@@ -61,21 +53,11 @@ static void bench_destroy(struct bench *const b)
 static void tell(struct bench *const b, const struct dig_pose pose, const double moment_Nm,
                  const enum dig_dig_phase phase, const int trajectory, const double progress)
 {
-    const struct dig_estimate e = {
-        .time_ns    = b->time_ns += TICK_NS,
-        .wrench     = { .My_Nm            = 1e4 * moment_Nm,
-                        .sigma_My_Nm      = 100.0,
-                        .slow_sigma_My_Nm = 50.0,
-                        .moment_valid     = true },
-        .pin_X_m    = -lambda * pose.x_m,
-        .pin_Z_m    = lambda * pose.z_m,
-        .phi_rad    = -0.5 * DIG_PI - pose.theta_rad,
-        .phase      = phase,
-        .dig_count  = b->digs_done,
-        .trajectory = trajectory,
-        .progress   = progress,
-    };
-    dig_shadow_take(&b->shadow, b->set, lambda, &e);
+    struct dig_estimate e = wires_estimate(b->time_ns += TICK_NS, pose, moment_Nm, phase);
+    e.dig_count           = b->digs_done;
+    e.trajectory          = trajectory;
+    e.progress            = progress;
+    dig_shadow_take(&b->shadow, b->set, WIRES_LAMBDA, &e);
     (void)dig_ring_push(&b->wires.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
@@ -90,7 +72,7 @@ static void dig_until(struct bench *const b, const enum made_trajectory which, c
     for (int i = 0; i < 20; i++) {
         tell(b, dig_trajectory_pose(&t, 0.0), 0.0, DIG_PHASE_AIR, -1, (double)NAN);
     }
-    for (double rig_s = 0.0; progress < until; rig_s += 1e-9 * TICK_NS / sqrt(lambda)) {
+    for (double rig_s = 0.0; progress < until; rig_s += 1e-9 * TICK_NS / sqrt(WIRES_LAMBDA)) {
         progress = dig_trajectory_path_m(&t, 0.09, rig_s) / whole_m;
         if (progress > gap && progress < gap + 0.1) {
             b->time_ns += TICK_NS;

@@ -3,27 +3,20 @@
 
 #include "firmware_host/early.h"
 
-#include "core/units.h"
 #include "firmware_host/fit.h"
 #include "tests/testlib.h"
 #include "tests/wires.h"
 
 #include "tests/approach_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define TICK_NS 20000000LL
 
-static const double lambda = 10.0;
-
 static const struct dig_approach cross[] = {
     { 0.8, 0.0 }, { 1.0, -5.0 * DIG_RAD_PER_DEG }, { 1.0, 5.0 * DIG_RAD_PER_DEG }, { 1.2, 0.0 }
 };
-
-static double growing(const double depth, const double attack_rad)
-{
-    return depth * depth - 1.5 * attack_rad;
-}
 
 enum { GRAVEL = 3, ACTUAL = 1 };
 
@@ -34,6 +27,7 @@ struct bench {
     struct dig_early      early;
     struct dig_fit        fit;
     int64_t               time_ns;
+    uint32_t              digs;
 };
 
 // A bench on which the gravel is known from a plain simple dig.
@@ -41,17 +35,12 @@ static struct bench *bench_create(void)
 {
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
-    approach_table_init(&b->table, CUBE_GRAVELS, 4, cross, growing, 0.05, 3);
+    approach_table_init(&b->table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     struct dig_curve_set *const set = &b->table.cube.set;
-    b->config.estimator             = dig_estimator_settings_default();
-    b->config.match_evaluations     = 200;
-    b->config.match_least_path      = 0.6;
-    b->config.match_early_path      = 0.3;
+    b->config                       = wires_config();
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, set, &b->fit);
-    b->fit.early       = &b->early;
-    b->early.estimates = &b->wires.estimates;
-    dig_early_forget(&b->early, set);
+    wires_init_early(&b->wires, &b->early, &b->fit);
     dig_matcher_take_up(&b->fit.matcher, set);
 
     struct dig_observation simple = { .dig_count = 1, .first = 0.0, .last = 1.0 };
@@ -62,6 +51,7 @@ static struct bench *bench_create(void)
     dig_fit_take(&b->fit, &simple);
     assert_true(b->fit.known.valid && b->fit.known.match.nearest == GRAVEL);
     assert_false(b->fit.dug);
+    b->digs = 1;
     return b;
 }
 
@@ -75,20 +65,12 @@ static void bench_destroy(struct bench *const b)
 static void tell(struct bench *const b, const struct dig_pose pose, const double moment_Nm,
                  const enum dig_dig_phase phase, const double progress)
 {
-    const struct dig_estimate e = {
-        .time_ns    = b->time_ns += TICK_NS,
-        .wrench     = { .My_Nm            = 1e4 * moment_Nm,
-                        .sigma_My_Nm      = 100.0,
-                        .slow_sigma_My_Nm = 50.0,
-                        .moment_valid     = true },
-        .pin_X_m    = -lambda * pose.x_m,
-        .pin_Z_m    = lambda * pose.z_m,
-        .phi_rad    = -0.5 * DIG_PI - pose.theta_rad,
-        .phase      = phase,
-        .dig_count  = 1,
-        .trajectory = progress > 0.1 ? ACTUAL : -1,
-        .progress   = progress > 0.1 ? progress : (double)NAN,
-    };
+    struct dig_estimate e = wires_estimate(b->time_ns += TICK_NS, pose, moment_Nm, phase);
+    e.dig_count           = b->digs;
+    if (progress > 0.1) {
+        e.trajectory = ACTUAL;
+        e.progress   = progress;
+    }
     (void)dig_ring_push(&b->wires.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
@@ -101,12 +83,12 @@ static void dig_until(struct bench *const b, const struct dig_approach made, con
     const struct dig_trajectory plain   = approach_dug(ACTUAL, dig_approach_plain());
     const double                plain_m = dig_trajectory_path_m(&plain, 0.09, 1e3);
     const double                own_m   = dig_trajectory_path_m(&dug, 0.09, 1e3);
-    const double                factor  = growing(made.depth, made.attack_rad);
+    const double                factor  = approach_growing(made.depth, made.attack_rad);
     double                      at      = 0.0;
     for (int i = 0; i < 20; i++) {
         tell(b, dig_trajectory_pose(&dug, 0.0), 0.0, DIG_PHASE_AIR, 0.0);
     }
-    for (double rig_s = 0.0; at < until; rig_s += 1e-9 * TICK_NS / sqrt(lambda)) {
+    for (double rig_s = 0.0; at < until; rig_s += 1e-9 * TICK_NS / sqrt(WIRES_LAMBDA)) {
         at = 1.0 - (own_m - dig_trajectory_path_m(&dug, 0.09, rig_s)) / plain_m;
         tell(b, dig_trajectory_pose(&dug, rig_s), approach_moment_Nm(GRAVEL, ACTUAL, rig_s, factor),
              rig_s < 0.2 ? DIG_PHASE_CONTACT : DIG_PHASE_DIG, at);
@@ -115,14 +97,9 @@ static void dig_until(struct bench *const b, const struct dig_approach made, con
 
 static void end_dig(struct bench *const b)
 {
-    struct dig_estimate e = { .time_ns    = b->time_ns += TICK_NS,
-                              .wrench     = { .moment_valid = true, .sigma_My_Nm = 100.0 },
-                              .phase      = DIG_PHASE_AIR,
-                              .dig_count  = 2,
-                              .trajectory = -1,
-                              .progress   = (double)NAN };
-    (void)dig_ring_push(&b->wires.estimates, &e);
-    (void)dig_fit_once(&b->fit);
+    const struct dig_trajectory plain = approach_dug(ACTUAL, dig_approach_plain());
+    b->digs++;
+    tell(b, dig_trajectory_pose(&plain, 1e3), 0.0, DIG_PHASE_AIR, 0.0);
 }
 
 static struct dig_expected offered(struct bench *const b)
@@ -141,7 +118,7 @@ static double off_Nm(const struct dig_expected *const expected, const struct dig
     for (size_t k = 130; k < DIG_CURVE_POINTS; k++) {
         const double t_s = dig_trajectory_time_s(&plain, 0.09, (double)k / (DIG_CURVE_POINTS - 1));
         const double true_Nm =
-            approach_moment_Nm(GRAVEL, ACTUAL, t_s, growing(made.depth, made.attack_rad));
+            approach_moment_Nm(GRAVEL, ACTUAL, t_s, approach_growing(made.depth, made.attack_rad));
         sum += pow((double)expected->curve.mean[0][k] - true_Nm, 2.0);
     }
     return sqrt(sum / (DIG_CURVE_POINTS - 130));
@@ -160,10 +137,13 @@ static void a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly(void *
     assert_true(now.valid && !now.off_table);
     assert_true(off_Nm(&now, deep) < 0.4 * off_Nm(&before, deep));
     assert_true(now.peak_Nm > 1.1 * before.peak_Nm);
+    assert_close(now.approach.depth, 1.15, 0.1); // each gravel begins to resist in a way of its own
+    assert_true(dig_approach_is_plain(&before.approach));
     end_dig(b);
     assert_false(b->fit.dug);
     const struct dig_expected after = offered(b);
     assert_close(off_Nm(&after, plain), off_Nm(&before, plain), 1e-9);
+    assert_true(dig_approach_is_plain(&after.approach));
     bench_destroy(b);
 }
 

@@ -5,16 +5,6 @@
 #include "files/scene_yaml.h"
 #include "tests/tables_fixture.h"
 
-static struct dig_curve_set *load(const char *const name)
-{
-    struct dig_curve_set *set   = NULL;
-    struct dig_error      error = { "" };
-    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    return set;
-}
-
 static const struct dig_curve *curve_of(const struct dig_curve_set *const set, const size_t entry,
                                         const size_t trajectory)
 {
@@ -27,7 +17,7 @@ static void the_head_is_that_of_the_scene(void **state)
     struct dig_store *const store = fixture_create("head.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     dig_store_close(store);
-    struct dig_curve_set *const set   = load("head.sqlite");
+    struct dig_curve_set *const set   = fixture_load("head.sqlite");
     const struct dig_scene      scene = fixture_scene();
     char                        hash[65];
     dig_scene_hash(&scene, hash);
@@ -58,7 +48,7 @@ static void mean_and_spread_are_those_of_the_packings(void **state)
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .3, 2, 0, 6.0);
     dig_store_close(store);
-    struct dig_curve_set *const   set = load("mean.sqlite");
+    struct dig_curve_set *const   set = fixture_load("mean.sqlite");
     const struct dig_curve *const c   = curve_of(set, 0, 0);
     const double                  sd  = sqrt((4.0 + 1.0 + 9.0) / 2.0);
     assert_int_equal(set->packings[0], 3);
@@ -87,7 +77,7 @@ static void a_curve_runs_along_the_path_not_along_time(void **state)
     ramp = fixture_ramp(200, 10.0, 4.0);
     assert_int_equal(dig_store_put(store, &push, &ramp, NULL), DIG_OK);
     dig_store_close(store);
-    struct dig_curve_set *const set = load("path.sqlite");
+    struct dig_curve_set *const set = fixture_load("path.sqlite");
 
     const float *const along_pull = curve_of(set, 0, 0)->mean[DIG_CHANNEL_MY_Nm];
     assert_close((double)along_pull[51], 10.0 + 4.0 * 0.4, 1e-5);  // a fifth of 2 s
@@ -110,7 +100,7 @@ static void a_step_becomes_a_ramp_as_long_as_the_moving_average(void **state)
     }
     assert_int_equal(dig_store_put(store, &origin, &step, NULL), DIG_OK);
     dig_store_close(store);
-    struct dig_curve_set *const set = load("step.sqlite");
+    struct dig_curve_set *const set = fixture_load("step.sqlite");
     const float *const          y   = curve_of(set, 0, 0)->mean[DIG_CHANNEL_MY_Nm];
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double t_s = 2.0 * (double)k / 255.0;
@@ -131,7 +121,7 @@ static void a_single_packing_takes_the_pooled_relative_spread(void **state)
     fixture_put(store, .9, .3, 0, 0, -10.0);
     fixture_put(store, .9, .3, 0, 1, 5.0); // nobody has a second packing on "push"
     dig_store_close(store);
-    struct dig_curve_set *const set = load("pool.sqlite");
+    struct dig_curve_set *const set = fixture_load("pool.sqlite");
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         assert_close((double)curve_of(set, 0, 0)->sd[0][k], sqrt(2.0), 1e-5);
         assert_close((double)curve_of(set, 1, 0)->sd[0][k], 1.0, 1e-6);
@@ -150,7 +140,7 @@ static void the_grid_knows_its_axes_and_its_holes(void **state)
     fixture_put(store, .3, .9, 0, 0, 2.0);
     fixture_put(store, .3, .1, 0, 0, 3.0);
     dig_store_close(store);
-    struct dig_curve_set *const set = load("grid.sqlite");
+    struct dig_curve_set *const set = fixture_load("grid.sqlite");
     assert_int_equal(set->entries, 3);
     assert_int_equal(set->axis_count[DIG_AXIS_FRICTION], 2);
     assert_int_equal(set->axis_count[DIG_AXIS_ROLLING], 3);
@@ -267,7 +257,7 @@ static void a_transaction_cut_short_is_rolled_back(void **state)
     }
     assert_int_equal(sqlite3_close(db), SQLITE_OK);
 
-    struct dig_curve_set *const set = load("hot.sqlite");
+    struct dig_curve_set *const set = fixture_load("hot.sqlite");
     assert_close(set->gravel[0].value[DIG_AXIS_FRICTION], .3, 0.0);
     assert_close((double)curve_of(set, 0, 0)->mean[0][100], 1.0, 1e-6);
     dig_curve_set_destroy(set);

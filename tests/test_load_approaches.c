@@ -15,23 +15,9 @@
 static void put_turned(struct dig_store *const store, const double friction,
                        const double attack_rad, const size_t packing, const double my_Nm)
 {
-    struct dig_run_origin origin      = fixture_origin(friction, .5, 2500.0, packing, 0);
-    origin.approach.attack_rad        = attack_rad;
-    const struct dig_recording record = fixture_recording(400, my_Nm);
-    struct dig_error           error  = { "" };
-    if (dig_store_put(store, &origin, &record, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-}
-
-static struct dig_curve_set *load(const char *const name)
-{
-    struct dig_curve_set *set   = NULL;
-    struct dig_error      error = { "" };
-    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    return set;
+    struct dig_run_origin origin = fixture_origin(friction, .5, 2500.0, packing, 0);
+    origin.approach.attack_rad   = attack_rad;
+    fixture_put_run(store, origin, my_Nm);
 }
 
 static void make_table(const char *const name)
@@ -50,7 +36,7 @@ static void turned_digs_stand_beside_the_plain_ones(void **state)
 {
     (void)state;
     make_table("both.sqlite");
-    struct dig_curve_set *const set = load("both.sqlite");
+    struct dig_curve_set *const set = fixture_load("both.sqlite");
     assert_int_equal(set->entries, 2);
     assert_close((double)set->curve[0].mean[0][100], 1.2, 1e-6);
     const struct dig_approach_set *const other = set->approaches;
@@ -87,7 +73,7 @@ static void a_table_without_them_has_no_such_set(void **state)
     struct dig_store *const store = fixture_create("plain.sqlite");
     fixture_put(store, .3, .5, 0, 0, 1.0);
     dig_store_close(store);
-    struct dig_curve_set *const set = load("plain.sqlite");
+    struct dig_curve_set *const set = fixture_load("plain.sqlite");
     assert_null(set->approaches);
     assert_int_equal(dig_listed_count(set), 1);
     dig_curve_set_destroy(set);
@@ -133,19 +119,6 @@ static void copy_old(const char *const to)
     free(whole);
 }
 
-static sqlite3_int64 ask(const char *const name, const char *const sql)
-{
-    sqlite3      *db = NULL;
-    sqlite3_stmt *s  = NULL;
-    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &s, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
-    const sqlite3_int64 answer = sqlite3_column_int64(s, 0);
-    (void)sqlite3_finalize(s);
-    (void)sqlite3_close(db);
-    return answer;
-}
-
 struct first {
     struct dig_run_origin origin;
     size_t                rows;
@@ -184,8 +157,8 @@ static void an_old_table_is_read_as_plain_and_left_alone(void **state)
 {
     (void)state;
     copy_old("old.sqlite");
-    assert_int_equal(ask("old.sqlite", "PRAGMA user_version"), 2);
-    struct dig_curve_set *const set = load("old.sqlite");
+    assert_int_equal(fixture_ask("old.sqlite", "PRAGMA user_version"), 2);
+    struct dig_curve_set *const set = fixture_load("old.sqlite");
     assert_int_equal(set->entries, 6);
     assert_null(set->approaches);
     dig_curve_set_destroy(set);
@@ -239,13 +212,14 @@ static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
     assert_int_equal(report.points, 6);
     assert_int_equal(report.effects, 1);
     assert_int_equal(report.approaches, 1);
-    assert_int_equal(ask("old.sqlite", "PRAGMA user_version"), 3);
-    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM ground WHERE depth = 1"), 7);
-    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_check"), 0);
-    assert_int_equal(ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_list('run') WHERE "
-                                       "\"table\" = 'ground'"),
+    assert_int_equal(fixture_ask("old.sqlite", "PRAGMA user_version"), 3);
+    assert_int_equal(fixture_ask("old.sqlite", "SELECT count(*) FROM ground WHERE depth = 1"), 7);
+    assert_int_equal(fixture_ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_check"), 0);
+    assert_int_equal(fixture_ask("old.sqlite",
+                                 "SELECT count(*) FROM pragma_foreign_key_list('run') WHERE "
+                                 "\"table\" = 'ground'"),
                      1);
-    struct dig_curve_set *const set = load("old.sqlite");
+    struct dig_curve_set *const set = fixture_load("old.sqlite");
     assert_int_equal(set->approaches->entries, 1);
     assert_close((double)set->approaches->curve[0].mean[0][50], 1.0, 1e-6);
     assert_true(set->approaches->depth_m[0] > 0.0);
@@ -261,9 +235,10 @@ static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
     if (dig_store_merge(out, 2, input, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_int_equal(ask("merged.sqlite", "SELECT count(*) FROM run"),
-                     ask("old.sqlite", "SELECT count(*) FROM run"));
-    assert_int_equal(ask("merged.sqlite", "SELECT count(*) FROM ground WHERE depth = 1.2"), 1);
+    assert_int_equal(fixture_ask("merged.sqlite", "SELECT count(*) FROM run"),
+                     fixture_ask("old.sqlite", "SELECT count(*) FROM run"));
+    assert_int_equal(fixture_ask("merged.sqlite", "SELECT count(*) FROM ground WHERE depth = 1.2"),
+                     1);
     free(one.value);
     free(row);
 }
@@ -284,7 +259,7 @@ static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
         assert_contains(error.text, "run: depth");
     }
     dig_store_close(store);
-    assert_int_equal(ask("range.sqlite", "SELECT count(*) FROM ground"), 0);
+    assert_int_equal(fixture_ask("range.sqlite", "SELECT count(*) FROM ground"), 0);
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, scratch_setup, scratch_teardown)

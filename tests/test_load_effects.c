@@ -9,13 +9,8 @@ static void put_varied(struct dig_store *const store, const double friction,
                        const char *const effect, const double magnitude, const size_t packing,
                        const size_t trajectory, const double my_Nm)
 {
-    const struct dig_run_origin origin = fixture_varied(
-        fixture_origin(friction, .5, 2500.0, packing, trajectory), effect, magnitude);
-    const struct dig_recording recording = fixture_recording(trajectory == 0 ? 400 : 200, my_Nm);
-    struct dig_error           error     = { "" };
-    if (dig_store_put(store, &origin, &recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    const struct dig_run_origin plain = fixture_origin(friction, .5, 2500.0, packing, trajectory);
+    fixture_put_run(store, fixture_varied(plain, effect, magnitude), my_Nm);
 }
 
 static void make_table(const char *const name)
@@ -31,21 +26,11 @@ static void make_table(const char *const name)
     dig_store_close(store);
 }
 
-static struct dig_curve_set *load_plain(const char *const name)
-{
-    struct dig_curve_set *plain = NULL;
-    struct dig_error      error = { "" };
-    if (dig_table_load(scratch_path(name), &plain, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    return plain;
-}
-
 static void effects_are_apart_from_what_is_plain(void **state)
 {
     (void)state;
     make_table("both.sqlite");
-    struct dig_curve_set *const plain = load_plain("both.sqlite");
+    struct dig_curve_set *const plain = fixture_load("both.sqlite");
     assert_int_equal(plain->entries, 1);
     assert_int_equal(plain->packings[0], 1);
     assert_close((double)plain->curve[0].mean[0][100], 1.0, 1e-6);
@@ -122,7 +107,7 @@ static void what_does_not_belong_together_is_refused(void **state)
     put_varied(store, .3, "cohesion", 5, 0, 0, 2.0);
     dig_store_close(store);
 
-    struct dig_curve_set *const plain = load_plain("mine.sqlite");
+    struct dig_curve_set *const plain = fixture_load("mine.sqlite");
     struct dig_effect_set      *set   = NULL;
     struct dig_error            error = { "" };
     assert_int_equal(dig_effects_load(scratch_path("theirs.sqlite"), plain, &set, &error),
@@ -175,7 +160,7 @@ static void a_carried_mass_that_is_not_known_stays_so(void **state)
     struct dig_store_report report = { .runs = 0 };
     assert_int_equal(dig_store_check(store, &report, NULL), DIG_OK);
     dig_store_close(store);
-    struct dig_curve_set *const plain = load_plain("carried.sqlite");
+    struct dig_curve_set *const plain = fixture_load("carried.sqlite");
     assert_true(isnan(plain->curve[0].mean[DIG_CHANNEL_CARRIED_kg][100]));
     assert_true(isnan(plain->curve[0].sd[DIG_CHANNEL_CARRIED_kg][100]));
     assert_close((double)plain->curve[0].mean[DIG_CHANNEL_MY_Nm][100], 1.5, 1e-6);

@@ -18,12 +18,7 @@ static void put(struct dig_store *const store, const size_t i, const double my_N
         origin = fixture_varied(origin, i % 2 ? "cohesion" : "layering", i % 2 ? 5.0 : -1.0);
     }
     (void)snprintf(origin.made_utc, sizeof origin.made_utc, "%s", made_utc);
-    const struct dig_recording recording =
-        fixture_recording(origin.trajectory == 0 ? 400 : 200, my_Nm);
-    struct dig_error error = { "" };
-    if (dig_store_put(store, &origin, &recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    fixture_put_run(store, origin, my_Nm);
 }
 
 static double moment_of(const size_t i)

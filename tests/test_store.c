@@ -10,41 +10,18 @@
 #include <time.h>
 #include <unistd.h>
 
-static void run_sql(const char *const name, const char *const sql)
-{
-    sqlite3 *db    = NULL;
-    char    *error = NULL;
-    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
-    if (sqlite3_exec(db, sql, NULL, NULL, &error) != SQLITE_OK) {
-        fail_msg("%s: %s", sql, error);
-    }
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
-}
-
-static sqlite3_int64 ask(const char *const name, const char *const sql)
-{
-    sqlite3      *db = NULL;
-    sqlite3_stmt *s  = NULL;
-    assert_int_equal(sqlite3_open(scratch_path(name), &db), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &s, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
-    const sqlite3_int64 answer = sqlite3_column_int64(s, 0);
-    (void)sqlite3_finalize(s);
-    (void)sqlite3_close(db);
-    return answer;
-}
-
 static void a_new_table_says_what_it_is(void **state)
 {
     (void)state;
     dig_store_close(fixture_create("new.sqlite"));
-    assert_int_equal(ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
-    assert_int_equal(ask("new.sqlite", "PRAGMA user_version"), 3);
-    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
-    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
-    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
-    assert_int_equal(ask("new.sqlite", "SELECT count(*) FROM pragma_table_list WHERE schema = "
-                                       "'main' AND NOT strict AND name NOT LIKE 'sqlite_%'"),
+    assert_int_equal(fixture_ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
+    assert_int_equal(fixture_ask("new.sqlite", "PRAGMA user_version"), 3);
+    assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
+    assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
+    assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
+    assert_int_equal(fixture_ask("new.sqlite",
+                                 "SELECT count(*) FROM pragma_table_list WHERE schema = "
+                                 "'main' AND NOT strict AND name NOT LIKE 'sqlite_%'"),
                      0);
     assert_false(scratch_exists("new.sqlite-wal"));
     assert_false(scratch_exists("new.sqlite-journal"));
@@ -130,9 +107,9 @@ static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
     recording.rows = 1;
     assert_int_equal(dig_store_put(store, &second, &recording, &error), DIG_EINVAL);
     dig_store_close(store);
-    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM run"), 1);
-    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM ground"), 1);
-    assert_int_equal(ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
+    assert_int_equal(fixture_ask("once.sqlite", "SELECT count(*) FROM run"), 1);
+    assert_int_equal(fixture_ask("once.sqlite", "SELECT count(*) FROM ground"), 1);
+    assert_int_equal(fixture_ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
 }
 
 static void another_scene_is_refused_and_both_are_named(void **state)
@@ -174,13 +151,13 @@ static void what_cannot_become_a_table_is_left_as_it_was(void **state)
     assert_string_equal(text, "no database at all, just a text file\n");
     free(text);
 
-    run_sql("other.sqlite", "CREATE TABLE photos (id INTEGER)");
+    fixture_run_sql("other.sqlite", "CREATE TABLE photos (id INTEGER)");
     assert_int_equal(dig_store_create(scratch_path("other.sqlite"), &scene, &store, &error),
                      DIG_EINVAL);
     assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
 
     dig_store_close(fixture_create("newer.sqlite"));
-    run_sql("newer.sqlite", "PRAGMA user_version = 4");
+    fixture_run_sql("newer.sqlite", "PRAGMA user_version = 4");
     assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
                      DIG_ESCHEMA);
     assert_contains(error.text, "newer.sqlite: user_version: table format 4, expected 2 or 3");
@@ -199,7 +176,7 @@ static void a_file_not_yet_filled_becomes_a_table(void **state)
     (void)state;
     (void)scratch_write("empty.sqlite", "");
     dig_store_close(fixture_create("empty.sqlite"));
-    assert_int_equal(ask("empty.sqlite", "SELECT count(*) FROM scene"), 1);
+    assert_int_equal(fixture_ask("empty.sqlite", "SELECT count(*) FROM scene"), 1);
 }
 
 // Laws and beds stand in the canonical text behind the trajectories.
@@ -246,7 +223,7 @@ static void a_killed_writer_leaves_whole_runs_only(void **state)
     (void)state;
     dig_store_close(fixture_create("killed.sqlite"));
     for (int round = 1; round <= 8; round++) {
-        const sqlite3_int64 before = ask("killed.sqlite", "SELECT count(*) FROM run");
+        const sqlite3_int64 before = fixture_ask("killed.sqlite", "SELECT count(*) FROM run");
         int                 told[2]; // a byte for each run stored
         assert_int_equal(pipe(told), 0);
         const pid_t child = fork();
@@ -268,7 +245,7 @@ static void a_killed_writer_leaves_whole_runs_only(void **state)
         (void)close(told[0]);
 
         struct dig_store *const store = fixture_create("killed.sqlite");
-        const sqlite3_int64     after = ask("killed.sqlite", "SELECT count(*) FROM run");
+        const sqlite3_int64     after = fixture_ask("killed.sqlite", "SELECT count(*) FROM run");
         assert_true(after > before);
         struct dig_store_report report = { .entries = 0 };
         struct dig_error        error  = { "" };
@@ -278,7 +255,7 @@ static void a_killed_writer_leaves_whole_runs_only(void **state)
         assert_int_equal(report.runs, after);
         dig_store_close(store);
     }
-    assert_int_equal(ask("killed.sqlite", "SELECT count(*) - max(packing) FROM run"), 1);
+    assert_int_equal(fixture_ask("killed.sqlite", "SELECT count(*) - max(packing) FROM run"), 1);
 }
 
 static void the_check_counts_holes_and_finds_entries_that_lie(void **state)

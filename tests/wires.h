@@ -4,8 +4,13 @@
 #ifndef DIG_TESTS_WIRES_H
 #define DIG_TESTS_WIRES_H
 
+#include "core/units.h"
 #include "firmware_host/fit.h"
 #include "firmware_host/loop.h"
+
+#include <math.h>
+
+#define WIRES_LAMBDA 10.0 // the machine is so much larger than the rig
 
 #define WIRES_RING    1024 // readings and records
 #define WIRES_RESULTS 64
@@ -47,6 +52,19 @@ static inline void wires_init(struct wires *const w)
     atomic_store(&w->publish_generation, 1);
 }
 
+/// A matcher's settings: as by default, but for fewer evaluations.
+static inline struct dig_config wires_config(void)
+{
+    return (struct dig_config){
+        .estimator         = dig_estimator_settings_default(),
+        .match_evaluations = 300,
+        .match_least_path  = 0.6,
+        .match_early_path  = 0.3,
+        .match_expires_s   = 3600.0,
+        .drift_floors      = 3.0,
+    };
+}
+
 /// What a tick of 5 ms is set to that takes its readings from one source.
 static inline struct dig_loop_settings wires_loop_settings(const struct dig_curve_set *const set)
 {
@@ -80,7 +98,7 @@ static inline struct dig_loop_ports wires_loop_ports(struct wires *const w)
     };
 }
 
-/// A matcher between them, at the first table; the machine is ten times as large as the rig.
+/// A matcher between them, at the first table.
 static inline void wires_init_fit(struct wires *const w, const struct dig_config *const config,
                                   struct dig_curve_set *const set, struct dig_fit *const fit)
 {
@@ -88,7 +106,7 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
         .config             = config,
         .set                = set,
         .generation         = 1,
-        .lambda             = 10.0,
+        .lambda             = WIRES_LAMBDA,
         .known_settings     = { .expires_s = 3600.0, .drift_floors = 3.0 },
         .digs               = &w->digs,
         .spares             = &w->spares,
@@ -99,6 +117,37 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
         .notes              = &w->notes,
         .tick_generation    = &w->tick_generation,
         .publish_generation = &w->publish_generation,
+    };
+}
+
+/// That matcher looks at the dig going on, too; none does yet.
+static inline void wires_init_early(struct wires *const w, struct dig_early *const early,
+                                    struct dig_fit *const fit)
+{
+    fit->early       = early;
+    early->estimates = &w->estimates;
+    dig_early_forget(early, fit->set);
+}
+
+/// What a tick tells of the bucket at a pose of the rig and of its moment there, with the noise of
+/// a machine.
+static inline struct dig_estimate wires_estimate(const int64_t time_ns, const struct dig_pose pose,
+                                                 const double             moment_Nm,
+                                                 const enum dig_dig_phase phase)
+{
+    const double lambda4 = WIRES_LAMBDA * WIRES_LAMBDA * WIRES_LAMBDA * WIRES_LAMBDA;
+    return (struct dig_estimate){
+        .time_ns    = time_ns,
+        .wrench     = { .My_Nm            = lambda4 * moment_Nm,
+                        .sigma_My_Nm      = 100.0,
+                        .slow_sigma_My_Nm = 50.0,
+                        .moment_valid     = true },
+        .pin_X_m    = -WIRES_LAMBDA * pose.x_m,
+        .pin_Z_m    = WIRES_LAMBDA * pose.z_m,
+        .phi_rad    = -0.5 * DIG_PI - pose.theta_rad,
+        .phase      = phase,
+        .trajectory = -1,
+        .progress   = (double)NAN,
     };
 }
 

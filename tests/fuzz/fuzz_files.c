@@ -66,12 +66,7 @@ static enum dig_status read_bed(const char *const path, struct dig_error *const 
 {
     struct dig_bed_columns bed    = { 0 };
     const enum dig_status  status = dig_bed_read(path, &bed, e);
-    free(bed.x_m);
-    free(bed.y_m);
-    free(bed.z_m);
-    free(bed.radius_m);
-    free(bed.material);
-    free(bed.clump);
+    dig_bed_columns_finish(&bed);
     return status;
 }
 

@@ -1,0 +1,129 @@
+// Tests for firmware_host/fit.c with a table dug at several depths and attacks.
+
+#include "firmware_host/fit.h"
+
+#include "tests/approach_table.h"
+#include "tests/scratch.h"
+#include "tests/wires.h"
+
+#include <stdlib.h>
+
+struct bench {
+    struct dig_config     config;
+    struct approach_table table;
+    struct wires          wires;
+    struct dig_fit        fit;
+};
+
+static struct bench *bench_create(void)
+{
+    static const struct dig_approach way[] = { { 0.8, 0.0 }, { 1.0, 0.1 }, { 1.2, 0.0 } };
+    struct bench *const              b     = calloc(1, sizeof *b);
+    assert_non_null(b);
+    approach_table_init(&b->table, CUBE_GRAVELS, 3, way, approach_growing, 0.05, 3);
+    b->config = wires_config();
+    wires_init(&b->wires);
+    wires_init_fit(&b->wires, &b->config, &b->table.cube.set, &b->fit);
+    dig_matcher_take_up(&b->fit.matcher, &b->table.cube.set);
+    return b;
+}
+
+static void bench_destroy(struct bench *const b)
+{
+    dig_matcher_finish(&b->fit.matcher);
+    free(b);
+}
+
+static void dig_deep(struct bench *const b, const size_t gravel, const size_t t, const double depth,
+                     const double told)
+{
+    static uint32_t             count;
+    const struct dig_trajectory dug = approach_dug(t, (struct dig_approach){ depth, 0.0 });
+    struct dig_curve            curve;
+    approach_curve(gravel, t, &dug, approach_growing(depth, 0.0), 0.05, &curve);
+    struct dig_observation dig = { .dig_count  = ++count,
+                                   .trajectory = (int)t,
+                                   .made       = { told, 0.02 },
+                                   .approach   = { told, 0.0 },
+                                   .first      = 0.0,
+                                   .last       = 1.0 };
+    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+        dig.moment_Nm[p] = (double)curve.mean[DIG_CHANNEL_MY_Nm][p];
+        dig.sigma_Nm[p]  = 0.005;
+    }
+    dig_fit_take(&b->fit, &dig);
+}
+
+static void digs_of_different_depths_are_matched_together(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    dig_deep(b, 5, 0, 0.9, 0.9);
+    dig_deep(b, 5, 0, 1.15, 1.15);
+    dig_deep(b, 5, 0, 1.0, 1.0);
+    assert_true(b->fit.known.valid);
+    assert_int_equal(b->fit.pool.digs, 3); // none was a stranger to what the others let expect
+    assert_int_equal(b->fit.known.match.digs, 3);
+    assert_int_equal(b->fit.known.match.nearest, 5);
+    assert_true(b->fit.known.match.distance < 0.02);
+    assert_int_equal(b->fit.known.differed, 0);
+
+    // The same digs taken for plain ones contradict each other.
+    b->fit.known = (struct dig_known){ .any = false };
+    dig_deep(b, 5, 0, 0.8, 1.0);
+    dig_deep(b, 5, 0, 1.2, 1.0);
+    assert_true(b->fit.pool.digs < 2 || b->fit.known.match.distance > 0.1);
+    bench_destroy(b);
+}
+
+static void a_deep_dig_is_no_sign_of_other_ground(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    dig_deep(b, 2, 0, 1.0, 1.0);
+    assert_true(b->fit.known.valid);
+    for (int i = 0; i < 3; i++) {
+        dig_deep(b, 2, 1, 1.2, 1.2);
+        assert_true(b->fit.known.valid);
+        assert_true(b->fit.known.drift < 1.0);
+    }
+    dig_deep(b, 2, 1, 1.2, 1.0); // taken for a plain one it is
+    assert_true(b->fit.known.drift > 1.5);
+    bench_destroy(b);
+}
+
+// Of the youngest dig; after a restart, too.
+static void how_it_was_made_is_known_with_the_gravel(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create(), *const again = bench_create();
+    for (int i = 0; i < 2; i++) {
+        struct bench *const one = i == 0 ? b : again;
+        (void)snprintf(one->config.match_state.text, sizeof one->config.match_state.text, "%s",
+                       scratch_path("deep.json"));
+        memset(one->table.cube.set.scene_hash, 'a', 64);
+    }
+    dig_deep(b, 5, 0, 0.9, 0.9);
+    dig_deep(b, 5, 0, 1.15, 1.15);
+    dig_fit_restore(&again->fit);
+    assert_true(again->fit.known.restored);
+    for (int i = 0; i < 2; i++) {
+        const struct dig_known *const k = &(i == 0 ? b : again)->fit.known;
+        assert_close(k->made.depth, 1.15, 1e-9);
+        assert_close(k->made.attack_rad, 0.02, 1e-9);
+        assert_close(k->matched.depth, 1.15, 1e-9);
+        assert_close(k->matched.attack_rad, 0.0, 1e-9);
+    }
+    bench_destroy(b);
+    bench_destroy(again);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(digs_of_different_depths_are_matched_together),
+        cmocka_unit_test(a_deep_dig_is_no_sign_of_other_ground),
+        cmocka_unit_test(how_it_was_made_is_known_with_the_gravel),
+    };
+    return cmocka_run_group_tests_name("fit_as_dug", tests, scratch_setup, scratch_teardown);
+}
