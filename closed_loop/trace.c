@@ -3,6 +3,7 @@
 #include "closed_loop/consequence.h"
 #include "closed_loop/judge.h"
 #include "closed_loop/trace_parts.h"
+#include "closed_loop/trace_verdict.h"
 #include "closed_loop/trace_work.h"
 #include "closed_loop/worth.h"
 
@@ -128,56 +129,6 @@ static struct dig_gravel gravel_at(const struct dig_surface *const surface, cons
     return dig_surface_gravel(surface, number);
 }
 
-// Verdict of both sides, the machine's first.
-static enum dig_status fill_verdict(const struct dig_tracing *const         t,
-                                    const struct dig_machine_finding *const air,
-                                    struct dig_trace *const                 trace)
-{
-    const struct dig_search *const s = t->search;
-    for (size_t e = 0; e < air->effects; e++) {
-        trace->seen_in[trace->effects]  = DIG_PART_AIR;
-        trace->effect[trace->effects++] = air->effect[e];
-    }
-    for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects &&
-                       trace->effects < DIG_MODEL_EFFECTS_MAX;
-         e++) {
-        trace->seen_in[trace->effects] = dig_trace_seen_in(t, &s->chosen, e);
-        trace->effect[trace->effects++] =
-            dig_trace_effect(t->soil, &s->chosen, e, s->probability[e]);
-    }
-    const bool of_soil = s->significant && s->unlisted;
-    if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
-        trace->unlisted = calloc(1, sizeof *trace->unlisted);
-        if (trace->unlisted == NULL) {
-            return DIG_ENOMEM;
-        }
-        // A machine that is not understood may do otherwise to the next dig.
-        if (of_soil && !air->unexplained) {
-            dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
-        }
-        (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
-                       of_soil ? s->without_name.depends_on : "the machine's motion in free air");
-        trace->seen_in[trace->effects]  = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
-        trace->effect[trace->effects++] = (struct dig_model_effect){
-            .effect      = DIG_EFFECT_UNLISTED,
-            .probability = of_soil ? 1.0 - s->p_complete
-                                   : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
-        };
-    }
-    return DIG_OK;
-}
-
-static void fill_sets(const struct dig_search *const s, const struct dig_machine_finding *const air,
-                      struct dig_trace *const trace)
-{
-    for (size_t i = 0; i < air->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
-        trace->set[trace->sets++] = air->set[i];
-    }
-    for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
-        trace->set[trace->sets++] = s->set[i];
-    }
-}
-
 static void fill_decision(const struct dig_tracing *const t, const struct dig_machine_side *const m,
                           const struct dig_machine_finding *const air,
                           struct dig_trace *const                 trace)
@@ -252,12 +203,11 @@ static enum dig_status report(const struct dig_tracing *const      t,
     enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
     if (status == DIG_OK) {
         fill_decision(t, machine, w->air, trace);
-        status = fill_verdict(t, w->air, trace);
+        status = dig_trace_fill_verdict(t, w->air, trace);
 
         trace->significant = trace->significant || trace->effects > 0;
     }
     if (status == DIG_OK) {
-        fill_sets(t->search, w->air, trace);
         dig_trace_fill_candidates(t, trace);
         dig_trace_fill_curves(t, trace->unlisted, trace->curves);
         drop_what_is_not_worth_it(t, trace);

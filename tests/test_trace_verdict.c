@@ -1,0 +1,128 @@
+#include "closed_loop/trace_verdict.h"
+
+#include "tests/world_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 6, DRAWS = 24 };
+
+static struct dig_measured             measured[DIGS];
+static struct dig_batch                batch;
+static struct dig_search               found;
+static const struct dig_trace_settings settings = { .false_alarm = 0.01 };
+
+// Six digs, searched as they are: what the soil's side of a verdict is made of.
+static struct dig_tracing search(const enum dig_effect_id effect, const double magnitude)
+{
+    static const bool       take[DIGS] = { true, true, true, true, true, true };
+    const struct dig_gravel gravel     = { { 0.6, 0.55, 2500 } };
+    uint64_t                seed       = 51;
+    double                  place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i]       = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &effect,
+                                     &magnitude, &seed);
+        measured[i].order = i;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    assert_int_equal(dig_search_run(&batch, soil, settings.false_alarm, DRAWS, seed, &found),
+                     DIG_OK);
+    return (struct dig_tracing){ .set      = world.set,
+                                 .surface  = world.surface,
+                                 .scatter  = world.scatter,
+                                 .soil     = soil,
+                                 .settings = &settings,
+                                 .digs     = DIGS,
+                                 .measured = measured,
+                                 .batch    = &batch,
+                                 .before   = &found.plain,
+                                 .search   = &found };
+}
+
+static double largest_correction(const struct dig_model_unlisted *const u)
+{
+    double most = 0.0;
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                most = fmax(most, fabs((double)u->share[t][c][k]));
+            }
+        }
+    }
+    return most;
+}
+
+static void an_unexplained_machine_leaves_the_prediction_alone(void **state)
+{
+    (void)state;
+    const struct dig_tracing   t          = search(DIG_EFFECT_UNLISTED, 1.2);
+    struct dig_machine_finding air        = { .p_complete = 1.0 };
+    struct dig_trace           understood = { 0 };
+    struct dig_trace           strange    = { 0 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &understood), DIG_OK);
+    air = (struct dig_machine_finding){ .significant = true, .unexplained = true };
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &strange), DIG_OK);
+
+    assert_int_equal(understood.effects, 1);
+    assert_int_equal(understood.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_true(largest_correction(understood.unlisted) > 0.2);
+    assert_int_equal(strange.effects, 1);
+    assert_int_equal(strange.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_close(largest_correction(strange.unlisted), 0.0, 0.0);
+    assert_string_equal(strange.unlisted->depends_on, understood.unlisted->depends_on);
+    free(understood.unlisted);
+    free(strange.unlisted);
+}
+
+static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t     = search(DIG_EFFECT_LAYERING, 0.0);
+    const struct dig_machine_finding air   = { .significant = true,
+                                               .unexplained = true,
+                                               .p_complete  = 1e-5 };
+    struct dig_trace                 trace = { 0 };
+    assert_false(found.significant);
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
+    assert_close(trace.effect[0].probability, 1.0 - 1e-5, 1e-12);
+    assert_non_null(strstr(trace.unlisted->depends_on, "free air"));
+    free(trace.unlisted);
+}
+
+static void both_sides_are_named_the_machine_first(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t   = search(DIG_EFFECT_LAYERING, 0.8);
+    const struct dig_machine_finding air = {
+        .significant = true,
+        .effects     = 1,
+        .effect      = { { .effect = DIG_EFFECT_BUCKET_WEIGHT, .probability = 0.9 } },
+        .sets        = 1,
+        .set         = { { 2, { DIG_EFFECT_BUCKET_WEIGHT, DIG_EFFECT_PAYLOAD } } },
+    };
+    struct dig_trace trace = { 0 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(trace.effects, 2);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_BUCKET_WEIGHT);
+    assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
+    assert_int_equal(trace.effect[1].effect, DIG_EFFECT_LAYERING);
+    assert_int_equal(trace.seen_in[1], DIG_PART_SOIL);
+    assert_int_equal(trace.sets, 1 + found.sets);
+    assert_int_equal(trace.set[0].effect[1], DIG_EFFECT_PAYLOAD);
+    assert_null(trace.unlisted);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_unexplained_machine_leaves_the_prediction_alone),
+        cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
+        cmocka_unit_test(both_sides_are_named_the_machine_first),
+    };
+    return cmocka_run_group_tests_name("trace_verdict", tests, world_setup, world_teardown);
+}
