@@ -39,6 +39,24 @@ static struct dig_curve_map map_of(const char *const text)
     return map;
 }
 
+static enum dig_status read_text(const char *const csv, const struct dig_curve_map *const map,
+                                 struct seen *const seen, struct dig_error *const error)
+{
+    const struct dig_foreign_visitor visitor = { see, seen };
+    return dig_curves_read(scratch_write("curves.csv", csv), map, &visitor, error);
+}
+
+// What is good.
+static struct seen digs_of(const char *const csv, const struct dig_curve_map *const map)
+{
+    struct seen      seen  = { .digs = 0 };
+    struct dig_error error = { "" };
+    if (read_text(csv, map, &seen, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return seen;
+}
+
 static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 {
     (void)state;
@@ -55,19 +73,13 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 static void columns_are_found_scaled_and_cut_into_digs(void **state)
 {
     (void)state;
-    const struct dig_curve_map map = map_of(HEAD "  My_Nm: {column: torque, factor: -1}\n");
-    const char *const          csv =
-        scratch_write("curves.csv", "# from a rig\nnotes,dig,mu,rho,ms,torque,X,Z\r\n"
-                                    "a,pull,.3,2.5,0,-1,10,-20\n"
-                                    "b,pull,.3,2.5,5,-2,11,-21\n\n"
-                                    "c, push ,.3,2.5,0,-3,12,-22\n"
-                                    "d,push,.5,2.5,0,-4,13,-23\n");
-    struct seen                      seen    = { .digs = 0 };
-    const struct dig_foreign_visitor visitor = { see, &seen };
-    struct dig_error                 error   = { "" };
-    if (dig_curves_read(csv, &map, &visitor, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    const struct dig_curve_map map  = map_of(HEAD "  My_Nm: {column: torque, factor: -1}\n");
+    const struct seen          seen = digs_of("# from a rig\nnotes,dig,mu,rho,ms,torque,X,Z\r\n"
+                                                       "a,pull,.3,2.5,0,-1,10,-20\n"
+                                                       "b,pull,.3,2.5,5,-2,11,-21\n\n"
+                                                       "c, push ,.3,2.5,0,-3,12,-22\n"
+                                                       "d,push,.5,2.5,0,-4,13,-23\n",
+                                              &map);
     assert_int_equal(seen.digs, 3);
     assert_int_equal(seen.dig[0].recording.rows, 2);
     assert_int_equal(seen.dig[1].recording.rows, 1);
@@ -92,17 +104,12 @@ static void a_dig_may_be_deeper_or_turned(void **state)
         HEAD
         "  My_Nm: {column: torque}\n  depth: {column: deep, factor: .5}\n  attack_deg: {column: "
         "turn}\n");
-    const char *const csv  = scratch_write("ways.csv", "dig,mu,rho,ms,torque,X,Z,deep,turn\n"
-                                                        "pull,.3,2.5,0,1,1,1,,\n"
-                                                        "pull,.3,2.5,5,1,1,1,2,0\n"
-                                                        "pull,.3,2.5,0,1,1,1,2.4,0\n"
-                                                        "pull,.3,2.5,0,1,1,1,2.4,-30\n");
-    struct seen       seen = { .digs = 0 };
-    const struct dig_foreign_visitor visitor = { see, &seen };
-    struct dig_error                 error   = { "" };
-    if (dig_curves_read(csv, &map, &visitor, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    const struct seen seen = digs_of("dig,mu,rho,ms,torque,X,Z,deep,turn\n"
+                                     "pull,.3,2.5,0,1,1,1,,\n"
+                                     "pull,.3,2.5,5,1,1,1,2,0\n"
+                                     "pull,.3,2.5,0,1,1,1,2.4,0\n"
+                                     "pull,.3,2.5,0,1,1,1,2.4,-30\n",
+                                     &map);
     // No depth is depth 1: the first two lines are one dig.
     assert_int_equal(seen.digs, 3);
     assert_int_equal(seen.dig[0].recording.rows, 2);
@@ -134,12 +141,9 @@ static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
         { "", ":1: no samples" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        struct seen                      seen    = { .digs = 0 };
-        const struct dig_foreign_visitor visitor = { see, &seen };
-        struct dig_error                 error   = { "" };
-        assert_int_equal(
-            dig_curves_read(scratch_write("bad.csv", bad[i][0]), &map, &visitor, &error),
-            DIG_EINVAL);
+        struct seen      seen  = { .digs = 0 };
+        struct dig_error error = { "" };
+        assert_int_equal(read_text(bad[i][0], &map, &seen, &error), DIG_EINVAL);
         assert_contains(error.text, bad[i][1]);
         assert_int_equal(seen.digs, 0);
     }
@@ -160,16 +164,14 @@ static void a_depth_or_attack_that_cannot_be_is_refused_by_its_line(void **state
         { "inf,0", ":3: column deep: \"inf\", expected a finite number" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char                             csv[256];
-        struct seen                      seen    = { .digs = 0 };
-        const struct dig_foreign_visitor visitor = { see, &seen };
-        struct dig_error                 error   = { "" };
+        char             csv[256];
+        struct seen      seen  = { .digs = 0 };
+        struct dig_error error = { "" };
         (void)snprintf(
             csv, sizeof csv,
             "dig,mu,rho,ms,X,Z,deep,turn\npull,.3,2.5,0,1,1,1,45\npull,.3,2.5,5,1,1,%s\n",
             bad[i][0]);
-        assert_int_equal(dig_curves_read(scratch_write("bad.csv", csv), &map, &visitor, &error),
-                         DIG_EINVAL);
+        assert_int_equal(read_text(csv, &map, &seen, &error), DIG_EINVAL);
         assert_contains(error.text, bad[i][1]);
     }
 }
