@@ -203,6 +203,16 @@ void dig_batch_whiten(const struct dig_batch_group *const group, const double fe
     dig_lower_solve(group->features, group->lower, y);
 }
 
+const struct dig_measured *dig_batch_first(const struct dig_batch *const batch, const size_t group)
+{
+    assert(batch != NULL && group < batch->groups);
+    size_t i = 0;
+    while (batch->dig[i].group != group) {
+        i++;
+    }
+    return &batch->measured[batch->dig[i].measured];
+}
+
 void dig_batch_summarise(struct dig_batch *const batch)
 {
     for (size_t g = 0; g < batch->groups; g++) {

@@ -52,6 +52,9 @@ DIG_MUST_CHECK enum dig_status dig_batch_make(const struct dig_surface *surface,
 void dig_batch_whiten(const struct dig_batch_group *group, const double feature[DIG_FEATURES],
                       double y[DIG_FEATURES]);
 
+/// The first dig of a group.
+const struct dig_measured *dig_batch_first(const struct dig_batch *batch, size_t group);
+
 /// Recomputes the groups' mean and about after the digs' y were changed.
 void dig_batch_summarise(struct dig_batch *batch);
 

@@ -121,15 +121,6 @@ static void model_of(const struct problem *const p, const size_t group,
     dig_batch_whiten(&p->batch->group[group], feature, y);
 }
 
-static const struct dig_measured *first_of(const struct dig_batch *const batch, const size_t group)
-{
-    size_t i = 0;
-    while (batch->dig[i].group != group) {
-        i++;
-    }
-    return &batch->measured[batch->dig[i].measured];
-}
-
 // Where all digs of a trajectory are alike only their mean counts.
 static size_t means_alone(const struct problem *const p, const double x[], double r[])
 {
@@ -137,7 +128,7 @@ static size_t means_alone(const struct problem *const p, const double x[], doubl
     for (size_t g = 0; g < p->batch->groups; g++) {
         const struct dig_batch_group *const group = &p->batch->group[g];
         double                              y[DIG_FEATURES];
-        model_of(p, g, first_of(p->batch, g), x, y);
+        model_of(p, g, dig_batch_first(p->batch, g), x, y);
         for (size_t k = 0; k < group->features; k++) {
             r[n++] = (group->mean[k] - y[k]) * p->weight[g];
         }
@@ -238,7 +229,7 @@ static void weigh(struct problem *const p, const double x[], double noise[])
             }
         }
         if (!p->differs && p->hypothesis->effects > 0) {
-            own = noise_of_dig(p, g, first_of(p->batch, g), x, size2);
+            own = noise_of_dig(p, g, dig_batch_first(p->batch, g), x, size2);
         }
         noise[g] = discrepancy + own +
                    size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);

@@ -229,8 +229,9 @@ enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_s
     if (status != DIG_OK || !search->significant) {
         return status;
     }
-    search->outside = dig_search_is_outside(&c);
-    if (search->unlisted && !search->outside && search->without_name.functions == 0 &&
+    search->outside = !search->is_rock && dig_search_is_outside(&c);
+    if (search->unlisted && !search->is_rock && !search->outside &&
+        search->without_name.functions == 0 &&
         dig_search_best_evidence(search) < DIG_SEARCH_TOLD_APART &&
         search->p_complete > rarer * false_alarm) {
         search->unlisted    = false;

@@ -10,6 +10,7 @@
 #define DIG_CLOSED_LOOP_SEARCH_H
 
 #include "closed_loop/null.h"
+#include "closed_loop/rock.h"
 #include "closed_loop/trace.h"
 #include "closed_loop/unlisted.h"
 
@@ -23,6 +24,8 @@ struct dig_search {
     double            p_fit;                 // of chosen
     double            confirmed;             // dig_confirm_gain() of chosen, 0: not asked
     struct dig_unlisted without_name;
+    bool                is_rock; // unlisted, but for a rock where the table has none
+    struct dig_rock     rock;
 
     size_t            rivals; // single effects, as they competed
     struct dig_fitted rival[DIG_NULL_RIVALS];

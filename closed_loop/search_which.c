@@ -9,9 +9,12 @@
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 
 // An effect that misfits more than digs of its own would may leave at most so many times what they
-// would; where the plain hypothesis leaves so many times what is expected, see is_matched().
-static const double most_left = 2.0;
+// would; where the plain hypothesis leaves so many times what is expected, its curves must explain
+// this share of it, see is_matched(), and those of a rock elsewhere half.
+static const double most_left = 2.5;
 static const double much_left = 4.0;
+static const double matched   = 0.65;
+static const double half      = 0.5;
 
 // Below this chance of its own misfit the plain hypothesis is refuted by itself.
 static const double refuted = 0.001;
@@ -96,8 +99,7 @@ static bool is_matched(const struct dig_search_work *const c)
         dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
     const double after =
         dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, c->s->plain.noise);
-    return before < much_left * expected ||
-           before - after >= DIG_SEARCH_LEAST_SHARE * (before - expected);
+    return before < much_left * expected || before - after >= matched * (before - expected);
 }
 
 static bool is_believable(const struct dig_search_work *const c)
@@ -140,6 +142,28 @@ static void give_up(struct dig_search_work *const c)
     c->s->chosen   = c->s->plain;
 }
 
+// What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
+// explain half of what is left; another depth gives it another shape.
+static enum dig_status look_for_rock(struct dig_search_work *const c)
+{
+    struct dig_rock *const rock   = &c->s->rock;
+    const enum dig_status  status = dig_rock_fit(c->batch, c->soil, &c->s->plain, rock);
+    if (status != DIG_OK || !rock->known) {
+        return status;
+    }
+    const double before =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
+    const double evidence = dig_search_evidence(c, &rock->plain, rock->numbers);
+    const double lead =
+        evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
+    c->s->is_rock = lead >= DIG_SEARCH_TOLD_APART &&
+                    before - rock->squares >= half * (before - c->plain_null.mean[0]);
+    if (c->s->is_rock) {
+        c->s->chosen = rock->plain;
+    }
+    return status;
+}
+
 enum dig_status dig_search_which(struct dig_search_work *const c)
 {
     enum dig_status status =
@@ -171,6 +195,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     if (status == DIG_OK &&
         (!is_decisive(c, evidence) || c->s->confirmed < 0.0 || !is_believable(c))) {
         give_up(c);
+        status = look_for_rock(c);
     }
     return status;
 }

@@ -62,15 +62,6 @@ static void sum_by_part(const struct dig_tracing *const     t,
     }
 }
 
-static const struct dig_measured *first_of(const struct dig_batch *const batch, const size_t group)
-{
-    size_t i = 0;
-    while (batch->dig[i].group != group) {
-        i++;
-    }
-    return &batch->measured[batch->dig[i].measured];
-}
-
 enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
                                 const struct dig_fitted *const fitted, const size_t effect)
 {
@@ -104,7 +95,7 @@ void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual
         double                              mean[DIG_FEATURES] = { 0.0 };
         double                              noise;
         dig_hypothesis_features(t->soil, &t->search->plain.hypothesis, t->search->plain.number,
-                                first_of(t->batch, g), model, &noise);
+                                dig_batch_first(t->batch, g), model, &noise);
         for (size_t i = 0; i < t->batch->digs; i++) {
             if (t->batch->dig[i].group != g) {
                 continue;
@@ -305,6 +296,11 @@ void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const
                        "rolling %.2f, %.0f kg/m3; compute a table that holds it",
                        g.value[DIG_AXIS_FRICTION], g.value[DIG_AXIS_ROLLING],
                        g.value[DIG_AXIS_DENSITY_kgpm3]);
+    } else if (s->is_rock) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "a rock, felt %.0f mm (rig scale) from where the table's is; what it adds "
+                       "is corrected as measured, and holds while it lies there",
+                       1e3 * s->rock.ahead_m);
     } else if (s->unlisted) {
         (void)snprintf(trace->advice, sizeof trace->advice,
                        "no effect of the list explains the digs; what is left depends on %s",

@@ -88,15 +88,6 @@ struct regression {
     double function[FUNCTIONS][DIG_FORCE_CHANNELS][ROWS_MAX];
 };
 
-static const struct dig_measured *first_of(const struct dig_batch *const batch, const size_t group)
-{
-    size_t i = 0;
-    while (batch->dig[i].group != group) {
-        i++;
-    }
-    return &batch->measured[batch->dig[i].measured];
-}
-
 static double weight_of(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
                         const size_t g)
 {
@@ -124,7 +115,7 @@ static void fill_gravel(const struct dig_batch *const batch, const struct dig_so
         double noise;
         memcpy(moved, plain->number, sizeof moved);
         moved[a] += soil->surface->set->axis_count[a] > 1 ? step : 0.0;
-        dig_hypothesis_features(soil, &plain->hypothesis, moved, first_of(batch, g), feature,
+        dig_hypothesis_features(soil, &plain->hypothesis, moved, dig_batch_first(batch, g), feature,
                                 &noise);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] = (feature[f] - model[f]) / step;
@@ -160,8 +151,8 @@ static void fill(const struct dig_batch *const batch, const struct dig_soil *con
         const double                        weight = weight_of(batch, plain, g);
         double                              model[DIG_FEATURES];
         double                              noise;
-        dig_hypothesis_features(soil, &plain->hypothesis, plain->number, first_of(batch, g), model,
-                                &noise);
+        dig_hypothesis_features(soil, &plain->hypothesis, plain->number, dig_batch_first(batch, g),
+                                model, &noise);
         put_rows(group, model, weight, r->y + r->rows);
         for (size_t k = 0; k < group->features; k++) {
             r->y[r->rows + k] = weight * group->mean[k] - r->y[r->rows + k];
@@ -267,8 +258,8 @@ static double credible(const struct dig_batch *const batch, const struct dig_soi
     double                              model[DIG_FEATURES];
     double                              noise;
     double                              squares = 0.0;
-    dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number, first_of(batch, g), feature,
-                            &noise);
+    dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number, dig_batch_first(batch, g),
+                            feature, &noise);
     dig_batch_whiten(group, feature, model);
     for (size_t k = 0; k < group->features; k++) {
         squares += pow(group->mean[k] - model[k], 2.0);
@@ -362,13 +353,15 @@ void dig_unlisted_correct(const struct dig_batch *const batch, const struct dig_
         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         mean_left(batch, soil, fitted, g, mean);
-        dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number, first_of(batch, g), curve);
+        dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number, dig_batch_first(batch, g),
+                             curve);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             double squares = 0.0;
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 squares += curve[c][k] * curve[c][k] / DIG_CURVE_POINTS;
             }
-            for (size_t k = 0; first_of(batch, g)->measured[c] && k < DIG_CURVE_POINTS; k++) {
+            for (size_t k = 0; dig_batch_first(batch, g)->measured[c] && k < DIG_CURVE_POINTS;
+                 k++) {
                 share->share[t][c][k] = (float)(by * mean[c][k] / fmax(sqrt(squares), 1e-12));
             }
         }

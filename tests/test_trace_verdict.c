@@ -1,5 +1,6 @@
 #include "closed_loop/trace_verdict.h"
 
+#include "estimator/effects/effect.h"
 #include "tests/world_fixture.h"
 
 #include <stdlib.h>
@@ -117,12 +118,34 @@ static void both_sides_are_named_the_machine_first(void **state)
     assert_null(trace.unlisted);
 }
 
+// Named, and corrected by what was measured: its model says where, and adds no template.
+static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t     = search(DIG_EFFECT_UNLISTED, 1.2);
+    const struct dig_machine_finding air   = { .p_complete = 1.0 };
+    struct dig_trace                 trace = { 0 };
+    found.is_rock                          = true;
+    found.rock = (struct dig_rock){ .ahead_m = 0.03, .low_m = 0.02, .high_m = 0.05 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_OBSTACLE);
+    assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
+    assert_true(largest_correction(trace.unlisted) > 0.2);
+    double value[DIG_MODEL_PARAMETERS_MAX];
+    assert_int_equal(dig_effect_values(&trace.effect[0], value), DIG_OK);
+    assert_close(value[0], 0.0, 0.0);
+    assert_close(value[1], 0.03, 1e-12);
+    free(trace.unlisted);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_unexplained_machine_leaves_the_prediction_alone),
         cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
         cmocka_unit_test(both_sides_are_named_the_machine_first),
+        cmocka_unit_test(a_rock_elsewhere_is_an_obstacle_without_a_template),
     };
     return cmocka_run_group_tests_name("trace_verdict", tests, world_setup, world_teardown);
 }

@@ -1,4 +1,6 @@
-// A rock lies half buried in the bucket's way: its diameter, rig scale.
+// A rock lies half buried in the bucket's way: its diameter, rig scale. One that lies elsewhere, or
+// deeper, has no template: ahead_m says where it is felt, from where the table's rock is, and what
+// it adds is the model's measured residual.
 
 #include "estimator/effects/list.h"
 
@@ -7,6 +9,6 @@ const struct dig_effect dig_effect_obstacle = {
     .summary    = "a rock in the way",
     .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
-    .parameters = 1,
-    .parameter  = { { "diameter_m", 0.0, 0.0, 10.0, 0.03 } },
+    .parameters = 2,
+    .parameter  = { { "diameter_m", 0.0, 0.0, 10.0, 0.03 }, { "ahead_m", 0.0, -10.0, 10.0, 0.05 } },
 };
