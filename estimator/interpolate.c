@@ -35,11 +35,14 @@ double dig_axis_value(const struct dig_curve_set *const set, const enum dig_axis
     return axis == DIG_AXIS_DENSITY_kgpm3 ? exp(at) : at;
 }
 
-// The interval of an axis a value falls into and how far along it.
-static enum dig_status locate(const struct dig_curve_set *const set, const enum dig_axis axis,
-                              const double value, size_t *const index, double *const fraction)
+enum dig_status dig_axis_locate(const struct dig_curve_set *const set, const enum dig_axis axis,
+                                const double value, struct dig_axis_place *const place)
 {
-    const size_t        count    = set->axis_count[axis];
+    assert(set != NULL && place != NULL);
+    const size_t count = set->axis_count[axis];
+    if (count == 0) {
+        return DIG_ENOMATCH;
+    }
     const double *const at       = set->axis[axis];
     const double        position = dig_axis_position(set, axis, value);
     const double        off_only = fabs(value - at[0]); // of an axis with one point
@@ -60,38 +63,28 @@ static enum dig_status locate(const struct dig_curve_set *const set, const enum 
         f                 = f < edge ? 0.0 : f;
         f                 = f > 1.0 - edge ? 1.0 : f;
     }
-    *index    = i;
-    *fraction = f;
+    *place = (struct dig_axis_place){ .index = i, .fraction = f };
     return DIG_OK;
 }
 
-enum dig_status dig_cell_find(const struct dig_curve_set *const set,
-                              const struct dig_gravel *const gravel, const size_t trajectory,
-                              struct dig_cell *const cell)
+enum dig_status dig_cell_at(const struct dig_curve_set *const set,
+                            const struct dig_axis_place       place[const DIG_AXES],
+                            const size_t trajectory, struct dig_cell *const cell)
 {
-    assert(set != NULL && gravel != NULL && cell != NULL && trajectory < set->trajectories);
-    size_t index[DIG_AXES];
-    double fraction[DIG_AXES];
-    for (int a = 0; a < DIG_AXES; a++) {
-        if (set->axis_count[a] == 0 ||
-            locate(set, (enum dig_axis)a, gravel->value[a], &index[a], &fraction[a]) != DIG_OK) {
-            return DIG_ENOMATCH;
-        }
-    }
-
+    assert(set != NULL && place != NULL && cell != NULL && trajectory < set->trajectories);
     struct dig_cell found = { .corners = 0 };
     for (unsigned corner = 0; corner < DIG_CELL_CORNERS; corner++) {
         double weight = 1.0;
-        size_t place  = 0;
+        size_t at     = 0;
         for (unsigned a = 0; a < DIG_AXES; a++) {
             const bool upper = ((corner >> a) & 1U) != 0;
-            weight *= upper ? fraction[a] : 1.0 - fraction[a];
-            place = place * set->axis_count[a] + index[a] + (upper ? 1 : 0);
+            weight *= upper ? place[a].fraction : 1.0 - place[a].fraction;
+            at = at * set->axis_count[a] + place[a].index + (upper ? 1 : 0);
         }
         if (!(weight > 0.0)) {
             continue;
         }
-        const int entry = set->cell[place];
+        const int entry = set->cell[at];
         if (entry < 0) {
             return DIG_ENOMATCH;
         }
@@ -106,6 +99,22 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
     }
     *cell = found;
     return DIG_OK;
+}
+
+enum dig_status dig_cell_find(const struct dig_curve_set *const set,
+                              const struct dig_gravel *const gravel, const size_t trajectory,
+                              struct dig_cell *const cell)
+{
+    assert(set != NULL && gravel != NULL && cell != NULL);
+    struct dig_axis_place place[DIG_AXES];
+    for (int a = 0; a < DIG_AXES; a++) {
+        const enum dig_status status =
+            dig_axis_locate(set, (enum dig_axis)a, gravel->value[a], &place[a]);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    return dig_cell_at(set, place, trajectory, cell);
 }
 
 // Weighted sum of the cell's curves, four at a time so that a point stays in a register; in the

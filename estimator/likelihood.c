@@ -5,7 +5,8 @@
 #include <assert.h>
 #include <math.h>
 
-// Loops over points go by strides of this length, which a compiler can make the most of.
+// Loops over points go by strides of this length, counted from 0 and over arrays that are restrict:
+// then compilers work on several points at once.
 enum { STRIDE = 16 };
 _Static_assert(DIG_CURVE_POINTS % STRIDE == 0 && DIG_OUTLINE_BLOCKS % STRIDE == 0, "whole strides");
 
@@ -48,8 +49,9 @@ static void blend_outlines(const struct dig_summary *const summary,
     }
 }
 
-static void make_curve(const struct dig_likelihood *const l, const struct dig_cell *const cell,
-                       const size_t channel, struct channel_curve *const curve)
+static void make_curve(const struct dig_likelihood *const restrict l,
+                       const struct dig_cell *const cell, const size_t channel,
+                       struct channel_curve *const restrict curve)
 {
     const double own    = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
     const double shared = pooled_weight / (pooled_weight + own);
@@ -70,7 +72,8 @@ static void make_curve(const struct dig_likelihood *const l, const struct dig_ce
     const double relative2 = l->relative2[channel];
     const double floor2    = least_spread * least_spread * relative2 * mean2 / l->measured_count;
     for (size_t from = 0; from < l->count; from += STRIDE) {
-        for (size_t k = from; k < from + STRIDE; k++) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k       = from + i;
             const double sd      = curve->spread2[k];
             const double pooled2 = relative2 * curve->mean[k] * curve->mean[k];
             curve->spread2[k]    = (1.0 - shared) * sd * sd + shared * pooled2 + floor2;
@@ -120,13 +123,14 @@ struct misses {
     double d[DIG_CURVE_POINTS];
 };
 
-static void miss_moment(const struct dig_likelihood *const l, const struct dig_cell *const cell,
-                        struct misses *const misses)
+static void miss_moment(const struct dig_likelihood *const restrict l,
+                        const struct dig_cell *const cell, struct misses *const restrict misses)
 {
     struct channel_curve moment;
     make_curve(l, cell, DIG_CHANNEL_MY_Nm, &moment);
     for (size_t from = 0; from < l->count; from += STRIDE) {
-        for (size_t k = from; k < from + STRIDE; k++) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k       = from + i;
             const double widened = l->inverse_digs[k] + cell->inverse_packings;
             const double d_there = moment.spread2[k] * widened + l->sigma2[0][k] + least_d;
             const double miss    = l->mean[0][k] - moment.mean[k];
@@ -160,15 +164,16 @@ static inline double joint2(const double miss[DIG_FORCE_CHANNELS], const double 
     return miss[0] * miss[0] / e0 + y1 * y1 / e1 + y2 * y2 / e2;
 }
 
-static void miss_all(const struct dig_likelihood *const l, const struct dig_cell *const cell,
-                     struct misses *const misses)
+static void miss_all(const struct dig_likelihood *const restrict l,
+                     const struct dig_cell *const cell, struct misses *const restrict misses)
 {
     struct channel_curve curve[DIG_FORCE_CHANNELS];
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         make_curve(l, cell, c, &curve[c]);
     }
     for (size_t from = 0; from < l->count; from += STRIDE) {
-        for (size_t k = from; k < from + STRIDE; k++) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k         = from + i;
             const double widened   = l->inverse_digs[k] + cell->inverse_packings;
             const double miss[]    = { l->mean[0][k] - curve[0].mean[k],
                                        l->mean[1][k] - curve[1].mean[k],

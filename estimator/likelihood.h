@@ -34,7 +34,7 @@ void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_summa
 bool dig_likelihood_outline(const struct dig_summary *summary, struct dig_likelihood *likelihood);
 
 /// Its logarithm at a cell of the trajectory (dig_cell_find), but for a constant. 4 microseconds,
-/// with forces 14.
+/// with forces 11.
 double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
 
 /// Mean over points and channels of (m - t)' D^-1 (m - t): 1 is expected of digs in the cell's

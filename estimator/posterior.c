@@ -15,22 +15,6 @@ enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
 // likeliest.
 static const double unlikely = 16.0;
 
-// Of all digs at one gravel; -infinity where the table has no curve.
-static double log_likelihood_at(const struct dig_curve_set *const set,
-                                const struct dig_gravel *const gravel, const size_t groups,
-                                const struct dig_likelihood l[])
-{
-    double sum = 0.0;
-    for (size_t g = 0; g < groups; g++) {
-        struct dig_cell cell;
-        if (dig_cell_find(set, gravel, l[g].trajectory, &cell) != DIG_OK) {
-            return -INFINITY;
-        }
-        sum += dig_likelihood_log(&l[g], &cell);
-    }
-    return sum;
-}
-
 double dig_posterior_excess(const struct dig_curve_set *const set,
                             const struct dig_summary *const   summary,
                             const struct dig_pool_sums *const sums,
@@ -53,78 +37,134 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
     return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
 }
 
-// The fine grid: points are centres of equal intervals of each axis's position.
+// The fine grid: points are centres of equal intervals of each axis's position. What belongs to a
+// point lies on its axes, and is told once for each of their values.
 struct fine {
-    size_t count[DIG_AXES];
-    size_t all;
+    size_t                count[DIG_AXES];
+    size_t                all;
+    double                value[DIG_AXES][FINE];
+    struct dig_axis_place place[DIG_AXES][FINE];
 };
 
-static struct fine make_fine(const struct dig_curve_set *const set)
+// DIG_ENOMATCH when an axis has no points.
+static enum dig_status make_fine(const struct dig_curve_set *const set, struct fine *const fine)
 {
-    struct fine fine = { .all = 1 };
+    fine->all = 1;
     for (int a = 0; a < DIG_AXES; a++) {
-        const size_t most = a == DIG_AXIS_DENSITY_kgpm3 ? FINE_DENSITY : FINE;
-        fine.count[a]     = set->axis_count[a] > 1 ? most : 1;
-        fine.all *= fine.count[a];
+        const enum dig_axis axis = (enum dig_axis)a;
+        const size_t        most = a == DIG_AXIS_DENSITY_kgpm3 ? FINE_DENSITY : FINE;
+        if (set->axis_count[a] == 0) {
+            return DIG_ENOMATCH;
+        }
+        fine->count[a] = set->axis_count[a] > 1 ? most : 1;
+        fine->all *= fine->count[a];
+        for (size_t i = 0; i < fine->count[a]; i++) {
+            const double value =
+                dig_axis_value(set, axis, ((double)i + 0.5) / (double)fine->count[a]);
+            const enum dig_status status = dig_axis_locate(set, axis, value, &fine->place[a][i]);
+            if (status != DIG_OK) {
+                return status;
+            }
+            fine->value[a][i] = value;
+        }
     }
-    return fine;
+    return DIG_OK;
 }
 
-static size_t index_on(const struct fine *const fine, const size_t point, const int axis)
+// Where on its axes a point lies.
+struct indices {
+    size_t on[DIG_AXES];
+};
+
+static struct indices indices_of(const struct fine *const fine, const size_t point)
 {
-    size_t rest = point;
-    for (int a = DIG_AXES - 1; a > axis; a--) {
+    struct indices at;
+    size_t         rest = point;
+    for (int a = DIG_AXES - 1; a >= 0; a--) {
+        at.on[a] = rest % fine->count[a];
         rest /= fine->count[a];
     }
-    return rest % fine->count[axis];
+    return at;
 }
 
-static struct dig_gravel gravel_at(const struct dig_curve_set *const set,
-                                   const struct fine *const fine, const size_t point)
+static struct dig_gravel gravel_at(const struct fine *const fine, const size_t point)
 {
-    struct dig_gravel gravel;
+    const struct indices at = indices_of(fine, point);
+    struct dig_gravel    gravel;
     for (int a = 0; a < DIG_AXES; a++) {
-        const double position = ((double)index_on(fine, point, a) + 0.5) / (double)fine->count[a];
-        gravel.value[a]       = dig_axis_value(set, (enum dig_axis)a, position);
+        gravel.value[a] = fine->value[a][at.on[a]];
     }
     return gravel;
 }
 
-// The same of the most probable point; what piles up at an end of an axis belongs there.
+// Of all digs at one point; -infinity where the table has no curve.
+static double log_likelihood_at(const struct dig_curve_set *const set,
+                                const struct fine *const fine, const size_t point,
+                                const size_t groups, const struct dig_likelihood l[])
+{
+    const struct indices  at = indices_of(fine, point);
+    struct dig_axis_place place[DIG_AXES];
+    for (int a = 0; a < DIG_AXES; a++) {
+        place[a] = fine->place[a][at.on[a]];
+    }
+    double sum = 0.0;
+    for (size_t g = 0; g < groups; g++) {
+        struct dig_cell cell;
+        if (dig_cell_at(set, place, l[g].trajectory, &cell) != DIG_OK) {
+            return -INFINITY;
+        }
+        sum += dig_likelihood_log(&l[g], &cell);
+    }
+    return sum;
+}
+
+// The gravel of the most probable point; what piles up at an end of an axis belongs there.
 static struct dig_gravel mode_at(const struct dig_curve_set *const set,
                                  const struct fine *const fine, const size_t point)
 {
-    struct dig_gravel gravel = gravel_at(set, fine, point);
+    const struct indices at     = indices_of(fine, point);
+    struct dig_gravel    gravel = gravel_at(fine, point);
     for (int a = 0; a < DIG_AXES; a++) {
-        const size_t index = index_on(fine, point, a);
-        if (index == 0 || index + 1 == fine->count[a]) {
-            gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, index == 0 ? 0.0 : 1.0);
+        if (at.on[a] == 0 || at.on[a] + 1 == fine->count[a]) {
+            gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, at.on[a] == 0 ? 0.0 : 1.0);
         }
     }
     return gravel;
 }
 
-// Position at which the marginal distribution reaches a probability; weights sum to 1.
-static double quantile(const struct fine *const fine, const int axis, const double weight[],
-                       const double probability)
+// The weights along each axis; they sum to 1.
+struct marginal {
+    double weight[DIG_AXES][FINE];
+};
+
+static struct marginal marginal_of(const struct fine *const fine, const double weight[])
 {
-    double marginal[FINE] = { 0 };
+    struct marginal m = { { { 0.0 } } };
     for (size_t i = 0; i < fine->all; i++) {
-        marginal[index_on(fine, i, axis)] += weight[i];
-    }
-    double below = 0.0;
-    for (size_t i = 0; i < fine->count[axis]; i++) {
-        if (below + marginal[i] >= probability && marginal[i] > 0.0) {
-            return ((double)i + (probability - below) / marginal[i]) / (double)fine->count[axis];
+        const struct indices at = indices_of(fine, i);
+        for (int a = 0; a < DIG_AXES; a++) {
+            m.weight[a][at.on[a]] += weight[i];
         }
-        below += marginal[i];
+    }
+    return m;
+}
+
+// Position at which the distribution along an axis of so many intervals reaches a probability.
+static double quantile(const size_t count, const double weight[], const double probability)
+{
+    double below = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (below + weight[i] >= probability && weight[i] > 0.0) {
+            return ((double)i + (probability - below) / weight[i]) / (double)count;
+        }
+        below += weight[i];
     }
     return 1.0;
 }
 
 // Gravels at equal steps of the cumulative weight: each stands for as much of the posterior.
-static void draw_samples(const struct dig_curve_set *const set, const struct fine *const fine,
-                         const double weight[], struct dig_match *const match)
+static void draw_samples(const struct fine *const fine, const double weight[],
+                         struct dig_match *const match)
 {
     double sum = 0.0;
     size_t i   = 0;
@@ -133,7 +173,7 @@ static void draw_samples(const struct dig_curve_set *const set, const struct fin
         while (i + 1 < fine->all && sum + weight[i] < at) {
             sum += weight[i++];
         }
-        match->sample[s] = gravel_at(set, fine, i);
+        match->sample[s] = gravel_at(fine, i);
     }
     match->samples = DIG_MATCH_SAMPLES;
 }
@@ -151,8 +191,7 @@ static void look_roughly(const struct dig_curve_set *const set,
     }
     double most = -INFINITY;
     for (size_t i = 0; i < fine->all; i++) {
-        const struct dig_gravel gravel = gravel_at(set, fine, i);
-        weight[i] = rough ? log_likelihood_at(set, &gravel, sums->groups, l) : 0.0;
+        weight[i] = rough ? log_likelihood_at(set, fine, i, sums->groups, l) : 0.0;
         most      = fmax(most, weight[i]);
     }
     for (size_t i = 0; i < fine->all; i++) {
@@ -166,12 +205,10 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
                                    struct dig_match *const           match)
 {
     assert(set != NULL && sums != NULL && match != NULL);
-    for (int a = 0; a < DIG_AXES; a++) {
-        if (set->axis_count[a] == 0) {
-            return DIG_ENOMATCH;
-        }
+    struct fine fine;
+    if (make_fine(set, &fine) != DIG_OK) {
+        return DIG_ENOMATCH;
     }
-    const struct fine     fine = make_fine(set);
     struct dig_likelihood l[DIG_TRAJECTORY_MAX];
     double                weight[GRID_MAX];
     look_roughly(set, summary, sums, &fine, l, weight);
@@ -181,9 +218,8 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
     double most = -INFINITY;
     for (size_t i = 0; i < fine.all; i++) {
-        const struct dig_gravel gravel = gravel_at(set, &fine, i);
         if (!(weight[i] < 0.0)) {
-            weight[i] = log_likelihood_at(set, &gravel, sums->groups, l);
+            weight[i] = log_likelihood_at(set, &fine, i, sums->groups, l);
         }
         most = fmax(most, weight[i]);
     }
@@ -203,19 +239,21 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     struct dig_gravel mean = { { 0 } };
     for (size_t i = 0; i < fine.all; i++) {
         weight[i] /= sum;
-        const struct dig_gravel gravel = gravel_at(set, &fine, i);
+        const struct dig_gravel gravel = gravel_at(&fine, i);
         for (int a = 0; a < DIG_AXES; a++) {
             mean.value[a] += weight[i] * gravel.value[a];
         }
     }
 
-    match->mean = mean;
-    match->mode = mode_at(set, &fine, mode);
+    const struct marginal m = marginal_of(&fine, weight);
+    match->mean             = mean;
+    match->mode             = mode_at(set, &fine, mode);
     for (int a = 0; a < DIG_AXES; a++) {
         const enum dig_axis axis = (enum dig_axis)a;
-        match->low.value[a]      = dig_axis_value(set, axis, quantile(&fine, a, weight, 0.05));
-        match->high.value[a]     = dig_axis_value(set, axis, quantile(&fine, a, weight, 0.95));
+        match->low.value[a] = dig_axis_value(set, axis, quantile(fine.count[a], m.weight[a], 0.05));
+        match->high.value[a] =
+            dig_axis_value(set, axis, quantile(fine.count[a], m.weight[a], 0.95));
     }
-    draw_samples(set, &fine, weight, match);
+    draw_samples(&fine, weight, match);
     return DIG_OK;
 }
