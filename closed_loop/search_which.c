@@ -136,6 +136,22 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
     }
 }
 
+// The pair, where it leads the best single effect and predicts digs left out better than that;
+// where no dig can be left out for want of more, a second effect is not confirmed and not named.
+static enum dig_status choose_pair(struct dig_search_work *const c, const size_t best,
+                                   const struct dig_fitted *const pair)
+{
+    double gain  = 0.0;
+    c->s->chosen = c->s->rival[best];
+    if (dig_search_evidence(c, pair, 2) <= c->s->log_evidence[best] + DIG_SEARCH_TOLD_APART) {
+        return DIG_OK;
+    }
+    const enum dig_status status =
+        dig_confirm_gain(c->batch, c->soil, &c->s->rival[best], pair, &gain);
+    c->s->chosen = gain > 0.0 ? *pair : c->s->rival[best];
+    return status;
+}
+
 static void give_up(struct dig_search_work *const c)
 {
     c->s->unlisted = true;
@@ -182,11 +198,10 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     struct dig_fitted pair;
     if (status == DIG_OK && more && find_pair(c, &pair)) {
         fit_again(c, best, &pair);
-        c->s->chosen =
-            dig_search_evidence(c, &pair, 2) > c->s->log_evidence[best] + DIG_SEARCH_TOLD_APART
-                ? pair
-                : c->s->rival[best];
-        status = weigh_chosen(c, &more);
+        status = choose_pair(c, best, &pair);
+        if (status == DIG_OK) {
+            status = weigh_chosen(c, &more);
+        }
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
     if (status == DIG_OK) {
