@@ -145,6 +145,7 @@ dig "$work/deep.csv" --depth 1.1 --attack-deg 2
 "$BIN/digloop" identify "$work/ways.sqlite" "$work/deep.csv" >"$work/out"
 check "how deep and how turned a dig was is told" eval 'grep -qE "^  dig 1 at depth 1\.(09|10)[0-9], attack (1\.9|2\.0)[0-9] deg" "$work/out"'
 "$BIN/digloop" identify "$work/ways.sqlite" "$work/deep.csv" --json >"$work/ways.json"
+check "and kept in the identity" grep -qE '^ "depth": 1\.(09|10)[0-9]*, "attack_deg": (1\.9|2\.0)[0-9]*,$' "$work/ways.json"
 "$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" --trajectory scrape --depth 1.1 --attack-deg 2 --json >"$work/ways.out"
 "$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" --trajectory scrape --json >"$work/plain.out"
 check "a prediction may be of a dig as deep, which is another" eval 'grep -q "\"depth\": 1.1, \"attack_deg\": 2" "$work/ways.out" && ! cmp -s <(tail -4 "$work/ways.out") <(tail -4 "$work/plain.out")'
