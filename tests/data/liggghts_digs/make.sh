@@ -23,7 +23,7 @@ fi
 
 # What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1.
 friction=.5 rolling=.5 density=2500
-radii=".00375" shares="1" clump= slope_deg=0
+radii=".00375" shares="1" clump= slope_deg=0 rock=
 normal=hooke roll=epsd2
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
 case $gravel in
@@ -33,6 +33,7 @@ cohesion) pull=1e5 ;;
 cohesion_all) pull=1e5 stick=1e5 ;;
 cohesion_2e5) pull=2e5 stick=2e5 ;;
 clump) clump=yes ;;
+obstacle) rock=.015 ;; # radius of a fixed sphere, where offline_dem/variant.h has it
 other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
 slope_down) slope_deg=-8 ;;
@@ -62,6 +63,22 @@ awk -v s="$scale" 'function point(k, y) { print "   vertex", s * x[k], s * y, s 
         for (k = 1; k < 5; k++) { facet(k, -.035, k + 1, -.035, k + 1, .035); facet(k, -.035, k + 1, .035, k, .035) }
         for (k = 2; k < 5; k++) { facet(1, -.035, k, -.035, k + 1, -.035); facet(1, .035, k, .035, k + 1, .035) }
         print "endsolid bucket" }' > bucket.stl
+
+# The rock: a sphere of triangles between 12 meridians and 8 parallels.
+[ -z "$rock" ] || awk -v r="$rock" -v x0=.1138 -v z0="$height" 'function point(i, j) {
+        a = pi * i / 8; b = 2 * pi * j / 12
+        printf "   vertex %.9g %.9g %.9g\n", x0 + r * sin(a) * cos(b), r * sin(a) * sin(b), z0 + r * cos(a) }
+    function facet(i, j, k, l, m, n) {
+        print " facet normal 0 0 0\n  outer loop"; point(i, j); point(k, l); point(m, n)
+        print "  endloop\n endfacet" }
+    BEGIN {
+        pi = atan2(0, -1)
+        print "solid rock"
+        for (i = 0; i < 8; i++) for (j = 0; j < 12; j++) {
+            if (i > 0) facet(i, j, i + 1, j, i, j + 1)
+            if (i < 7) facet(i + 1, j, i + 1, j + 1, i, j + 1)
+        }
+        print "endsolid rock" }' > rock.stl
 
 wall() { # NAME AXISplane OFFSET
     echo "fix $1 all wall/gran model $law primitive type 1 $2 $3"
@@ -144,6 +161,13 @@ EOF
             printf "group type%d type %d\ngroup top%d region cut%d\ngroup del%d intersect type%d top%d\n", t, t, t, t, t, t, t }'
         echo "delete_atoms group del$type compress no"
     done
+    # A rock takes the place of the grains that are there.
+    [ -z "$rock" ] || cat <<EOF
+region hole sphere .1138 0 $height $(awk -v r="$rock" 'BEGIN { print r + .00375 }') side in units box
+delete_atoms region hole compress no
+fix rock all mesh/surface file rock.stl type 1
+fix rw all wall/gran model $law mesh n_meshes 1 meshes rock
+EOF
     echo "run $relax"
 }
 
@@ -164,8 +188,10 @@ R 1600 28.64788976 .048 .054" ;;
     esac
     echo "$start" | { read -r x z theta
         echo "fix bucket all mesh/surface/stress file bucket.stl type 4 rotate axis 0 -1 0 angle $theta move $x 0 $z reference_point $x 0 $z"; }
+    # All meshes are one wall.
+    [ -z "$rock" ] || echo "unfix rw"
     cat <<EOF
-fix bw all wall/gran model $law mesh n_meshes 1 meshes bucket
+fix bw all wall/gran model $law mesh $([ "$rock" ] && echo n_meshes 2 meshes bucket rock || echo n_meshes 1 meshes bucket)
 thermo 16000
 run 0
 reset_timestep 0
