@@ -17,8 +17,9 @@ struct dig_rock {
     double            low_m, high_m;              // 90 % interval
     double            factor[DIG_TRAJECTORY_MAX]; // of the largest rock's hump, by group
     size_t            numbers;                    // fitted: the place, and factors that are not 0
-    struct dig_fitted plain;                      // the gravel without the hump; misfit and squares
-                                                  // with it
+    double            log_evidence, p_fit; // as a search judges it, 0 before: struct dig_candidate
+    struct dig_fitted plain;               // the gravel without the hump; misfit and squares
+                                           // with it
     double squares; // left of the means, with the noise that the plain hypothesis has alone
 };
 

@@ -169,9 +169,10 @@ static enum dig_status look_for_rock(struct dig_search_work *const c)
     }
     const double before =
         dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
-    const double evidence = dig_search_evidence(c, &rock->plain, rock->numbers);
+    rock->log_evidence = dig_search_evidence(c, &rock->plain, rock->numbers);
+    rock->p_fit        = dig_null_p(&c->plain_null, 0, rock->plain.squares);
     const double lead =
-        evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
+        rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
     c->s->is_rock = lead >= DIG_SEARCH_TOLD_APART &&
                     before - rock->squares >= half * (before - c->plain_null.mean[0]);
     if (c->s->is_rock) {

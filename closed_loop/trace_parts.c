@@ -62,6 +62,20 @@ static void sum_by_part(const struct dig_tracing *const     t,
     }
 }
 
+struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const double probability)
+{
+    const struct dig_effect *const known = dig_effect_of(DIG_EFFECT_OBSTACLE);
+    struct dig_model_effect        made  = { .effect      = DIG_EFFECT_OBSTACLE,
+                                             .probability = probability,
+                                             .parameters  = 1 };
+    made.parameter[0]                    = (struct dig_model_parameter){ .value = rock->ahead_m,
+                                                                         .low   = rock->low_m,
+                                                                         .high  = rock->high_m };
+    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
+                   known->parameter[1].name);
+    return made;
+}
+
 enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
                                 const struct dig_fitted *const fitted, const size_t effect)
 {
@@ -203,10 +217,30 @@ static double fit_error(const struct dig_tracing *const t, const struct dig_fitt
     return error;
 }
 
+// It is looked for when all else has failed, and was in no bootstrap.
+static void list_rock(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_rock *const  rock = &t->search->rock;
+    struct dig_candidate *const   c    = &trace->candidate[trace->candidates++];
+    const struct dig_model_effect made = dig_trace_rock(rock, 0.0);
+    *c                                 = (struct dig_candidate){ .effect       = made.effect,
+                                                                 .log_evidence = rock->log_evidence,
+                                                                 .p_fit        = rock->p_fit,
+                                                                 .inclusion    = (double)NAN,
+                                                                 .error        = (double)NAN,
+                                                                 .parameters   = made.parameters,
+                                                                 .seen_in      = DIG_PART_SOIL,
+                                                                 .gravel = dig_surface_gravel(t->surface, rock->plain.number) };
+    memcpy(c->parameter, made.parameter, sizeof c->parameter);
+}
+
 void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_trace *const trace)
 {
     const struct dig_search *const s                      = t->search;
     bool                           taken[DIG_NULL_RIVALS] = { false };
+    if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
+        list_rock(t, trace);
+    }
     for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
          turn++) {
         size_t next = s->rivals;

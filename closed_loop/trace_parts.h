@@ -25,6 +25,9 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil   *soil,
                                          const struct dig_fitted *fitted, size_t effect,
                                          double probability);
 
+/// The same of a rock that lies elsewhere than the table's.
+struct dig_model_effect dig_trace_rock(const struct dig_rock *rock, double probability);
+
 /// The part of a dig in which a fitted effect is largest against the scatter.
 enum dig_part dig_trace_seen_in(const struct dig_tracing *t, const struct dig_fitted *fitted,
                                 size_t effect);

@@ -1,7 +1,6 @@
 #include "closed_loop/trace_verdict.h"
 
 #include "closed_loop/unlisted.h"
-#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -17,20 +16,6 @@ static void fill_sets(const struct dig_search *const s, const struct dig_machine
     for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
         trace->set[trace->sets++] = s->set[i];
     }
-}
-
-// A rock that does not lie where the table's does: named, and corrected as it was measured.
-static struct dig_model_effect rock_of(const struct dig_search *const s)
-{
-    struct dig_model_effect made = { .effect      = DIG_EFFECT_OBSTACLE,
-                                     .probability = 1.0 - s->p_complete,
-                                     .parameters  = 1 };
-    made.parameter[0]            = (struct dig_model_parameter){ .value = s->rock.ahead_m,
-                                                                 .low   = s->rock.low_m,
-                                                                 .high  = s->rock.high_m };
-    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
-                   dig_effect_of(DIG_EFFECT_OBSTACLE)->parameter[1].name);
-    return made;
 }
 
 enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t,
@@ -71,7 +56,8 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
             .probability = of_soil ? 1.0 - s->p_complete
                                    : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
         };
-        trace->effect[trace->effects++] = s->is_rock ? rock_of(s) : unnamed;
+        trace->effect[trace->effects++] =
+            s->is_rock ? dig_trace_rock(&s->rock, 1.0 - s->p_complete) : unnamed;
     }
     return DIG_OK;
 }

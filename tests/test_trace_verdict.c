@@ -136,6 +136,10 @@ static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
     assert_int_equal(dig_effect_values(&trace.effect[0], value), DIG_OK);
     assert_close(value[0], 0.0, 0.0);
     assert_close(value[1], 0.03, 1e-12);
+    dig_trace_fill_candidates(&t, &trace);
+    assert_int_equal(trace.candidates, 1 + found.rivals);
+    assert_int_equal(trace.candidate[0].effect, DIG_EFFECT_OBSTACLE);
+    assert_string_equal(trace.candidate[0].parameter[0].name, "ahead_m");
     free(trace.unlisted);
 }
 
