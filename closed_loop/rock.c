@@ -10,8 +10,8 @@ enum {
     PLACES_MAX = 64, // that are tried
 };
 
-// Lengths over the tooth's: between places that are tried; from where the tooth goes in to the
-// first rock that can be told from what it meets there anyway.
+// Lengths over the tooth's: between places that are tried, at least; from where the tooth goes in
+// to the first rock that can be told from what it meets there anyway.
 static const double step   = 0.05;
 static const double margin = 0.2;
 
@@ -220,7 +220,8 @@ static void fit_all(struct room *const r, struct place place[PLACES_MAX],
     double misfit[PLACES_MAX];
     size_t n = 0;
     find_range(r, &first_m, &last_m);
-    const double step_m = step * r->soil->surface->set->tooth_m;
+    const double tooth_m = r->soil->surface->set->tooth_m;
+    const double step_m  = fmax(step * tooth_m, (last_m - first_m) / (PLACES_MAX - 1));
     for (; n < PLACES_MAX && first_m + step_m * (double)n <= last_m; n++) {
         put_place(r, first_m + step_m * (double)n, &place[n]);
         for (size_t g = 0; g < r->batch->groups; g++) {
@@ -244,7 +245,7 @@ static void fit_all(struct room *const r, struct place place[PLACES_MAX],
             rock->high_m = fmax(rock->high_m, place[i].ahead_m + 0.5 * step_m);
         }
     }
-    rock->high_m += buried * r->soil->surface->set->tooth_m;
+    rock->high_m += buried * tooth_m;
 }
 
 enum dig_status dig_rock_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
