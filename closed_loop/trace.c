@@ -283,6 +283,7 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
     }
     if (status == DIG_OK) {
+        dig_trace_doubt_soil(w->air, w->search);
         status = weigh_soil(w);
     }
     // Nothing was found, or nothing that is corrected: nothing changes.

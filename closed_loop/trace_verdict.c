@@ -18,6 +18,17 @@ static void fill_sets(const struct dig_search *const s, const struct dig_machine
     }
 }
 
+void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
+                          struct dig_search *const                search)
+{
+    assert(air != NULL && search != NULL);
+    if (air->unexplained && search->significant && !search->outside) {
+        search->unlisted = true;
+        search->is_rock  = false;
+        search->sets     = 0;
+    }
+}
+
 enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t,
                                        const struct dig_machine_finding *const air,
                                        struct dig_trace *const                 trace)

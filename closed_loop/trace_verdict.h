@@ -7,6 +7,10 @@
 #include "closed_loop/trace.h"
 #include "closed_loop/trace_parts.h"
 
+/// Gives up the names of what the soil shows while free air shows a machine that no effect
+/// explains: it may be the machine's.
+void dig_trace_doubt_soil(const struct dig_machine_finding *air, struct dig_search *search);
+
 /// Fills effects (the machine's first), where each is seen, the sets that cannot be told apart and
 /// what is added to the prediction for an effect without a name: nothing where free air shows a
 /// machine that no effect explains, because it may do otherwise to the next dig. DIG_ENOMEM.

@@ -118,6 +118,24 @@ static void both_sides_are_named_the_machine_first(void **state)
     assert_null(trace.unlisted);
 }
 
+static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t     = search(DIG_EFFECT_LAYERING, 0.8);
+    const struct dig_machine_finding air   = { .significant = true, .unexplained = true };
+    const struct dig_machine_finding known = { .significant = true };
+    struct dig_trace                 trace = { 0 };
+    dig_trace_doubt_soil(&known, &found);
+    assert_false(found.unlisted);
+    dig_trace_doubt_soil(&air, &found);
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_int_equal(trace.sets, 0);
+    assert_close(largest_correction(trace.unlisted), 0.0, 0.0);
+    free(trace.unlisted);
+}
+
 // Named, and corrected by what was measured: its model says where, and adds no template.
 static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
 {
@@ -149,6 +167,7 @@ int main(void)
         cmocka_unit_test(an_unexplained_machine_leaves_the_prediction_alone),
         cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
         cmocka_unit_test(both_sides_are_named_the_machine_first),
+        cmocka_unit_test(a_strange_machine_leaves_the_soil_without_a_name),
         cmocka_unit_test(a_rock_elsewhere_is_an_obstacle_without_a_template),
     };
     return cmocka_run_group_tests_name("trace_verdict", tests, world_setup, world_teardown);
