@@ -118,14 +118,14 @@ static void lay_out(const struct dig_recording *const recording, const struct co
 // does not reach in quadrature.
 static double fit_distance(const struct dig_recording *const recording,
                            const struct columns *const c, const struct dig_curve_set *const set,
-                           const size_t trajectory, struct dig_approach *const approach)
+                           const size_t trajectory, struct dig_approach *const made,
+                           struct dig_approach *const approach)
 {
     struct dig_path_point way[DIG_APPROACH_FIT_POINTS];
-    struct dig_approach   made;
     lay_out(recording, c, set->tooth_m, way);
     const double off_m = dig_approach_fit(&set->trajectory[trajectory], set->tooth_m,
-                                          set->approaches->depth_m[trajectory], way, &made);
-    return hypot(off_m, dig_approach_clamp(set, trajectory, &made, approach)) / set->tooth_m;
+                                          set->approaches->depth_m[trajectory], way, made);
+    return hypot(off_m, dig_approach_clamp(set, trajectory, made, approach)) / set->tooth_m;
 }
 
 static double channel_of(const struct dig_force_row *const row, const enum dig_channel channel)
@@ -169,13 +169,15 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
     int    best          = -1;
     double best_distance = INFINITY;
     for (size_t t = 0; t < set->trajectories; t++) {
+        struct dig_approach made     = dig_approach_plain();
         struct dig_approach approach = dig_approach_plain();
         const double        away     = as_dug && dig_approach_varies(set, t)
-                                           ? fit_distance(recording, c, set, t, &approach)
+                                           ? fit_distance(recording, c, set, t, &made, &approach)
                                            : path_distance(recording, c, &set->trajectory[t], set->tooth_m);
         if (away < best_distance) {
             best               = (int)t;
             best_distance      = away;
+            observed->made     = made;
             observed->approach = approach;
         }
     }

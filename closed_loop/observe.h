@@ -19,7 +19,8 @@
 struct dig_observed {
     int                 trajectory;
     double              off_path_m;
-    struct dig_approach approach; // of dig_observe_as_dug(); else the plain one
+    struct dig_approach made; // of dig_observe_as_dug(), as the way tells it; else the plain one
+    struct dig_approach approach; // the nearest to that the table holds
     double              pace;     // duration of the table's trajectory / of this dig
     bool                measured[DIG_FORCE_CHANNELS];
     double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // smoothed; 0 where not measured
@@ -35,7 +36,7 @@ DIG_MUST_CHECK enum dig_status dig_observe_dig(const struct dig_curve_set *set,
 /// The same of a dig that may be deeper than the table's or have the bucket turned, where the table
 /// was dug so along its trajectory (estimator/approaches.h): depth and attack are told from the
 /// way, which begins with the recording. What of them lies beyond what the table was dug at counts
-/// as distance from the path, in quadrature with the rest; approach is the nearest the table holds.
+/// as distance from the path, in quadrature with the rest.
 DIG_MUST_CHECK enum dig_status dig_observe_as_dug(const struct dig_curve_set *set,
                                                   const struct dig_recording *recording,
                                                   struct dig_observed        *observed,

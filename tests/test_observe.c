@@ -147,6 +147,7 @@ static void what_lies_beyond_the_table_is_distance(void **state)
     struct dig_error           e   = { "" };
     struct dig_recording       r   = drive_so(&set, 0, 1.3, 0.0);
     assert_int_equal(dig_observe_as_dug(&set, &r, &o, &e), DIG_OK);
+    assert_close(o.made.depth, 1.3, 1e-3);
     assert_close(o.approach.depth, 1.2, 1e-3);
     assert_close(o.off_path_m, 0.1 * 0.02616, 5e-5);
     dig_recording_finish(&r);

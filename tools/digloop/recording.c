@@ -143,11 +143,10 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
         .trajectory = seen.trajectory,
         .off_path_m = seen.off_path_m,
         .approach   = seen.approach,
-        // As far as the table goes, the way tells it well; what lies beyond is in off_path_m.
-        .made   = dig_approach_varies(set, (size_t)seen.trajectory) ? seen.approach : none,
-        .first  = 0.0,
-        .last   = 1.0,
-        .forces = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
+        .made       = dig_approach_varies(set, (size_t)seen.trajectory) ? seen.made : none,
+        .first      = 0.0,
+        .last       = 1.0,
+        .forces     = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
     };
     memcpy(dig->moment_Nm, seen.value[DIG_CHANNEL_MY_Nm], sizeof dig->moment_Nm);
     memcpy(dig->force_N[0], seen.value[DIG_CHANNEL_FX_N], sizeof dig->force_N[0]);
