@@ -257,7 +257,7 @@ enum dig_status dig_rock_fit(const struct dig_batch *const batch, const struct d
         return DIG_OK;
     }
     struct room *const  r      = malloc(sizeof *r);
-    struct place *const place  = malloc(PLACES_MAX * sizeof *place);
+    struct place *const place  = calloc(PLACES_MAX, sizeof *place);
     enum dig_status     status = DIG_ENOMEM;
     if (r != NULL && place != NULL) {
         r->batch   = batch;
