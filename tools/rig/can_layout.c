@@ -74,7 +74,7 @@ static uint8_t remainder_of(const uint8_t data[7])
     padded[0]       = (uint8_t)~padded[0];
     unsigned window = padded[0];
     for (unsigned bit = 8; bit < 64; bit++) {
-        const unsigned next  = (padded[bit / 8] >> (7 - bit % 8)) & 1U;
+        const unsigned next  = ((unsigned)padded[bit / 8] >> (7 - bit % 8)) & 1U;
         const bool     carry = (window & 0x80U) != 0;
         window               = ((window << 1) | next) & 0xFFU;
         window ^= carry ? 0x1DU : 0U;
