@@ -119,13 +119,13 @@ static void lay_out(const struct dig_recording *const recording, const struct co
 static double fit_distance(const struct dig_recording *const recording,
                            const struct columns *const c, const struct dig_curve_set *const set,
                            const size_t trajectory, struct dig_approach *const made,
-                           struct dig_approach *const approach)
+                           struct dig_approach *const reached)
 {
     struct dig_path_point way[DIG_APPROACH_FIT_POINTS];
     lay_out(recording, c, set->tooth_m, way);
     const double off_m = dig_approach_fit(&set->trajectory[trajectory], set->tooth_m,
                                           set->approaches->depth_m[trajectory], way, made);
-    return hypot(off_m, dig_approach_clamp(set, trajectory, made, approach)) / set->tooth_m;
+    return hypot(off_m, dig_approach_clamp(set, trajectory, made, reached)) / set->tooth_m;
 }
 
 static double channel_of(const struct dig_force_row *const row, const enum dig_channel channel)
