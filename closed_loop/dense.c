@@ -24,14 +24,15 @@ enum dig_status dig_cholesky(const size_t n, double a[])
     return DIG_OK;
 }
 
+// By columns: what each unknown takes off the others does not wait for one another.
 void dig_lower_solve(const size_t n, const double l[], double b[])
 {
-    for (size_t i = 0; i < n; i++) {
-        double sum = b[i];
-        for (size_t k = 0; k < i; k++) {
-            sum -= l[i * n + k] * b[k];
+    for (size_t k = 0; k < n; k++) {
+        const double known = b[k] / l[k * n + k];
+        for (size_t i = k + 1; i < n; i++) {
+            b[i] -= l[i * n + k] * known;
         }
-        b[i] = sum / l[i * n + i];
+        b[k] = known;
     }
 }
 

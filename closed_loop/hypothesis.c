@@ -77,22 +77,41 @@ bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct d
                : most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
 }
 
+// The plain dig that effects are added to: the same for all digs of a trajectory.
+struct plain {
+    double feature[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+};
+
+static struct plain plain_of(const struct dig_soil *const soil, const size_t trajectory,
+                             const double number[])
+{
+    struct plain plain;
+    dig_surface_features(soil->surface, trajectory, number, plain.feature, plain.amplitude);
+    return plain;
+}
+
+static void add_effects(const struct dig_soil *const soil, const struct plain *const plain,
+                        const struct dig_hypothesis *const hypothesis, const double number[],
+                        const struct dig_measured *const dig, double feature[DIG_FEATURES],
+                        double *const noise)
+{
+    memcpy(feature, plain->feature, sizeof plain->feature);
+    *noise = 0.0;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const double share = dig_soil_share(hypothesis->effect[e], dig);
+        dig_soil_add(soil, hypothesis->effect[e], (size_t)dig->trajectory, number,
+                     number[DIG_AXES + e], share, plain->feature, plain->amplitude, feature, noise);
+    }
+}
+
 void dig_hypothesis_features(const struct dig_soil *const       soil,
                              const struct dig_hypothesis *const hypothesis, const double number[],
                              const struct dig_measured *const dig, double feature[DIG_FEATURES],
                              double *const noise)
 {
-    const size_t t = (size_t)dig->trajectory;
-    double       plain[DIG_FEATURES];
-    double       amplitude[DIG_FORCE_CHANNELS];
-    dig_surface_features(soil->surface, t, number, plain, amplitude);
-    memcpy(feature, plain, sizeof plain);
-    *noise = 0.0;
-    for (size_t e = 0; e < hypothesis->effects; e++) {
-        const double share = dig_soil_share(hypothesis->effect[e], dig);
-        dig_soil_add(soil, hypothesis->effect[e], t, number, number[DIG_AXES + e], share, plain,
-                     amplitude, feature, noise);
-    }
+    const struct plain plain = plain_of(soil, (size_t)dig->trajectory, number);
+    add_effects(soil, &plain, hypothesis, number, dig, feature, noise);
 }
 
 void dig_hypothesis_curve(const struct dig_soil *const       soil,
@@ -143,9 +162,15 @@ static size_t means_and_digs(const struct problem *const p, const double x[], do
         const struct dig_batch_group *const group              = &p->batch->group[g];
         double                              mean[DIG_FEATURES] = { 0.0 };
         double                              y[DIG_MEASURED_MAX][DIG_FEATURES];
+        const struct plain                  plain = plain_of(p->soil, group->trajectory, x);
         for (size_t i = 0; i < p->batch->digs; i++) {
             if (p->batch->dig[i].group == g) {
-                model_of(p, g, &p->batch->measured[p->batch->dig[i].measured], x, y[i]);
+                const struct dig_measured *const dig =
+                    &p->batch->measured[p->batch->dig[i].measured];
+                double feature[DIG_FEATURES];
+                double noise;
+                add_effects(p->soil, &plain, p->hypothesis, x, dig, feature, &noise);
+                dig_batch_whiten(group, feature, y[i]);
                 for (size_t k = 0; k < group->features; k++) {
                     mean[k] += y[i][k] / (double)group->digs;
                 }

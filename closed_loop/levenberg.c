@@ -119,14 +119,15 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
     double *const jacobian                         = tried + problem->residuals;
     double        gradient[DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
     double        damping                          = 1e-3;
+    bool          better                           = true;
     clip(problem, x);
     problem->residual(problem->context, x, r);
     double sum = sum_of_squares(problem->residuals, r);
-    for (int i = 0; i < problem->iterations; i++) {
+    for (int i = 0; i < problem->iterations && better; i++) {
         differentiate(problem, x, r, jacobian);
         normal_equations(problem, x, r, jacobian, normal, gradient);
         const double before = sum;
-        bool         better = false;
+        better              = false;
         for (int tries = 0; tries < 6 && !better; tries++) {
             better = take_step(problem, normal, gradient, damping, x, tried, &sum);
             damping *= better ? 0.2 : 10.0;
@@ -134,11 +135,13 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
         if (better) {
             memcpy(r, tried, problem->residuals * sizeof r[0]);
         }
-        if (!better || before - sum < enough) {
+        if (before - sum < enough) {
             break;
         }
     }
-    differentiate(problem, x, r, jacobian);
-    normal_equations(problem, x, r, jacobian, normal, gradient);
+    if (better) {
+        differentiate(problem, x, r, jacobian);
+        normal_equations(problem, x, r, jacobian, normal, gradient);
+    }
     *squares = sum;
 }

@@ -243,6 +243,9 @@ void dig_air_finish(struct dig_air *const air)
 static struct dig_air_point delayed(const struct dig_air_point point[], const size_t points,
                                     const size_t at, const double delay_s)
 {
+    if (!(fabs(delay_s) > 0.0)) {
+        return point[at];
+    }
     const double back = fmin(fmax((double)at - delay_s / step_s, 0.0), (double)(points - 1));
     const size_t low  = (size_t)back;
     const size_t high = low + 1 < points ? low + 1 : low;

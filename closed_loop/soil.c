@@ -131,13 +131,18 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
     const struct dig_soil_template *const template = &soil->template[effect][trajectory];
     double term[DIG_SOIL_TERMS];
     terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
+    double shape[DIG_FEATURES] = { 0.0 };
     for (size_t i = 0; i < template->terms; i++) {
+        const double *const of = template->feature[i];
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            feature[f] += term[i] * template->feature[i][f] * amplitude[f / DIG_FEATURE_BINS];
+            shape[f] += term[i] * of[f];
         }
         for (size_t j = 0; j < template->terms; j++) {
             *noise += term[i] * template->inverse[i][j] * term[j];
         }
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] += shape[f] * amplitude[f / DIG_FEATURE_BINS];
     }
 }
 

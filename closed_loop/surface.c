@@ -228,14 +228,15 @@ void dig_surface_features(const struct dig_surface *const surface, const size_t 
     double term[DIG_SURFACE_TERMS];
     terms_at(surface, place, term);
     amplitude_at(surface, trajectory, term, amplitude);
-    memset(feature, 0, DIG_FEATURES * sizeof feature[0]);
+    double shape[DIG_FEATURES] = { 0.0 };
     for (size_t j = 0; j < surface->terms; j++) {
+        const double *const of = surface->feature[trajectory][j];
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            feature[f] += term[j] * surface->feature[trajectory][j][f];
+            shape[f] += term[j] * of[f];
         }
     }
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        feature[f] *= amplitude[f / DIG_FEATURE_BINS];
+        feature[f] = shape[f] * amplitude[f / DIG_FEATURE_BINS];
     }
 }
 

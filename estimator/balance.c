@@ -69,6 +69,10 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
 double dig_friction_loss_N(const struct dig_friction *const friction, const double push_N,
                            const double rod_mps)
 {
+    if (!(fabs(friction->coulomb_N) + fabs(friction->stribeck_N) + fabs(friction->load_share) >
+          0.0)) {
+        return friction->viscous_Nspm * rod_mps;
+    }
     const double crawl_N = friction->stribeck_mps > 0.0
                                ? friction->stribeck_N * exp(-fabs(rod_mps) / friction->stribeck_mps)
                                : 0.0;

@@ -37,7 +37,7 @@ enum dig_status dig_cylinder_push(const struct dig_cylinder *const cylinder, con
     const double rod_m2    = cylinder->count * dig_cylinder_rod_m2(cylinder);
     const double sigma_Pa  = cylinder->pressure_sigma_Pa;
     const double margin_Pa = 0.5 * step_Pa + 3.0 * sigma_Pa;
-    const double areas_m2  = hypot(head_m2, rod_m2);
+    const double areas_m2  = sqrt(head_m2 * head_m2 + rod_m2 * rod_m2);
 
     *push = (struct dig_push){
         .push_N  = head_Pa * head_m2 - rod_Pa * rod_m2,
