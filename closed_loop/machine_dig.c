@@ -23,6 +23,9 @@ static const double spacing_share = 0.025;
 static const double limit_share   = 0.09;
 static const double turned_share  = 0.12;
 
+// Of the samples that tell the moment: a drive that fewer tell as well is left out.
+static const double told_share = 0.5;
+
 // A dump opens the bucket by this much at least, and is over once it closes again by this, rad.
 static const double dump_rad   = 0.12;
 static const double closed_rad = 0.02;
@@ -238,19 +241,66 @@ static enum dig_status place(const struct dig_machine *const   machine,
     return DIG_OK;
 }
 
-// Complete samples only, in time.
+static bool is_read(const struct dig_sample *const sample, const size_t signal)
+{
+    return sample->valid[signal] && isfinite(sample->value[signal]);
+}
+
+static bool has_drive(const struct dig_sample *const sample, const size_t joint)
+{
+    const size_t head = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * joint;
+    return is_read(sample, head + DIG_CHAMBER_HEAD) && is_read(sample, head + DIG_CHAMBER_ROD);
+}
+
+// The angles and the bucket's drive: less than that tells no moment.
+static bool has_moment(const struct dig_sample *const sample)
+{
+    bool has = has_drive(sample, DIG_JOINT_BUCKET);
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        has = has && is_read(sample, (size_t)DIG_SIGNAL_BOOM_rad + j);
+    }
+    return has;
+}
+
+// Drives that a recording tells by and large: a machine may have its pressures at the bucket alone.
+static void find_drives(const struct dig_machine_recording *const recording, bool told[DIG_JOINTS])
+{
+    double samples         = 0.0;
+    double has[DIG_JOINTS] = { 0.0 };
+    for (size_t i = 0; i < recording->rows; i++) {
+        samples += has_moment(&recording->row[i]) ? 1.0 : 0.0;
+        for (size_t j = 0; j < DIG_JOINTS && has_moment(&recording->row[i]); j++) {
+            has[j] += has_drive(&recording->row[i], j) ? 1.0 : 0.0;
+        }
+    }
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        told[j] = has[j] > told_share * samples;
+    }
+}
+
+// Samples with all that the recording tells, in time; without the rest of it.
 static size_t copy_complete(const struct dig_machine_recording *const recording,
                             struct dig_sample                         sample[])
 {
     size_t n = 0;
+    bool   told[DIG_JOINTS];
+    find_drives(recording, told);
     for (size_t i = 0; i < recording->rows; i++) {
-        bool ok = dig_sample_is_complete(&recording->row[i]);
-        for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
-            ok = ok && isfinite(recording->row[i].value[s]);
+        bool ok = has_moment(&recording->row[i]);
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            ok = ok && (!told[j] || has_drive(&recording->row[i], j));
         }
-        if (ok && (n == 0 || recording->row[i].time_ns > sample[n - 1].time_ns)) {
-            sample[n++] = recording->row[i];
+        if (!ok || (n > 0 && recording->row[i].time_ns <= sample[n - 1].time_ns)) {
+            continue;
         }
+        sample[n] = recording->row[i];
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            const size_t head = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * j;
+
+            sample[n].valid[head + DIG_CHAMBER_HEAD] = told[j];
+            sample[n].valid[head + DIG_CHAMBER_ROD]  = told[j];
+        }
+        n++;
     }
     return n;
 }
@@ -301,8 +351,11 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
     }
     made.samples = copy_complete(recording, made.sample);
     if (made.samples < 50) {
-        status = dig_error_set(error, DIG_EINVAL, "%zu complete samples, expected 50 at least",
-                               made.samples);
+        status = dig_error_set(
+            error, DIG_EINVAL,
+            "%zu samples with all angles and the bucket cylinder's pressures, expected 50 at "
+            "least",
+            made.samples);
         goto done;
     }
     status = fill_rates(machine, &made);

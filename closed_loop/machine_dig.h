@@ -18,7 +18,8 @@
 #include "estimator/route.h"
 #include "estimator/track.h"
 
-/// Complete samples of one recording, and what they say. Owned; free with dig_machine_dig_finish().
+/// The samples of one recording that have all angles and the pressures of every drive that it tells
+/// (the bucket at least), and what they say. Owned; free with dig_machine_dig_finish().
 struct dig_machine_dig {
     size_t             samples;
     struct dig_sample *sample;
@@ -33,7 +34,7 @@ struct dig_machine_dig {
 };
 
 /// Lays a recording along its trajectory (-1: along any of the set's). DIG_ENOMATCH: it holds no
-/// dig along it; DIG_EINVAL: fewer than 50 complete samples; DIG_ENOMEM. *error names which.
+/// dig along it; DIG_EINVAL: fewer than 50 such samples; DIG_ENOMEM. *error names which.
 DIG_MUST_CHECK enum dig_status dig_machine_dig_make(const struct dig_machine           *machine,
                                                     const struct dig_curve_set         *set,
                                                     const struct dig_machine_recording *recording,

@@ -19,10 +19,12 @@ static struct seen look(const struct dig_machine_recording *const recording, con
 {
     struct seen seen = { 0.0, 0.0 };
     for (size_t i = 1; i + 1 < recording->rows; i++) {
+        const bool read = recording->row[i - 1].valid[signal] && recording->row[i].valid[signal] &&
+                          recording->row[i + 1].valid[signal];
         const double off =
             recording->row[i].value[signal] -
             0.5 * (recording->row[i - 1].value[signal] + recording->row[i + 1].value[signal]);
-        if (isfinite(off)) {
+        if (read && isfinite(off)) {
             seen.square += off * off / 1.5;
             seen.count += 1.0;
         }

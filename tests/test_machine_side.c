@@ -67,6 +67,8 @@ struct fault {
     double payload_kg;  // in the middle of the bucket, from the second dig on
     double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
     double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
+    double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    bool   bare;        // no pressures but the bucket's
 };
 
 static double push_N(const int j, const double head_Pa, const double rod_Pa)
@@ -111,6 +113,25 @@ static double payload_N(const struct dig_rig_row *const row, const int j, const 
     return kg * 9.81 * (high[1] - high[0]) / 2e-5 / lever_m;
 }
 
+static void lose(struct dig_sample *const sample, const enum dig_signal signal)
+{
+    sample->valid[signal] = false;
+    sample->value[signal] = 0.0;
+}
+
+static void lose_readings(const struct fault *const fault, uint64_t *const state,
+                          struct dig_sample *const sample)
+{
+    for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
+        if (fault->lost > 0.0 && fabs(model_normal(state)) > fault->lost) {
+            lose(sample, (enum dig_signal)s);
+        }
+    }
+    for (int s = DIG_SIGNAL_BOOM_HEAD_Pa; s <= DIG_SIGNAL_ARM_ROD_Pa && fault->bare; s++) {
+        lose(sample, (enum dig_signal)s);
+    }
+}
+
 static struct dig_machine_recording record(const int kind, const size_t order,
                                            const struct fault *const fault, const uint64_t seed)
 {
@@ -141,6 +162,7 @@ static struct dig_machine_recording record(const int kind, const size_t order,
         row.joints = t->row[i].joints;
         r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
         dig_rig_quantise(&machine, &r.row[i]);
+        lose_readings(fault, &state, &r.row[i]);
     }
     return r;
 }
@@ -293,6 +315,44 @@ static void valves_that_hunt_raise_no_alarm_and_hide_no_seal(void **state)
     end(c);
 }
 
+// Missing is not zero: neither noise nor an effect is made of it.
+static void readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal(void **state)
+{
+    (void)state;
+    const struct fault     lossy = { .lost = 2.0 }; // one of 22
+    struct campaign *const c     = trace(&lossy, 41);
+    assert_false(c->finding.significant);
+    assert_close(c->finding.residual_air, 0.9, 0.15);
+    assert_true(c->measured[0].measured[DIG_CHANNEL_FX_N]);
+    end(c);
+    const struct fault     both = { .lost = 2.0, .dry_N = 4000.0 };
+    struct campaign *const d    = trace(&both, 42);
+    expect_found(d, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(d);
+}
+
+static void pressures_at_the_bucket_alone_tell_the_moment_and_its_seal(void **state)
+{
+    (void)state;
+    const struct fault     whole = { .dry_N = 0.0 };
+    const struct fault     bare  = { .bare = true };
+    struct campaign *const all   = trace(&whole, 51);
+    struct campaign *const c     = trace(&bare, 51);
+    assert_false(c->finding.significant || c->finding.unexplained);
+    for (int d = 0; d < DIGS; d++) {
+        assert_true(c->measured[d].measured[DIG_CHANNEL_MY_Nm]);
+        assert_false(c->measured[d].measured[DIG_CHANNEL_FX_N]);
+        assert_false(c->measured[d].measured[DIG_CHANNEL_FZ_N]);
+    }
+    assert_close(apart(c, all, false), 0.0, 1e-9);
+    end(all);
+    end(c);
+    const struct fault     seal = { .bare = true, .dry_N = 4000.0 };
+    struct campaign *const d    = trace(&seal, 52);
+    expect_found(d, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(d);
+}
+
 static void a_recording_without_its_dig_is_refused_by_name(void **state)
 {
     (void)state;
@@ -320,6 +380,8 @@ int main(void)
         cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
         cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
         cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
+        cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
+        cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
         cmocka_unit_test(a_recording_without_its_dig_is_refused_by_name),
     };
     return cmocka_run_group_tests_name("machine_side", tests, build, tear_down);

@@ -5,6 +5,7 @@
 #include "tests/testlib.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { ROWS = 20000 };
 
@@ -34,6 +35,7 @@ static struct dig_machine_recording record(const double arm_Pa, const double ang
                 8e6 + 3e6 * sin(0.7 * t_s + s) + (of_arm ? arm_Pa : 1e4) * model_normal(&seed);
         }
         r.row[i].time_ns = llround(t_s * 1e9);
+        memset(r.row[i].valid, true, sizeof r.row[i].valid);
     }
     r.row[700].value[DIG_SIGNAL_ARM_HEAD_Pa] = (double)NAN;
     return r;
@@ -69,11 +71,34 @@ static void quieter_ones_are_not(void **state)
     dig_machine_recording_finish(&r);
 }
 
+static void readings_that_do_not_arrive_are_no_noise(void **state)
+{
+    (void)state;
+    struct dig_machine_recording r    = record(1e4, 1e-5);
+    struct dig_machine           m    = machine;
+    uint64_t                     seed = 5;
+    for (size_t i = 0; i < r.rows; i++) {
+        for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
+            if (fabs(model_normal(&seed)) > 2.0) {
+                r.row[i].valid[s] = false;
+                r.row[i].value[s] = 0.0;
+            }
+        }
+    }
+    dig_reading_noise_raise(&m, 1, &r);
+    assert_close(m.angle_sigma_rad, machine.angle_sigma_rad, 0.0);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        assert_close(m.cylinder[j].pressure_sigma_Pa, machine.cylinder[j].pressure_sigma_Pa, 0.0);
+    }
+    dig_machine_recording_finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sensors_louder_than_the_file_are_believed),
         cmocka_unit_test(quieter_ones_are_not),
+        cmocka_unit_test(readings_that_do_not_arrive_are_no_noise),
     };
     return cmocka_run_group_tests_name("reading_noise", tests, read_machine, NULL);
 }
