@@ -70,6 +70,26 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(map.field[DIG_MAP_FX_N].factor, 1.0, 0.0);
 }
 
+static void the_example_of_curves_is_two_digs(void **state)
+{
+    (void)state;
+    struct dig_curve_map             map;
+    struct seen                      seen    = { .digs = 0 };
+    struct dig_error                 error   = { "" };
+    const struct dig_foreign_visitor visitor = { see, &seen };
+    assert_int_equal(dig_curve_map_read("tests/data/formats/curve_map.yaml", &map, NULL), DIG_OK);
+    if (dig_curves_read("tests/data/formats/curves.csv", &map, &visitor, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(seen.digs, 2);
+    for (size_t d = 0; d < 2; d++) {
+        assert_close(seen.dig[d].gravel.value[DIG_AXIS_FRICTION], 0.3, 1e-12);
+        assert_close(seen.dig[d].gravel.value[DIG_AXIS_ROLLING], d == 0 ? 0.1 : 0.2, 1e-12);
+        assert_string_equal(seen.dig[d].trajectory, "scrape");
+        assert_true(seen.last[d].t_s > seen.first[d].t_s + 1.0);
+    }
+}
+
 static void columns_are_found_scaled_and_cut_into_digs(void **state)
 {
     (void)state;
@@ -199,6 +219,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(the_example_of_curves_is_two_digs),
         cmocka_unit_test(columns_are_found_scaled_and_cut_into_digs),
         cmocka_unit_test(a_dig_may_be_deeper_or_turned),
         cmocka_unit_test(a_depth_or_attack_that_cannot_be_is_refused_by_its_line),

@@ -3,14 +3,18 @@
 //
 //   fuzz_files SECONDS [SEED]
 //
-// Prints, per reader, how many files it took and refused. A crash leaves the file in the work
-// folder.
+// Prints, per reader, how many files it took and refused. A crash leaves the file, whatever
+// it is, as campaign.yaml in a folder of its seed.
 
 #include "files/bed_csv.h"
+#include "files/campaign_yaml.h"
+#include "files/curve_map_yaml.h"
+#include "files/curves_csv.h"
 #include "files/grid_yaml.h"
 #include "files/identity_json.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
+#include "files/model_json.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "firmware_host/config.h"
@@ -24,7 +28,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #define SIZE_MAX_B (1 << 20)
 
@@ -126,6 +132,45 @@ static enum dig_status read_table(const char *const path, struct dig_error *cons
     return status;
 }
 
+// A campaign is a folder: the file must have the name it has there.
+static enum dig_status read_campaign(const char *const path, struct dig_error *const e)
+{
+    struct dig_campaign campaign;
+    char                folder[256];
+    (void)snprintf(folder, sizeof folder, "%s", path);
+    *strrchr(folder, '/') = '\0';
+    return dig_campaign_read(folder, &campaign, e);
+}
+
+static enum dig_status read_model(const char *const path, struct dig_error *const e)
+{
+    struct dig_model      model  = { 0 };
+    const enum dig_status status = dig_model_read(path, &model, e);
+    dig_model_finish(&model);
+    return status;
+}
+
+static enum dig_status read_curve_map(const char *const path, struct dig_error *const e)
+{
+    struct dig_curve_map map;
+    return dig_curve_map_read(path, &map, e);
+}
+
+static enum dig_status visit(void *const context, const struct dig_foreign_dig *const dig,
+                             struct dig_error *const error)
+{
+    (void)context, (void)dig, (void)error;
+    return DIG_OK;
+}
+
+static enum dig_status read_curves(const char *const path, struct dig_error *const e)
+{
+    const struct dig_foreign_visitor visitor = { .visit = visit };
+    struct dig_curve_map             map;
+    const enum dig_status status = dig_curve_map_read("tests/data/formats/curve_map.yaml", &map, e);
+    return status == DIG_OK ? dig_curves_read(path, &map, &visitor, e) : status;
+}
+
 static struct {
     const char *name, *example;
     enum dig_status (*read)(const char *path, struct dig_error *error);
@@ -149,6 +194,10 @@ static struct {
     { "daemon config", "tests/data/formats/digsightd.yaml", read_config, NULL, 0, 0, 0 },
     { "LCM log", "tests/data/formats/daemon.lcm", read_log, NULL, 0, 0, 0 },
     { "table", "tests/data/formats/table.sqlite", read_table, NULL, 0, 0, 0 },
+    { "campaign", "tests/data/formats/campaign/campaign.yaml", read_campaign, NULL, 0, 0, 0 },
+    { "model", "tests/data/formats/model.json", read_model, NULL, 0, 0, 0 },
+    { "curve map", "tests/data/formats/curve_map.yaml", read_curve_map, NULL, 0, 0, 0 },
+    { "curves", "tests/data/formats/curves.csv", read_curves, NULL, 0, 0, 0 },
 };
 enum { TARGETS = sizeof target / sizeof target[0] };
 
@@ -226,9 +275,12 @@ int main(const int argc, char *argv[])
     const double seconds = argc > 1 ? atof(argv[1]) : 10.0;
     state                = argc > 2 ? strtoull(argv[2], NULL, 0) : 1;
     static char text[SIZE_MAX_B];
+    char        folder[200];
     char        path[256];
-    (void)snprintf(path, sizeof path, "%s/fuzz.%llu", getenv("FUZZ_DIR") ? getenv("FUZZ_DIR") : ".",
-                   (unsigned long long)state);
+    (void)snprintf(folder, sizeof folder, "%s/fuzz.%llu",
+                   getenv("FUZZ_DIR") ? getenv("FUZZ_DIR") : ".", (unsigned long long)state);
+    (void)snprintf(path, sizeof path, "%s/campaign.yaml", folder);
+    (void)mkdir(folder, 0777);
     if (load_examples() != 0) {
         return 1;
     }
@@ -253,6 +305,7 @@ int main(const int argc, char *argv[])
         target[i].refused += status == DIG_OK ? 0 : 1;
     }
     (void)remove(path);
+    (void)rmdir(folder);
     for (int i = 0; i < TARGETS; i++) {
         (void)printf("%-18s %7ld taken %7ld refused\n", target[i].name, target[i].taken,
                      target[i].refused);
