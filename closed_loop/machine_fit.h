@@ -1,14 +1,16 @@
 // Which effects of the machine the equations of free air ask for, and with what values.
 //
-// Linear in theta with independent unit priors, noise of variance s2 (never below the sensors'),
-// the evidence of a set of effects is closed form: with H = I + A / s2 over its columns and b = -g
-// / s2,
+// Linear in theta with independent normal priors (here of unit width), noise of variance s2 (never
+// below the sensors'), the evidence of a set of effects is closed form: with H = I + A / s2 over
+// its columns and b = -g / s2,
 //
 //   log evidence = ( b^T H^-1 b - log det H ) / 2                       against no effect at all
 //
-// so a parameter that the air does not tell costs nothing and earns nothing. Under no effect the
-// evidence ratio has mean 1, hence exceeds K with a chance of at most 1 / K (Ville): an effect
-// joins when the ratio exceeds candidates / false_alarm.
+// so a parameter that the air does not tell costs nothing and earns nothing. How wide the
+// prior of one effect is, is not known before: a few widths are tried, and the best is counted as
+// the share that it has in their mean, at least. Under no effect the evidence ratio has mean 1,
+// hence exceeds K with a chance of at most 1 / K (Ville): an effect joins when the ratio exceeds
+// candidates / false_alarm.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_FIT_H
 #define DIG_CLOSED_LOOP_MACHINE_FIT_H
@@ -32,6 +34,7 @@ struct dig_fit {
 struct dig_fit_answer {
     double  log_evidence;
     double  rest2; // that remains
+    double  width; // of the prior
     double *at;    // [columns], 0 where not of the set; owned by the caller
     double *sigma; // [columns]; may be NULL
 };

@@ -80,11 +80,11 @@ static void sum_all(struct search *const s)
     dig_fit_sum(&s->fit, weight);
 }
 
-static double penalty(const struct search *const s, const double at[])
+static double penalty(const struct search *const s, const double at[], const double width)
 {
     double sum = 0.0;
     for (size_t c = 0; c < s->lines.columns; c++) {
-        sum += at[c] * at[c];
+        sum += pow(at[c] / width, 2.0);
     }
     return s->fit.s2 * sum;
 }
@@ -104,14 +104,15 @@ static enum dig_status refine(struct search *const s)
         struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
         dig_fit_solve(&s->fit, s->set, &answer);
 
-        const double now   = dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at);
-        double       moved = 0.0;
+        const double now =
+            dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at, answer.width);
+        double moved = 0.0;
         for (int halved = 0; halved < 6; halved++) {
             const double share = ldexp(1.0, -halved);
             for (size_t c = 0; c < n; c++) {
                 s->sigma[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
             }
-            if (dig_lines_rest2(&s->lines, s->sigma) + penalty(s, s->sigma) <= now) {
+            if (dig_lines_rest2(&s->lines, s->sigma) + penalty(s, s->sigma, answer.width) <= now) {
                 for (size_t c = 0; c < n; c++) {
                     moved          = fmax(moved, fabs(s->sigma[c] - s->lines.at[c]));
                     s->lines.at[c] = s->sigma[c];

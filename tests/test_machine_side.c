@@ -288,6 +288,39 @@ static void each_effect_is_named_and_taken_off_the_digs(void **state)
     end(clean);
 }
 
+static bool is_reported(const struct dig_machine_finding *const finding,
+                        const enum dig_effect_id                effect)
+{
+    bool found = false;
+    for (size_t e = 0; e < finding->effects; e++) {
+        found = found || finding->effect[e].effect == effect;
+    }
+    for (size_t i = 0; i < finding->sets; i++) {
+        for (size_t e = 0; e < finding->set[i].effects; e++) {
+            found = found || finding->set[i].effect[e] == effect;
+        }
+    }
+    return found;
+}
+
+// An effect of many parameters may be weak, too: it is not given to one of fewer.
+static void a_weak_effect_is_reported_among_what_it_may_be(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 61; seed <= 63; seed++) {
+        const struct fault     weak = { .rod_Pa = 3e4 };
+        struct campaign *const c    = trace(&weak, seed);
+        for (size_t i = 0; i < c->finding.candidates; i++) {
+            print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].effect),
+                          c->finding.candidate[i].log_evidence);
+        }
+        print_message("\n");
+        assert_true(c->finding.significant && !c->finding.unexplained);
+        assert_true(is_reported(&c->finding, DIG_EFFECT_PRESSURE_OFFSET));
+        end(c);
+    }
+}
+
 static void what_the_catalogue_lacks_gets_no_name(void **state)
 {
     (void)state;
@@ -378,6 +411,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_machine_as_its_file_says_raises_no_alarm),
         cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
+        cmocka_unit_test(a_weak_effect_is_reported_among_what_it_may_be),
         cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
         cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
