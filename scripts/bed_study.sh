@@ -7,7 +7,7 @@
 # is not dug again, so it may be stopped and started, also with more BEDS.
 #   BIN=build/bin OUT=build/bed_study scripts/bed_study.sh [across] [finest] [room] [hard] [firm] [shipped]
 # On one of two busy threads of a core `across` takes half an hour, `finest` (20 grains; never run) an hour, `room` 25 minutes, `hard` and
-# `firm` 5 each; STIFFEST=1 adds 150 MPa to `firm`.
+# `firm` 5 each; STIFFEST=1 adds 150 MPa to `firm`, at .9/.9 as well.
 set -euo pipefail
 bin=${BIN:-build/bin} out=${OUT:-build/bed_study} scene=config/scenes/rig.yaml
 mkdir -p "$out"
@@ -81,6 +81,7 @@ finest() { study across_20 2 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")";
 
 room() { # Walls or sides that are one so many mm beside the bucket; the floor; the ends.
     study walls_25 12 simpleA .5 "$seven"
+    study walls_50 8 simpleA .5 "$(join "$seven" "$(beside 50)")"
     study walls_80 8 simpleA .5 "$(join "$seven" "$(beside 80)")"
     study walls_25_across_9 4 simpleA .5 "$nine"
     plain
@@ -121,7 +122,10 @@ hard() { # The same where gravel jams most.
 firm() { # Stiffer grains.
     plain
     study firm_20_MPa 6 simpleA .5 "$(join "$seven" "$periodic" "$(stiff 20e6)")"
-    [ -z "${STIFFEST:-}" ] || study firm_150_MPa 4 simpleA .5 "$(join "$seven" "$periodic" "$(stiff 150e6)")"
+    [ -n "${STIFFEST:-}" ] || return 0
+    study firm_150_MPa 4 simpleA .5 "$(join "$seven" "$periodic" "$(stiff 150e6)")"
+    study hard_periodic_25 6 simpleA .9 "$(join "$seven" "$periodic")"
+    study hard_150_MPa 3 simpleA .9 "$(join "$seven" "$periodic" "$(stiff 150e6)")"
 }
 
 for part in "${@:-across room hard firm shipped}"; do
