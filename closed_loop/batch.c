@@ -181,26 +181,40 @@ static enum dig_status fill_group(struct dig_batch *const batch, const size_t g,
     if (n < LEAST_FEATURES) {
         return DIG_ENOMATCH;
     }
+    double lower[DIG_FEATURES * DIG_FEATURES];
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
-            group->lower[i * n + j] =
+            lower[i * n + j] =
                 batch->scatter->covariance[group->trajectory][group->feature[i]][group->feature[j]];
         }
         const size_t f = group->feature[i];
-        group->lower[i * n + i] +=
+        lower[i * n + i] +=
             sensor_variance(batch, g, f) / pow(group->amplitude[f / DIG_FEATURE_BINS], 2.0);
     }
-    return dig_cholesky(n, group->lower) == DIG_OK ? DIG_OK : DIG_ENOMATCH;
+    if (dig_cholesky(n, lower) != DIG_OK) {
+        return DIG_ENOMATCH;
+    }
+    for (size_t k = 0; k < n; k++) {
+        group->whiten[k][k] = 1.0 / group->amplitude[group->feature[k] / DIG_FEATURE_BINS];
+        dig_lower_solve(n, lower, group->whiten[k]);
+    }
+    return DIG_OK;
 }
 
+// The innermost of all that is fitted to digs: whole rows, which a compiler can take several at
+// once.
 void dig_batch_whiten(const struct dig_batch_group *const group, const double feature[DIG_FEATURES],
                       double y[DIG_FEATURES])
 {
-    for (size_t i = 0; i < group->features; i++) {
-        const size_t f = group->feature[i];
-        y[i]           = feature[f] / group->amplitude[f / DIG_FEATURE_BINS];
+    double sum[DIG_FEATURES] = { 0.0 };
+    for (size_t k = 0; k < group->features; k++) {
+        const double        x    = feature[group->feature[k]];
+        const double *const unit = group->whiten[k];
+        for (size_t i = 0; i < DIG_FEATURES; i++) {
+            sum[i] += x * unit[i];
+        }
     }
-    dig_lower_solve(group->features, group->lower, y);
+    memcpy(y, sum, sizeof sum);
 }
 
 const struct dig_measured *dig_batch_first(const struct dig_batch *const batch, const size_t group)
