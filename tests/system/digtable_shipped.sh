@@ -7,6 +7,11 @@ digtable check $table
 check "$table is sound" is "$code" 0
 digtable check tables/rig_effects.sqlite
 check "tables/rig_effects.sqlite is sound" is "$code" 0
+digtable check tables/product.sqlite
+check "tables/product.sqlite is sound" is "$code" 0
+cp tables/product.sqlite "$work/begun.sqlite"
+digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/begun.sqlite" --time-limit 0
+check "and its digs are of the product grid" eval 'is $code 0 && grep -q "13 of 78 digs" $work/err'
 digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/product.sqlite" --time-limit 0
 check "every dig of the product grid can be begun" eval 'is $code 0 && grep -q "0 of 78 digs" $work/err'
 
