@@ -117,7 +117,7 @@ foreign = $(foreach d,$(call pkg_cflags,$(1)),$(patsubst -I%,-isystem %,$(d)))
 $(BUILD)/offline_dem/%.o:   CPPFLAGS += $(call foreign,ode)
 # The grain kernel is picked at run time for the processor it finds; this is what its loops need.
 $(BUILD)/offline_dem/%.o:   CPPFLAGS += -fopenmp-simd -fno-math-errno -fno-trapping-math
-# What is fitted to digs is loops over thirty numbers: a trace takes a fifth less time, with the same bits.
+# What is fitted to digs is loops over thirty numbers, which are taken several at once so; the bits are the same.
 $(BUILD)/closed_loop/%.o:   CFLAGS += -O3
 # No one asks errno after a square root; without it the loop over the points of a curve is vectorised.
 $(BUILD)/estimator/likelihood.o: CPPFLAGS += -fno-math-errno
