@@ -217,6 +217,28 @@ void dig_batch_whiten(const struct dig_batch_group *const group, const double fe
     memcpy(y, sum, sizeof sum);
 }
 
+void dig_batch_spread(struct dig_batch *const batch, const double spread)
+{
+    assert(batch != NULL && spread > 0.0);
+    for (size_t g = 0; g < batch->groups; g++) {
+        struct dig_batch_group *const group = &batch->group[g];
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            group->amplitude[c] *= spread;
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            for (size_t i = 0; i < group->features; i++) {
+                group->whiten[k][i] /= spread;
+            }
+        }
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        for (size_t k = 0; k < DIG_FEATURES; k++) {
+            batch->dig[i].y[k] /= spread;
+        }
+    }
+    dig_batch_summarise(batch);
+}
+
 const struct dig_measured *dig_batch_first(const struct dig_batch *const batch, const size_t group)
 {
     assert(batch != NULL && group < batch->groups);

@@ -53,6 +53,10 @@ DIG_MUST_CHECK enum dig_status dig_batch_make(const struct dig_surface *surface,
 void dig_batch_whiten(const struct dig_batch_group *group, const double feature[DIG_FEATURES],
                       double y[DIG_FEATURES]);
 
+/// One dig scatters so many times as much as was thought: every y, of digs and of models, shrinks by
+/// it.
+void dig_batch_spread(struct dig_batch *batch, double spread);
+
 /// The first dig of a group.
 const struct dig_measured *dig_batch_first(const struct dig_batch *batch, size_t group);
 

@@ -76,22 +76,6 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, true, &c->s->beyond);
 }
 
-// Digs that scatter more than the table's raise the noise of everything.
-static void spread_batch(struct dig_batch *const batch, const double spread)
-{
-    for (size_t g = 0; g < batch->groups; g++) {
-        for (size_t i = 0; i < DIG_FORCE_CHANNELS; i++) {
-            batch->group[g].amplitude[i] *= spread;
-        }
-    }
-    for (size_t i = 0; i < batch->digs; i++) {
-        for (size_t k = 0; k < DIG_FEATURES; k++) {
-            batch->dig[i].y[k] /= spread;
-        }
-    }
-    dig_batch_summarise(batch);
-}
-
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.
 static bool is_told_by_order(const struct dig_search_work *const c)
 {
@@ -118,7 +102,7 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
     if (c->plain_null.mean[1] > 0.0 && !is_told_by_order(c) &&
         dig_null_p(&c->plain_null, 1, statistic.about) < c->false_alarm) {
         c->s->spread = sqrt(statistic.about / c->plain_null.mean[1]);
-        spread_batch(c->batch, c->s->spread);
+        dig_batch_spread(c->batch, c->s->spread);
         fit_all(c, &statistic);
     }
     const double p    = fmin(dig_null_p(&c->plain_null, 0, statistic.misfit),

@@ -73,6 +73,37 @@ static void what_the_machine_adds_is_taken_off(void **state)
     free(measured);
 }
 
+// Where digs scatter more, what stands for a model shrinks as they do: a model that explained them
+// still does.
+static void digs_and_models_shrink_alike(void **state)
+{
+    (void)state;
+    struct dig_measured *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status      status;
+    struct dig_batch    *batch = batch_of(measured, &status);
+    double               feature[DIG_FEATURES];
+    double               model[2][DIG_FEATURES];
+    double               y[2][DIG_FEATURES];
+    const double         about = batch->group[1].about;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] = 0.1 * (double)(f % 7);
+    }
+    for (int after = 0; after < 2; after++) {
+        if (after) {
+            dig_batch_spread(batch, 1.5);
+        }
+        dig_batch_whiten(&batch->group[1], feature, model[after]);
+        memcpy(y[after], batch->group[1].mean, sizeof y[after]);
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        assert_close(1.5 * model[1][f], model[0][f], 1e-9);
+        assert_close(1.5 * y[1][f], y[0][f], 1e-9);
+    }
+    assert_close(1.5 * 1.5 * batch->group[1].about, about, 1e-6);
+    free(batch);
+    free(measured);
+}
+
 // One noiseless simple dig, its moment averaged over +-half_s of rig time, at this pace.
 static void dig_once(const double half_s, const double pace, double y[DIG_FEATURES])
 {
@@ -154,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(digs_of_one_gravel_scatter_by_one),
         cmocka_unit_test(what_the_machine_adds_is_taken_off),
+        cmocka_unit_test(digs_and_models_shrink_alike),
         cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
         cmocka_unit_test(only_what_all_digs_have_is_compared),
     };
