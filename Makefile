@@ -8,6 +8,7 @@ CC         ?= cc
 INSTALL    ?= install
 PKG_CONFIG ?= pkg-config
 LCM_GEN    ?= lcm-gen
+NVCC       ?= nvcc
 
 VERSION    := 0.1.0
 
@@ -76,10 +77,12 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
-tables: all ## Compute what the tables rig, rig_effects and product lack of their grids (many hours of all cores)
+# With ENGINE=cuda on a graphics card; what it cannot dig (obstacles, clumps) then fails, and is left to the kernel.
+ENGINE ?= kernel
+tables: all ## Compute what the tables rig, rig_effects and product lack of their grids (many hours of all cores; ENGINE=cuda)
 	$(Q)for table in rig rig_effects product; do \
 	    $(BUILD)/bin/digtable generate config/scenes/$${table%_effects}.yaml config/grids/$$table.yaml \
-	        -o tables/$$table.sqlite || exit 1; \
+	        -o tables/$$table.sqlite --engine $(ENGINE) || exit 1; \
 	    $(BUILD)/bin/digtable check tables/$$table.sqlite || exit 1; done
 
 evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
@@ -123,7 +126,7 @@ $(BUILD)/closed_loop/%.o:   CFLAGS += -O3
 $(BUILD)/estimator/likelihood.o: CPPFLAGS += -fno-math-errno
 # What the numbers of a dig depend on, told apart in every run of a table.
 numerics_src := $(filter-out $(addprefix offline_dem/,sweep.c sweep.h worker.c worker.h vtk.c vtk.h engine_ode.c \
-                engine_ode.h watched_pour.c watched_pour.h),$(wildcard offline_dem/*.[ch])) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
+                engine_ode.h engine_cuda.c engine_cuda.h device_cuda.c device_cuda.h watched_pour.c watched_pour.h),$(wildcard offline_dem/*.[ch] offline_dem/cuda/*.cu)) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
 numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLAGS)'; $(CC) -dumpfullversion -dumpmachine; } \
                 | sha256sum | cut -c1-12)
 $(BUILD)/offline_dem/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'
@@ -191,7 +194,14 @@ $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
 
-.PHONY: arm64 deb
+.PHONY: arm64 cuda deb
+# No multiply is fused with an add: the card's bits are the processor's. native: for the card of this machine.
+NVCCFLAGS  ?= -O3 -arch=native
+cuda: $(BUILD)/libdig_cuda.so ## The library of `--engine cuda`, with NVIDIA's nvcc
+$(BUILD)/libdig_cuda.so: offline_dem/cuda/card.cu $(wildcard offline_dem/*.h core/*.h)
+	$(call say,NVCC,$@)
+	$(Q)mkdir -p $(@D) && $(NVCC) -std=c++20 -fmad=false $(NVCCFLAGS) -Xcompiler -fPIC -shared -I. $< -o $@
+
 arm64: ## Cross-build for 64-bit ARM and run the unit tests under qemu-user
 	$(Q)BUILD=$(BUILD)/arm64 scripts/arm64.sh
 
@@ -250,11 +260,13 @@ format-check: ## Fail on a source clang-format would change
 install: all ## Install under $(DESTDIR)$(PREFIX)
 	$(Q)$(INSTALL) -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/share/digsight/tables'
 	$(Q)$(INSTALL) -m 755 $(bins) '$(DESTDIR)$(PREFIX)/bin'
+	$(Q)! [ -e $(BUILD)/libdig_cuda.so ] || $(INSTALL) -D -m 755 $(BUILD)/libdig_cuda.so '$(DESTDIR)$(PREFIX)/lib/libdig_cuda.so'
 	$(Q)cp -R config messages '$(DESTDIR)$(PREFIX)/share/digsight/'
 	$(Q)$(INSTALL) -m 644 $(wildcard tables/*.sqlite) '$(DESTDIR)$(PREFIX)/share/digsight/tables'
 
 uninstall: ## Remove what install put there
 	$(Q)rm -f $(patsubst $(BUILD)/bin/%,'$(DESTDIR)$(PREFIX)/bin/%',$(bins))
+	$(Q)rm -f '$(DESTDIR)$(PREFIX)/lib/libdig_cuda.so'
 	$(Q)rm -rf '$(DESTDIR)$(PREFIX)/share/digsight'
 
 lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -DDIG_NUMERICS='"lint"' -fopenmp-simd \

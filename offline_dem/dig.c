@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "offline_dem/bodies.h"
 #include "offline_dem/level.h"
+#include "offline_dem/offloaded.h"
 #include "offline_dem/refuse.h"
 #include "offline_dem/setup.h"
 #include "offline_dem/vtk.h"
@@ -39,7 +40,7 @@ static void place_tool(struct drive *const d, const double time_s)
     dig_ode_scene_read(d->ode, &d->tool);
 }
 
-// Mass of the grains in the bucket.
+// Mass of the grains in the bucket, whose motions are here.
 static double carried_kg(const struct drive *const d)
 {
     const struct dig_grains *const grains = &d->world.grains;
@@ -56,18 +57,16 @@ static double carried_kg(const struct drive *const d)
 static enum dig_status record_window(struct drive *const d, const size_t first, const size_t window,
                                      struct dig_force_row *const row)
 {
-    const double dt_s   = d->world.dt_s;
-    double       sum[6] = { 0.0 };
-    for (size_t s = 1; s <= window; s++) {
+    const double      dt_s   = d->world.dt_s;
+    struct dig_wrench sum    = { 0 };
+    enum dig_status   status = dig_world_take_wrench(&d->world, &sum);
+    for (size_t s = 1; s <= window && status == DIG_OK; s++) {
         place_tool(d, (double)(first + s) * dt_s);
-        const enum dig_status status = dig_world_step(&d->world);
-        if (status != DIG_OK) {
-            return status;
-        }
-        for (int k = 0; k < 3; k++) {
-            sum[k] += d->world.on_tool.f_N[k];
-            sum[3 + k] += d->world.on_tool.t_Nm[k];
-        }
+        status = dig_world_step(&d->world);
+    }
+    status = status == DIG_OK ? dig_world_take_wrench(&d->world, &sum) : status;
+    if (status != DIG_OK) {
+        return status;
     }
     const double          share = 1.0 / (double)window;
     const double          t_s   = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
@@ -77,12 +76,12 @@ static enum dig_status record_window(struct drive *const d, const size_t first, 
                                .pin_x_m    = pose.x_m,
                                .pin_z_m    = pose.z_m,
                                .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
-                               .Fx_N       = share * sum[0],
-                               .Fy_N       = share * sum[1],
-                               .Fz_N       = share * sum[2],
-                               .Mx_Nm      = share * sum[3],
-                               .My_Nm      = share * sum[4],
-                               .Mz_Nm      = share * sum[5],
+                               .Fx_N       = share * sum.f_N[0],
+                               .Fy_N       = share * sum.f_N[1],
+                               .Fz_N       = share * sum.f_N[2],
+                               .Mx_Nm      = share * sum.t_Nm[0],
+                               .My_Nm      = share * sum.t_Nm[1],
+                               .Mz_Nm      = share * sum.t_Nm[2],
                                .carried_kg = carried_kg(d),
     };
     return DIG_OK;
@@ -103,6 +102,9 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
+            status = dig_world_look(&d->world);
+        }
+        if (status == DIG_OK && d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
             status = dig_vtk_write(d->vtk_dir, r / PICTURE_WINDOWS, &d->world, &d->tool);
         }
         if (status == DIG_OK) {
@@ -196,6 +198,17 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
                             const char *const vtk_dir, const struct dig_progress *const progress,
                             struct dig_recording *const recording, struct dig_error *const error)
 {
+    return dig_dig_run_on(NULL, scene, gravel, bed, trajectory, vtk_dir, progress, recording,
+                          error);
+}
+
+enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig_scene *const scene,
+                               const struct dig_gravel *const     gravel,
+                               const struct dig_bed *const        bed,
+                               const struct dig_trajectory *const trajectory,
+                               const char *const vtk_dir, const struct dig_progress *const progress,
+                               struct dig_recording *const recording, struct dig_error *const error)
+{
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {
         return status;
@@ -227,6 +240,9 @@ enum dig_status dig_dig_run(const struct dig_scene *const  scene,
         place_tool(&d, 0.0);
         status = dig_refuse_overlap(&d.world, error);
         status = status == DIG_OK ? dig_refuse_start(&d.world, &d.tool, error) : status;
+        if (status == DIG_OK && device != NULL) {
+            status = dig_setup_explain(dig_offload(&d.world, device), error);
+        }
         status = status == DIG_OK ? dig_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);
     }

@@ -25,7 +25,8 @@ static enum dig_status mean_kinetic(struct dig_world *const world, const size_t 
     double sum_J   = 0.0;
     size_t samples = 0;
     for (size_t s = 0; s < steps; s++) {
-        const enum dig_status status = dig_world_step(world);
+        enum dig_status status = dig_world_step(world);
+        status = status == DIG_OK && s % SAMPLE_STEPS == 0 ? dig_world_look(world) : status;
         if (status != DIG_OK) {
             return status;
         }

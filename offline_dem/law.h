@@ -25,6 +25,7 @@
 
 #include "core/scene.h"
 #include "core/units.h"
+#include "offline_dem/both.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -182,7 +183,7 @@ struct dig_caps {
 // One contact over one step in four stages, each without branches, so that a loop over it becomes
 // vector code. They stand apart because every stage waits for the one before: with many contacts at
 // the same stage the processor works on the others meanwhile.
-#define DIG_LAW_STAGE __attribute__((always_inline)) static inline
+#define DIG_LAW_STAGE DIG_BOTH __attribute__((always_inline)) static inline
 
 DIG_LAW_STAGE struct dig_line dig_law_line(const double dx_m, const double dy_m, const double dz_m)
 {

@@ -24,8 +24,7 @@
 #include "offline_dem/law.h"
 
 /// The pull of cohesion at the distance d_m.
-__attribute__((always_inline)) static inline double dig_law_pull_N(const struct dig_law law,
-                                                                   const double         d_m)
+DIG_LAW_STAGE double dig_law_pull_N(const struct dig_law law, const double d_m)
 {
     // How far the plane of the circle is from the centre of i.
     const double ri2_m2  = law.lever_i_m * law.lever_i_m;
@@ -35,9 +34,9 @@ __attribute__((always_inline)) static inline double dig_law_pull_N(const struct 
 }
 
 /// As dig_law_step(), for laws whose `general` is set. Costs a fifth more.
-__attribute__((always_inline)) static inline struct dig_push
-dig_law_general(const struct dig_law law, const double dt_s, const struct dig_touch t,
-                struct dig_memory *const memory)
+DIG_LAW_STAGE struct dig_push dig_law_general(const struct dig_law law, const double dt_s,
+                                              const struct dig_touch   t,
+                                              struct dig_memory *const memory)
 {
     // The floors keep a lane of padding, and a grain that does not turn, from dividing by zero.
     const double d2_m2    = t.dx_m * t.dx_m + t.dy_m * t.dy_m + t.dz_m * t.dz_m + 1e-300;

@@ -48,11 +48,15 @@ static unsigned char *find_loose(const struct dig_scene *const scene,
 
 enum dig_status dig_level_cut(const struct dig_scene *const scene, struct dig_world *const world)
 {
+    enum dig_status status = dig_world_fetch(world);
+    if (status != DIG_OK) {
+        return status;
+    }
     unsigned char *const loose = find_loose(scene, world);
     if (loose == NULL) {
         return DIG_ENOMEM;
     }
-    const enum dig_status status = dig_world_drop(world, loose);
+    status = dig_world_drop(world, loose);
     free(loose);
     return status;
 }
@@ -177,6 +181,10 @@ static void set_down(const struct dig_scene *const scene, struct map *const map,
 
 enum dig_status dig_level_rake(const struct dig_scene *const scene, struct dig_world *const world)
 {
+    const enum dig_status here = dig_world_fetch(world);
+    if (here != DIG_OK) {
+        return here;
+    }
     const struct dig_grains *const g      = &world->grains;
     unsigned char *const           loose  = find_loose(scene, world);
     const bool                     clumps = world->bodies != NULL && world->bodies->clumps > 0;
@@ -240,13 +248,13 @@ enum dig_status dig_level_press(const struct dig_scene *const scene, struct dig_
     const struct dig_box *const box = &scene->box;
     const double                load_N =
         scene->bed.preload_Pa * (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m);
-    double plate_m = box->z_min_m;
+    double          plate_m = box->z_min_m;
+    enum dig_status status  = dig_world_look(world);
     for (size_t i = 0; i < world->grains.n; i++) {
         plate_m = fmax(plate_m, world->grains.motion[i].x_m[2] + radius(world, i));
     }
     assert(world->walls < DIG_WALLS_MAX);
-    const size_t    plate  = world->walls++;
-    enum dig_status status = DIG_OK;
+    const size_t plate = world->walls++;
     for (size_t s = 0; status == DIG_OK; s++) {
         if (s % CHECK_STEPS == 0) {
             double deepest = 0.0;
@@ -268,6 +276,8 @@ enum dig_status dig_level_press(const struct dig_scene *const scene, struct dig_
             dig_world_touched(world);
         }
         status = dig_world_step(world);
+        status =
+            status == DIG_OK && s % CHECK_STEPS == CHECK_STEPS - 1 ? dig_world_look(world) : status;
         status = status == DIG_OK ? status : dig_setup_explain(status, error);
     }
     world->walls--;

@@ -9,8 +9,7 @@
 #include <string.h>
 
 // The margins trade rebuilds against idle contacts; measured on a bed of 7000 grains being dug.
-#define SKIN_RADII    0.16 // neighbour list: what a slow grain may move, in its radii
-#define SKIN_STEPS    100  // … and a fast one, in steps of its speed
+static const struct dig_skin near_skin = { 0.16, 100.0, INFINITY };
 #define CONTACT_RADII 0.008
 #define CONTACT_STEPS 20
 
@@ -101,8 +100,7 @@ static void wrap(struct dig_world *const w)
     }
 }
 
-// Sorts the grains along cells and remakes the neighbour list.
-static enum dig_status relist(struct dig_world *const w)
+enum dig_status dig_lists_renew(struct dig_world *const w, const struct dig_skin skin)
 {
     const size_t    n      = w->grains.n;
     uint32_t *const order  = malloc((n + 1) * sizeof *order);
@@ -135,8 +133,9 @@ static enum dig_status relist(struct dig_world *const w)
     dig_lists_move(w, place);
     dig_bodies_move(w->bodies, place);
     for (size_t i = 0; i < n; i++) {
-        margin[i] = SKIN_RADII * w->grains.kind[w->grains.of[i]].radius_m +
-                    SKIN_STEPS * w->dt_s * speed(&w->grains.motion[i]);
+        const double radius_m = w->grains.kind[w->grains.of[i]].radius_m;
+        const double moving_m = skin.steps * w->dt_s * speed(&w->grains.motion[i]);
+        margin[i]             = fmin(skin.radii * radius_m + moving_m, skin.most_radii * radius_m);
     }
     status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->near_list);
     if (status != DIG_OK) {
@@ -204,7 +203,7 @@ enum dig_status dig_lists_update(struct dig_world *const w)
     bool all = w->rest.changed;
     set_margins(w);
     if (!is_covered(w)) {
-        const enum dig_status status = relist(w);
+        const enum dig_status status = dig_lists_renew(w, near_skin);
         if (status != DIG_OK) {
             return status;
         }

@@ -3,17 +3,20 @@
 #ifndef DIG_OFFLINE_DEM_PERIOD_H
 #define DIG_OFFLINE_DEM_PERIOD_H
 
+#include "offline_dem/both.h"
+
 /// The image of a distance in y that is nearest to zero, in [-period/2, period/2]; with period 0
 /// the distance itself. Only operations that every processor rounds alike, and no branch, so that a
 /// loop over it becomes vector code.
-static inline double dig_period_fold(const double y_m, const double period_m, const double per_m)
+DIG_BOTH static inline double dig_period_fold(const double y_m, const double period_m,
+                                              const double per_m)
 {
     const double whole = 6755399441055744.0; // 1.5 x 2^52: what is added to it is rounded to units
     return y_m - period_m * ((y_m * per_m + whole) - whole);
 }
 
 /// 1 / period, 0 for none.
-static inline double dig_period_inverse(const double period_m)
+DIG_BOTH static inline double dig_period_inverse(const double period_m)
 {
     return period_m > 0.0 ? 1.0 / period_m : 0.0;
 }

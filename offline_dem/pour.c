@@ -1,6 +1,7 @@
 #include "offline_dem/bodies.h"
 #include "offline_dem/dig.h"
 #include "offline_dem/level.h"
+#include "offline_dem/offloaded.h"
 #include "offline_dem/packing.h"
 #include "offline_dem/scatter.h"
 #include "offline_dem/setup.h"
@@ -89,14 +90,29 @@ struct pour {
     const struct dig_scene  *scene;
     const struct dig_gravel *gravel;
     struct dig_ode_scene    *ode;
+    struct dig_device       *device; // NULL: the kernel steps
     struct dig_kinds         kinds;
     struct dig_world         world;
 };
 
-static enum dig_status take(const struct pour *const p, const size_t material[],
+// The world of a bed, stepped by whom it is to be.
+static enum dig_status make_world(struct pour *const p, const struct dig_bed *const bed,
+                                  const double fall_mps, struct dig_error *const error)
+{
+    enum dig_status status =
+        dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->kinds, &p->world, error);
+    if (status == DIG_OK && p->device != NULL) {
+        status = dig_offload(&p->world, p->device);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    return status;
+}
+
+static enum dig_status take(struct pour *const p, const size_t material[],
                             struct dig_bed *const bed)
 {
-    const enum dig_status status = dig_bed_take(&p->world.grains, material, bed);
+    enum dig_status status = dig_world_look(&p->world);
+    status = status == DIG_OK ? dig_bed_take(&p->world.grains, material, bed) : status;
     if (status == DIG_OK && p->world.bodies != NULL) {
         dig_obstacles_tell(&p->world.bodies->obstacles, bed);
     }
@@ -113,8 +129,8 @@ static enum dig_status lay(struct pour *const p, struct dig_error *const error)
     }
     assign_layers(p->scene, &bed);
     dig_setup_finish(&p->world);
-    const enum dig_status made =
-        dig_setup_world(p->scene, p->gravel, p->ode, &bed, 0.0, &p->kinds, &p->world, error);
+    p->world                   = (struct dig_world){ 0 };
+    const enum dig_status made = make_world(p, &bed, 0.0, error);
     dig_bed_finish(&bed);
     return made;
 }
@@ -152,6 +168,15 @@ enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
                              const struct dig_progress *const progress, struct dig_bed *const bed,
                              struct dig_error *const error)
 {
+    return dig_bed_pour_on(NULL, scene, gravel, seed, progress, bed, error);
+}
+
+enum dig_status dig_bed_pour_on(struct dig_device *const       device,
+                                const struct dig_scene *const  scene,
+                                const struct dig_gravel *const gravel, const uint64_t seed,
+                                const struct dig_progress *const progress,
+                                struct dig_bed *const bed, struct dig_error *const error)
+{
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {
         return status;
@@ -162,12 +187,11 @@ enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
         return dig_setup_explain(status, error);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct pour                 p   = { .scene = scene, .gravel = gravel, .ode = ode };
+    struct pour p = { .scene = scene, .gravel = gravel, .ode = ode, .device = device };
     if (ode == NULL) {
         status = dig_setup_explain(DIG_ENOMEM, error);
     } else {
-        status = dig_setup_world(scene, gravel, ode, &poured, scene->packing.fall_mps, &p.kinds,
-                                 &p.world, error);
+        status = make_world(&p, &poured, scene->packing.fall_mps, error);
     }
     dig_bed_finish(&poured);
     if (status == DIG_OK) {

@@ -9,6 +9,7 @@
 
 #include "core/curve.h"
 #include "core/scene.h"
+#include "offline_dem/both.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,6 +25,12 @@ struct dig_tool {
     double            radius_m;                // farthest point from the pin, in the plane
 };
 
+/// Force and moment of the grains on the tool, summed over steps.
+struct dig_wrench {
+    double f_N[3];
+    double t_Nm[3]; // about the moving pin
+};
+
 struct dig_tool dig_tool_make(const struct dig_bucket *bucket);
 
 /// Places the tool, and sets its velocity.
@@ -31,10 +38,26 @@ void dig_tool_place(struct dig_tool *tool, struct dig_pose pose, double vx_mps, 
                     double w_radps);
 
 /// World to body coordinates.
-void dig_tool_to_body(const struct dig_tool *tool, const double world_m[], double body_m[3]);
+DIG_BOTH static inline void dig_tool_to_body(const struct dig_tool *const tool,
+                                             const double world_m[], double body_m[3])
+{
+    const double x = world_m[0] - tool->pose.x_m;
+    const double z = world_m[2] - tool->pose.z_m;
+    body_m[0]      = tool->cosine * x + tool->sine * z;
+    body_m[1]      = world_m[1];
+    body_m[2]      = -tool->sine * x + tool->cosine * z;
+}
 
 /// A direction, body to world.
-void dig_tool_turn(const struct dig_tool *tool, const double body[3], double world[3]);
+DIG_BOTH static inline void dig_tool_turn(const struct dig_tool *const tool, const double body[3],
+                                          double world[3])
+{
+    const double x = tool->cosine * body[0] - tool->sine * body[2];
+    const double z = tool->sine * body[0] + tool->cosine * body[2];
+    world[0]       = x;
+    world[1]       = body[1];
+    world[2]       = z;
+}
 
 /// The point of the plate that is closest to body_m, in body coordinates: on its face, an edge or a
 /// vertex. A point on the very plane of the plate is its own closest point.

@@ -44,14 +44,15 @@ static enum dig_status watch(const struct dig_scene *const  scene,
                : DIG_OK;
 }
 
-enum dig_status dig_bed_pour_watched(const struct dig_scene *const  scene,
-                                     const struct dig_gravel *const gravel, const uint64_t seed,
-                                     const struct dig_progress *const progress,
-                                     struct dig_bed *const bed, struct dig_error *const error)
+enum dig_status dig_bed_pour_watched_on(struct dig_device *const       device,
+                                        const struct dig_scene *const  scene,
+                                        const struct dig_gravel *const gravel, const uint64_t seed,
+                                        const struct dig_progress *const progress,
+                                        struct dig_bed *const bed, struct dig_error *const error)
 {
     assert(scene != NULL && gravel != NULL && bed != NULL);
     struct dig_bed  poured = { 0 };
-    enum dig_status status = dig_bed_pour(scene, gravel, seed, progress, &poured, error);
+    enum dig_status status = dig_bed_pour_on(device, scene, gravel, seed, progress, &poured, error);
     if (status == DIG_OK && scene->time_step_s > 0.0 && !scene->may_tremble) {
         struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
         status                          = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
@@ -64,4 +65,12 @@ enum dig_status dig_bed_pour_watched(const struct dig_scene *const  scene,
     }
     *bed = poured;
     return DIG_OK;
+}
+
+enum dig_status dig_bed_pour_watched(const struct dig_scene *const  scene,
+                                     const struct dig_gravel *const gravel, const uint64_t seed,
+                                     const struct dig_progress *const progress,
+                                     struct dig_bed *const bed, struct dig_error *const error)
+{
+    return dig_bed_pour_watched_on(NULL, scene, gravel, seed, progress, bed, error);
 }

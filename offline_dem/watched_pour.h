@@ -15,4 +15,11 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour_watched(const struct dig_scene  *sce
                                                     const struct dig_progress *progress,
                                                     struct dig_bed *bed, struct dig_error *error);
 
+/// The same with the grains stepped by a device; see dig_bed_pour_on().
+DIG_MUST_CHECK enum dig_status
+dig_bed_pour_watched_on(struct dig_device *device, const struct dig_scene *scene,
+                        const struct dig_gravel *gravel, uint64_t seed,
+                        const struct dig_progress *progress, struct dig_bed *bed,
+                        struct dig_error *error);
+
 #endif // DIG_OFFLINE_DEM_WATCHED_POUR_H

@@ -2,6 +2,7 @@
 
 #include "offline_dem/bodies.h"
 #include "offline_dem/lists.h"
+#include "offline_dem/offloaded.h"
 #include "offline_dem/surfaces.h"
 
 #include <math.h>
@@ -38,6 +39,10 @@ void dig_world_touched(struct dig_world *const world)
 
 enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char drop[])
 {
+    const enum dig_status here = dig_world_fetch(w);
+    if (here != DIG_OK) {
+        return here;
+    }
     uint32_t *const place = malloc((w->grains.n + 1) * sizeof *place);
     if (place == NULL) {
         return DIG_ENOMEM;
@@ -60,9 +65,7 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     return DIG_OK;
 }
 
-// A grain that crosses its own radius within a step has left what the law can follow: the step is
-// too long, and the next ones would only make numbers larger. NaN fails too.
-static bool is_sound(const struct dig_world *const w)
+bool dig_world_is_sound(const struct dig_world *const w)
 {
     for (size_t i = 0; i < w->grains.n; i++) {
         const double *const x        = w->grains.motion[i].x_m;
@@ -99,14 +102,25 @@ static void push_pairs(struct dig_world *const w, const bool held)
     }
 }
 
+static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench *const sum)
+{
+    for (int k = 0; k < 3; k++) {
+        sum->f_N[k] += wrench->f_N[k];
+        sum->t_Nm[k] += wrench->t_Nm[k];
+    }
+}
+
 enum dig_status dig_world_step(struct dig_world *const w)
 {
+    if (w->offloaded != NULL) {
+        return dig_offloaded_step(w);
+    }
     if (w->tool != NULL && !w->stale &&
         dig_tool_travel_m(w->tool, w->tool_at, w->tool->pose) > w->tool_margin_m) {
         w->stale = true;
     }
     if (w->stale) {
-        if (!is_sound(w)) {
+        if (!dig_world_is_sound(w)) {
             return DIG_EINVAL;
         }
         const enum dig_status status = dig_lists_update(w);
@@ -133,9 +147,30 @@ enum dig_status dig_world_step(struct dig_world *const w)
     if (w->bodies != NULL) {
         dig_bodies_advance(w);
     }
+    add_wrench(&w->on_tool, &w->sum_tool);
     w->started = true;
     w->steps++;
     return DIG_OK;
+}
+
+enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wrench *const wrench)
+{
+    const enum dig_status status = dig_world_look(w);
+    if (status == DIG_OK) {
+        *wrench     = w->sum_tool;
+        w->sum_tool = (struct dig_wrench){ 0 };
+    }
+    return status;
+}
+
+enum dig_status dig_world_look(struct dig_world *const w)
+{
+    return w->offloaded == NULL ? DIG_OK : dig_offloaded_look(w);
+}
+
+enum dig_status dig_world_fetch(struct dig_world *const w)
+{
+    return w->offloaded == NULL ? DIG_OK : dig_offloaded_fetch(w);
 }
 
 void dig_world_finish(struct dig_world *const world)
@@ -143,6 +178,8 @@ void dig_world_finish(struct dig_world *const world)
     if (world == NULL) {
         return;
     }
+    dig_offloaded_destroy(world->offloaded);
+    world->offloaded = NULL;
     dig_grains_finish(&world->grains);
     dig_lists_finish(world);
 }

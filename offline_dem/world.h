@@ -19,12 +19,7 @@
 #include <stdint.h>
 
 struct dig_bodies;
-
-/// Force and moment of the grains on the tool, summed over steps.
-struct dig_wrench {
-    double f_N[3];
-    double t_Nm[3]; // about the moving pin
-};
+struct dig_offloaded;
 
 #define DIG_PAIR_LISTS    ((size_t)DIG_KINDS_MAX * DIG_KINDS_MAX)
 #define DIG_SURFACE_LISTS ((size_t)2 * DIG_KINDS_MAX)
@@ -60,12 +55,16 @@ struct dig_world {
     // Clumps and obstacles, owned by the caller; NULL: none.
     struct dig_bodies *bodies;
 
+    // What steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
+    struct dig_offloaded *offloaded;
+
     // State.
     struct dig_grains grains;
     bool              started; // the first kick is half a step
     size_t            steps;
-    struct dig_wrench on_tool; // of the last step
-    struct dig_wrench on_walls;
+    struct dig_wrench on_tool;  // of the last step of the kernel
+    struct dig_wrench sum_tool; // of the steps since dig_world_take_wrench()
+    struct dig_wrench on_walls; // of the last step of the kernel
 
     // Lists and their validity.
     struct dig_neighbours near_list;
@@ -104,6 +103,21 @@ DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const uns
 /// or DIG_EINVAL when a grain moves farther than its radius in a step or is nowhere any more: the
 /// time step was too long.
 DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
+
+/// False when a grain crosses its own radius within a step, or is nowhere: it has left what the law
+/// can follow, the step is too long, and the next ones would only make numbers larger.
+bool dig_world_is_sound(const struct dig_world *world);
+
+/// Sum over the steps since it was asked for last. Status as dig_world_step().
+DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
+                                                     struct dig_wrench *wrench);
+
+/// Before motions are read: brings them here from where they are. Nothing to do, and no failure,
+/// where the kernel steps.
+DIG_MUST_CHECK enum dig_status dig_world_look(struct dig_world *world);
+
+/// The same before motions are written, or grains taken out: the contacts come, too.
+DIG_MUST_CHECK enum dig_status dig_world_fetch(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);
 

@@ -166,6 +166,22 @@ static const char *take_approach(const int option, const char *const value,
     return ok ? NULL : "degrees, -45 to 45";
 }
 
+static bool take_engine(const char *const value, enum dig_engine_choice *const engine)
+{
+    static const char *const names[] = {
+        [DIG_ENGINE_KERNEL] = "kernel",
+        [DIG_ENGINE_ODE]    = "ode",
+        [DIG_ENGINE_CUDA]   = "cuda",
+    };
+    for (size_t e = 0; e < sizeof names / sizeof names[0]; e++) {
+        if (strcmp(value, names[e]) == 0) {
+            *engine = (enum dig_engine_choice)e;
+            return true;
+        }
+    }
+    return false;
+}
+
 // One option into the arguments; NULL, or what was expected instead of its value.
 static const char *take_option(const int option, const char *const value,
                                struct dig_arguments *const a)
@@ -192,9 +208,7 @@ static const char *take_option(const int option, const char *const value,
     case OPTION_SEED:
         ok = dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed);
         return ok ? NULL : "a whole number below 2^63";
-    case OPTION_ENGINE:
-        a->ode = strcmp(value, "ode") == 0;
-        return a->ode || strcmp(value, "kernel") == 0 ? NULL : "kernel or ode";
+    case OPTION_ENGINE: return take_engine(value, &a->engine) ? NULL : "kernel, ode or cuda";
     case OPTION_BED: a->bed = value; break;
     case OPTION_SAVE_BED: a->save_bed = value; break;
     case OPTION_VTK: a->vtk = value; break;

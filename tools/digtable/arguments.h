@@ -15,19 +15,22 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 #define DIG_POSITIONALS_MAX 1024 // tables to merge
 
 /// Every option of every command, with its default where it was not given.
+/// Who computes.
+enum dig_engine_choice { DIG_ENGINE_KERNEL, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
+
 struct dig_arguments {
-    const char         *positional[DIG_POSITIONALS_MAX];
-    int                 positionals;
-    const char         *output, *trajectory, *bed, *save_bed, *vtk, *map;
-    double              gravel[DIG_AXES];        // NaN: not given
-    struct dig_approach approach;                // plain: not given
-    double              young_Pa;                // NaN: the scene's
-    unsigned long       seed, workers, packings; // 0 packings: the grid's
-    unsigned long       shard, shards;           // from 0; 0 shards: all
-    double              time_limit_s;
-    enum dig_channel    channel;
-    bool                ode; // the engine; false: the kernel
-    bool                csv, json, runs, effects, complete;
+    const char            *positional[DIG_POSITIONALS_MAX];
+    int                    positionals;
+    const char            *output, *trajectory, *bed, *save_bed, *vtk, *map;
+    double                 gravel[DIG_AXES];        // NaN: not given
+    struct dig_approach    approach;                // plain: not given
+    double                 young_Pa;                // NaN: the scene's
+    unsigned long          seed, workers, packings; // 0 packings: the grid's
+    unsigned long          shard, shards;           // from 0; 0 shards: all
+    double                 time_limit_s;
+    enum dig_channel       channel;
+    enum dig_engine_choice engine;
+    bool                   csv, json, runs, effects, complete;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };

@@ -4,6 +4,7 @@
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig.h"
+#include "offline_dem/engine_cuda.h"
 #include "offline_dem/engine_ode.h"
 #include "offline_dem/refuse.h"
 #include "offline_dem/sweep.h"
@@ -44,7 +45,12 @@ static int watch_dig(void *const context, const double done_s, const double tota
 
 static struct dig_engine engine_of(const struct dig_arguments *const a)
 {
-    return a->ode ? dig_engine_ode() : dig_engine_kernel();
+    switch (a->engine) {
+    case DIG_ENGINE_ODE: return dig_engine_ode();
+    case DIG_ENGINE_CUDA: return dig_engine_cuda();
+    case DIG_ENGINE_KERNEL: break;
+    }
+    return dig_engine_kernel();
 }
 
 static enum dig_status get_bed(const struct dig_arguments *const a,

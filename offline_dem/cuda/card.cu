@@ -1,0 +1,265 @@
+// The device interface (offline_dem/device.h) on a graphics card. A step is two kernels: a thread a
+// pair and a thread a grain for what is outside, then a thread a grain that moves it. No sum is
+// shared between threads, so the same steps give the same bits, and with -fmad=false those of
+// offline_dem/device_host.c.
+
+#include "offline_dem/device_grain.h"
+#include "offline_dem/device_surfaces.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#define THREADS 64 // a block
+
+namespace
+{
+
+// An array on the card, and the one of the view it is a copy of.
+struct array {
+    void  *here;
+    size_t room;
+};
+
+enum {
+    OF,
+    AT,
+    ROW,
+    OTHER,
+    FIRST,
+    PUSH_OF,
+    PAIR_LAW,
+    WALL_LAW,
+    TOOL_LAW,
+    KIND, // fixed
+    MOTION,
+    MEMORY,
+    TOUCHING,
+    PUSH,
+    SURFACE,
+    SURFACES,
+    OUTSIDE,
+    ON_TOOL,
+    ATTENTION, // state
+    ARRAYS
+};
+
+struct card {
+    dig_device      device;
+    dig_device_view theirs; // the processor's arrays
+    dig_device_view view;   // the card's
+    array           at[ARRAYS];
+    uint32_t       *attention; // pinned
+    cudaStream_t    stream;
+};
+
+__host__ __device__ uint32_t blocks(const uint32_t things)
+{
+    return (things + THREADS - 1) / THREADS;
+}
+
+// Pairs, and in the blocks behind theirs what is outside: neither waits for the other.
+__global__ void __launch_bounds__(THREADS)
+    push(const dig_device_view view, const __grid_constant__ dig_device_step step)
+{
+    const uint32_t of_pairs = blocks(view.pairs);
+    if (blockIdx.x < of_pairs) {
+        const uint32_t pair = blockIdx.x * THREADS + threadIdx.x;
+        if (pair < view.pairs) {
+            dig_device_pair(&view, &step, pair);
+        }
+    } else {
+        const uint32_t i = (blockIdx.x - of_pairs) * THREADS + threadIdx.x;
+        if (i < view.n) {
+            dig_device_surfaces(&view, &step, i);
+        }
+    }
+}
+
+__global__ void __launch_bounds__(THREADS)
+    move(const dig_device_view view, const __grid_constant__ dig_device_step step)
+{
+    const uint32_t i = blockIdx.x * THREADS + threadIdx.x;
+    if (i < view.n) {
+        dig_device_grain(&view, &step, i);
+    }
+}
+
+dig_status status_of(const cudaError_t error)
+{
+    return error == cudaSuccess                 ? DIG_OK
+           : error == cudaErrorMemoryAllocation ? DIG_ENOMEM
+                                                : DIG_EIO;
+}
+
+card *card_of(dig_device *const device)
+{
+    return static_cast<card *>(device->own);
+}
+
+// Room for an array on the card, with what stands in `from`; NULL: whatever is there.
+template <typename T>
+cudaError_t place(card *const c, const int which, const size_t count, const T *const from,
+                  T **const to)
+{
+    array *const a     = &c->at[which];
+    const size_t bytes = (count + 1) * sizeof(T);
+    if (a->room < bytes) {
+        (void)cudaFree(a->here);
+        a->here                = nullptr;
+        a->room                = 0;
+        const size_t      more = bytes + bytes / 8;
+        const cudaError_t e    = cudaMalloc(&a->here, more);
+        if (e != cudaSuccess) {
+            return e;
+        }
+        a->room = more;
+    }
+    *to = static_cast<T *>(a->here);
+    return from == nullptr || count == 0 ? cudaSuccess
+                                         : cudaMemcpyAsync(a->here, from, count * sizeof(T),
+                                                           cudaMemcpyHostToDevice, c->stream);
+}
+
+template <typename T>
+cudaError_t place_const(card *const c, const int which, const size_t count, const T *const from,
+                        const T **const to)
+{
+    T                *there = nullptr;
+    const cudaError_t e     = place(c, which, count, from, &there);
+    *to                     = there;
+    return e;
+}
+
+dig_status upload(dig_device *const device, const dig_device_view *const v)
+{
+    card *const            c    = card_of(device);
+    dig_device_view *const w    = &c->view;
+    const size_t           n    = v->n;
+    const size_t           p    = v->pairs;
+    c->theirs                   = *v;
+    w->n                        = v->n;
+    w->pairs                    = v->pairs;
+    const double     *at        = nullptr;
+    const cudaError_t e[ARRAYS] = {
+        place_const(c, OF, n, v->of, &w->of),
+        place_const(c, AT, 4 * n, &v->at_m[0][0], &at),
+        place(c, ROW, p, v->row, &w->row),
+        place_const(c, OTHER, p, v->other, &w->other),
+        place(c, FIRST, n + 1, v->first, &w->first),
+        place(c, PUSH_OF, p, v->push_of, &w->push_of),
+        place_const(c, PAIR_LAW, DIG_DEVICE_LAWS, v->pair_law, &w->pair_law),
+        place_const(c, WALL_LAW, DIG_KINDS_MAX, v->wall_law, &w->wall_law),
+        place_const(c, TOOL_LAW, DIG_KINDS_MAX, v->tool_law, &w->tool_law),
+        place_const(c, KIND, DIG_KINDS_MAX, v->kind, &w->kind),
+        place(c, MOTION, n, v->motion, &w->motion),
+        place(c, MEMORY, p, v->memory, &w->memory),
+        place(c, TOUCHING, 2 * p, v->touching, &w->touching),
+        place(c, PUSH, 2 * p, static_cast<const dig_load *>(nullptr), &w->push),
+        place(c, SURFACE, DIG_DEVICE_SURFACES * n, v->surface, &w->surface),
+        place(c, SURFACES, n, v->surfaces, &w->surfaces),
+        place(c, OUTSIDE, n, static_cast<const dig_load *>(nullptr), &w->outside),
+        place(c, ON_TOOL, n, v->on_tool, &w->on_tool),
+        place(c, ATTENTION, DIG_ATTENTIONS, v->attention, &w->attention),
+    };
+    w->at_m = reinterpret_cast<const double(*)[4]>(at);
+    for (int a = 0; a < ARRAYS; a++) {
+        if (e[a] != cudaSuccess) {
+            return status_of(e[a]);
+        }
+    }
+    return status_of(cudaStreamSynchronize(c->stream));
+}
+
+dig_status step(dig_device *const device, const dig_device_step *const s)
+{
+    card *const c = card_of(device);
+    if (c->view.n == 0) {
+        return DIG_OK;
+    }
+    push<<<blocks(c->view.pairs) + blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
+    move<<<blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
+    return status_of(cudaPeekAtLastError());
+}
+
+dig_status attend(dig_device *const device, uint32_t attention[DIG_ATTENTIONS])
+{
+    card *const c = card_of(device);
+    cudaError_t e =
+        cudaMemcpyAsync(c->attention, c->view.attention, DIG_ATTENTIONS * sizeof *attention,
+                        cudaMemcpyDeviceToHost, c->stream);
+    e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;
+    memcpy(attention, c->attention, DIG_ATTENTIONS * sizeof *attention);
+    return status_of(e);
+}
+
+template <typename T>
+cudaError_t bring(card *const c, T *const to, const T *const from, const size_t count)
+{
+    return count == 0
+               ? cudaSuccess
+               : cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, c->stream);
+}
+
+dig_status download(dig_device *const device, const bool all)
+{
+    card *const                  c = card_of(device);
+    const dig_device_view *const t = &c->theirs;
+    const dig_device_view *const v = &c->view;
+    const size_t                 n = v->n;
+    cudaError_t                  e = bring(c, t->motion, v->motion, n);
+    e                              = e == cudaSuccess ? bring(c, t->on_tool, v->on_tool, n) : e;
+    e = e == cudaSuccess ? cudaMemsetAsync(v->on_tool, 0, n * sizeof *v->on_tool, c->stream) : e;
+    if (all) {
+        e = e == cudaSuccess ? bring(c, t->memory, v->memory, v->pairs) : e;
+        e = e == cudaSuccess ? bring(c, t->touching, v->touching, 2 * v->pairs) : e;
+        e = e == cudaSuccess ? bring(c, t->surface, v->surface, DIG_DEVICE_SURFACES * n) : e;
+        e = e == cudaSuccess ? bring(c, t->surfaces, v->surfaces, n) : e;
+    }
+    e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;
+    return status_of(e);
+}
+
+void destroy(dig_device *const device)
+{
+    card *const c = card_of(device);
+    for (int a = 0; a < ARRAYS; a++) {
+        (void)cudaFree(c->at[a].here);
+    }
+    (void)cudaFreeHost(c->attention);
+    (void)cudaStreamDestroy(c->stream);
+    free(c);
+}
+
+} // namespace
+
+extern "C" int dig_cuda_version(void)
+{
+    return DIG_DEVICE_VERSION;
+}
+
+extern "C" dig_device *dig_cuda_create(char why[], const size_t size)
+{
+    card *const c = static_cast<card *>(calloc(1, sizeof(card)));
+    if (c == nullptr) {
+        snprintf(why, size, "out of memory");
+        return nullptr;
+    }
+    cudaError_t e = cudaStreamCreate(&c->stream);
+    e             = e == cudaSuccess ? cudaMallocHost(reinterpret_cast<void **>(&c->attention),
+                                                      DIG_ATTENTIONS * sizeof *c->attention)
+                                     : e;
+    if (e != cudaSuccess) {
+        snprintf(why, size, "%s", cudaGetErrorString(e));
+        free(c);
+        return nullptr;
+    }
+    c->device.name     = "graphics card";
+    c->device.own      = c;
+    c->device.upload   = upload;
+    c->device.step     = step;
+    c->device.attend   = attend;
+    c->device.download = download;
+    c->device.destroy  = destroy;
+    return &c->device;
+}

@@ -1,0 +1,229 @@
+// A world that a device steps, the processor standing in for one: digs as the kernel makes them.
+
+#include "offline_dem/device_cuda.h"
+#include "offline_dem/device_host.h"
+#include "offline_dem/engine_cuda.h"
+#include "offline_dem/offloaded.h"
+#include "tests/dem_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct dig_scene small_scene(void)
+{
+    struct dig_scene scene = dem_small_scene();
+    scene.box.x_max_m      = 0.08;
+    scene.packing.settle_s = 0.3;
+    scene.packing.relax_s  = 0.1;
+
+    struct dig_trajectory *const t = &scene.trajectory[0];
+    t->start_z_m                   = 0.066;
+    t->phases                      = 2;
+    t->phase[0]                    = (struct dig_phase){ "down", 0.04, 0.0, -0.15, 0.0 };
+    t->phase[1]                    = (struct dig_phase){ "drag", 0.03, 0.2, 0.0, 2.0 };
+    return scene;
+}
+
+static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+
+static struct dig_recording dig_on(struct dig_device *const      device,
+                                   const struct dig_scene *const scene,
+                                   const struct dig_bed *const   bed)
+{
+    struct dig_recording r     = { 0 };
+    struct dig_error     error = { "" };
+    if (dig_dig_run_on(device, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r,
+                       &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return r;
+}
+
+static void rows_agree(const struct dig_recording *const a, const struct dig_recording *const b)
+{
+    assert_int_equal(a->rows, b->rows);
+    double most_N = 0.0;
+    for (size_t k = 0; k < a->rows; k++) {
+        most_N = fmax(most_N, hypot(a->row[k].Fx_N, a->row[k].Fz_N));
+    }
+    assert_true(most_N > 20.0 * GRAIN_kg * GRAVITY);
+    for (size_t k = 0; k < a->rows; k++) {
+        const struct dig_force_row *const x = &a->row[k];
+        const struct dig_force_row *const y = &b->row[k];
+        assert_close(y->t_s, x->t_s, 0.0);
+        assert_close(y->Fx_N, x->Fx_N, 1e-9 * most_N);
+        assert_close(y->Fy_N, x->Fy_N, 1e-9 * most_N);
+        assert_close(y->Fz_N, x->Fz_N, 1e-9 * most_N);
+        assert_close(y->Mx_Nm, x->Mx_Nm, 1e-9 * most_N * 0.04);
+        assert_close(y->My_Nm, x->My_Nm, 1e-9 * most_N * 0.04);
+        assert_close(y->carried_kg, x->carried_kg, 1e-12);
+    }
+}
+
+// Some thousand steps, with lists made anew: every window of the dig, before chaos parts them.
+static void digs_agree(const struct dig_scene *const scene)
+{
+    struct dig_device *const host = dig_device_host_create();
+    struct dig_bed           bed;
+    struct dig_error         error = { "" };
+    assert_non_null(host);
+    if (dig_bed_pour(scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    struct dig_recording kernel = dig_on(NULL, scene, &bed);
+    struct dig_recording device = dig_on(host, scene, &bed);
+    rows_agree(&kernel, &device);
+    dig_recording_finish(&kernel);
+    dig_recording_finish(&device);
+    dig_bed_finish(&bed);
+    host->destroy(host);
+}
+
+static void a_short_dig_gives_the_kernels_curve(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = small_scene();
+    digs_agree(&scene);
+}
+
+static void so_does_one_in_mixed_sticky_grains(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.laws =
+        (struct dig_laws){ .normal = DIG_NORMAL_HERTZ, .cohesion_Jpm3 = 2e4, .adhesion_Jpm3 = 1e4 };
+    scene.bed.sizes   = 2;
+    scene.bed.size[0] = (struct dig_size){ 0.006, 0.5 };
+    scene.bed.size[1] = (struct dig_size){ 0.0085, 0.5 };
+    digs_agree(&scene);
+}
+
+static void so_does_one_between_sides_that_are_one_and_over_a_layer(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.box.y_min_m      = -0.04;
+    scene.box.y_max_m      = 0.04;
+    scene.bed.periodic_y   = true;
+    scene.bed.materials    = 1;
+    scene.bed.material[0]  = (struct dig_other_material){ "hard", 0.9, 0.9, 4000.0, 0.2 };
+    scene.bed.layers       = 1;
+    scene.bed.layer[0]     = (struct dig_layer){ 1, 0.0, 0.015 };
+    digs_agree(&scene);
+}
+
+// The bucket goes in and comes out, grains are raked and taken away: what the processor does to a
+// world in between.
+static void a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.packing.settle_s = 0.02;
+    scene.bed.earlier_digs = 1;
+    scene.bed.preload_Pa   = 100.0;
+    digs_agree(&scene);
+}
+
+// A device whose grains never ask for new lists: steps on, and then says that one got away.
+static enum dig_status (*real_attend)(struct dig_device *device,
+                                      uint32_t           attention[DIG_ATTENTIONS]);
+
+static enum dig_status attend_late(struct dig_device *const device,
+                                   uint32_t                 attention[DIG_ATTENTIONS])
+{
+    const enum dig_status status  = real_attend(device, attention);
+    attention[DIG_ATTENTION_SOON] = 0;
+    return status;
+}
+
+static void a_grain_that_got_away_is_refused(void **state)
+{
+    (void)state;
+    const double             x_m[2][3] = { { 0.0, 0.0, 0.0 }, { 0.1, 0.0, 0.0 } };
+    struct dig_world         world     = dem_world(2, x_m, dem_material(0.5, 0.5));
+    struct dig_device *const host      = dig_device_host_create();
+    assert_non_null(host);
+    real_attend           = host->attend;
+    host->attend          = attend_late;
+    world.gravity_mps2[2] = -GRAVITY;
+    assert_int_equal(dig_offload(&world, host), DIG_OK);
+    enum dig_status status = DIG_OK;
+    size_t          steps  = 0;
+    for (; steps < 5000 && status == DIG_OK; steps++) {
+        status = dig_world_step(&world);
+    }
+    assert_int_equal(status, DIG_EINVAL);
+    assert_true(steps > 100);
+    dig_world_finish(&world);
+    host->destroy(host);
+}
+
+// Without a card, and where scenes hold what a card does not know.
+static void the_engine_says_what_is_missing(void **state)
+{
+    (void)state;
+    const struct dig_engine cuda  = dig_engine_cuda();
+    struct dig_scene        scene = small_scene();
+    struct dig_error        error = { "" };
+    struct dig_bed          bed;
+    assert_int_equal(setenv("DIG_CUDA_LIBRARY", "./no-such-library.so", 1), 0);
+    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
+    assert_non_null(strstr(error.text, "no-such-library.so"));
+    assert_int_equal(setenv("DIG_CUDA_LIBRARY", "libm.so.6", 1), 0);
+    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
+    assert_non_null(strstr(error.text, "libm.so.6 is not of this build"));
+    scene.bed.obstacles = 1;
+    scene.bed.obstacle[0] =
+        (struct dig_obstacle){ DIG_OBSTACLE_SPHERE, { 0.03, 0.0, 0.01 }, { 0.01 }, false, 2500.0 };
+    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "obstacles"));
+}
+
+// The card rounds as the processor does and adds in the same order: not a bit may differ.
+static void a_card_gives_the_bits_of_the_processor(void **state)
+{
+    (void)state;
+    struct dig_error         error = { "" };
+    struct dig_device *const card  = dig_device_cuda_create(&error);
+    if (card == NULL) {
+        print_message("skipped: %s\n", error.text);
+        skip();
+    }
+    struct dig_device *const host = dig_device_host_create();
+    assert_non_null(host);
+    struct dig_scene scene = small_scene();
+    scene.bed.sizes        = 2;
+    scene.bed.size[0]      = (struct dig_size){ 0.006, 0.5 };
+    scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
+    struct dig_bed on_host;
+    struct dig_bed on_card;
+    assert_int_equal(dig_bed_pour_on(host, &scene, &gravel, 1, NULL, &on_host, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour_on(card, &scene, &gravel, 1, NULL, &on_card, NULL), DIG_OK);
+    assert_int_equal(on_card.grains, on_host.grains);
+    assert_memory_equal(on_card.x_m, on_host.x_m, on_host.grains * sizeof *on_host.x_m);
+    assert_memory_equal(on_card.z_m, on_host.z_m, on_host.grains * sizeof *on_host.z_m);
+    struct dig_recording ours   = dig_on(host, &scene, &on_host);
+    struct dig_recording theirs = dig_on(card, &scene, &on_card);
+    assert_int_equal(theirs.rows, ours.rows);
+    assert_memory_equal(theirs.row, ours.row, ours.rows * sizeof *ours.row);
+    dig_recording_finish(&ours);
+    dig_recording_finish(&theirs);
+    dig_bed_finish(&on_host);
+    dig_bed_finish(&on_card);
+    host->destroy(host);
+    card->destroy(card);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
+        cmocka_unit_test(so_does_one_in_mixed_sticky_grains),
+        cmocka_unit_test(so_does_one_between_sides_that_are_one_and_over_a_layer),
+        cmocka_unit_test(a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was),
+        cmocka_unit_test(a_grain_that_got_away_is_refused),
+        cmocka_unit_test(a_card_gives_the_bits_of_the_processor),
+        cmocka_unit_test(the_engine_says_what_is_missing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
