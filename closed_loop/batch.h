@@ -53,8 +53,8 @@ DIG_MUST_CHECK enum dig_status dig_batch_make(const struct dig_surface *surface,
 void dig_batch_whiten(const struct dig_batch_group *group, const double feature[DIG_FEATURES],
                       double y[DIG_FEATURES]);
 
-/// One dig scatters so many times as much as was thought: every y, of digs and of models, shrinks by
-/// it.
+/// One dig scatters so many times as much as was thought: every y, of digs and of models, shrinks
+/// by it.
 void dig_batch_spread(struct dig_batch *batch, double spread);
 
 /// The first dig of a group.
