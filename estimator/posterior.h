@@ -37,15 +37,15 @@
 #define DIG_POSTERIOR_CORRELATION 0.25
 
 /// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
-/// each of three gravels and two trajectories (tables/rig.sqlite; tests/test_posterior.c).
+/// each of three gravels and three trajectories (tables/rig.sqlite; tests/test_posterior.c).
 #define DIG_POSTERIOR_MY_FX (-0.93)
-#define DIG_POSTERIOR_MY_FZ 0.55
-#define DIG_POSTERIOR_FX_FZ (-0.39)
+#define DIG_POSTERIOR_MY_FZ 0.63
+#define DIG_POSTERIOR_FX_FZ (-0.49)
 
 /// Digs of moment and forces farther than this from the most probable gravel are of none of the
-/// table's. Of 450 digs, whole and in part, left out of their own gravel's entry five are called so
+/// table's. Of 255 digs along simpleA, left out of their own gravel's entry, none is called so
 /// (tables/rig.sqlite; tests/bench/outside.c).
-#define DIG_POSTERIOR_OUTSIDE 4.0
+#define DIG_POSTERIOR_OUTSIDE 3.0
 
 /// How much farther digs are from a gravel, over all channels measured, than their errors make
 /// digs, in standard deviations of that: with the mean of squares normalised over points and

@@ -39,7 +39,10 @@ check "... of 8 degrees, within its interval" within 8 "$(number slope_up slope_
 check "... which is narrower than 5 degrees" within \
     "$(awk -v l="$(number slope_up slope_deg low)" -v h="$(number slope_up slope_deg high)" 'BEGIN { print h - l }')" 0.5 5
 check "... in gravel of friction .5, to .1" within "$(number slope_up friction value)" 0.4 0.6
-check "... and of 2500 kg/m3, to a tenth" within "$(number slope_up density_kgpm3 value)" 2250 2750
+check "... and of 2500 kg/m3, within its interval" within 2500 \
+    "$(number slope_up density_kgpm3 low)" "$(number slope_up density_kgpm3 high)"
+check "... which is narrower than a quarter" within "$(awk -v l="$(number slope_up density_kgpm3 low)" \
+    -v h="$(number slope_up density_kgpm3 high)" 'BEGIN { print (h - l) / 2500 }')" 0.02 0.25
 
 # Cohesion of this size and a gravel of more rolling friction dig alike: no claim is made.
 trace cohesion

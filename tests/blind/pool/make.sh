@@ -1,5 +1,5 @@
 #!/bin/sh
-# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 40 beds. Goes on where it was stopped.
+# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 68 beds. Goes on where it was stopped.
 # usage, from the root of the sources: BIN=build/bin tests/blind/pool/make.sh
 set -eu
 here=$(dirname "$0")
@@ -22,6 +22,7 @@ scene() {
 "$bin/digtable" generate config/scenes/rig.yaml "$here/plain.yaml" -o "$out/plain.sqlite" -j 1
 "$bin/digtable" generate config/scenes/rig.yaml "$here/effects.yaml" -o "$out/effects.sqlite" -j 1
 "$bin/digtable" generate config/scenes/rig.yaml "$here/effects_2.yaml" -o "$out/effects.sqlite" -j 1
+"$bin/digtable" generate config/scenes/rig.yaml "$here/effects_3.yaml" -o "$out/effects.sqlite" -j 1
 for name in trench bouncy smooth_walls berm; do
     "$bin/digtable" generate "$work/$name.yaml" "$here/outside.yaml" -o "$out/$name.sqlite" -j 1
 done
