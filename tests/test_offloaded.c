@@ -124,6 +124,54 @@ static void a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was(void **
     digs_agree(&scene);
 }
 
+// One grain led round an edge of the bucket, pressed and unable to turn: what its contact with one
+// plate knows goes to the next.
+static void lead_round(const double angle_rad, const double w_radps, struct dig_world *const world)
+{
+    const double      d_m = 0.99 * GRAIN_m;
+    const double      c   = cos(angle_rad);
+    const double      s   = sin(angle_rad);
+    struct dig_motion at  = { .x_m   = { -0.052 + d_m * c, 0.0, -0.042 + d_m * s },
+                              .v_mps = { -w_radps * d_m * s, 0.0, w_radps * d_m * c } };
+    assert_int_equal(dig_world_fetch(world), DIG_OK);
+    world->grains.motion[0] = at;
+    dig_world_touched(world);
+    dem_run(world, 1);
+}
+
+static void a_contact_goes_on_across_an_edge(void **state)
+{
+    (void)state;
+    static const struct dig_bucket bucket  = { .points  = 5,
+                                               .x_m     = { 0.0, -0.04, -0.052, -0.04, -0.012 },
+                                               .z_m     = { -0.09, -0.072, -0.042, -0.012, 0.0 },
+                                               .width_m = 0.07 };
+    const double                   x[1][3] = { { -0.06, 0.0, -0.042 } };
+    struct dig_world               kernel  = dem_world(1, x, dem_material(0.5, 0.0));
+    struct dig_world               device  = dem_world(1, x, dem_material(0.5, 0.0));
+    struct dig_tool                tool    = dig_tool_make(&bucket);
+    struct dig_device *const       host    = dig_device_host_create();
+    assert_non_null(host);
+    kernel.tool = &tool;
+    device.tool = &tool;
+    assert_int_equal(dig_offload(&device, host), DIG_OK);
+    for (double angle = 3.75; angle > 2.5; angle -= 1e-3) {
+        struct dig_wrench ours, theirs;
+        lead_round(angle, -1e-3 / STEP_s, &kernel);
+        lead_round(angle, -1e-3 / STEP_s, &device);
+        assert_int_equal(dig_world_take_wrench(&kernel, &ours), DIG_OK);
+        assert_int_equal(dig_world_take_wrench(&device, &theirs), DIG_OK);
+        assert_true(hypot(ours.f_N[0], ours.f_N[2]) > 0.0);
+        for (int k = 0; k < 3; k++) {
+            assert_close(theirs.f_N[k], ours.f_N[k], 1e-9);
+            assert_close(theirs.t_Nm[k], ours.t_Nm[k], 1e-9);
+        }
+    }
+    dig_world_finish(&kernel);
+    dig_world_finish(&device);
+    host->destroy(host);
+}
+
 // A device whose grains never ask for new lists: steps on, and then says that one got away.
 static enum dig_status (*real_attend)(struct dig_device *device,
                                       uint32_t           attention[DIG_ATTENTIONS]);
@@ -221,6 +269,7 @@ int main(void)
         cmocka_unit_test(so_does_one_in_mixed_sticky_grains),
         cmocka_unit_test(so_does_one_between_sides_that_are_one_and_over_a_layer),
         cmocka_unit_test(a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was),
+        cmocka_unit_test(a_contact_goes_on_across_an_edge),
         cmocka_unit_test(a_grain_that_got_away_is_refused),
         cmocka_unit_test(a_card_gives_the_bits_of_the_processor),
         cmocka_unit_test(the_engine_says_what_is_missing),
