@@ -51,7 +51,7 @@ sort -k6 -n "$out/objects.txt" | awk '{ e[NR] = $6; f += $8 } END { printf "obje
 
 # Measured, smoothed as every curve here: +-0.16 s.
 smooth() { # RECORDING: time and smoothed moment
-    awk -F, '/^t_s/ { for (i = 1; i <= NF; i++) if ($i == "My_Nm") c = i; next } !/^#/ { t[n] = $1; y[n++] = $c }
+    awk -F, 'BEGIN { n = 0 } /^t_s/ { for (i = 1; i <= NF; i++) if ($i == "My_Nm") c = i; next } !/^#/ { t[n] = $1; y[n++] = $c }
         END { for (i = 0; i < n; i++) { s = k = 0; for (j = i; j >= 0 && t[i] - t[j] <= .16; j--) { s += y[j]; k++ }
               for (j = i + 1; j < n && t[j] - t[i] <= .16; j++) { s += y[j]; k++ } print t[i], s / k } }' "$1"
 }
