@@ -241,7 +241,8 @@ enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig
         status = dig_refuse_overlap(&d.world, error);
         status = status == DIG_OK ? dig_refuse_start(&d.world, &d.tool, error) : status;
         if (status == DIG_OK && device != NULL) {
-            status = dig_setup_explain(dig_offload(&d.world, device), error);
+            status = dig_offload(&d.world, device);
+            status = status == DIG_OK ? status : dig_setup_explain(status, error);
         }
         status = status == DIG_OK ? dig_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);
