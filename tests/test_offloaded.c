@@ -234,7 +234,7 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
     struct dig_error         error = { "" };
     struct dig_device *const card  = dig_device_cuda_create(&error);
     if (card == NULL) {
-        print_message("skipped: %s\n", error.text);
+        print_message("SKIP: %s\n", error.text);
         skip();
     }
     struct dig_device *const host = dig_device_host_create();
