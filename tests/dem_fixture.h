@@ -45,6 +45,23 @@ static inline struct dig_scene dem_small_scene(void)
     };
 }
 
+/// The same, longer, dug down and then dragged for drag_s while it curls: what two engines are held
+/// against each other on before chaos parts them.
+static inline struct dig_scene dem_short_dig_scene(const double drag_s)
+{
+    struct dig_scene scene = dem_small_scene();
+    scene.box.x_max_m      = 0.08;
+    scene.packing.settle_s = 0.3;
+    scene.packing.relax_s  = 0.1;
+
+    struct dig_trajectory *const t = &scene.trajectory[0];
+    t->start_z_m                   = 0.066;
+    t->phases                      = 2;
+    t->phase[0]                    = (struct dig_phase){ "down", 0.04, 0.0, -0.15, 0.0 };
+    t->phase[1]                    = (struct dig_phase){ "drag", drag_s, 0.2, 0.0, 2.0 };
+    return scene;
+}
+
 /// The reference digs' material with these two frictions.
 static inline struct dig_law_material dem_material(const double friction, const double rolling)
 {

@@ -5,21 +5,6 @@
 
 #include <math.h>
 
-static struct dig_scene small_scene(void)
-{
-    struct dig_scene scene = dem_small_scene();
-    scene.box.x_max_m      = 0.08;
-    scene.packing.settle_s = 0.3;
-    scene.packing.relax_s  = 0.1;
-
-    struct dig_trajectory *const t = &scene.trajectory[0];
-    t->start_z_m                   = 0.066;
-    t->phases                      = 2;
-    t->phase[0]                    = (struct dig_phase){ "down", 0.04, 0.0, -0.15, 0.0 };
-    t->phase[1]                    = (struct dig_phase){ "drag", 0.02, 0.2, 0.0, 2.0 };
-    return scene;
-}
-
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
 static struct dig_recording dig_with(const struct dig_engine *const engine,
@@ -68,14 +53,14 @@ static void digs_agree(const struct dig_scene *const scene)
 static void a_short_dig_gives_the_kernels_curve(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_short_dig_scene(0.02);
     digs_agree(&scene);
 }
 
 static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.02);
     scene.laws =
         (struct dig_laws){ .normal = DIG_NORMAL_HERTZ, .cohesion_Jpm3 = 2e4, .adhesion_Jpm3 = 1e4 };
     scene.bed.sizes   = 2;
@@ -102,16 +87,16 @@ static void refuses(const struct dig_scene *const scene, const char *const vtk_d
 static void what_it_does_not_know_is_refused_by_name(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.02);
     refuses(&scene, "pictures-go-here", "pictures");
     scene.bed.earlier_digs = 1;
     refuses(&scene, NULL, "earlier_digs");
-    scene               = small_scene();
+    scene               = dem_short_dig_scene(0.02);
     scene.bed.obstacles = 1;
     scene.bed.obstacle[0] =
         (struct dig_obstacle){ .centre_m = { 0.04, 0.0, 0.01 }, .size_m = { 0.01, 0.0, 0.0 } };
     refuses(&scene, NULL, "obstacles");
-    scene                      = small_scene();
+    scene                      = dem_short_dig_scene(0.02);
     scene.trajectory[0].phases = 0;
     refuses(&scene, NULL, "phases");
 }

@@ -9,21 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static struct dig_scene small_scene(void)
-{
-    struct dig_scene scene = dem_small_scene();
-    scene.box.x_max_m      = 0.08;
-    scene.packing.settle_s = 0.3;
-    scene.packing.relax_s  = 0.1;
-
-    struct dig_trajectory *const t = &scene.trajectory[0];
-    t->start_z_m                   = 0.066;
-    t->phases                      = 2;
-    t->phase[0]                    = (struct dig_phase){ "down", 0.04, 0.0, -0.15, 0.0 };
-    t->phase[1]                    = (struct dig_phase){ "drag", 0.03, 0.2, 0.0, 2.0 };
-    return scene;
-}
-
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
 static struct dig_recording dig_on(struct dig_device *const      device,
@@ -82,14 +67,14 @@ static void digs_agree(const struct dig_scene *const scene)
 static void a_short_dig_gives_the_kernels_curve(void **state)
 {
     (void)state;
-    const struct dig_scene scene = small_scene();
+    const struct dig_scene scene = dem_short_dig_scene(0.03);
     digs_agree(&scene);
 }
 
 static void so_does_one_in_mixed_sticky_grains(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.laws =
         (struct dig_laws){ .normal = DIG_NORMAL_HERTZ, .cohesion_Jpm3 = 2e4, .adhesion_Jpm3 = 1e4 };
     scene.bed.sizes   = 2;
@@ -101,7 +86,7 @@ static void so_does_one_in_mixed_sticky_grains(void **state)
 static void so_does_one_between_sides_that_are_one_and_over_a_layer(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.box.y_min_m      = -0.04;
     scene.box.y_max_m      = 0.04;
     scene.bed.periodic_y   = true;
@@ -117,7 +102,7 @@ static void so_does_one_between_sides_that_are_one_and_over_a_layer(void **state
 static void a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was(void **state)
 {
     (void)state;
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.packing.settle_s = 0.02;
     scene.bed.earlier_digs = 1;
     scene.bed.preload_Pa   = 100.0;
@@ -211,7 +196,7 @@ static void the_engine_says_what_is_missing(void **state)
 {
     (void)state;
     const struct dig_engine cuda  = dig_engine_cuda();
-    struct dig_scene        scene = small_scene();
+    struct dig_scene        scene = dem_short_dig_scene(0.03);
     struct dig_error        error = { "" };
     struct dig_bed          bed;
     assert_int_equal(setenv("DIG_CUDA_LIBRARY", "./no-such-library.so", 1), 0);
@@ -239,7 +224,7 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
     }
     struct dig_device *const host = dig_device_host_create();
     assert_non_null(host);
-    struct dig_scene scene = small_scene();
+    struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.bed.sizes        = 2;
     scene.bed.size[0]      = (struct dig_size){ 0.006, 0.5 };
     scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
