@@ -77,7 +77,12 @@ enum dig_status dig_soil_create(const struct dig_surface *const    surface,
 bool dig_soil_knows(const struct dig_soil *const soil, const enum dig_effect_id effect,
                     const size_t trajectory)
 {
-    return has_factor(effect) || soil->template[effect][trajectory].known;
+    const bool above = soil->high[effect] > 0.0;
+    const bool below = soil->low[effect] < 0.0;
+    return has_factor(effect) ||
+           ((above || below) &&
+            (!above || dig_soil_template_at(soil, effect, trajectory, 1.0)->known) &&
+            (!below || dig_soil_template_at(soil, effect, trajectory, -1.0)->known));
 }
 
 double dig_soil_share(const enum dig_effect_id effect, const struct dig_measured *const dig)
@@ -104,7 +109,7 @@ static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id
                      const size_t t, const double place[DIG_AXES], const double u,
                      const double amplitude[DIG_FORCE_CHANNELS], double term[DIG_SOIL_TERMS])
 {
-    const struct dig_soil_template *const template = &soil->template[effect][t];
+    const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
     double scaled                                  = u;
     if (acts_by_weight(effect)) {
         const struct dig_gravel gravel = dig_surface_gravel(soil->surface, place);
@@ -128,12 +133,16 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
         }
         return;
     }
-    const struct dig_soil_template *const template = &soil->template[effect][trajectory];
+    const struct dig_soil_template *const template =
+        dig_soil_template_at(soil, effect, trajectory, u * share);
     double term[DIG_SOIL_TERMS];
     terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
     double shape[DIG_FEATURES] = { 0.0 };
     for (size_t i = 0; i < template->terms; i++) {
         const double *const of = template->feature[i];
+        if (fabs(term[i]) <= 0.0) { // most hats, at any one magnitude
+            continue;
+        }
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             shape[f] += term[i] * of[f];
         }
@@ -156,7 +165,8 @@ void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect
     double feature[DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS];
     dig_surface_features(soil->surface, trajectory, place, feature, amplitude);
-    const struct dig_soil_template *const template = &soil->template[effect][trajectory];
+    const struct dig_soil_template *const template =
+        dig_soil_template_at(soil, effect, trajectory, u * share);
     if (!has_factor(effect)) {
         terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
     }

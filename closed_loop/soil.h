@@ -3,11 +3,15 @@
 // An effect with templates is fitted to all its beds at once, as the plain curves are
 // (closed_loop/surface.h): at strength s and magnitude u, relative to the plain dig's amplitude,
 //
-//   delta = c0 u + c1 u s + c2 u s^2 + c3 u^2 + c4 u^2 s
+//   delta = sum_p s^p (a_p u + sum_k b_kp hat_k(u)),  p = 0 … 2
 //
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
-// density; s = log(amplitude of My / density), -1 … 1 over the base gravels; terms for which the
-// beds are too few are left out, and all but c0 are drawn towards nothing as far as the beds allow.
+// density; s = log(amplitude of My / density), -1 … 1 over the base gravels; hat_k is 1 at the k-th
+// magnitude of the table, 0 at the others and where the effect is absent, straight between, and the
+// last two go on: a layer is felt from where the tooth reaches it. Powers for which there are too few
+// gravels are left out, hats where there is one magnitude; all but a_0 are drawn towards nothing as
+// far as the beds allow, and with them the curve over u towards a straight line.
+// A layer below zero is a loose one, above it a hard one: two templates that meet where u is 0.
 // Two effects have a reduced form instead, a factor on the plain dig (estimator/effects/):
 // rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts pass - 1 fold.
 
@@ -20,17 +24,22 @@
 #include "core/effect.h"
 #include "core/effect_set.h"
 
-#define DIG_SOIL_TERMS 5
+#define DIG_SOIL_POWERS 3 // of s
+#define DIG_SOIL_KNOTS  9 // magnitudes and where it is absent
+#define DIG_SOIL_TERMS  (DIG_SOIL_POWERS * (1 + DIG_SOIL_KNOTS))
+#define DIG_SOIL_SIDES  2 // u >= 0, u < 0; one template serves both unless they are unlike things
 
 struct dig_soil_template {
-    bool     known;
-    size_t   terms;
-    unsigned power[DIG_SOIL_TERMS][2]; // of u, of s
-    double   centre, half;             // of strength over the base gravels
-    double   base_density_kgpm3;
-    double   inverse[DIG_SOIL_TERMS][DIG_SOIL_TERMS];
-    double   feature[DIG_SOIL_TERMS][DIG_FEATURES];
-    double   curve[DIG_SOIL_TERMS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    bool   known;
+    size_t powers;
+    size_t knots; // 0: a straight line
+    double knot[DIG_SOIL_KNOTS]; // u, ascending, 0 among them
+    size_t terms;                // powers (1 + knots)
+    double centre, half;         // of strength over the base gravels
+    double base_density_kgpm3;
+    double inverse[DIG_SOIL_TERMS][DIG_SOIL_TERMS];
+    double feature[DIG_SOIL_TERMS][DIG_FEATURES];
+    double curve[DIG_SOIL_TERMS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
 struct dig_soil {
@@ -44,7 +53,7 @@ struct dig_soil {
     double bin_speed[DIG_TRAJECTORY_MAX][DIG_FEATURE_BINS];
     double speed[DIG_TRAJECTORY_MAX][DIG_CURVE_POINTS];
 
-    struct dig_soil_template template[DIG_EFFECTS][DIG_TRAJECTORY_MAX];
+    struct dig_soil_template template[DIG_EFFECTS][DIG_SOIL_SIDES][DIG_TRAJECTORY_MAX];
 };
 
 /// Fits the templates. effects may be NULL (scatter then, too): the reduced forms alone are known
@@ -55,7 +64,7 @@ DIG_MUST_CHECK enum dig_status dig_soil_create(const struct dig_surface    *surf
                                                const struct dig_scatter    *scatter,
                                                struct dig_soil            **soil);
 
-/// True when the effect can be told along this trajectory.
+/// True when the effect can be told along this trajectory, at every u from low to high.
 bool dig_soil_knows(const struct dig_soil *soil, enum dig_effect_id effect, size_t trajectory);
 
 /// What distinguishes digs of one trajectory for an effect: u acts by this much. log(pace), order,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEVELS_MAX = 16, ROUNDS = 60 };
+enum { ROUNDS = 60 };
 
 static const double ridge = 1e-6; // of the diagonal, where magnitudes make terms nearly the same
 
@@ -26,6 +26,24 @@ double dig_soil_strength(const struct dig_surface *const surface, const double p
 {
     const struct dig_gravel gravel = dig_surface_gravel(surface, place);
     return log(amplitude[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+}
+
+static bool has_unlike_sides(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_LAYERING;
+}
+
+// Of the one template of an effect whose sides are alike the other side is not looked at.
+static size_t side_of(const enum dig_effect_id effect, const double u)
+{
+    return has_unlike_sides(effect) && u < 0.0 ? 1 : 0;
+}
+
+const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *const soil,
+                                                     const enum dig_effect_id     effect,
+                                                     const size_t trajectory, const double u)
+{
+    return &soil->template[effect][side_of(effect, u)][trajectory];
 }
 
 // One bed of an effect along one trajectory, relative to the plain dig of its gravel.
@@ -71,65 +89,83 @@ static void describe_bed(const struct dig_soil *const soil, const struct dig_eff
 
 static size_t gather(const struct dig_soil *const soil, const struct dig_effect_set *const set,
                      const struct dig_scatter *const scatter, const enum dig_effect_id effect,
-                     const size_t t, struct bed bed[])
+                     const size_t side, const size_t t, struct bed bed[])
 {
     size_t beds = 0;
     for (size_t e = 0; e < set->entries; e++) {
-        if (set->entry[e].effect == effect && set->packings[e * set->trajectories + t] > 0) {
+        const struct dig_effect_entry *const of = &set->entry[e];
+        if (of->effect == effect && set->packings[e * set->trajectories + t] > 0 &&
+            side_of(effect, of->magnitude - soil->absent[effect]) == side) {
             describe_bed(soil, set, scatter, e, t, &bed[beds++]);
         }
     }
     return beds;
 }
 
-static size_t count_levels(const size_t beds, const struct bed bed[], const bool of_strength)
+static int compare(const void *const left, const void *const right)
 {
-    double level[LEVELS_MAX];
-    size_t levels = 0;
+    const double a = *(const double *)left;
+    const double b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+// Sorts level[] and drops those that are the same; how many stay.
+static size_t keep_unlike(const size_t levels, double level[])
+{
+    size_t kept = 0;
+    qsort(level, levels, sizeof *level, compare);
+    for (size_t i = 0; i < levels; i++) {
+        if (kept == 0 || level[i] - level[kept - 1] > 1e-6) {
+            level[kept++] = level[i];
+        }
+    }
+    return kept;
+}
+
+static enum dig_status choose_terms(const size_t beds, const struct bed bed[],
+                                    struct dig_soil_template *const template)
+{
+    double *const level = calloc(beds + 1, sizeof *level);
+    if (level == NULL) {
+        return DIG_ENOMEM;
+    }
     for (size_t b = 0; b < beds; b++) {
-        const double at = of_strength ? bed[b].strength : bed[b].u;
-        bool new        = true;
-        for (size_t i = 0; i < levels; i++) {
-            new = new &&fabs(level[i] - at) > 1e-6;
-        }
-        if (new &&levels < LEVELS_MAX) {
-            level[levels++] = at;
-        }
+        level[b] = bed[b].strength;
     }
-    return levels;
+    const size_t strengths = keep_unlike(beds, level);
+    template->powers       = strengths < DIG_SOIL_POWERS ? strengths : DIG_SOIL_POWERS;
+    template->centre       = 0.5 * (level[0] + level[strengths - 1]);
+    template->half         = fmax(0.5 * (level[strengths - 1] - level[0]), 1e-3);
+
+    for (size_t b = 0; b < beds; b++) {
+        level[b] = bed[b].u;
+    }
+    level[beds]        = 0.0;
+    const size_t knots = keep_unlike(beds + 1, level);
+    template->knots    = knots > 2 && knots <= DIG_SOIL_KNOTS ? knots : 0;
+    memcpy(template->knot, level, template->knots * sizeof *level);
+    template->terms = template->powers * (1 + template->knots);
+    free(level);
+    return DIG_OK;
 }
 
-static void choose_terms(const size_t beds, const struct bed bed[],
-                         struct dig_soil_template *const template)
+// The line and the hats at u; the hat of "absent" is left out.
+static void shapes_of(const struct dig_soil_template *const template, const double u,
+                      double shape[1 + DIG_SOIL_KNOTS])
 {
-    static const unsigned power[DIG_SOIL_TERMS][2] = {
-        { 1, 0 }, { 1, 1 }, { 1, 2 }, { 2, 0 }, { 2, 1 }
-    };
-    const size_t strengths  = count_levels(beds, bed, true);
-    const size_t magnitudes = count_levels(beds, bed, false);
-    template->terms         = 0;
-    for (size_t i = 0; i < DIG_SOIL_TERMS; i++) {
-        if (power[i][0] <= magnitudes && power[i][1] < strengths && template->terms < beds) {
-            memcpy(template->power[template->terms++], power[i], sizeof power[i]);
-        }
+    const double *const knot = template->knot;
+    memset(shape, 0, (1 + DIG_SOIL_KNOTS) * sizeof *shape);
+    shape[0] = u;
+    if (template->knots == 0) {
+        return;
     }
-    double least = bed[0].strength;
-    double most  = bed[0].strength;
-    for (size_t b = 1; b < beds; b++) {
-        least = fmin(least, bed[b].strength);
-        most  = fmax(most, bed[b].strength);
+    size_t i = 0;
+    while (i + 2 < template->knots && knot[i + 1] <= u) {
+        i++;
     }
-    template->centre = 0.5 * (least + most);
-    template->half   = fmax(0.5 * (most - least), 1e-3);
-}
-
-static double power_of(const double x, const unsigned power)
-{
-    double product = 1.0;
-    for (unsigned p = 0; p < power; p++) {
-        product *= x;
-    }
-    return product;
+    const double f = (u - knot[i]) / (knot[i + 1] - knot[i]);
+    shape[1 + i]   = fabs(knot[i]) > 0.0 ? 1.0 - f : 0.0;
+    shape[2 + i]   = fabs(knot[i + 1]) > 0.0 ? f : 0.0;
 }
 
 void dig_soil_terms(const struct dig_soil_template *const template, const double u,
@@ -137,8 +173,15 @@ void dig_soil_terms(const struct dig_soil_template *const template, const double
 {
     const double s =
         fmin(fmax((strength - template->centre) / template->half, -most_strength), most_strength);
-    for (size_t j = 0; j < template->terms; j++) {
-        term[j] = power_of(u, template->power[j][0]) * power_of(s, template->power[j][1]);
+    double shape[1 + DIG_SOIL_KNOTS];
+    shapes_of(template, u, shape);
+    size_t j = 0;
+    for (size_t i = 0; i <= template->knots; i++) {
+        double power = 1.0;
+        for (size_t p = 0; p < template->powers; p++) {
+            term[j++] = shape[i] * power;
+            power *= s;
+        }
     }
 }
 
@@ -212,11 +255,16 @@ static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
 {
     double          precision[DIG_SOIL_TERMS] = { 0.0 };
     enum dig_status status                    = DIG_OK;
+    for (size_t j = 1; j < template->terms; j++) {
+        precision[j] = 1.0; // hats that add up to a line are told from it by their priors alone
+    }
     for (int round = 0; round <= ROUNDS && status == DIG_OK; round++) {
         status = invert(beds, bed, precision, template);
+        if (round < ROUNDS && status == DIG_OK) {
+            fit_features(beds, bed, template);
+        }
         for (size_t j = 1; j < template->terms && round < ROUNDS && status == DIG_OK; j++) {
             double square = template->inverse[j][j];
-            fit_features(beds, bed, template);
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 square += template->feature[j][f] * template->feature[j][f] / scatter[f] /
                           (double)DIG_FEATURES;
@@ -283,23 +331,27 @@ enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_effec
     if (bed == NULL) {
         return DIG_ENOMEM;
     }
+    enum dig_status status = DIG_OK;
     for (size_t t = 0; t < set->trajectories; t++) {
         double own[DIG_FEATURES]; // variance of one dig
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             own[f] = scatter->covariance[t][f][f];
         }
-        for (int e = 0; e < DIG_EFFECTS && soil->surface->known[t]; e++) {
-            const enum dig_effect_id effect = (enum dig_effect_id)e;
+        for (int i = 0; status == DIG_OK && i < DIG_EFFECTS * DIG_SOIL_SIDES && soil->surface->known[t]; i++) {
+            const enum dig_effect_id effect = (enum dig_effect_id)(i / DIG_SOIL_SIDES);
+            const size_t             side   = (size_t)i % DIG_SOIL_SIDES;
             const size_t             beds =
-                set_range(soil, set, effect) ? gather(soil, set, scatter, effect, t, bed) : 0;
+                set_range(soil, set, effect) ? gather(soil, set, scatter, effect, side, t, bed) : 0;
             if (beds > 0) {
-                struct dig_soil_template *const template = &soil->template[e][t];
+                struct dig_soil_template *const template = &soil->template[effect][side][t];
                 template->base_density_kgpm3 = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
-                choose_terms(beds, bed, template);
-                fit(beds, bed, own, template);
+                status = choose_terms(beds, bed, template);
+                if (status == DIG_OK) {
+                    fit(beds, bed, own, template);
+                }
             }
         }
     }
     free(bed);
-    return DIG_OK;
+    return status;
 }

@@ -16,6 +16,11 @@ DIG_MUST_CHECK enum dig_status dig_soil_fit(struct dig_soil *soil, const struct 
 double dig_soil_strength(const struct dig_surface *surface, const double place[DIG_AXES],
                          const double amplitude[DIG_FORCE_CHANNELS]);
 
+/// The template for effects of this u.
+const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *soil,
+                                                     enum dig_effect_id effect, size_t trajectory,
+                                                     double u);
+
 /// What a template's terms are multiplied by at u and strength.
 void dig_soil_terms(const struct dig_soil_template *template, double u, double strength,
                     double term[DIG_SOIL_TERMS]);

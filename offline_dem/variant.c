@@ -6,9 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// A gravel of this friction or more is told from a soft layer more easily than from a hard one.
-#define HARD_FRICTION 0.7
-#define PATH_STEPS    1000 // along a trajectory, to find the tooth's way
+#define PATH_STEPS 1000 // along a trajectory, to find the tooth's way
 
 // How an effect changes a scene in which it is absent.
 struct change {
@@ -105,15 +103,15 @@ static void tilt(const struct dig_gravel *const gravel, const double magnitude,
 static void lay(const struct dig_gravel *const gravel, const double magnitude,
                 struct dig_scene *const scene)
 {
-    const bool                      soft  = gravel->value[DIG_AXIS_FRICTION] >= HARD_FRICTION;
+    (void)gravel;
     const struct dig_other_material hard  = { "layer", 0.9, 0.9, 4000.0, 0.0 };
     const struct dig_other_material loose = { "layer", 0.3, 0.3, 1500.0, 0.0 };
     scene->bed.materials                  = 1;
-    scene->bed.material[0]                = soft ? loose : hard;
+    scene->bed.material[0]                = magnitude < 0.0 ? loose : hard;
     scene->bed.material[0].restitution    = scene->material.restitution;
     scene->bed.layers                     = 1;
     scene->bed.layer[0] =
-        (struct dig_layer){ 1, scene->box.z_min_m, scene->box.z_min_m + magnitude };
+        (struct dig_layer){ 1, scene->box.z_min_m, scene->box.z_min_m + fabs(magnitude) };
 }
 
 // In the middle of what the tooth does below the ground.
@@ -160,7 +158,7 @@ static const struct change change[] = {
     { DIG_EFFECT_POLYDISPERSITY, "1", 1.01, 4.0, mix_sizes },
     { DIG_EFFECT_GRAIN_SHAPE, "1", 1.01, 2.0, stretch },
     { DIG_EFFECT_GROUND_SLOPE, "deg", -30.0, 30.0, tilt },
-    { DIG_EFFECT_LAYERING, "m", 1e-4, 100.0, lay },
+    { DIG_EFFECT_LAYERING, "m", -100.0, 100.0, lay },
     { DIG_EFFECT_OBSTACLE, "m", 1e-4, 100.0, block },
     { DIG_EFFECT_COMPACTION, "digs", 1.0, DIG_EARLIER_MAX, dig_before },
 };
@@ -193,7 +191,7 @@ static bool is_held(const struct change *const c, const double magnitude,
         return fabs(magnitude) >= 0.01;
     }
     if (c->effect == DIG_EFFECT_LAYERING || c->effect == DIG_EFFECT_OBSTACLE) {
-        return magnitude <= height_m;
+        return fabs(magnitude) >= 1e-4 && fabs(magnitude) <= height_m;
     }
     return c->effect != DIG_EFFECT_COMPACTION || fabs(magnitude - round(magnitude)) < 1e-9;
 }

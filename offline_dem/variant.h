@@ -13,8 +13,8 @@
 //                          spheres, volume as before; at most 2
 //   ground_slope    deg    the ground rises in +x                 0
 //   layering        m      top of a layer from the floor up:      0
-//                          .9/.9/4000, or .3/.3/1500 under
-//                          gravel with friction of .7 or more
+//                          hard, .9/.9/4000; below 0 a loose
+//                          one, .3/.3/1500, minus its top
 //   obstacle        m      diameter of a fixed sphere, its        0
 //                          centre at the ground's height, in the
 //                          middle of the first trajectory's drag;

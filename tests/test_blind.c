@@ -234,10 +234,14 @@ static void the_pool_holds_whole_beds_of_known_gravel(void **state)
 {
     (void)state;
     struct blind_pool pool  = { 0, NULL };
+    struct blind_pool more  = { 0, NULL };
     struct dig_error  error = { "" };
-    if (blind_pool_read("tests/data", &pool, &error) != DIG_OK) {
+    if (blind_pool_read("tests/data", false, &pool, &error) != DIG_OK ||
+        blind_pool_read("tests/data", true, &more, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
+    assert_true(more.groups > pool.groups);
+    blind_pool_finish(&more);
     size_t plain = 0;
     for (size_t g = 0; g < pool.groups; g++) {
         const struct blind_group *const group = &pool.group[g];

@@ -108,15 +108,14 @@ static void a_slope_passes_below_every_tooth_and_touches_one(void **state)
     assert_close(dig_scene_ground_m(&steep, 0.31), 0.015, 1e-12);
 }
 
-static void a_layer_is_unlike_the_gravel_over_it(void **state)
+static void a_layer_is_hard_or_loose_by_its_sign(void **state)
 {
     (void)state;
-    const struct dig_scene  plain = rig();
-    const struct dig_gravel hard  = { { 0.9, 0.9, 2500.0 } };
-    struct dig_scene        s     = make(DIG_EFFECT_LAYERING, 0.05);
+    struct dig_scene s = make(DIG_EFFECT_LAYERING, 0.05);
     assert_close(s.bed.material[0].friction, 0.9, 0.0);
     assert_close(s.bed.layer[0].to_m, 0.05, 1e-15);
-    assert_int_equal(dig_variant_make(&plain, &hard, DIG_EFFECT_LAYERING, 0.05, &s, NULL), DIG_OK);
+    s = make(DIG_EFFECT_LAYERING, -0.04);
+    assert_close(s.bed.layer[0].to_m, 0.04, 1e-15);
     assert_close(s.bed.material[0].friction, 0.3, 0.0);
     assert_close(s.bed.material[0].density_kgpm3, 1500.0, 0.0);
 }
@@ -159,7 +158,8 @@ static void what_no_bed_can_hold_is_refused_by_name(void **state)
         { DIG_EFFECT_GRAIN_SHAPE, 2.5 },       { DIG_EFFECT_GROUND_SLOPE, 0.0 },
         { DIG_EFFECT_GROUND_SLOPE, 45.0 },     { DIG_EFFECT_LAYERING, 0.2 },
         { DIG_EFFECT_OBSTACLE, INFINITY },     { DIG_EFFECT_COMPACTION, 1.5 },
-        { DIG_EFFECT_COMPACTION, 0.0 },
+        { DIG_EFFECT_COMPACTION, 0.0 },        { DIG_EFFECT_LAYERING, -0.2 },
+        { DIG_EFFECT_LAYERING, 0.0 },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_scene varied;
@@ -183,7 +183,7 @@ int main(void)
         cmocka_unit_test(what_sticks_to_itself_sticks_to_the_bucket),
         cmocka_unit_test(sizes_are_mixed_as_in_the_reference),
         cmocka_unit_test(a_slope_passes_below_every_tooth_and_touches_one),
-        cmocka_unit_test(a_layer_is_unlike_the_gravel_over_it),
+        cmocka_unit_test(a_layer_is_hard_or_loose_by_its_sign),
         cmocka_unit_test(an_obstacle_stands_in_the_way),
         cmocka_unit_test(a_clump_is_as_long_as_it_says),
         cmocka_unit_test(what_no_bed_can_hold_is_refused_by_name),

@@ -1,12 +1,13 @@
-// Below this height above the floor lies a layer of another gravel, rig scale.
+// Below this height above the floor, rig scale, lies a layer of another gravel: a harder one, or where
+// the number is negative a looser one below minus it.
 
 #include "estimator/effects/list.h"
 
 const struct dig_effect dig_effect_layering = {
     .id         = DIG_EFFECT_LAYERING,
-    .summary    = "a layer of another gravel below",
+    .summary    = "a layer of another gravel below, harder (+) or looser (-)",
     .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
     .parameters = 1,
-    .parameter  = { { "layer_m", 0.0, 0.0, 10.0, 0.03 } },
+    .parameter  = { { "layer_m", 0.0, -10.0, 10.0, 0.03 } },
 };

@@ -454,7 +454,7 @@ int main(const int argc, char *argv[])
     struct blind_pool     pool  = { 0, NULL };
     if ((mkdir(o.cache, 0755) != 0 && errno != EEXIST) ||
         dig_table_load(o.table, &set, &error) != DIG_OK ||
-        blind_pool_read(o.data, &pool, &error) != DIG_OK) {
+        blind_pool_read(o.data, strcmp(o.split, "judge") == 0, &pool, &error) != DIG_OK) {
         (void)fprintf(stderr, "blind: %s\n", error.text[0] != '\0' ? error.text : strerror(errno));
         dig_curve_set_destroy(set);
         return 1;

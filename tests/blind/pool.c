@@ -169,7 +169,7 @@ static enum dig_status read_liggghts(const char *const folder, struct blind_pool
 struct walk {
     struct blind_pool           *pool;
     const struct dig_trajectory *trajectory;
-    const char                  *name; // of the file, without its suffix
+    const char                  *name; // of the file, without its suffix and what follows a dash
 };
 
 static enum dig_status take_run(void *const context, const struct dig_run *const run,
@@ -224,9 +224,9 @@ static enum dig_status read_table(const char *const folder, const char *const fi
     char name[64];
     (void)snprintf(path, sizeof path, "%s/%s", folder, file);
     (void)snprintf(name, sizeof name, "%s", file);
-    name[strcspn(name, ".")] = '\0';
-    struct dig_store *store  = NULL;
-    enum dig_status   status = dig_store_open(path, &store, error);
+    name[strcspn(name, ".-")] = '\0';
+    struct dig_store *store   = NULL;
+    enum dig_status   status  = dig_store_open(path, &store, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -291,8 +291,8 @@ static int compare(const void *const left, const void *const right)
     return order == 0 ? (a->magnitude > b->magnitude) - (a->magnitude < b->magnitude) : order;
 }
 
-enum dig_status blind_pool_read(const char *const data, struct blind_pool *const pool,
-                                struct dig_error *const error)
+enum dig_status blind_pool_read(const char *const data, const bool to_judge,
+                                struct blind_pool *const pool, struct dig_error *const error)
 {
     char              folder[1024];
     struct blind_pool p = { 0, calloc(GROUPS_MAX, sizeof *p.group) };
@@ -310,6 +310,10 @@ enum dig_status blind_pool_read(const char *const data, struct blind_pool *const
     }
     if (status == DIG_OK) {
         (void)snprintf(folder, sizeof folder, "%s/blind", data);
+        status = read_tables(folder, &p, error);
+    }
+    if (status == DIG_OK && to_judge) {
+        (void)snprintf(folder, sizeof folder, "%s/blind/judge", data);
         status = read_tables(folder, &p, error);
     }
     if (status != DIG_OK) {

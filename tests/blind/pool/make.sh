@@ -1,6 +1,7 @@
 #!/bin/sh
-# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 68 beds. Goes on where it was stopped.
-# usage, from the root of the sources: BIN=build/bin tests/blind/pool/make.sh
+# Computes the digs of tests/data/blind: a minute of one core a bed and two digs, 126 beds. Goes on where it was stopped.
+# usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/blind/pool/make.sh [judge]
+#   judge: what the judging split alone draws from, which a graphics card can dig whole (ENGINE=cuda)
 set -eu
 here=$(dirname "$0")
 out=tests/data/blind
@@ -19,10 +20,24 @@ scene() {
 
 { scene berm; printf 'bed:\n  surface_m: [[0, 0.085], [0.12, 0.085], [0.15, 0.11], [0.18, 0.11], [0.21, 0.085], [0.31, 0.085]]\n'; } > "$work/berm.yaml"
 
-"$bin/digtable" generate config/scenes/rig.yaml "$here/plain.yaml" -o "$out/plain.sqlite" -j 1
-"$bin/digtable" generate config/scenes/rig.yaml "$here/effects.yaml" -o "$out/effects.sqlite" -j 1
-"$bin/digtable" generate config/scenes/rig.yaml "$here/effects_2.yaml" -o "$out/effects.sqlite" -j 1
-"$bin/digtable" generate config/scenes/rig.yaml "$here/effects_3.yaml" -o "$out/effects.sqlite" -j 1
-for name in trench bouncy smooth_walls berm; do
-    "$bin/digtable" generate "$work/$name.yaml" "$here/outside.yaml" -o "$out/$name.sqlite" -j 1
+{ scene firm; printf 'bed:\n  materials:\n    - {name: firm, friction: 0.7, rolling: 0.8, density_kgpm3: 3400, restitution: 0.2}\n  layers:\n    - {material: firm, z_m: [0, 0.05]}\n'; } > "$work/firm.yaml"
+{ scene weak; printf 'bed:\n  materials:\n    - {name: weak, friction: 0.35, rolling: 0.4, density_kgpm3: 1700, restitution: 0.2}\n  layers:\n    - {material: weak, z_m: [0, 0.055]}\n'; } > "$work/weak.yaml"
+
+make_table() { # SCENE GRID TABLE
+    "$bin/digtable" generate "$1" "$2" -o "$3" -j "${JOBS:-1}" --engine "${ENGINE:-kernel}"
+}
+mkdir -p "$out/judge"
+if [ "${1:-}" != judge ]; then
+    for grid in plain:plain effects:effects effects_2:effects effects_3:effects; do
+        make_table config/scenes/rig.yaml "$here/${grid%:*}.yaml" "$out/${grid#*:}.sqlite"
+    done
+    for name in trench bouncy smooth_walls berm; do
+        make_table "$work/$name.yaml" "$here/outside.yaml" "$out/$name.sqlite"
+    done
+fi
+for name in plain effects; do
+    make_table config/scenes/rig.yaml "$here/judge/$name.yaml" "$out/judge/$name.sqlite"
+done
+for name in firm weak; do
+    make_table "$work/$name.yaml" "$here/judge/$name.yaml" "$out/judge/layering-$name.sqlite"
 done
