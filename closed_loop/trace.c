@@ -149,12 +149,24 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
     trace->high          = gravel_at(t->surface, s->chosen.high);
 }
 
-// A change that is likely to make the next dig's error worse is named, but not made.
-static void drop_what_is_not_worth_it(const struct dig_tracing *const t,
-                                      struct dig_trace *const         trace)
+// The digs that were fitted to: their error must have become smaller.
+static bool brings_nearer(const struct dig_tracing *const t, const struct dig_trace_work *const w,
+                          const struct dig_trace *const trace)
 {
-    if (dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
-        most_chance_of_worse) {
+    const uint64_t seed = t->settings->seed;
+    return dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->fit, true, seed).value <
+           dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->fit, false, seed).value;
+}
+
+// A change is named, but not made, that is likely to make the next dig's error worse, or that has
+// made it worse already: forces may ask for what the moment does not.
+static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
+                                      const struct dig_trace_work *const w,
+                                      struct dig_trace *const            trace)
+{
+    if (brings_nearer(t, w, trace) &&
+        dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
+            most_chance_of_worse) {
         return;
     }
     for (size_t i = 0; i < t->digs; i++) {
@@ -210,7 +222,7 @@ static enum dig_status report(const struct dig_tracing *const      t,
     if (status == DIG_OK) {
         dig_trace_fill_candidates(t, trace);
         dig_trace_fill_curves(t, trace->unlisted, trace->curves);
-        drop_what_is_not_worth_it(t, trace);
+        drop_what_is_not_worth_it(t, w, trace);
         fill_errors(t, w, trace);
         dig_trace_advise(t, trace);
         advise_on_size(w, trace);
