@@ -149,22 +149,13 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
     trace->high          = gravel_at(t->surface, s->chosen.high);
 }
 
-// The digs that were fitted to: their error must have become smaller.
-static bool brings_nearer(const struct dig_tracing *const t, const struct dig_trace_work *const w,
-                          const struct dig_trace *const trace)
-{
-    const uint64_t seed = t->settings->seed;
-    return dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->fit, true, seed).value <
-           dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->fit, false, seed).value;
-}
-
 // A change is named, but not made, that is likely to make the next dig's error worse, or that has
 // made it worse already: forces may ask for what the moment does not.
 static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
                                       const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
-    if (brings_nearer(t, w, trace) &&
+    if (dig_worth_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
         dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
             most_chance_of_worse) {
         return;

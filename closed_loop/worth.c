@@ -1,6 +1,7 @@
 #include "closed_loop/worth.h"
 
 #include "closed_loop/features.h"
+#include "closed_loop/judge.h"
 
 #include <assert.h>
 #include <math.h>
@@ -75,4 +76,13 @@ double dig_worth_chance_of_worse(const struct dig_curve_set *const set,
         sum += of.scatter > 0.0 ? 0.5 * erfc(of.change / sqrt(8.0 * of.scatter)) : 0.5;
     }
     return sum / (double)digs;
+}
+
+bool dig_worth_brings_nearer(const struct dig_curve_set *const set, const size_t digs,
+                             const struct dig_measured     measured[],
+                             const struct dig_trace_curves curves[], const bool fit[])
+{
+    enum { SEED = 1 }; // of the interval, which is not asked for
+    return dig_judge_error(set, digs, measured, curves, fit, true, SEED).value <
+           dig_judge_error(set, digs, measured, curves, fit, false, SEED).value;
 }

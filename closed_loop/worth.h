@@ -16,4 +16,9 @@ double dig_worth_chance_of_worse(const struct dig_curve_set *set, const struct d
                                  size_t digs, const struct dig_measured measured[],
                                  const struct dig_trace_curves curves[]);
 
+/// Whether CONTRACT's error of the moment after is below that before, over the digs fitted to.
+bool dig_worth_brings_nearer(const struct dig_curve_set *set, size_t digs,
+                             const struct dig_measured     measured[],
+                             const struct dig_trace_curves curves[], const bool fit[]);
+
 #endif // DIG_CLOSED_LOOP_WORTH_H

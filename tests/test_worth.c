@@ -132,11 +132,38 @@ static void no_change_is_as_good_as_any(void **state)
     free(curves);
 }
 
+// Two digs of one size and curves after that are nearer to the first and further from the second.
+static void what_counts_is_the_error_of_the_digs_fitted_to(void **state)
+{
+    (void)state;
+    struct dig_measured *const     measured = calloc(2, sizeof *measured);
+    struct dig_trace_curves *const curves   = calloc(2, sizeof *curves);
+    assert_non_null(measured);
+    assert_non_null(curves);
+    for (size_t i = 0; i < 2; i++) {
+        measured[i] = dig;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].value[DIG_CHANNEL_MY_Nm][k] = 2.0;
+            curves[i].before[DIG_CHANNEL_MY_Nm][k]  = 1.5;
+            curves[i].after[DIG_CHANNEL_MY_Nm][k]   = i == 0 ? 1.9 : 3.0;
+        }
+    }
+    const bool first[]  = { true, false };
+    const bool second[] = { false, true };
+    const bool both[]   = { true, true };
+    assert_true(dig_worth_brings_nearer(world.set, 2, measured, curves, first));
+    assert_false(dig_worth_brings_nearer(world.set, 2, measured, curves, second));
+    assert_false(dig_worth_brings_nearer(world.set, 2, measured, curves, both));
+    free(curves);
+    free(measured);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_chance_is_what_drawing_finds),
         cmocka_unit_test(no_change_is_as_good_as_any),
+        cmocka_unit_test(what_counts_is_the_error_of_the_digs_fitted_to),
     };
     return cmocka_run_group_tests_name("worth", tests, make, clean);
 }
