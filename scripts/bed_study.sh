@@ -5,11 +5,11 @@
 # the moment in time with its standard error, scatter of one dig's mean, and of its moment after
 # +-0.16 s (relative L2 against the beds' mean, 1 sigma), user seconds a dig, of actual the mean while it turns up. What lies in OUT
 # is not dug again, so it may be stopped and started, also with more BEDS.
-#   BIN=build/bin OUT=build/bed_study scripts/bed_study.sh [across] [finest] [room] [hard] [firm] [shipped]
-# On one of two busy threads of a core `across` takes half an hour, `finest` (20 grains; never run) an hour, `room` 25 minutes, `hard` and
-# `firm` 5 each; STIFFEST=1 adds 150 MPa to `firm`, at .9/.9 as well.
+#   BIN=build/bin OUT=build/bed_study [ENGINE=kernel] [JOBS=1] scripts/bed_study.sh [across] [finest] [room] [hard] [firm] [shipped]
+# On one of two busy threads of a core `across` takes half an hour, `room` 25 minutes, `hard` and `firm` 5 each; STIFFEST=1 adds
+# 150 MPa to `firm`, at .9/.9 as well. `finest`, 20 grains across, is for a graphics card: ENGINE=cuda JOBS=4, three minutes.
 set -euo pipefail
-bin=${BIN:-build/bin} out=${OUT:-build/bed_study} scene=config/scenes/rig.yaml
+bin=${BIN:-build/bin} out=${OUT:-build/bed_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} scene=config/scenes/rig.yaml
 mkdir -p "$out"
 
 # The beds of one variant, those that are not there yet, and its line.
@@ -19,14 +19,20 @@ study() { # NAME BEDS TRAJECTORY FRICTION (and as much rolling friction) SED-SCR
     for seed in $(seq "$beds"); do
         local dig=$out/$name.$seed
         [ ! -e "$dig.csv" ] || continue
-        TIMEFORMAT=%U
-        { time "$bin/digtable" dig "$out/$name.yaml" --trajectory "$trajectory" --friction "$friction" \
-            --rolling "$friction" --density 2500 --seed "$seed" -o "$dig.csv" 2>"$dig.log"; } 2>"$dig.user_s" || {
-            cat "$dig.log" >&2
-            exit 1
-        }
+        while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do wait -n; done
+        dig_one "$dig" "$seed" "$trajectory" "$friction" "$out/$name.yaml" &
     done
+    while [ "$(jobs -rp | wc -l)" -gt 0 ]; do wait -n; done
     line "$name"
+}
+
+dig_one() { # DIG SEED TRAJECTORY FRICTION SCENE
+    TIMEFORMAT=%U
+    { time "$bin/digtable" dig "$5" --trajectory "$3" --friction "$4" --rolling "$4" --density 2500 --seed "$2" \
+        --engine "$engine" -o "$1.csv" 2>"$1.log"; } 2>"$1.user_s" || {
+        cat "$1.log" >&2
+        exit 1
+    }
 }
 
 # One line of all digs of a variant that are there: the columns are the output windows, the same in all.
@@ -77,7 +83,7 @@ across() { # Grains across the bucket; the rig's box with sides that are one.
     study across_14 3 simpleA .5 "$(join "$(grain 0.005)" "$periodic")"
 }
 
-finest() { study across_20 2 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")"; }
+finest() { study across_20 4 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")"; }
 
 room() { # Walls or sides that are one so many mm beside the bucket; the floor; the ends.
     study walls_25 12 simpleA .5 "$seven"

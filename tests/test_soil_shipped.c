@@ -1,0 +1,135 @@
+#include "closed_loop/soil.h"
+#include "closed_loop/soil_fit.h"
+#include "tables/load.h"
+#include "tables/load_effects.h"
+#include "tests/testlib.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The tables that ship.
+static struct dig_curve_set  *set;
+static struct dig_effect_set *effects;
+static struct dig_surface    *surface;
+static struct dig_scatter    *scatter;
+static struct dig_soil       *soil;
+
+static int load(void **state)
+{
+    (void)state;
+    const char *const table = "tables/rig.sqlite";
+    struct dig_error  error = { "" };
+    surface                 = calloc(1, sizeof *surface);
+    if (surface == NULL || dig_table_load(table, &set, &error) != DIG_OK ||
+        dig_effects_load("tables/rig_effects.sqlite", set, &effects, &error) != DIG_OK ||
+        dig_surface_fit(set, surface) != DIG_OK ||
+        dig_scatter_measure(table, surface, &scatter, &error) != DIG_OK ||
+        dig_soil_create(surface, effects, scatter, &soil) != DIG_OK) {
+        print_error("%s\n", error.text);
+        return 1;
+    }
+    return 0;
+}
+
+static int unload(void **state)
+{
+    (void)state;
+    free(soil);
+    dig_scatter_destroy(scatter);
+    free(surface);
+    dig_effect_set_destroy(effects);
+    dig_curve_set_destroy(set);
+    return 0;
+}
+
+// What a template leaves of an entry's mean, in variances of that mean, over the features: 1 of a
+// template that is right and was not fitted to it.
+static double left_of(const size_t entry, const size_t t)
+{
+    const struct dig_effect_entry *const of    = &effects->entry[entry];
+    const struct dig_curve *const        curve = &effects->curve[entry * effects->trajectories + t];
+    double place[DIG_AXES], model[DIG_FEATURES], plain[DIG_FEATURES], bed[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS], size[DIG_FORCE_CHANNELS];
+    double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double noise = 0.0;
+    double sum   = 0.0;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            mean[c][k] = (double)curve->mean[c][k];
+        }
+    }
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])mean, bed);
+    dig_features_amplitude(bed, NULL, size);
+    dig_surface_place(surface, &of->gravel, place);
+    dig_surface_features(surface, t, place, plain, amplitude);
+    memcpy(model, plain, sizeof model);
+    const double u = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
+    dig_soil_add(soil, of->effect, t, place, u, 1.0, plain, amplitude, model, &noise);
+
+    const double larger = size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm];
+    const double factor =
+        dig_scatter_factor(scatter, t, dig_soil_strength(surface, place, amplitude)) * larger *
+        larger / (double)effects->packings[entry * effects->trajectories + t];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const double off = (bed[f] - model[f]) / amplitude[f / DIG_FEATURE_BINS];
+        sum += off * off / (factor * scatter->covariance[t][f][f] * DIG_FEATURES);
+    }
+    return sum;
+}
+
+// A template's straight lines from magnitude to magnitude leave no more of the beds than their
+// scatter, where a parabola left three times it.
+static void templates_follow_the_beds_that_ship(void **state)
+{
+    (void)state;
+    double sum[DIG_EFFECTS]   = { 0.0 };
+    double count[DIG_EFFECTS] = { 0.0 };
+    for (size_t e = 0; e < effects->entries; e++) {
+        for (size_t t = 0; t < effects->trajectories; t++) {
+            if (effects->packings[e * effects->trajectories + t] > 0) {
+                sum[effects->entry[e].effect] += left_of(e, t);
+                count[effects->entry[e].effect] += 1.0;
+            }
+        }
+    }
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        if (count[e] > 0.0) {
+            print_message("%-16s %2.0f means of beds: %.2f of their variance left\n",
+                          dig_effect_name((enum dig_effect_id)e), count[e], sum[e] / count[e]);
+            assert_true(sum[e] / count[e] < 1.0);
+        }
+    }
+    assert_true(count[DIG_EFFECT_LAYERING] >= 60.0);
+}
+
+// Under one gravel a hard layer adds to the moment of actual and a loose one takes off.
+static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.7, 0.4, 3000.0 } };
+    const size_t            actual = 2;
+    assert_string_equal(set->trajectory[actual].name, "actual");
+    double place[DIG_AXES], plain[DIG_FEATURES], amplitude[DIG_FORCE_CHANNELS];
+    dig_surface_place(surface, &gravel, place);
+    dig_surface_features(surface, actual, place, plain, amplitude);
+    for (int side = -1; side <= 1; side += 2) {
+        double with[DIG_FEATURES];
+        double size[DIG_FORCE_CHANNELS];
+        double noise = 0.0;
+        memcpy(with, plain, sizeof with);
+        dig_soil_add(soil, DIG_EFFECT_LAYERING, actual, place, 0.7 * side, 1.0, plain, amplitude,
+                     with, &noise);
+        dig_features_amplitude(with, NULL, size);
+        assert_true(side * (size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm] - 1.0) > 0.1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(templates_follow_the_beds_that_ship),
+        cmocka_unit_test(a_hard_layer_adds_and_a_loose_one_takes),
+    };
+    return cmocka_run_group_tests_name("soil_shipped", tests, load, unload);
+}
