@@ -87,6 +87,7 @@ tables: all ## Compute what the tables rig, rig_effects and product lack of thei
 
 evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
 	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
+	$(Q)BIN=$(BUILD)/bin scripts/offgrid.sh
 
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
 	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh

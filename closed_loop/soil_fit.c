@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 60 };
+enum { ROUNDS = 200 };
 
 static const double ridge = 1e-6; // of the diagonal, where magnitudes make terms nearly the same
 
@@ -20,6 +20,9 @@ static const double most_strength = 1.3;
 // Widest and narrowest prior of a term, in variances of what one dig scatters by.
 static const double widest    = 1e6;
 static const double narrowest = 1e-6;
+
+// Of a term's square, so that one the beds say nothing about has a width at all.
+static const double least_told = 1e-6;
 
 double dig_soil_strength(const struct dig_surface *const surface, const double place[DIG_AXES],
                          const double amplitude[DIG_FORCE_CHANNELS])
@@ -122,6 +125,36 @@ static size_t keep_unlike(const size_t levels, double level[])
     return kept;
 }
 
+static bool is_of_two_gravels(const size_t beds, const struct bed bed[], const double u)
+{
+    const struct bed *one = NULL;
+    for (size_t b = 0; b < beds; b++) {
+        if (fabs(bed[b].u - u) <= 1e-6) {
+            if (one != NULL && fabs(bed[b].strength - one->strength) > 1e-6) {
+                return true;
+            }
+            one = &bed[b];
+        }
+    }
+    return false;
+}
+
+// A bend at a magnitude that one gravel alone was dug at would bend all others as it does that one.
+static void choose_knots(const size_t beds, const struct bed bed[], const size_t magnitudes,
+                         const double magnitude[], struct dig_soil_template *const template)
+{
+    double knot[DIG_SOIL_KNOTS] = { 0.0 };
+    size_t knots                = 1;
+    for (size_t i = 0; i < magnitudes; i++) {
+        if (knots < DIG_SOIL_KNOTS && is_of_two_gravels(beds, bed, magnitude[i])) {
+            knot[knots++] = magnitude[i];
+        }
+    }
+    qsort(knot, knots, sizeof *knot, compare);
+    template->knots = knots > 2 ? knots : 0;
+    memcpy(template->knot, knot, template->knots * sizeof *knot);
+}
+
 static enum dig_status choose_terms(const size_t beds, const struct bed bed[],
                                     struct dig_soil_template *const template)
 {
@@ -140,22 +173,22 @@ static enum dig_status choose_terms(const size_t beds, const struct bed bed[],
     for (size_t b = 0; b < beds; b++) {
         level[b] = bed[b].u;
     }
-    level[beds]        = 0.0;
-    const size_t knots = keep_unlike(beds + 1, level);
-    template->knots    = knots > 2 && knots <= DIG_SOIL_KNOTS ? knots : 0;
-    memcpy(template->knot, level, template->knots * sizeof *level);
-    template->terms = template->powers * (1 + template->knots);
+    const size_t magnitudes = keep_unlike(beds, level);
+    choose_knots(beds, bed, magnitudes, level, template);
+    template->shapes = (magnitudes > 1 ? 2 : 1) + template->knots;
+    template->terms  = template->powers * template->shapes;
     free(level);
     return DIG_OK;
 }
 
-// The line and the hats at u; the hat of "absent" is left out.
+// The line, the parabola and the hats at u; the hat of "absent" is left out.
 static void shapes_of(const struct dig_soil_template *const template, const double u,
-                      double shape[1 + DIG_SOIL_KNOTS])
+                      double shape[DIG_SOIL_SHAPES])
 {
     const double *const knot = template->knot;
-    memset(shape, 0, (1 + DIG_SOIL_KNOTS) * sizeof *shape);
+    memset(shape, 0, DIG_SOIL_SHAPES * sizeof *shape);
     shape[0] = u;
+    shape[1] = u * u;
     if (template->knots == 0) {
         return;
     }
@@ -164,8 +197,8 @@ static void shapes_of(const struct dig_soil_template *const template, const doub
         i++;
     }
     const double f = (u - knot[i]) / (knot[i + 1] - knot[i]);
-    shape[1 + i]   = fabs(knot[i]) > 0.0 ? 1.0 - f : 0.0;
-    shape[2 + i]   = fabs(knot[i + 1]) > 0.0 ? f : 0.0;
+    shape[2 + i]   = fabs(knot[i]) > 0.0 ? 1.0 - f : 0.0;
+    shape[3 + i]   = fabs(knot[i + 1]) > 0.0 ? f : 0.0;
 }
 
 void dig_soil_terms(const struct dig_soil_template *const template, const double u,
@@ -173,13 +206,12 @@ void dig_soil_terms(const struct dig_soil_template *const template, const double
 {
     const double s =
         fmin(fmax((strength - template->centre) / template->half, -most_strength), most_strength);
-    double shape[1 + DIG_SOIL_KNOTS];
+    double shape[DIG_SOIL_SHAPES];
     shapes_of(template, u, shape);
-    size_t j = 0;
-    for (size_t i = 0; i <= template->knots; i++) {
+    for (size_t j = 0; j < template->terms; j += template->powers) {
         double power = 1.0;
         for (size_t p = 0; p < template->powers; p++) {
-            term[j++] = shape[i] * power;
+            term[j + p] = shape[j / template->powers] * power;
             power *= s;
         }
     }
@@ -247,8 +279,8 @@ static void fit_features(const size_t beds, const struct bed bed[],
 }
 
 // Every term but the first has a prior about nothing, as wide as the beds say: the width that makes
-// them likeliest, term by term, by expectation and maximisation (MacKay 1992; Dempster, Laird and
-// Rubin 1977). A term that few beds ask for by less than their scatter then adds no noise.
+// them likeliest, term by term, by MacKay's fixed point (1992): its square over the share of it that
+// the beds tell. A term that few beds ask for by less than their scatter then adds no noise.
 static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
                                  const double scatter[DIG_FEATURES],
                                  struct dig_soil_template *const template)
@@ -264,11 +296,13 @@ static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
             fit_features(beds, bed, template);
         }
         for (size_t j = 1; j < template->terms && round < ROUNDS && status == DIG_OK; j++) {
-            double square = template->inverse[j][j];
+            const double told   = 1.0 - template->inverse[j][j] * precision[j];
+            double       square = 0.0;
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 square += template->feature[j][f] * template->feature[j][f] / scatter[f] /
                           (double)DIG_FEATURES;
             }
+            square /= fmax(told, least_told);
             precision[j] = 1.0 / fmin(fmax(square, narrowest), widest);
         }
     }
