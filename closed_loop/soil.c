@@ -1,6 +1,7 @@
 #include "closed_loop/soil.h"
 
 #include "closed_loop/soil_fit.h"
+#include "closed_loop/soil_terms.h"
 #include "estimator/effects/effect.h"
 #include "estimator/effects/template.h"
 

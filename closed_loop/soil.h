@@ -8,13 +8,13 @@
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
 // density; s = log(amplitude of My / density), -1 … 1 over the base gravels; hat_k is 1 at the k-th
 // magnitude of the table, 0 at the others and where the effect is absent, straight between, and the
-// last two go on: a layer is felt from where the tooth reaches it. Powers for which there are too few
-// gravels are left out, u^2 where there is one magnitude, hats at magnitudes that one gravel alone was
-// dug at; all but a_0 are drawn towards nothing as far as the beds allow, and with them the curve over
-// u towards a parabola or a line.
-// A layer below zero is a loose one, above it a hard one: two templates that meet where u is 0.
-// Two effects have a reduced form instead, a factor on the plain dig (estimator/effects/):
-// rate_dependence (pace speed^along)^u, wear 1 + u order. Compaction acts pass - 1 fold.
+// last two go on: a layer is felt from where the tooth reaches it. Powers for which there are too
+// few gravels are left out, u^2 where there is one magnitude, hats at magnitudes that one gravel
+// alone was dug at; all but a_0 are drawn towards nothing as far as the beds allow, and with them
+// the curve over u towards a parabola or a line. A layer below zero is a loose one, above it a hard
+// one: two templates that meet where u is 0. Two effects have a reduced form instead, a factor on
+// the plain dig (estimator/effects/): rate_dependence (pace speed^along)^u, wear 1 + u order.
+// Compaction acts pass - 1 fold.
 
 #ifndef DIG_CLOSED_LOOP_SOIL_H
 #define DIG_CLOSED_LOOP_SOIL_H
@@ -25,8 +25,8 @@
 #include "core/effect.h"
 #include "core/effect_set.h"
 
-#define DIG_SOIL_POWERS 3 // of s
-#define DIG_SOIL_KNOTS  9 // magnitudes and where it is absent
+#define DIG_SOIL_POWERS 3                    // of s
+#define DIG_SOIL_KNOTS  9                    // magnitudes and where it is absent
 #define DIG_SOIL_SHAPES (2 + DIG_SOIL_KNOTS) // u, u^2 and hats
 #define DIG_SOIL_TERMS  (DIG_SOIL_POWERS * DIG_SOIL_SHAPES)
 #define DIG_SOIL_SIDES  2 // u >= 0, u < 0; one template serves both unless they are unlike things
@@ -35,7 +35,7 @@ struct dig_soil_template {
     bool   known;
     size_t powers;
     size_t shapes;
-    size_t knots; // 0: no hats
+    size_t knots;                // 0: no hats
     double knot[DIG_SOIL_KNOTS]; // u, ascending, 0 among them
     size_t terms;                // powers times shapes
     double centre, half;         // of strength over the base gravels

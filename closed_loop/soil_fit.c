@@ -1,6 +1,7 @@
 #include "closed_loop/soil_fit.h"
 
 #include "closed_loop/dense.h"
+#include "closed_loop/soil_terms.h"
 
 #include <assert.h>
 #include <math.h>
@@ -13,9 +14,6 @@ static const double ridge = 1e-6; // of the diagonal, where magnitudes make term
 
 // Beyond the table's largest magnitude.
 static const double beyond = 1.5;
-
-// How far beyond the base gravels' strengths a template goes on changing.
-static const double most_strength = 1.3;
 
 // Widest and narrowest prior of a term, in variances of what one dig scatters by.
 static const double widest    = 1e6;
@@ -105,118 +103,6 @@ static size_t gather(const struct dig_soil *const soil, const struct dig_effect_
     return beds;
 }
 
-static int compare(const void *const left, const void *const right)
-{
-    const double a = *(const double *)left;
-    const double b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
-// Sorts level[] and drops those that are the same; how many stay.
-static size_t keep_unlike(const size_t levels, double level[])
-{
-    size_t kept = 0;
-    qsort(level, levels, sizeof *level, compare);
-    for (size_t i = 0; i < levels; i++) {
-        if (kept == 0 || level[i] - level[kept - 1] > 1e-6) {
-            level[kept++] = level[i];
-        }
-    }
-    return kept;
-}
-
-static bool is_of_two_gravels(const size_t beds, const struct bed bed[], const double u)
-{
-    const struct bed *one = NULL;
-    for (size_t b = 0; b < beds; b++) {
-        if (fabs(bed[b].u - u) <= 1e-6) {
-            if (one != NULL && fabs(bed[b].strength - one->strength) > 1e-6) {
-                return true;
-            }
-            one = &bed[b];
-        }
-    }
-    return false;
-}
-
-// A bend at a magnitude that one gravel alone was dug at would bend all others as it does that one.
-static void choose_knots(const size_t beds, const struct bed bed[], const size_t magnitudes,
-                         const double magnitude[], struct dig_soil_template *const template)
-{
-    double knot[DIG_SOIL_KNOTS] = { 0.0 };
-    size_t knots                = 1;
-    for (size_t i = 0; i < magnitudes; i++) {
-        if (knots < DIG_SOIL_KNOTS && is_of_two_gravels(beds, bed, magnitude[i])) {
-            knot[knots++] = magnitude[i];
-        }
-    }
-    qsort(knot, knots, sizeof *knot, compare);
-    template->knots = knots > 2 ? knots : 0;
-    memcpy(template->knot, knot, template->knots * sizeof *knot);
-}
-
-static enum dig_status choose_terms(const size_t beds, const struct bed bed[],
-                                    struct dig_soil_template *const template)
-{
-    double *const level = calloc(beds + 1, sizeof *level);
-    if (level == NULL) {
-        return DIG_ENOMEM;
-    }
-    for (size_t b = 0; b < beds; b++) {
-        level[b] = bed[b].strength;
-    }
-    const size_t strengths = keep_unlike(beds, level);
-    template->powers       = strengths < DIG_SOIL_POWERS ? strengths : DIG_SOIL_POWERS;
-    template->centre       = 0.5 * (level[0] + level[strengths - 1]);
-    template->half         = fmax(0.5 * (level[strengths - 1] - level[0]), 1e-3);
-
-    for (size_t b = 0; b < beds; b++) {
-        level[b] = bed[b].u;
-    }
-    const size_t magnitudes = keep_unlike(beds, level);
-    choose_knots(beds, bed, magnitudes, level, template);
-    template->shapes = (magnitudes > 1 ? 2 : 1) + template->knots;
-    template->terms  = template->powers * template->shapes;
-    free(level);
-    return DIG_OK;
-}
-
-// The line, the parabola and the hats at u; the hat of "absent" is left out.
-static void shapes_of(const struct dig_soil_template *const template, const double u,
-                      double shape[DIG_SOIL_SHAPES])
-{
-    const double *const knot = template->knot;
-    memset(shape, 0, DIG_SOIL_SHAPES * sizeof *shape);
-    shape[0] = u;
-    shape[1] = u * u;
-    if (template->knots == 0) {
-        return;
-    }
-    size_t i = 0;
-    while (i + 2 < template->knots && knot[i + 1] <= u) {
-        i++;
-    }
-    const double f = (u - knot[i]) / (knot[i + 1] - knot[i]);
-    shape[2 + i]   = fabs(knot[i]) > 0.0 ? 1.0 - f : 0.0;
-    shape[3 + i]   = fabs(knot[i + 1]) > 0.0 ? f : 0.0;
-}
-
-void dig_soil_terms(const struct dig_soil_template *const template, const double u,
-                    const double strength, double term[DIG_SOIL_TERMS])
-{
-    const double s =
-        fmin(fmax((strength - template->centre) / template->half, -most_strength), most_strength);
-    double shape[DIG_SOIL_SHAPES];
-    shapes_of(template, u, shape);
-    for (size_t j = 0; j < template->terms; j += template->powers) {
-        double power = 1.0;
-        for (size_t p = 0; p < template->powers; p++) {
-            term[j + p] = shape[j / template->powers] * power;
-            power *= s;
-        }
-    }
-}
-
 // (sum w x x' + the priors' precision)^-1 over the terms.
 static enum dig_status invert(const size_t beds, const struct bed bed[],
                               const double precision[DIG_SOIL_TERMS],
@@ -279,8 +165,8 @@ static void fit_features(const size_t beds, const struct bed bed[],
 }
 
 // Every term but the first has a prior about nothing, as wide as the beds say: the width that makes
-// them likeliest, term by term, by MacKay's fixed point (1992): its square over the share of it that
-// the beds tell. A term that few beds ask for by less than their scatter then adds no noise.
+// them likeliest, term by term, by MacKay's fixed point (1992): its square over the share of it
+// that the beds tell. A term that few beds ask for by less than their scatter then adds no noise.
 static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
                                  const double scatter[DIG_FEATURES],
                                  struct dig_soil_template *const template)
@@ -357,6 +243,40 @@ static bool set_range(struct dig_soil *const soil, const struct dig_effect_set *
     return true;
 }
 
+// The template of one side of an effect along a trajectory, of what beds there are. bed: room for
+// all.
+static enum dig_status fit_side(struct dig_soil *const soil, const struct dig_effect_set *const set,
+                                const struct dig_scatter *const scatter,
+                                const enum dig_effect_id effect, const size_t side, const size_t t,
+                                struct bed bed[])
+{
+    const size_t beds = gather(soil, set, scatter, effect, side, t, bed);
+    if (beds == 0) {
+        return DIG_OK;
+    }
+    double own[DIG_FEATURES]; // variance of one dig
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        own[f] = scatter->covariance[t][f][f];
+    }
+    struct dig_soil_template *const template = &soil->template[effect][side][t];
+    template->base_density_kgpm3             = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
+
+    double *const at = calloc(2 * beds, sizeof *at);
+    if (at == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t b = 0; b < beds; b++) {
+        at[b]        = bed[b].u;
+        at[beds + b] = bed[b].strength;
+    }
+    const enum dig_status status = dig_soil_terms_choose(beds, at, at + beds, template);
+    if (status == DIG_OK) {
+        fit(beds, bed, own, template);
+    }
+    free(at);
+    return status;
+}
+
 enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_effect_set *const set,
                              const struct dig_scatter *const scatter)
 {
@@ -366,23 +286,15 @@ enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_effec
         return DIG_ENOMEM;
     }
     enum dig_status status = DIG_OK;
-    for (size_t t = 0; t < set->trajectories; t++) {
-        double own[DIG_FEATURES]; // variance of one dig
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            own[f] = scatter->covariance[t][f][f];
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        const enum dig_effect_id effect = (enum dig_effect_id)e;
+        if (!set_range(soil, set, effect)) {
+            continue;
         }
-        for (int i = 0; status == DIG_OK && i < DIG_EFFECTS * DIG_SOIL_SIDES && soil->surface->known[t]; i++) {
-            const enum dig_effect_id effect = (enum dig_effect_id)(i / DIG_SOIL_SIDES);
-            const size_t             side   = (size_t)i % DIG_SOIL_SIDES;
-            const size_t             beds =
-                set_range(soil, set, effect) ? gather(soil, set, scatter, effect, side, t, bed) : 0;
-            if (beds > 0) {
-                struct dig_soil_template *const template = &soil->template[effect][side][t];
-                template->base_density_kgpm3 = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
-                status = choose_terms(beds, bed, template);
-                if (status == DIG_OK) {
-                    fit(beds, bed, own, template);
-                }
+        for (size_t t = 0; t < set->trajectories; t++) {
+            for (size_t side = 0;
+                 side < DIG_SOIL_SIDES && soil->surface->known[t] && status == DIG_OK; side++) {
+                status = fit_side(soil, set, scatter, effect, side, t, bed);
             }
         }
     }

@@ -21,8 +21,4 @@ const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *soil
                                                      enum dig_effect_id effect, size_t trajectory,
                                                      double u);
 
-/// What a template's terms are multiplied by at u and strength.
-void dig_soil_terms(const struct dig_soil_template *template, double u, double strength,
-                    double term[DIG_SOIL_TERMS]);
-
 #endif // DIG_CLOSED_LOOP_SOIL_FIT_H

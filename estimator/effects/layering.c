@@ -1,5 +1,5 @@
-// Below this height above the floor, rig scale, lies a layer of another gravel: a harder one, or where
-// the number is negative a looser one below minus it.
+// Below this height above the floor, rig scale, lies a layer of another gravel: a harder one, or
+// where the number is negative a looser one below minus it.
 
 #include "estimator/effects/list.h"
 
