@@ -332,7 +332,8 @@ static enum dig_status write_machine(const struct blind_site *const site,
                        (c->dig[d].plain_bed ? c->plain : c->group)->bed[c->dig[d].bed].packing,
                        blind_path_name(c->dig[d].path), c->machine.name);
     } else {
-        (void)snprintf(name, sizeof name, "exact%zu", d);
+        (void)snprintf(name, sizeof name, "exact%zu_%s", d,
+                       c->machine.name); // it may be tried by two
     }
     struct blind_base base;
     enum dig_status   status =
