@@ -33,9 +33,8 @@ struct dig_engine {
                            const char *vtk_dir, const struct dig_progress *progress,
                            struct dig_recording *recording, struct dig_error *error);
     void (*bed_finish)(struct dig_bed *bed);
-    enum dig_status (*vary)(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                            enum dig_effect_id effect, double magnitude, struct dig_scene *varied,
-                            struct dig_error *error);
+    enum dig_status (*vary)(const struct dig_scene *scene, enum dig_effect_id effect,
+                            double magnitude, struct dig_scene *varied, struct dig_error *error);
 };
 
 /// The grain kernel: offline_dem/dig.h. Its version is the release and, behind a plus, a hash of

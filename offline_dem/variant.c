@@ -13,29 +13,23 @@ struct change {
     enum dig_effect_id effect;
     const char        *unit;
     double             least, most;
-    void (*apply)(const struct dig_gravel *gravel, double magnitude, struct dig_scene *scene);
+    void (*apply)(double magnitude, struct dig_scene *scene);
 };
 
-static void cohere(const struct dig_gravel *const gravel, const double magnitude,
-                   struct dig_scene *const scene)
+static void cohere(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     scene->laws.cohesion_Jpm3 = magnitude;
     scene->laws.adhesion_Jpm3 = magnitude; // what sticks to itself sticks to steel
 }
 
-static void adhere(const struct dig_gravel *const gravel, const double magnitude,
-                   struct dig_scene *const scene)
+static void adhere(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     scene->laws.adhesion_Jpm3 = magnitude;
 }
 
 // 6, 7.5 and 10 mm at 5/3: the logarithms of both steps keep their ratio.
-static void mix_sizes(const struct dig_gravel *const gravel, const double magnitude,
-                      struct dig_scene *const scene)
+static void mix_sizes(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     const double down    = log(0.8) / log(5.0 / 3.0);
     const double d_m     = scene->material.diameter_m;
     const double small_m = d_m * pow(magnitude, down);
@@ -46,10 +40,8 @@ static void mix_sizes(const struct dig_gravel *const gravel, const double magnit
     scene->time_step_s *= small_m / d_m;
 }
 
-static void stretch(const struct dig_gravel *const gravel, const double magnitude,
-                    struct dig_scene *const scene)
+static void stretch(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     scene->bed.clump = (struct dig_clump){ .spheres = 2,
                                            .x       = { 1.0 - magnitude, magnitude - 1.0 },
                                            .radius  = { 1.0, 1.0 } };
@@ -69,10 +61,8 @@ static void find_tooth(const struct dig_scene *const scene, const struct dig_tra
     *z_m                       = pose.z_m + s * scene->bucket.x_m[0] + c * scene->bucket.z_m[0];
 }
 
-static void tilt(const struct dig_gravel *const gravel, const double magnitude,
-                 struct dig_scene *const scene)
+static void tilt(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     const struct dig_box *const box  = &scene->box;
     const double                rise = tan(magnitude * DIG_RAD_PER_DEG);
     // Height of the plane at x = 0, below every tooth.
@@ -100,10 +90,8 @@ static void tilt(const struct dig_gravel *const gravel, const double magnitude,
     b->surface_z_m[b->surface++] = fmax(end_m[1], least_m);
 }
 
-static void lay(const struct dig_gravel *const gravel, const double magnitude,
-                struct dig_scene *const scene)
+static void lay(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     const struct dig_other_material hard  = { "layer", 0.9, 0.9, 4000.0, 0.0 };
     const struct dig_other_material loose = { "layer", 0.3, 0.3, 1500.0, 0.0 };
     scene->bed.materials                  = 1;
@@ -115,10 +103,8 @@ static void lay(const struct dig_gravel *const gravel, const double magnitude,
 }
 
 // In the middle of what the tooth does below the ground.
-static void block(const struct dig_gravel *const gravel, const double magnitude,
-                  struct dig_scene *const scene)
+static void block(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     const struct dig_trajectory *const t          = &scene->trajectory[0];
     const double                       duration_s = dig_trajectory_duration_s(t);
     double                             low_m      = INFINITY;
@@ -145,10 +131,8 @@ static void block(const struct dig_gravel *const gravel, const double magnitude,
     };
 }
 
-static void dig_before(const struct dig_gravel *const gravel, const double magnitude,
-                       struct dig_scene *const scene)
+static void dig_before(const double magnitude, struct dig_scene *const scene)
 {
-    (void)gravel;
     scene->bed.earlier_digs = (size_t)llround(magnitude);
 }
 
@@ -196,8 +180,7 @@ static bool is_held(const struct change *const c, const double magnitude,
     return c->effect != DIG_EFFECT_COMPACTION || fabs(magnitude - round(magnitude)) < 1e-9;
 }
 
-enum dig_status dig_variant_make(const struct dig_scene *const  scene,
-                                 const struct dig_gravel *const gravel,
+enum dig_status dig_variant_make(const struct dig_scene *const scene,
                                  const enum dig_effect_id effect, const double magnitude,
                                  struct dig_scene *const varied, struct dig_error *const error)
 {
@@ -214,7 +197,7 @@ enum dig_status dig_variant_make(const struct dig_scene *const  scene,
             dig_effect_name(effect), magnitude, c->unit, c->least, c->most);
     }
     struct dig_scene made = *scene;
-    c->apply(gravel, magnitude, &made);
+    c->apply(magnitude, &made);
     *varied = made;
     return DIG_OK;
 }

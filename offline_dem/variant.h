@@ -38,11 +38,10 @@
 /// "J/m3", "deg", …: the unit of the effect's magnitude; NULL for an effect no DEM of ours holds.
 const char *dig_variant_unit(enum dig_effect_id effect);
 
-/// Writes the plain scene with the effect at this magnitude. gravel is the plain bed's, which a
-/// layer is made relative to. DIG_EINVAL: an effect without a bed, or a magnitude out of range
+/// Writes the plain scene with the effect at this magnitude. DIG_EINVAL: an effect without a bed,
+/// or a magnitude out of range
 /// (*error names both); then *varied is untouched. varied may not be scene.
-DIG_MUST_CHECK enum dig_status dig_variant_make(const struct dig_scene  *scene,
-                                                const struct dig_gravel *gravel,
+DIG_MUST_CHECK enum dig_status dig_variant_make(const struct dig_scene *scene,
                                                 enum dig_effect_id effect, double magnitude,
                                                 struct dig_scene *varied, struct dig_error *error);
 

@@ -144,8 +144,8 @@ static enum dig_status vary(struct child *const child, struct dig_scene *const v
         return dig_error_set(error, DIG_EINVAL, "effect \"%s\": the engine %s knows no such",
                              job->effect, child->engine->name);
     }
-    const enum dig_status status = child->engine->vary(
-        child->scene, &job->gravel, (enum dig_effect_id)effect, job->magnitude, varied, error);
+    const enum dig_status status = child->engine->vary(child->scene, (enum dig_effect_id)effect,
+                                                       job->magnitude, varied, error);
     if (status == DIG_OK) {
         child->scene = varied;
     }

@@ -126,12 +126,10 @@ static void fake_bed_finish(struct dig_bed *const bed)
 }
 
 // The effect sets the first trajectory's angle: any change that shows.
-static enum dig_status fake_vary(const struct dig_scene *const  scene,
-                                 const struct dig_gravel *const gravel,
+static enum dig_status fake_vary(const struct dig_scene *const scene,
                                  const enum dig_effect_id effect, const double magnitude,
                                  struct dig_scene *const varied, struct dig_error *const error)
 {
-    (void)gravel;
     if (magnitude > 90.0) {
         return dig_error_set(error, DIG_EINVAL, "%s %g: too much", dig_effect_name(effect),
                              magnitude);

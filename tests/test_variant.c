@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-static const struct dig_gravel gravel = { { 0.5, 0.5, 2500.0 } };
-
 static struct dig_scene rig(void)
 {
     struct dig_scene scene;
@@ -22,7 +20,7 @@ static struct dig_scene make(const enum dig_effect_id effect, const double magni
     const struct dig_scene plain = rig();
     struct dig_scene       varied;
     struct dig_error       error = { "" };
-    if (dig_variant_make(&plain, &gravel, effect, magnitude, &varied, &error) != DIG_OK) {
+    if (dig_variant_make(&plain, effect, magnitude, &varied, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     assert_int_equal(dig_scene_check(&varied, &error), DIG_OK);
@@ -166,9 +164,8 @@ static void what_no_bed_can_hold_is_refused_by_name(void **state)
         memset(&varied, 0x5a, sizeof varied);
         const struct dig_scene untouched = varied;
         struct dig_error       error     = { "" };
-        assert_int_equal(
-            dig_variant_make(&plain, &gravel, bad[i].effect, bad[i].magnitude, &varied, &error),
-            DIG_EINVAL);
+        assert_int_equal(dig_variant_make(&plain, bad[i].effect, bad[i].magnitude, &varied, &error),
+                         DIG_EINVAL);
         assert_memory_equal(&varied, &untouched, sizeof varied);
         assert_non_null(strstr(error.text, dig_effect_name(bad[i].effect)));
     }

@@ -182,8 +182,8 @@ enum dig_status dig_plan_check(const struct dig_plan *const   plan,
                                  engine->name, p->effect);
         }
         struct dig_scene      varied;
-        const enum dig_status status = engine->vary(scene, &p->gravel, (enum dig_effect_id)effect,
-                                                    p->magnitude, &varied, error);
+        const enum dig_status status =
+            engine->vary(scene, (enum dig_effect_id)effect, p->magnitude, &varied, error);
         if (status != DIG_OK) {
             return status;
         }
