@@ -98,7 +98,7 @@ static void put_table(FILE *const to, const struct dig_report_run *const run)
         } else {
             (void)fputs("<td>unknown</td>", to);
         }
-        (void)fprintf(to, "<td><b>%.*f</b></td><td>%.*f – %.*f</td><td>%.*f</td></tr>\n", d,
+        (void)fprintf(to, "<td><b>%.*f</b></td><td>%.*f to %.*f</td><td>%.*f</td></tr>\n", d,
                       run->gravel.value[a], d, run->low.value[a], d, run->high.value[a], d,
                       run->nearest.value[a]);
     }

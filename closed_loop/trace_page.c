@@ -80,14 +80,14 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
             const struct dig_model_parameter *const q = &effect->parameter[p];
             (void)fprintf(to, "<tr><th>%s: ", dig_effect_name(effect->effect));
             dig_html_text(to, q->name);
-            (void)fprintf(to, "</th><td><b>%.4g</b></td><td>%.4g – %.4g</td><td></td></tr>\n",
+            (void)fprintf(to, "</th><td><b>%.4g</b></td><td>%.4g to %.4g</td><td></td></tr>\n",
                           q->value, q->low, q->high);
         }
     }
     for (int a = 0; a < DIG_AXES; a++) {
         const int digits = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
         (void)fprintf(to,
-                      "<tr><th>gravel: %s</th><td><b>%.*f</b></td><td>%.*f – %.*f</td>"
+                      "<tr><th>gravel: %s</th><td><b>%.*f</b></td><td>%.*f to %.*f</td>"
                       "<td>%.*f</td></tr>\n",
                       dig_axis_name((enum dig_axis)a), digits, trace->gravel.value[a], digits,
                       trace->low.value[a], digits, trace->high.value[a], digits,

@@ -58,7 +58,7 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
     char *const page = scratch_read(path, &size);
     assert_non_null(strstr(page, "A &lt;demo&gt; &amp; more"));
     assert_non_null(strstr(page, "0.123"));
-    assert_non_null(strstr(page, "2100 – 2800"));
+    assert_non_null(strstr(page, "2100 to 2800"));
     char *const first = strstr(page, "<svg");
     assert_non_null(first);
     assert_non_null(strstr(first + 1, "<svg"));
