@@ -43,7 +43,7 @@ for simple in "$data"/mu*__simpleA.csv; do
     case=${simple%__simpleA.csv}
     "$bin/digloop" identify "$table" "$simple" --json >"$work/id.json"
     error=$(error_of "$work/id.json" "${case}__actual.csv")
-    best=$(sqlite3 -separator ' ' "$table" "SELECT friction, rolling, density_kgpm3 FROM ground WHERE effect = ''" |
+    best=$("$bin/digtable" list "$table" | awk '$1 ~ /^[0-9]+$/ { print $2, $3, $4 }' |
         while read -r friction rolling density; do
             sure_of "$friction" "$rolling" "$density" >"$work/sure.json"
             error_of "$work/sure.json" "${case}__actual.csv"
