@@ -99,8 +99,8 @@ struct dig_machine {
 
 /// Refuses what cannot be: non-positive lengths, areas or masses, a rod thicker than its bore,
 /// empty angle ranges, a force sensor without a range or farther from the bucket's pin than ten
-/// bucket lengths, non-finite numbers. *error names the key and what was expected. It does not
-/// know whether the linkage closes over its range: dig_linkage_check() of the estimator does.
+/// bucket lengths, non-finite numbers. *error names the key and what was expected. Whether
+/// the parts fit each other and the drives move is asked by dig_geometry_check().
 DIG_MUST_CHECK enum dig_status dig_machine_check(const struct dig_machine *machine,
                                                  struct dig_error         *error);
 

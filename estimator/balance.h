@@ -4,12 +4,12 @@
 #ifndef DIG_ESTIMATOR_BALANCE_H
 #define DIG_ESTIMATOR_BALANCE_H
 
+#include "core/linkage.h"
 #include "core/machine.h"
 #include "core/sample.h"
 #include "core/status.h"
 #include "estimator/correction.h"
 #include "estimator/cylinder.h"
-#include "estimator/linkage.h"
 #include "estimator/rates.h"
 #include "estimator/statics.h"
 

@@ -1,6 +1,6 @@
 #include "estimator/correction.h"
 
-#include "estimator/linkage.h"
+#include "core/linkage.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 #include "estimator/estimator.h"
 
+#include "core/linkage.h"
 #include "core/units.h"
 #include "estimator/approach_route.h"
 #include "estimator/approach_slots.h"
 #include "estimator/approaches.h"
 #include "estimator/cylinder.h"
 #include "estimator/estimator_state.h"
-#include "estimator/linkage.h"
 #include "estimator/sensed.h"
 #include "estimator/wrench.h"
 

@@ -1,5 +1,6 @@
 #include "files/machine_yaml.h"
 
+#include "core/geometry.h"
 #include "core/units.h"
 #include "files/yaml.h"
 
@@ -282,6 +283,7 @@ enum dig_status dig_machine_read(const char *const path, struct dig_machine *con
 
     struct dig_error found = { "" };
     status                 = dig_machine_check(&loaded, &found);
+    status                 = status == DIG_OK ? dig_geometry_check(&loaded, &found) : status;
     if (status != DIG_OK) {
         return dig_yaml_refuse_checked(path, status, &found, error);
     }

@@ -6,7 +6,8 @@
 #include "core/error.h"
 #include "core/machine.h"
 
-/// Reads and checks. *error names file, line, key and what was expected. Writes on success only.
+/// Reads and checks (dig_machine_check(), dig_geometry_check()). *error names file, line, key and
+/// what was expected. Writes on success only.
 DIG_MUST_CHECK enum dig_status dig_machine_read(const char *path, struct dig_machine *machine,
                                                 struct dig_error *error);
 

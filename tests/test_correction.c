@@ -3,8 +3,8 @@
 
 #include "estimator/correction.h"
 
+#include "core/linkage.h"
 #include "estimator/cylinder.h"
-#include "estimator/linkage.h"
 #include "estimator/wrench.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,6 +1,6 @@
-// Tests for estimator/linkage.c
+// Tests for core/linkage.c
 
-#include "estimator/linkage.h"
+#include "core/linkage.h"
 
 #include "core/units.h"
 #include "tests/model_front.h"

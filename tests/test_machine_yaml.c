@@ -99,6 +99,15 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
         { "base_m: [0.4, 0.6]", "base_m: [0.4, 0.6]\n    eye_m: [0, 0]",
           "cylinders.bucket.eye_m: unknown key" },
         { "angle_step_rad: 4.0e-4", "angle_step_rad: -1", "sensors.angle_step_rad: -1" },
+        // What no part says by itself: core/geometry.h.
+        { "max_length_m: 3.0", "max_length_m: 1.74",
+          "bad.yaml:34: cylinders.boom.max_length_m: 1.74, expected at least 2.8" },
+        { "eye_m: [2.6, 0.6]", "eye_m: [14.6, 0.6]",
+          "bad.yaml:34: cylinders.boom.max_length_m: 3, expected at least 1" },
+        { "com_m: [2.5, 0.3]", "com_m: [25, 0.3]", "bad.yaml:6: boom.com_m: 25 m from the pin" },
+        { "link_m: 0.6", "link_m: 0.2", "four_bar: its linkage does not close at " },
+        { "base_m: [0.4, -0.3]", "base_m: [0.4, 0.6]",
+          "bad.yaml:27: cylinders.boom: a lever of -" },
     };
     yaml_refuses_each("tests/data/formats/machine.yaml", sizeof bad / sizeof bad[0], bad,
                       expect_refusal);
@@ -118,6 +127,7 @@ static void what_no_rig_can_be_is_refused_with_line_and_key(void **state)
         { "sigma_Nm: 0.001", "sigma_Nm: 11", "force_sensor.sigma_Nm: 11" },
         { "path_sigma_m: 2.0e-5", "path_sigma_m: -1", "force_sensor.path_sigma_m: -1" },
         { "mass_kg: 0.15", "mass_kg: 0", "bucket.mass_kg: 0" },
+        { "inertia_kgm2: 3.0e-4", "inertia_kgm2: 0.3", "bucket.inertia_kgm2: " },
         { "angle_sigma_rad: 1.0e-4", "angle_sigma_rad: -1", "sensors.angle_sigma_rad: -1" },
         { "bucket_width_m: 0.07", "bucket_width_m: 0", "bucket_width_m: 0" },
         { "sensors:\n", "boom: {length_m: 1}\nsensors:\n", "boom: unknown key" },

@@ -2,8 +2,8 @@
 
 #include "estimator/wrench.h"
 
+#include "core/linkage.h"
 #include "core/units.h"
-#include "estimator/linkage.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 

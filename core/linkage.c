@@ -1,4 +1,4 @@
-#include "estimator/linkage.h"
+#include "core/linkage.h"
 
 #include "core/units.h"
 

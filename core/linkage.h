@@ -11,8 +11,8 @@
 // bucket with a NEGATIVE moment. The bars are massless and the pins frictionless: what the rod does
 // along its stroke, the joint does along its angle.
 
-#ifndef DIG_ESTIMATOR_LINKAGE_H
-#define DIG_ESTIMATOR_LINKAGE_H
+#ifndef DIG_CORE_LINKAGE_H
+#define DIG_CORE_LINKAGE_H
 
 #include "core/machine.h"
 #include "core/status.h"
@@ -53,4 +53,4 @@ DIG_MUST_CHECK enum dig_status dig_lever_solve(const struct dig_machine *machine
                                                enum dig_joint joint, double angle_rad,
                                                struct dig_lever *lever);
 
-#endif // DIG_ESTIMATOR_LINKAGE_H
+#endif // DIG_CORE_LINKAGE_H

@@ -1,0 +1,190 @@
+#include "core/geometry.h"
+
+#include "core/linkage.h"
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+static const double gravity_mps2 = 9.81;
+
+// How far the parts of a link lie from its pin at most.
+static double reach_m(const struct dig_machine *const machine, const int joint)
+{
+    const double length_m = machine->link[joint].length_m;
+    return machine->sensor.fitted ? length_m + dig_vec2_norm(machine->sensor.place_m) : length_m;
+}
+
+static enum dig_status check_mass(const struct dig_machine *const machine, const int joint,
+                                  struct dig_error *const error)
+{
+    const struct dig_link *const link  = &machine->link[joint];
+    const char *const            name  = dig_joint_name((enum dig_joint)joint);
+    const double                 far_m = reach_m(machine, joint);
+    if (!(dig_vec2_norm(link->com_m) <= far_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s.com_m: %.4g m from the pin, expected at most the %.4g m that the "
+                             "%s reaches",
+                             name, dig_vec2_norm(link->com_m), far_m, name);
+    }
+    const double most_kgm2 = link->mass_kg * far_m * far_m;
+    if (!(link->inertia_kgm2 <= most_kgm2)) {
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "%s.inertia_kgm2: %.4g, expected at most mass_kg times %.4g m squared, "
+            "%.4g, about the centre of mass",
+            name, link->inertia_kgm2, far_m, most_kgm2);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_whole(const struct dig_machine *const machine,
+                                   struct dig_error *const         error)
+{
+    const double arm_m    = machine->link[DIG_JOINT_ARM].length_m;
+    const double bucket_m = machine->link[DIG_JOINT_BUCKET].length_m;
+    if (!(bucket_m <= arm_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bucket.length_m: %.4g, expected at most the arm's %.4g", bucket_m,
+                             arm_m);
+    }
+    double front_N = 0.0;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        front_N += gravity_mps2 * machine->link[j].mass_kg;
+    }
+    if (!(machine->weight_N > front_N)) {
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "ground.weight_N: %.4g, expected more than the %.4g N of boom, arm and "
+            "bucket, which it does not hold",
+            machine->weight_N, front_N);
+    }
+    return DIG_OK;
+}
+
+// A drive at one angle of its joint.
+struct pose {
+    double           at_deg;
+    struct dig_lever lever;
+};
+
+// The poses of a joint's range where its cylinder is shortest and longest, and its lever, with its
+// sign, least and greatest.
+struct extremes {
+    struct pose shortest, longest, low, high;
+};
+
+static enum dig_status find_extremes(const struct dig_machine *const machine, const int joint,
+                                     struct extremes *const extremes, struct dig_error *const error)
+{
+    enum { STEPS = 512 };
+    const struct dig_link *const link = &machine->link[joint];
+    struct extremes              e    = { .shortest = { .at_deg = 0.0 } };
+    for (int i = 0; i <= STEPS; i++) {
+        const double at_rad = link->min_rad + (link->max_rad - link->min_rad) * (double)i / STEPS;
+        struct pose  pose   = { .at_deg = at_rad / DIG_RAD_PER_DEG };
+        if (dig_lever_solve(machine, (enum dig_joint)joint, at_rad, &pose.lever) != DIG_OK) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: its linkage does not close at %.2f deg, expected that it "
+                                 "does from min_deg to max_deg",
+                                 joint == DIG_JOINT_BUCKET ? "four_bar"
+                                                           : dig_joint_name((enum dig_joint)joint),
+                                 pose.at_deg);
+        }
+        const struct dig_lever *const now = &pose.lever;
+        e.shortest = i == 0 || now->length_m < e.shortest.lever.length_m ? pose : e.shortest;
+        e.longest  = i == 0 || now->length_m > e.longest.lever.length_m ? pose : e.longest;
+        e.low      = i == 0 || now->arm_m < e.low.lever.arm_m ? pose : e.low;
+        e.high     = i == 0 || now->arm_m > e.high.lever.arm_m ? pose : e.high;
+    }
+    *extremes = e;
+    return DIG_OK;
+}
+
+static double spare_m(const struct pose *const pose)
+{
+    return DIG_GEOMETRY_ANGLE_TOLERANCE_rad * fabs(pose->lever.arm_m);
+}
+
+static enum dig_status check_stroke(const struct dig_cylinder *const cylinder,
+                                    const struct extremes *const seen, const char *const name,
+                                    struct dig_error *const error)
+{
+    if (!(cylinder->max_length_m < 2.0 * cylinder->min_length_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "cylinders.%s.max_length_m: %.4g, expected less than twice "
+                             "min_length_m, %.4g: the rod must go into the tube",
+                             name, cylinder->max_length_m, 2.0 * cylinder->min_length_m);
+    }
+    const double least_m = seen->shortest.lever.length_m;
+    const double most_m  = seen->longest.lever.length_m;
+    if (!(cylinder->min_length_m <= least_m + spare_m(&seen->shortest))) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "cylinders.%s.min_length_m: %.4g, expected at most %.4g: so short is "
+                             "the cylinder pin to pin at %s %.2f deg",
+                             name, cylinder->min_length_m, least_m, name, seen->shortest.at_deg);
+    }
+    if (!(cylinder->max_length_m >= most_m - spare_m(&seen->longest))) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "cylinders.%s.max_length_m: %.4g, expected at least %.4g: so long is "
+                             "the cylinder pin to pin at %s %.2f deg",
+                             name, cylinder->max_length_m, most_m, name, seen->longest.at_deg);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_levers(const struct extremes *const seen, const char *const name,
+                                    struct dig_error *const error)
+{
+    const double low_m  = seen->low.lever.arm_m;
+    const double high_m = seen->high.lever.arm_m;
+    if (!(low_m > 0.0 || high_m < 0.0)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "cylinders.%s: a lever of %.3f m at %.2f deg and of %.3f m at %.2f "
+                             "deg, expected one sign from min_deg to max_deg",
+                             name, low_m, seen->low.at_deg, high_m, seen->high.at_deg);
+    }
+    const bool   pushes_up = low_m > 0.0;
+    const double least_m   = pushes_up ? low_m : -high_m;
+    const double most_m    = pushes_up ? high_m : -low_m;
+    if (!(least_m >= DIG_GEOMETRY_LEAST_LEVER * most_m)) {
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "cylinders.%s: a lever of %.4f m at %.2f deg, expected %.4f or more, a "
+            "twentieth of its largest from min_deg to max_deg",
+            name, least_m, pushes_up ? seen->low.at_deg : seen->high.at_deg,
+            DIG_GEOMETRY_LEAST_LEVER * most_m);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_drive(const struct dig_machine *const machine, const int joint,
+                                   struct dig_error *const error)
+{
+    const char *const name   = dig_joint_name((enum dig_joint)joint);
+    struct extremes   seen   = { .shortest = { .at_deg = 0.0 } };
+    enum dig_status   status = find_extremes(machine, joint, &seen, error);
+    if (status == DIG_OK) {
+        status = check_stroke(&machine->cylinder[joint], &seen, name, error);
+    }
+    return status == DIG_OK ? check_levers(&seen, name, error) : status;
+}
+
+enum dig_status dig_geometry_check(const struct dig_machine *const machine,
+                                   struct dig_error *const         error)
+{
+    assert(machine != NULL);
+    if (machine->sensor.fitted) {
+        return check_mass(machine, DIG_JOINT_BUCKET, error);
+    }
+    enum dig_status status = check_whole(machine, error);
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        status = check_mass(machine, j, error);
+    }
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        status = check_drive(machine, j, error);
+    }
+    return status;
+}

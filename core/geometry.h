@@ -1,0 +1,35 @@
+// Whether a machine could be built and would move: what its file says of geometry and masses, held
+// against itself. A slip of a unit, a sign or a digit shows here before it shows as a moment.
+
+#ifndef DIG_CORE_GEOMETRY_H
+#define DIG_CORE_GEOMETRY_H
+
+#include "core/error.h"
+#include "core/machine.h"
+#include "core/status.h"
+
+/// A joint's limits are known to about this: by as much the cylinder may overrun its stops.
+#define DIG_GEOMETRY_ANGLE_TOLERANCE_rad 0.0087 // half a degree
+
+/// A lever below this share of its largest one is near a dead centre.
+#define DIG_GEOMETRY_LEAST_LEVER 0.05
+
+/// For a machine as its file says, after dig_machine_check(). DIG_EINVAL, with the key, what was
+/// found and what was expected in *error, for
+///
+///   - a linkage that does not close somewhere between min_deg and max_deg
+///   - a cylinder shorter there than min_length_m or longer than max_length_m, by more than the
+///     joint moves it in half a degree
+///   - a lever that changes sign there, or falls below a twentieth of the largest it has there
+///   - a cylinder that extends to twice its retracted length or more: its rod would not go in
+///   - a centre of mass farther from its pin than the link is long, or an inertia about it of more
+///     than mass times the square of that. What hangs on a force sensor may reach as far beyond the
+///     pin as the sensor is away
+///   - a bucket longer than its arm, a front heavier than the machine that carries it
+///
+/// A corrected machine is not asked: its stops stay where the file's geometry has them
+/// (estimator/correction.h). A fraction of a millisecond.
+DIG_MUST_CHECK enum dig_status dig_geometry_check(const struct dig_machine *machine,
+                                                  struct dig_error         *error);
+
+#endif // DIG_CORE_GEOMETRY_H

@@ -1,0 +1,160 @@
+// Tests for core/geometry.c
+
+#include "core/geometry.h"
+
+#include "core/units.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <string.h>
+
+static void passes(const struct dig_machine *const machine)
+{
+    struct dig_error error = { "untouched" };
+    if (dig_geometry_check(machine, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_string_equal(error.text, "untouched");
+}
+
+static void is_refused(const struct dig_machine *const machine, const char *const starts_with)
+{
+    struct dig_error error = { "" };
+    assert_int_equal(dig_geometry_check(machine, &error), DIG_EINVAL);
+    assert_int_equal(dig_geometry_check(machine, NULL), DIG_EINVAL);
+    if (strncmp(error.text, starts_with, strlen(starts_with)) != 0) {
+        fail_msg("\"%s\" does not start with \"%s\"", error.text, starts_with);
+    }
+    assert_non_null(strstr(error.text, "expected"));
+}
+
+static void what_could_be_built_passes(void **state)
+{
+    (void)state;
+    const struct dig_machine machine = model_machine();
+    passes(&machine);
+}
+
+static void slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key(void **state)
+{
+    (void)state;
+    const struct dig_machine good = model_machine();
+    struct dig_machine       m    = good;
+
+    m.cylinder[DIG_JOINT_BOOM].max_length_m = m.cylinder[DIG_JOINT_BOOM].min_length_m + 0.04;
+    is_refused(&m, "cylinders.boom.max_length_m: 2, expected at least 3.2");
+    m                                      = good;
+    m.cylinder[DIG_JOINT_ARM].min_length_m = 3.0;
+    is_refused(&m, "cylinders.arm.min_length_m: 3, expected at most 2.8");
+    m                                  = good;
+    m.cylinder[DIG_JOINT_BOOM].eye_m.x = 12.0;
+    is_refused(&m, "cylinders.boom.max_length_m: 3.23, expected at least 12.");
+    m                                     = good;
+    m.cylinder[DIG_JOINT_BUCKET].base_m.x = -0.27;
+    is_refused(&m, "cylinders.bucket.max_length_m: 2.99, expected at least 3.");
+    m                                      = good;
+    m.cylinder[DIG_JOINT_ARM].max_length_m = 5.6;
+    is_refused(&m, "cylinders.arm.max_length_m: 5.6, expected less than twice");
+    m                 = good;
+    m.four_bar.link_m = 0.2;
+    is_refused(&m, "four_bar: its linkage does not close at ");
+    m                              = good;
+    m.link[DIG_JOINT_BOOM].com_m.x = 26.0;
+    is_refused(&m, "boom.com_m: 26 m from the pin, expected at most the 5.65 m");
+    m                                  = good;
+    m.link[DIG_JOINT_ARM].inertia_kgm2 = 10800.0;
+    is_refused(&m, "arm.inertia_kgm2: 1.08e+04, expected at most");
+    m                                 = good;
+    m.link[DIG_JOINT_BUCKET].length_m = 900.0;
+    is_refused(&m, "bucket.length_m: 900, expected at most the arm's 2.89");
+    m          = good;
+    m.weight_N = 15990.0;
+    is_refused(&m, "ground.weight_N: 1.599e+04, expected more than the 3.169e+04 N");
+}
+
+// The longest cylinder stands at an end of the range; what the joint moves it there is told by the
+// model's slope.
+static void a_stroke_may_miss_by_half_a_degree_of_its_joint(void **state)
+{
+    (void)state;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_machine           m            = model_machine();
+        const enum dig_joint         at           = (enum dig_joint)j;
+        const struct dig_link *const link         = &m.link[j];
+        const double                 low_m        = model_cylinder_m(&m, at, link->min_rad);
+        const double                 high_m       = model_cylinder_m(&m, at, link->max_rad);
+        const double                 longest_rad  = high_m > low_m ? link->max_rad : link->min_rad;
+        const double                 shortest_rad = high_m > low_m ? link->min_rad : link->max_rad;
+
+        const double by_longest_m  = fabs(model_slope_m(&m, at, longest_rad)) * DIG_RAD_PER_DEG;
+        const double by_shortest_m = fabs(model_slope_m(&m, at, shortest_rad)) * DIG_RAD_PER_DEG;
+
+        m.cylinder[j].max_length_m = fmax(low_m, high_m) - 0.4 * by_longest_m;
+        m.cylinder[j].min_length_m = fmin(low_m, high_m) + 0.4 * by_shortest_m;
+        passes(&m);
+        m.cylinder[j].max_length_m = fmax(low_m, high_m) - 0.6 * by_longest_m;
+        is_refused(&m, "cylinders.");
+        m.cylinder[j].max_length_m = fmax(low_m, high_m);
+        m.cylinder[j].min_length_m = fmin(low_m, high_m) + 0.6 * by_shortest_m;
+        is_refused(&m, "cylinders.");
+    }
+}
+
+// A boom that may rise until its cylinder's lever is this share of the largest.
+static struct dig_machine rising_until(const double share)
+{
+    struct dig_machine m                    = model_machine();
+    m.cylinder[DIG_JOINT_BOOM].max_length_m = 3.6; // out of the way: the pins allow 3.37
+    const double from_rad                   = m.link[DIG_JOINT_BOOM].min_rad;
+    double       most_m                     = 0.0;
+    for (int i = 0; i < 6000; i++) {
+        const double at_rad  = from_rad + 1e-3 * i;
+        const double slope_m = model_slope_m(&m, DIG_JOINT_BOOM, at_rad);
+        most_m               = fmax(most_m, slope_m);
+        if (slope_m < share * most_m) {
+            m.link[DIG_JOINT_BOOM].max_rad = at_rad;
+            return m;
+        }
+    }
+    fail_msg("no lever of %g of the largest", share);
+    return m;
+}
+
+static void a_drive_that_comes_to_a_dead_centre_is_refused(void **state)
+{
+    (void)state;
+    const struct dig_machine near   = rising_until(0.06);
+    const struct dig_machine nearer = rising_until(0.04);
+    const struct dig_machine over   = rising_until(-0.5);
+    passes(&near);
+    is_refused(&nearer, "cylinders.boom: a lever of 0.02");
+    is_refused(&over, "cylinders.boom: a lever of -0.3");
+}
+
+static void what_hangs_on_a_sensor_lies_within_reach_of_it(void **state)
+{
+    (void)state;
+    const struct dig_machine good = {
+        .link[DIG_JOINT_BUCKET] = { 0.09, 0.136, { 0.013, 0.017 }, 3.2e-4, -3.0, 3.0 },
+        .sensor                 = { .fitted = true, .place_m = { -0.06, 0.0 } },
+    };
+    passes(&good);
+    struct dig_machine m             = good;
+    m.link[DIG_JOINT_BUCKET].com_m.x = 13.0;
+    is_refused(&m, "bucket.com_m: 13 m from the pin, expected at most the 0.15 m");
+    m                                     = good;
+    m.link[DIG_JOINT_BUCKET].inertia_kgm2 = 3.2e-2;
+    is_refused(&m, "bucket.inertia_kgm2: 0.032, expected at most");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_could_be_built_passes),
+        cmocka_unit_test(slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key),
+        cmocka_unit_test(a_stroke_may_miss_by_half_a_degree_of_its_joint),
+        cmocka_unit_test(a_drive_that_comes_to_a_dead_centre_is_refused),
+        cmocka_unit_test(what_hangs_on_a_sensor_lies_within_reach_of_it),
+    };
+    return cmocka_run_group_tests_name("geometry", tests, NULL, NULL);
+}
