@@ -2,10 +2,10 @@
 
 #include "core/approach.h"
 #include "core/sha256.h"
+#include "tables/scene.h"
 #include "tables/schema.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -225,41 +225,13 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     return strncmp(rest, first, strlen(first)) != 0 && strncmp(rest, "phase=", 6) != 0;
 }
 
-// The n-th number, from 0, behind a key of the canonical text; NaN when there is none.
-static double number_behind(const char *const at, const size_t n)
-{
-    const char *from  = at;
-    double      value = (double)NAN;
-    for (size_t i = 0; i <= n; i++) {
-        char *end = NULL;
-        value     = strtod(from, &end);
-        if (end == from) {
-            return (double)NAN;
-        }
-        from = end;
-    }
-    return value;
-}
-
-// The ground as the canonical text has it: box_m's upper end, or its profile.
-static void read_ground(const char *const canonical, struct dig_scene *const scene)
-{
-    static const char box[]     = "\nbox_m=";
-    static const char surface[] = "\nsurface_m=";
-    const char       *at        = strstr(canonical, box);
-    scene->box.z_max_m          = at != NULL ? number_behind(at + sizeof box - 1, 5) : (double)NAN;
-    for (at = strstr(canonical, surface); at != NULL && scene->bed.surface < DIG_SURFACE_MAX;
-         at = strstr(at + 1, surface)) {
-        const size_t i            = scene->bed.surface++;
-        scene->bed.surface_x_m[i] = number_behind(at + sizeof surface - 1, 0);
-        scene->bed.surface_z_m[i] = number_behind(at + sizeof surface - 1, 1);
-    }
-}
-
 static void measure_depths(struct dig_table_head *const head, const char *const canonical)
 {
-    struct dig_scene scene = { .bucket = { .points = 1, .z_m = { -head->tooth_m } } };
-    read_ground(canonical, &scene);
+    struct dig_scene scene = { .trajectories = 0 };
+    dig_scene_from_canonical(canonical, &scene);
+
+    // Along the length that the table itself gives the bucket.
+    scene.bucket = (struct dig_bucket){ .points = 1, .z_m = { -head->tooth_m } };
     for (size_t t = 0; t < head->trajectories; t++) {
         head->depth_m[t] = dig_approach_depth_m(&scene, &head->trajectory[t]);
     }

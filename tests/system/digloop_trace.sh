@@ -55,6 +55,35 @@ sed -i "s|scene: .*|scene: $PWD/config/scenes/rig.yaml|" "$work/named/campaign.y
 check "a scene may be a file; without a holdout the errors are not known" \
     eval '[ $? = 0 ] && grep -q "\"holdout\": null" "$work/n.json"'
 
+# A scene file that is the rig's with one thing changed, or another that ships.
+scene_is() { # NAME SED-SCRIPT
+    sed "$2" config/scenes/rig.yaml >"$work/$1.yaml"
+    campaign "$1" "$work/$1.yaml" "$A$S" simpleA identify "$A$R" actual fit
+}
+other_scene() { # NAME KEY: refused, both scenes and the table named, and what of them differs
+    check "another scene is refused: $1" \
+        refuses "$1.yaml: scene \"" "is not similar to \"rig\" of $table: $2" "expected" -- "$work/$1"
+}
+scene_is product ""
+cp config/scenes/product.yaml "$work/product.yaml"
+other_scene product "box_m.x"
+scene_is flat 's/- \[-0.04, -0.072\]/- [-0.01, -0.072]/; s/- \[-0.052, -0.042\]/- [-0.015, -0.042]/; s/- \[-0.04, -0.012\]/- [-0.01, -0.012]/'
+other_scene flat "bucket.profile_m"
+scene_is fine 's/diameter_m: .*/diameter_m: 0.003/'
+other_scene fine "material.diameter_m: 0.003, expected 0.0075"
+scene_is deep 's/z: \[0, 0.085\]/z: [-0.025, 0.085]/'
+other_scene deep "box_m.z"
+scene_is open 's/^output_s/bed:\n  periodic_y: true\noutput_s/'
+other_scene open "bed.periodic_y"
+scene_is stiff 's/young_Pa: .*/young_Pa: 2.0e+7/'
+other_scene stiff "material.young_Pa"
+scene_is elsewhere 's/start_pin_m: \[0.09,/start_pin_m: [0.11,/'
+other_scene elsewhere 'trajectory "actual"'
+sed 's/bucket_width_m: .*/bucket_width_m: 1.0/' config/machines/zx200_trench.yaml >"$work/wide.yaml"
+campaign wide rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
+echo "machine: ../wide.yaml" >>"$work/wide/campaign.yaml"
+check "a machine whose bucket is of another shape is refused" refuses "wide.yaml: a bucket" "scene \"rig\" in $table" -- "$work/wide"
+
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit

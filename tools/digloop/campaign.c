@@ -4,87 +4,18 @@
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
-#include "files/scene_yaml.h"
 #include "tools/digloop/recording.h"
+#include "tools/digloop/scene.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-// Shapes this much apart after scaling are two scenes.
-static const double similar = 0.05;
-
-static bool exists(const char *const path)
-{
-    struct stat found;
-    return stat(path, &found) == 0;
-}
 
 static const char *last_part(const char *const path)
 {
     const char *const slash = strrchr(path, '/');
     return slash != NULL ? slash + 1 : path;
-}
-
-static bool is_close(const double a, const double b, const double size)
-{
-    return fabs(a - b) <= similar * size;
-}
-
-// Durations scale as the root of the length; rates follow from poses.
-static bool has_trajectory(const struct dig_curve_set *const  set,
-                           const struct dig_trajectory *const t, const double scale)
-{
-    for (size_t i = 0; i < set->trajectories; i++) {
-        const struct dig_trajectory *const own = &set->trajectory[i];
-        if (strcmp(own->name, t->name) != 0) {
-            continue;
-        }
-        const struct dig_pose a = dig_trajectory_pose(own, dig_trajectory_duration_s(own));
-        const struct dig_pose b = dig_trajectory_pose(t, dig_trajectory_duration_s(t));
-        return is_close(a.x_m - own->start_x_m, (b.x_m - t->start_x_m) / scale, set->tooth_m) &&
-               is_close(a.z_m - own->start_z_m, (b.z_m - t->start_z_m) / scale, set->tooth_m) &&
-               is_close(a.theta_rad, b.theta_rad, 1.0);
-    }
-    return true; // that the table lacks it matters when a dig follows it
-}
-
-static enum dig_status check_scene(const struct dig_campaign *const  from,
-                                   const struct dig_curve_set *const set,
-                                   struct dig_error *const           error)
-{
-    // A scene may be named instead of given: then by the name the table has.
-    if (!exists(from->scene)) {
-        return strcmp(last_part(from->scene), set->scene_name) == 0
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL,
-                                   "%s: no such scene file, nor is it the table's scene \"%s\"",
-                                   from->scene, set->scene_name);
-    }
-    struct dig_scene *const scene = calloc(1, sizeof *scene);
-    if (scene == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
-    }
-    enum dig_status status = dig_scene_read(from->scene, scene, error);
-    if (status == DIG_OK) {
-        const double scale = dig_scene_tooth_m(scene) / set->tooth_m;
-        bool         same =
-            is_close(scene->bucket.width_m / scale, set->bucket_width_m, set->bucket_width_m);
-        for (size_t i = 0; i < scene->trajectories; i++) {
-            same = same && has_trajectory(set, &scene->trajectory[i], scale);
-        }
-        if (!same) {
-            status = dig_error_set(error, DIG_EINVAL,
-                                   "%s: scene \"%s\" is not similar to the table's \"%s\" (bucket "
-                                   "and trajectories, within %.0f %% after scaling)",
-                                   from->scene, scene->name, set->scene_name, 100.0 * similar);
-        }
-    }
-    free(scene);
-    return status;
 }
 
 static int find_trajectory(const struct dig_curve_set *const set, const char *const name)
@@ -148,7 +79,7 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
     return DIG_OK;
 }
 
-static enum dig_status load_machine(const struct dig_campaign *const  from,
+static enum dig_status load_machine(const struct dig_campaign *const from, const char *const table,
                                     const struct dig_curve_set *const set,
                                     struct digloop_campaign *const    campaign,
                                     struct dig_error *const           error)
@@ -170,6 +101,9 @@ static enum dig_status load_machine(const struct dig_campaign *const  from,
                                "recordings: effects of cylinders are what is looked for in air",
                                from->machine);
     }
+    if (status == DIG_OK) {
+        status = digloop_check_bucket(from->machine, &machine, table, set, error);
+    }
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
         status                 = digloop_read_machine(file, &machine, &recording[i], error);
@@ -185,7 +119,7 @@ static enum dig_status load_machine(const struct dig_campaign *const  from,
     return status;
 }
 
-static enum dig_status load(const struct dig_campaign *const  from,
+static enum dig_status load(const struct dig_campaign *const from, const char *const table,
                             const struct dig_curve_set *const set,
                             struct digloop_campaign *const campaign, struct dig_error *const error)
 {
@@ -194,7 +128,7 @@ static enum dig_status load(const struct dig_campaign *const  from,
     if (campaign->measured == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    enum dig_status status = check_scene(from, set, error);
+    enum dig_status status = digloop_check_scene(from->scene, table, set, error);
     if (status == DIG_OK) {
         status = fill_heads(from, set, campaign->measured, error);
     }
@@ -202,7 +136,7 @@ static enum dig_status load(const struct dig_campaign *const  from,
         return status;
     }
     if (!digloop_is_force_recording(from->recording[0].file)) {
-        return load_machine(from, set, campaign, error);
+        return load_machine(from, table, set, campaign, error);
     }
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         status = measure_force(&from->recording[i], set, &campaign->measured[i], error);
@@ -210,7 +144,7 @@ static enum dig_status load(const struct dig_campaign *const  from,
     return status;
 }
 
-enum dig_status digloop_campaign_load(const char *const                 folder,
+enum dig_status digloop_campaign_load(const char *const folder, const char *const table,
                                       const struct dig_curve_set *const set,
                                       struct digloop_campaign *const    campaign,
                                       struct dig_error *const           error)
@@ -223,7 +157,7 @@ enum dig_status digloop_campaign_load(const char *const                 folder,
     }
     enum dig_status status = dig_campaign_read(folder, from, error);
     if (status == DIG_OK) {
-        status = load(from, set, &loaded, error);
+        status = load(from, table, set, &loaded, error);
     }
     free(from);
     if (status != DIG_OK) {

@@ -9,15 +9,13 @@
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "firmware_host/load_model.h"
+#include "tools/digloop/scene.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-// Shapes this much apart after scaling are two scenes.
-static const double similar = 0.05;
 
 // The first line of a recording that is not a comment names its columns; an LCM log has none.
 bool digloop_is_force_recording(const char *const path)
@@ -82,28 +80,6 @@ enum dig_status digloop_read_machine(const char *const                   path,
     return DIG_OK;
 }
 
-// A machine whose bucket is of the shape of the table's.
-static enum dig_status load_machine(const struct digloop_options *const options,
-                                    const struct dig_curve_set *const   set,
-                                    struct dig_machine *const           machine,
-                                    struct dig_error *const             error)
-{
-    const enum dig_status status = dig_machine_read(options->machine, machine, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
-    const double scene = set->bucket_width_m / set->tooth_m;
-    if (!(fabs(shape / scene - 1.0) <= similar)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in %s "
-                             "is %.3f times; expected the same shape within %.0f %%",
-                             options->machine, shape, set->scene_name, options->table, scene,
-                             100.0 * similar);
-    }
-    return DIG_OK;
-}
-
 enum dig_status digloop_load_machine(const struct digloop_options *const options,
                                      struct dig_curve_set *const         set,
                                      struct digloop_machine *const       machine,
@@ -114,7 +90,11 @@ enum dig_status digloop_load_machine(const struct digloop_options *const options
     const bool             any    = options->machine != NULL;
     enum dig_status        status = DIG_OK;
     if (any) {
-        status = load_machine(options, set, &loaded.machine, error);
+        status = dig_machine_read(options->machine, &loaded.machine, error);
+    }
+    if (status == DIG_OK && any) {
+        status =
+            digloop_check_bucket(options->machine, &loaded.machine, options->table, set, error);
     }
     if (status == DIG_OK && options->model != NULL) {
         status = dig_load_model(options->model, options->table, any ? &loaded.machine : NULL, set,

@@ -101,7 +101,8 @@ enum dig_status digloop_trace(const struct digloop_options *const options,
         status = digloop_load_effects(options, set, path, &effects, error);
     }
     if (status == DIG_OK) {
-        status = digloop_campaign_load(options->recording[0], set, &campaign, error);
+        status =
+            digloop_campaign_load(options->recording[0], options->table, set, &campaign, error);
     }
     if (status == DIG_OK) {
         const struct dig_trace_settings settings = dig_trace_settings_default();

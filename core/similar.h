@@ -1,0 +1,30 @@
+// Whether two scenes are one but for their size, so that digs in one can be told by a table of the
+// other. Froude similarity: lengths, grains and Young's modulus in proportion to the bucket,
+// gravity the same.
+
+#ifndef DIG_CORE_SIMILAR_H
+#define DIG_CORE_SIMILAR_H
+
+#include "core/scene.h"
+
+/// Shapes farther apart than this after scaling are two.
+#define DIG_SIMILAR 0.05
+
+/// Bucket of the scene over bucket of the other, pin to tooth.
+double dig_scene_scale(const struct dig_scene *scene, const struct dig_scene *other);
+
+/// DIG_EINVAL unless the scene is similar to the other; *error names the key, what it is and what
+/// it would be after scaling. Compared within DIG_SIMILAR: the bucket's width and outline, the box
+/// and whether it has sides, the size of the grains, gravity, and of trajectories of one name the
+/// start above the ground and behind the wall and the way from there (of bucket and tooth, whatever
+/// the pace). What makes contacts stiff may differ by a factor of 1.75: four times Young's modulus
+/// adds 13 % to the moment (docs/numerics/dem.md), so that much 5 %.
+///
+/// Not compared: what trajectories only one of them has, how the bed was poured, time step and
+/// output, Poisson's ratio and restitution, and what laws and bed hold beyond equal spheres in a
+/// level box: that is what a trace looks for.
+DIG_MUST_CHECK enum dig_status dig_scene_similar(const struct dig_scene *scene,
+                                                 const struct dig_scene *other,
+                                                 struct dig_error       *error);
+
+#endif // DIG_CORE_SIMILAR_H

@@ -1,0 +1,131 @@
+#include "tables/scene.h"
+
+#include "tables/store_private.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What stands behind "key=" at or after *from, and *from behind that; NULL when there is no more.
+// The text begins with the scene's name: every other key has a line before it.
+static const char *find_value(const char **const from, const char *const key)
+{
+    for (const char *at = strchr(*from, '\n'); at != NULL; at = strchr(at + 1, '\n')) {
+        const size_t length = strlen(key);
+        if (strncmp(at + 1, key, length) == 0 && at[1 + length] == '=') {
+            *from = at + 1;
+            return at + 1 + length + 1;
+        }
+    }
+    return NULL;
+}
+
+// Up to n numbers behind the first `key=`; those that are not there are NaN.
+static void read_numbers(const char *const at, const size_t n, double value[const])
+{
+    const char *from = at;
+    for (size_t i = 0; i < n; i++) {
+        char *end = NULL;
+        value[i]  = from != NULL ? strtod(from, &end) : (double)NAN;
+        if (from != NULL && end == from) {
+            value[i] = (double)NAN;
+            from     = NULL;
+        } else if (from != NULL) {
+            from = end;
+        }
+    }
+}
+
+static void read_first(const char *const canonical, const char *const key, const size_t n,
+                       double value[const])
+{
+    const char *from = canonical;
+    read_numbers(find_value(&from, key), n, value);
+}
+
+// Rows of two numbers; returns how many there are, at most `most`.
+static size_t read_pairs(const char *const canonical, const char *const key, const size_t most,
+                         double x[const], double z[const])
+{
+    const char *from = canonical;
+    size_t      n    = 0;
+    for (const char *at; n < most && (at = find_value(&from, key)) != NULL; n++) {
+        double pair[2];
+        read_numbers(at, 2, pair);
+        x[n] = pair[0];
+        z[n] = pair[1];
+    }
+    return n;
+}
+
+void dig_scene_from_canonical(const char *const canonical, struct dig_scene *const scene)
+{
+    assert(canonical != NULL && scene != NULL);
+    struct dig_bucket *const   bucket = &scene->bucket;
+    struct dig_bed_plan *const bed    = &scene->bed;
+    double                     box[6];
+    double                     material[5];
+    read_first(canonical, "bucket_width_m", 1, &bucket->width_m);
+    bucket->points = read_pairs(canonical, "profile_m", DIG_PROFILE_MAX, bucket->x_m, bucket->z_m);
+    read_first(canonical, "box_m", 6, box);
+    read_first(canonical, "material", 5, material);
+    read_first(canonical, "gravity_mps2", 1, &scene->gravity_mps2);
+    scene->box = (struct dig_box){ box[0], box[1], box[2], box[3], box[4], box[5] };
+    scene->material =
+        (struct dig_material){ material[0], material[1], material[2], material[3], material[4] };
+
+    // What is not plain stands in the text only where it is so.
+    bed->surface =
+        read_pairs(canonical, "surface_m", DIG_SURFACE_MAX, bed->surface_x_m, bed->surface_z_m);
+    bed->periodic_y = strstr(canonical, "\nperiodic_y\n") != NULL;
+    scene->laws.normal =
+        strstr(canonical, "\nnormal=hertz\n") != NULL ? DIG_NORMAL_HERTZ : DIG_NORMAL_HOOKE;
+}
+
+static enum dig_status read_canonical(sqlite3 *const db, const char *const path,
+                                      struct dig_scene *const scene, struct dig_error *const error)
+{
+    sqlite3_stmt *s = NULL;
+    if (sqlite3_prepare_v2(db, "SELECT canonical FROM scene", -1, &s, NULL) != SQLITE_OK ||
+        sqlite3_step(s) != SQLITE_ROW) {
+        const enum dig_status status = dig_sql_refuse(db, path, error);
+        (void)sqlite3_finalize(s);
+        return status;
+    }
+    const char *const text = (const char *)sqlite3_column_text(s, 0);
+    if (text != NULL) {
+        dig_scene_from_canonical(text, scene);
+    }
+    (void)sqlite3_finalize(s);
+    const struct dig_box *const b = &scene->box;
+    return scene->bucket.points >= 2 && b->x_max_m > b->x_min_m && b->y_max_m > b->y_min_m &&
+                   b->z_max_m > b->z_min_m && scene->material.diameter_m > 0.0 &&
+                   scene->material.young_Pa > 0.0 && scene->gravity_mps2 > 0.0
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "%s: scene.canonical: expected profile_m, box_m, material and "
+                               "gravity_mps2 of a scene",
+                               path);
+}
+
+enum dig_status dig_table_scene(const char *const path, struct dig_scene *const scene,
+                                struct dig_error *const error)
+{
+    assert(path != NULL && scene != NULL);
+    sqlite3              *db     = NULL;
+    struct dig_table_head head   = { .trajectories = 0 };
+    enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_scene read = { .trajectories = head.trajectories };
+    memcpy(read.name, head.scene_name, sizeof read.name);
+    memcpy(read.trajectory, head.trajectory, sizeof read.trajectory);
+    status = read_canonical(db, path, &read, error);
+    (void)sqlite3_close(db);
+    if (status == DIG_OK) {
+        *scene = read;
+    }
+    return status;
+}

@@ -1,0 +1,20 @@
+// The scene a table was made in, out of the text its hash is of.
+
+#ifndef DIG_TABLES_SCENE_H
+#define DIG_TABLES_SCENE_H
+
+#include "core/error.h"
+#include "core/scene.h"
+
+/// What core/similar.h compares: name, bucket, box, grains, normal law, gravity, sides and ground
+/// of the bed, trajectories. The rest of *scene is zero. Opens and checks the file as
+/// dig_table_load() does, and refuses what that does; DIG_EINVAL also for a scene that could not
+/// have been computed.
+DIG_MUST_CHECK enum dig_status dig_table_scene(const char *path, struct dig_scene *scene,
+                                               struct dig_error *error);
+
+/// The same out of the canonical text (core/scene.h), but for name and trajectories, which are left
+/// alone. A number that is not there becomes NaN.
+void dig_scene_from_canonical(const char *canonical, struct dig_scene *scene);
+
+#endif // DIG_TABLES_SCENE_H

@@ -1,0 +1,79 @@
+#include "tools/digloop/scene.h"
+
+#include "core/similar.h"
+#include "files/scene_yaml.h"
+#include "tables/scene.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static bool exists(const char *const path)
+{
+    struct stat found;
+    return stat(path, &found) == 0;
+}
+
+static const char *last_part(const char *const path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+static enum dig_status check_file(const char *const path, const char *const table,
+                                  struct dig_scene *const scene, struct dig_scene *const own,
+                                  struct dig_error *const error)
+{
+    struct dig_error why    = { "" };
+    enum dig_status  status = dig_scene_read(path, scene, error);
+    if (status == DIG_OK) {
+        status = dig_table_scene(table, own, error);
+    }
+    if (status == DIG_OK && dig_scene_similar(scene, own, &why) != DIG_OK) {
+        status =
+            dig_error_set(error, DIG_EINVAL, "%s: scene \"%s\" is not similar to \"%s\" of %s: %s",
+                          path, scene->name, own->name, table, why.text);
+    }
+    return status;
+}
+
+enum dig_status digloop_check_scene(const char *const path, const char *const table,
+                                    const struct dig_curve_set *const set,
+                                    struct dig_error *const           error)
+{
+    assert(path != NULL && table != NULL && set != NULL);
+
+    // A scene may be named instead of given: then by the name the table has.
+    if (!exists(path)) {
+        return strcmp(last_part(path), set->scene_name) == 0
+                   ? DIG_OK
+                   : dig_error_set(error, DIG_EINVAL,
+                                   "%s: no such scene file, nor is it the scene \"%s\" of %s", path,
+                                   set->scene_name, table);
+    }
+    struct dig_scene *const scene = calloc(2, sizeof *scene); // the file's, the table's
+    if (scene == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    const enum dig_status status = check_file(path, table, &scene[0], &scene[1], error);
+    free(scene);
+    return status;
+}
+
+enum dig_status digloop_check_bucket(const char *const               file,
+                                     const struct dig_machine *const machine,
+                                     const char *const table, const struct dig_curve_set *const set,
+                                     struct dig_error *const error)
+{
+    assert(file != NULL && machine != NULL && table != NULL && set != NULL);
+    const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
+    const double scene = set->bucket_width_m / set->tooth_m;
+    return fabs(shape / scene - 1.0) <= DIG_SIMILAR
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in "
+                               "%s is %.3f times; expected the same shape within %.0f %%",
+                               file, shape, set->scene_name, table, scene, 100.0 * DIG_SIMILAR);
+}
