@@ -144,6 +144,8 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
         trace->candidate[trace->candidates++] = air->candidate[i];
     }
     trace->gravel_before = gravel_at(t->surface, t->before->number);
+    trace->low_before    = gravel_at(t->surface, t->before->low);
+    trace->high_before   = gravel_at(t->surface, t->before->high);
     trace->gravel        = gravel_at(t->surface, s->chosen.number);
     trace->low           = gravel_at(t->surface, s->chosen.low);
     trace->high          = gravel_at(t->surface, s->chosen.high);
@@ -155,9 +157,10 @@ static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
                                       const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
-    if (dig_worth_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
-        dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
-            most_chance_of_worse) {
+    trace->applied = dig_worth_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
+                     dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured,
+                                               trace->curves) <= most_chance_of_worse;
+    if (trace->applied) {
         return;
     }
     for (size_t i = 0; i < t->digs; i++) {

@@ -59,6 +59,10 @@ struct dig_trace {
     double noise_floor;                // 1 sigma of error_after if the model were complete
     double residual[DIG_TRACE_PHASES]; // rms over the rms expected, by enum dig_part; NaN: no data
 
+    // The prediction was changed by what was found. False: nothing was found, or the change is not
+    // worth making; then after is before, and a model of it is the gravel refitted alone.
+    bool applied;
+
     size_t                     effects; // of the verdict; 0: none
     struct dig_model_effect    effect[DIG_MODEL_EFFECTS_MAX];
     enum dig_part              seen_in[DIG_MODEL_EFFECTS_MAX];
@@ -69,8 +73,9 @@ struct dig_trace {
     size_t                   sets;
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // indistinguishable
 
-    struct dig_gravel gravel_before, gravel, low, high; // refitted without and with the effects
-    struct dig_error_range before, after;               // on the holdout digs
+    struct dig_gravel      gravel_before, low_before, high_before; // refitted without the effects
+    struct dig_gravel      gravel, low, high;                      // and with them
+    struct dig_error_range before, after;                          // on the holdout digs
     size_t                 holdouts;
 
     size_t                   digs;

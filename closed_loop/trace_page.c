@@ -265,6 +265,12 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     (void)fprintf(to, "</p>\n<p>%zu digs against ", page->trace->digs);
     dig_html_text(to, page->subject->table);
     (void)fputs(".</p>\n", to);
+    dig_trace_not_applied(page->trace, sizeof sentence, sentence);
+    if (sentence[0] != '\0') {
+        (void)fputs("<p>", to);
+        dig_html_text(to, sentence);
+        (void)fputs(".</p>\n", to);
+    }
     put_sets(to, page->trace);
     put_errors(to, page->trace);
     put_found(to, page->trace);

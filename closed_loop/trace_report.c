@@ -156,6 +156,7 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     put_member(to, ", ", "noise_floor", trace->noise_floor);
     (void)fputs(",\n ", to);
     put_verdict(to, trace);
+    (void)fprintf(to, " \"applied\": %s,\n", trace->applied ? "true" : "false");
     put_sets(to, trace);
     put_effects(to, trace);
     put_material(to, trace);
@@ -217,6 +218,20 @@ void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, 
     add(text, size, ".");
 }
 
+void dig_trace_not_applied(const struct dig_trace *const trace, const size_t size, char text[])
+{
+    assert(trace != NULL && text != NULL && size > 0);
+    text[0] = '\0';
+    if (trace->applied || trace->effects == 0) {
+        return;
+    }
+    add(text, size, "named, not applied: ");
+    for (size_t e = 0; e < trace->effects; e++) {
+        add(text, size, "%s%s", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+    }
+    add(text, size, "; the prediction is not surely better for it, and stays as it was");
+}
+
 static void put_error_line(FILE *const to, const char *const title,
                            const struct dig_error_range *const range)
 {
@@ -241,6 +256,10 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
                           dig_effect_name(trace->effect[e].effect), parameter->name,
                           parameter->value, parameter->low, parameter->high);
         }
+    }
+    dig_trace_not_applied(trace, sizeof sentence, sentence);
+    if (sentence[0] != '\0') {
+        (void)fprintf(to, "  %s\n", sentence);
     }
     for (size_t s = 0; s < trace->sets; s++) {
         (void)fputs("  these digs cannot tell apart:", to);

@@ -31,6 +31,10 @@ void dig_trace_json(const struct dig_trace *trace, FILE *to);
 /// The verdict as one sentence of at most size - 1 characters, no line feed at its end.
 void dig_trace_sentence(const struct dig_trace *trace, size_t size, char text[]);
 
+/// "named, not applied: …" of a trace whose effects are not in its prediction, without a line feed;
+/// "" of another.
+void dig_trace_not_applied(const struct dig_trace *trace, size_t size, char text[]);
+
 /// The verdict, the errors and what to do next, for a terminal.
 void dig_trace_text(const struct dig_trace *trace, FILE *to);
 

@@ -42,6 +42,10 @@ struct dig_model {
     size_t                     effects;
     struct dig_model_effect    effect[DIG_MODEL_EFFECTS_MAX];
     struct dig_model_unlisted *unlisted; // NULL: none; malloc'ed, freed by dig_model_finish()
+
+    // Named by the trace, and not made part of the model: for people, nothing applies them.
+    size_t                  not_applied;
+    struct dig_model_effect left_out[DIG_MODEL_EFFECTS_MAX];
 };
 
 /// Frees what it holds and zeroes it. NULL and a zeroed struct are allowed.

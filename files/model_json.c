@@ -60,6 +60,17 @@ static void put_effect(FILE *const to, const struct dig_model_effect *const effe
     (void)fputs("]}", to);
 }
 
+static void put_effects(FILE *const to, const char *const key, const size_t effects,
+                        const struct dig_model_effect effect[])
+{
+    (void)fprintf(to, "\"%s\": [", key);
+    for (size_t e = 0; e < effects; e++) {
+        (void)fputs(e == 0 ? "\n  " : ",\n  ", to);
+        put_effect(to, &effect[e]);
+    }
+    (void)fputs("]", to);
+}
+
 // Curves that are 0 throughout are left out.
 static void put_unlisted(FILE *const to, const struct dig_model_unlisted *const unlisted)
 {
@@ -103,12 +114,11 @@ void dig_model_write(FILE *const to, const struct dig_model *const model)
     put_number(to, "error_before", model->error_before);
     put_number(to, "error_after", model->error_after);
     put_text(to, "provenance", model->provenance);
-    (void)fputs("\"effects\": [", to);
-    for (size_t e = 0; e < model->effects; e++) {
-        (void)fputs(e == 0 ? "\n  " : ",\n  ", to);
-        put_effect(to, &model->effect[e]);
+    put_effects(to, "effects", model->effects, model->effect);
+    if (model->not_applied > 0) {
+        (void)fputs(",\n ", to);
+        put_effects(to, "not_applied", model->not_applied, model->left_out);
     }
-    (void)fputs("]", to);
     if (model->unlisted != NULL) {
         put_unlisted(to, model->unlisted);
     }
@@ -176,8 +186,8 @@ struct model_text {
     char                  provenance[256];
     struct gravel_text    gravel, low, high;
     double               *noise_floor, *error_before, *error_after;
-    struct effect_text    effects[DIG_MODEL_EFFECTS_MAX];
-    uint32_t              effects_count;
+    struct effect_text    effects[DIG_MODEL_EFFECTS_MAX], not_applied[DIG_MODEL_EFFECTS_MAX];
+    uint32_t              effects_count, not_applied_count;
     struct unlisted_text *unlisted;
 };
 
@@ -247,6 +257,8 @@ static const cyaml_schema_field_t fields[] = {
     NUMBER(error_after),
     CYAML_FIELD_STRING("provenance", REQUIRED, struct model_text, provenance, 0),
     CYAML_FIELD_SEQUENCE("effects", REQUIRED, struct model_text, effects, &effect, 0,
+                         DIG_MODEL_EFFECTS_MAX),
+    CYAML_FIELD_SEQUENCE("not_applied", OPTIONAL, struct model_text, not_applied, &effect, 0,
                          DIG_MODEL_EFFECTS_MAX),
     CYAML_FIELD_MAPPING_PTR("unlisted", CYAML_FLAG_POINTER | OPTIONAL, struct model_text, unlisted,
                             unlisted_fields),
@@ -355,6 +367,7 @@ static enum dig_status take(const char *const path, const struct model_text *con
         .error_before = number_of(text->error_before),
         .error_after  = number_of(text->error_after),
         .effects      = text->effects_count,
+        .not_applied  = text->not_applied_count,
     };
     memcpy(m.table, text->table, sizeof m.table);
     memcpy(m.effects_table, text->effects_table, sizeof m.effects_table);
@@ -368,6 +381,9 @@ static enum dig_status take(const char *const path, const struct model_text *con
     enum dig_status status = DIG_OK;
     for (size_t e = 0; e < m.effects && status == DIG_OK; e++) {
         status = take_effect(path, &text->effects[e], &m.effect[e], error);
+    }
+    for (size_t e = 0; e < m.not_applied && status == DIG_OK; e++) {
+        status = take_effect(path, &text->not_applied[e], &m.left_out[e], error);
     }
     if (status == DIG_OK && text->unlisted != NULL) {
         status = take_unlisted(path, text->unlisted, &m.unlisted, error);

@@ -31,6 +31,11 @@ static struct dig_model example(void)
                              .parameters  = 1,
                              .parameter   = { { "cohesion_Jpm3", 5e4, 4e4, 6e4 } } } },
         .unlisted      = calloc(1, sizeof *m.unlisted),
+        .not_applied   = 1,
+        .left_out      = { { .effect      = DIG_EFFECT_BUCKET_WEIGHT,
+                             .probability = 0.5,
+                             .parameters  = 1,
+                             .parameter   = { { "mass_kg", 104.0, 96.0, 112.0 } } } },
     };
     memset(m.scene_hash, 'b', 64);
     assert_non_null(m.unlisted);
@@ -70,6 +75,9 @@ static void what_was_written_is_read_back(void **state)
     assert_string_equal(back.effect[0].parameter[1].name, "viscous_Nspm");
     assert_close(back.effect[0].parameter[1].value, -3.5, 1e-9);
     assert_close(back.effect[0].parameter[0].low, 760.0, 1e-9);
+    assert_int_equal(back.not_applied, 1);
+    assert_int_equal(back.left_out[0].effect, DIG_EFFECT_BUCKET_WEIGHT);
+    assert_close(back.left_out[0].parameter[0].high, 112.0, 1e-9);
     assert_non_null(back.unlisted);
     assert_string_equal(back.unlisted->depends_on, "depth");
     assert_close((double)back.unlisted->share[1][DIG_CHANNEL_FX_N][200], 0.2, 1e-6);

@@ -44,6 +44,7 @@ static void adding_the_effect_makes_the_holdout_better(void **state)
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
     assert_int_equal(trace.holdouts, 2);
+    assert_true(trace.applied);
     assert_true(trace.after.value < 0.7 * trace.before.value);
     assert_true(trace.after.low <= trace.after.value && trace.after.value <= trace.after.high);
     // What is left is no more than two sigma of what one dig scatters.
@@ -62,6 +63,10 @@ static void without_an_effect_before_and_after_are_the_same(void **state)
     assert_false(trace.significant);
     assert_int_equal(trace.effects, 0);
     assert_close(trace.after.value, trace.before.value, 1e-12);
+    assert_false(trace.applied);
+    assert_memory_equal(&trace.gravel_before, &trace.gravel, sizeof trace.gravel);
+    assert_memory_equal(&trace.low_before, &trace.low, sizeof trace.low);
+    assert_memory_equal(&trace.high_before, &trace.high, sizeof trace.high);
     assert_null(trace.unlisted);
     dig_trace_finish(&trace);
 }

@@ -56,6 +56,7 @@ static struct example *make(void)
         .false_alarm   = 0.01,
         .noise_floor   = 0.11,
         .residual      = { 2.5, 1.25, (double)NAN },
+        .applied       = true,
         .effects       = 2,
         .effect        = { { .effect      = DIG_EFFECT_CYLINDER_FRICTION,
                              .probability = 0.98,
@@ -161,6 +162,7 @@ static void json_holds_the_keys_of_the_contract(void **state)
     struct example *const e    = make();
     char *const           text = json_of(&e->trace);
     expect(text, "significant", "true");
+    expect(text, "applied", "true");
     expect(text, "noise_floor", "0.11");
     expect(text, "material.density_kgpm3.value", "2431");
     expect(text, "material.friction.low", "0.44");
@@ -236,8 +238,42 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_contains(text, "cannot tell apart: cohesion, ground_slope");
     assert_contains(text, "error after  0.140   90 %: 0.120 to 0.170");
     assert_contains(text, "error before unknown: no holdout dig");
+    assert_null(strstr(text, "not applied"));
     assert_contains(text, "next: dig \"simpleB\"");
     free(text);
+    drop(e);
+}
+
+// A change that was not made is told in every form of the report.
+static void what_is_named_and_not_applied_is_told(void **state)
+{
+    (void)state;
+    struct example *const e     = make();
+    struct dig_error      error = { "" };
+    const char *const     path  = scratch_path("refused.txt");
+    FILE *const           file  = fopen(path, "w");
+    assert_non_null(file);
+    e->trace.applied = false;
+    e->trace.digs    = 0;
+    dig_trace_text(&e->trace, file);
+    assert_int_equal(fclose(file), 0);
+    size_t      size = 0;
+    char *const text = scratch_read(path, &size);
+    assert_contains(text, "named, not applied: cylinder_friction, unlisted;");
+    free(text);
+    char *const json = json_of(&e->trace);
+    expect(json, "applied", "false");
+    free(json);
+    const char *const html = scratch_path("refused.html");
+    assert_int_equal(dig_trace_html(&e->trace, &e->subject, html, &error), DIG_OK);
+    char *const page = scratch_read(html, &size);
+    assert_contains(page, "named, not applied: cylinder_friction, unlisted;");
+    free(page);
+    // Nothing was found: nothing was refused either.
+    char sentence[64];
+    e->trace.effects = 0;
+    dig_trace_not_applied(&e->trace, sizeof sentence, sentence);
+    assert_string_equal(sentence, "");
     drop(e);
 }
 
@@ -312,6 +348,7 @@ int main(void)
         cmocka_unit_test(control_characters_stay_inside_a_json_string),
         cmocka_unit_test(a_sentence_says_the_verdict),
         cmocka_unit_test(the_terminal_gets_parameters_sets_errors_and_advice),
+        cmocka_unit_test(what_is_named_and_not_applied_is_told),
         cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
         cmocka_unit_test(a_trace_without_holdout_or_findings_has_a_page_too),
     };

@@ -18,6 +18,7 @@ static void count_digs(const size_t digs, struct dig_model_effect *const effect)
     }
 }
 
+// What the trace named and did not apply is told, and no part of the model.
 enum dig_status digloop_save_model(const struct digloop_options *const options,
                                    const struct dig_curve_set *const set, const char *const effects,
                                    const struct dig_trace *const trace,
@@ -30,20 +31,23 @@ enum dig_status digloop_save_model(const struct digloop_options *const options,
     (void)snprintf(model->table, sizeof model->table, "%s", options->table);
     (void)snprintf(model->effects_table, sizeof model->effects_table, "%s", effects);
     memcpy(model->scene_hash, set->scene_hash, sizeof model->scene_hash);
-    model->gravel       = trace->gravel;
-    model->low          = trace->low;
-    model->high         = trace->high;
+    model->gravel       = trace->applied ? trace->gravel : trace->gravel_before;
+    model->low          = trace->applied ? trace->low : trace->low_before;
+    model->high         = trace->applied ? trace->high : trace->high_before;
     model->noise_floor  = trace->noise_floor;
     model->error_before = trace->before.value;
     model->error_after  = trace->after.value;
-    model->effects      = trace->effects;
+    model->effects      = trace->applied ? trace->effects : 0;
+    model->not_applied  = trace->effects - model->effects;
     (void)snprintf(model->provenance, sizeof model->provenance, "digloop %s trace %.200s",
                    DIG_VERSION, options->recording[0]);
     for (size_t e = 0; e < trace->effects; e++) {
-        model->effect[e] = trace->effect[e];
-        count_digs(trace->digs, &model->effect[e]);
+        struct dig_model_effect *const to =
+            trace->applied ? &model->effect[e] : &model->left_out[e];
+        *to = trace->effect[e];
+        count_digs(trace->digs, to);
     }
-    model->unlisted              = trace->unlisted; // the trace keeps it
+    model->unlisted              = trace->applied ? trace->unlisted : NULL; // the trace keeps it
     const enum dig_status status = dig_model_save(options->add, model, error);
     free(model);
     return status;

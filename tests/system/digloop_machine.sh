@@ -1,0 +1,58 @@
+#!/bin/bash
+# digloop trace of machine recordings: LIGGGHTS digs on the rig's machine, whose bucket is heavier than its file says.
+set -u
+. tests/system/check.bash
+BIN=${BIN:-build/bin}
+table=${TABLE:-tables/rig.sqlite}
+machine=$PWD/config/machines/zx200_trench.yaml
+digs=tests/data/reference/mu0.5_mur0.5_rho2500
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Seven digs, two of them held out, by a bucket that weighs so much more; options go to digrig record.
+campaign() { # NAME KG OPTION…
+    local folder=$work/$1 n=0 dig role
+    mkdir "$folder"
+    awk -v more="$2" '/^[a-z]/ { part = $1 }
+        part == "bucket:" && $1 == "mass_kg:" { $0 = "  mass_kg: " $2 + more } { print }' "$machine" >"$folder/true.yaml"
+    printf 'scene: %s\nmachine: %s\nrecordings:\n' "$PWD/config/scenes/rig.yaml" "$machine" >"$folder/campaign.yaml"
+    shift 2
+    for dig in __simpleA:identify __actual:fit _seed2__simpleA:fit _seed2__actual:fit _seed3__simpleA:fit \
+        _seed3__actual:holdout _seed4__actual:holdout; do
+        role=${dig#*:} dig=${dig%:*} n=$((n + 1))
+        "$BIN/digrig" record "$digs$dig.csv" --machine "$folder/true.yaml" --seed "$n" "$@" -o "$folder/$n.csv" 2>>"$folder/err"
+        echo "  - {file: $n.csv, trajectory: ${dig##*__}, role: $role}" >>"$folder/campaign.yaml"
+    done
+}
+
+trace() { # NAME OPTION…: its $text, $json, $html and $model
+    text=$work/$1.txt json=$work/$1.json html=$work/light.html model=$work/$1.model.json
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$json" --add "$model" "${@:2}" >"$text" 2>"$work/$1.err" ||
+        cat "$work/$1.err"
+}
+
+effects_of_model() { # KEY: the names in that list of the model
+    awk -v key="\"$1\":" '{ text = text $0 }
+        END { at = index(text, key); if (at == 0) exit
+              rest = substr(text, at); sub(/\]}\].*|\[\].*/, "", rest)
+              while (match(rest, /{"name": "[a-z_]*", "probability"/)) {
+                  split(substr(rest, RSTART, RLENGTH), part, "\""); printf "%s ", part[4]
+                  rest = substr(rest, RSTART + RLENGTH) } }' "$model"
+}
+
+campaign light 100
+trace light --html "$work/light.html"
+check "a bucket 100 kg too heavy is named by free air" grep -q '"verdict": \["bucket_weight"\]' "$json"
+check "in the soil it is nothing: it is not applied" grep -q '"applied": false' "$json"
+check "and people are told" eval 'grep -q "named, not applied: bucket_weight" "$text" && grep -q "named, not applied: bucket_weight" "$html"'
+check "the model has no effect then" [ "$(effects_of_model effects)" = "" ]
+check "but names what was left out" [ "$(effects_of_model not_applied)" = "bucket_weight " ]
+
+campaign heavy 400
+trace heavy
+check "a bucket 400 kg too heavy is named by free air" grep -q '"verdict": \["bucket_weight"\]' "$json"
+check "and applied" grep -q '"applied": true' "$json"
+check "the model has it" [ "$(effects_of_model effects)/$(effects_of_model not_applied)" = "bucket_weight /" ]
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
