@@ -28,6 +28,7 @@ void dig_machine_side_destroy(struct dig_machine_side *side);
 struct dig_machine_finding {
     bool                     significant; // something of the machine is missing
     double                   p_complete;
+    bool                     no_air;       // in the recordings: nothing was traced
     double                   residual_air; // rms over the rms expected
     size_t                   effects;      // found, most certain first
     struct dig_model_effect  effect[DIG_MODEL_EFFECTS_MAX];

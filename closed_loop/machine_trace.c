@@ -337,7 +337,9 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
     struct search   s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
     enum dig_status status = search_make(side, &s);
     if (status == DIG_OK && s.air.rows == 0) {
-        *finding = (struct dig_machine_finding){ .p_complete = 1.0, .residual_air = (double)NAN };
+        *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
+                                                 .no_air       = true,
+                                                 .residual_air = (double)NAN };
         search_finish(&s);
         return DIG_OK;
     }

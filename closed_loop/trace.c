@@ -135,6 +135,7 @@ static void fill_decision(const struct dig_tracing *const t, const struct dig_ma
 {
     const struct dig_search *const s = t->search;
     trace->false_alarm               = t->settings->false_alarm;
+    trace->no_air                    = air->no_air;
     trace->significant               = air->significant || (s->significant && !s->outside);
     trace->p_complete =
         m != NULL ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;
@@ -157,7 +158,8 @@ static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
                                       const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
-    trace->applied = dig_worth_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
+    trace->applied = w->confirmed &&
+                     dig_worth_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
                      dig_worth_chance_of_worse(t->set, t->scatter, t->digs, t->measured,
                                                trace->curves) <= most_chance_of_worse;
     if (trace->applied) {
@@ -220,6 +222,7 @@ static enum dig_status report(const struct dig_tracing *const      t,
         fill_errors(t, w, trace);
         dig_trace_advise(t, trace);
         advise_on_size(w, trace);
+        dig_trace_advise_on_air(w, trace);
     }
     return status;
 }
@@ -291,6 +294,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK) {
         dig_trace_doubt_soil(w->air, w->search);
         status = weigh_soil(w);
+    }
+    if (status == DIG_OK) {
+        status = dig_trace_confirm_without_air(w);
     }
     // Nothing was found, or nothing that is corrected: nothing changes.
     if (status == DIG_OK && w->air->effects == 0 &&

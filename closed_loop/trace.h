@@ -59,6 +59,8 @@ struct dig_trace {
     double noise_floor;                // 1 sigma of error_after if the model were complete
     double residual[DIG_TRACE_PHASES]; // rms over the rms expected, by enum dig_part; NaN: no data
 
+    bool no_air; // in the recordings of a machine: its effects cannot be told from the soil's
+
     // The prediction was changed by what was found. False: nothing was found, or the change is not
     // worth making; then after is before, and a model of it is the gravel refitted alone.
     bool applied;

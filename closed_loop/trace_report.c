@@ -167,7 +167,7 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         put_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p), trace->residual[p]);
     }
-    (void)fputs("},\n", to);
+    (void)fprintf(to, "}, \"no_air\": %s,\n", trace->no_air ? "true" : "false");
     put_candidates(to, trace);
     (void)fputs(" \"advice\": ", to);
     put_string(to, trace->advice);
@@ -194,6 +194,7 @@ void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, 
     if (trace->effects == 0) {
         add(text, size, "%s",
             trace->significant ? "Something is missing, but none of the effects known explains it."
+            : trace->no_air    ? "Nothing is missing in the soil; no free air tells of the machine."
                                : "Nothing is missing: what is left is within the noise.");
         return;
     }

@@ -1,5 +1,6 @@
 #include "closed_loop/trace_verdict.h"
 
+#include "closed_loop/trace_work.h"
 #include "closed_loop/unlisted.h"
 
 #include <assert.h>
@@ -16,6 +17,18 @@ static void fill_sets(const struct dig_search *const s, const struct dig_machine
     for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
         trace->set[trace->sets++] = s->set[i];
     }
+}
+
+// Without free air what the digs show may be the machine's: no more than even odds are claimed.
+static double claimed(const struct dig_machine_finding *const air, const double probability)
+{
+    return air->no_air ? fmin(probability, DIG_TRACE_UNCONFIRMED) : probability;
+}
+
+// What has no name is seen where the digs' residual is largest.
+static enum dig_part largest_part(const double residual[DIG_TRACE_PHASES])
+{
+    return residual[DIG_PART_LIFTED] > residual[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
 }
 
 void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
@@ -45,7 +58,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
          e++) {
         trace->seen_in[trace->effects] = dig_trace_seen_in(t, &s->chosen, e);
         trace->effect[trace->effects++] =
-            dig_trace_effect(t->soil, &s->chosen, e, s->probability[e]);
+            dig_trace_effect(t->soil, &s->chosen, e, claimed(air, s->probability[e]));
     }
     const bool of_soil = s->significant && s->unlisted;
     if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
@@ -61,14 +74,15 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
                        s->is_rock ? "where the rock lies"
                        : of_soil  ? s->without_name.depends_on
                                   : "the machine's motion in free air");
-        trace->seen_in[trace->effects]        = of_soil ? DIG_PART_SOIL : DIG_PART_AIR;
+        const double in_soil = claimed(air, 1.0 - s->p_complete);
+        trace->seen_in[trace->effects] =
+            !of_soil ? DIG_PART_AIR : (s->is_rock ? DIG_PART_SOIL : largest_part(trace->residual));
         const struct dig_model_effect unnamed = {
-            .effect      = DIG_EFFECT_UNLISTED,
-            .probability = of_soil ? 1.0 - s->p_complete
-                                   : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
+            .effect = DIG_EFFECT_UNLISTED,
+            .probability =
+                of_soil ? in_soil : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
         };
-        trace->effect[trace->effects++] =
-            s->is_rock ? dig_trace_rock(&s->rock, 1.0 - s->p_complete) : unnamed;
+        trace->effect[trace->effects++] = s->is_rock ? dig_trace_rock(&s->rock, in_soil) : unnamed;
     }
     return DIG_OK;
 }

@@ -13,7 +13,9 @@ void dig_trace_doubt_soil(const struct dig_machine_finding *air, struct dig_sear
 
 /// Fills effects (the machine's first), where each is seen, the sets that cannot be told apart and
 /// what is added to the prediction for an effect without a name: nothing where free air shows a
-/// machine that no effect explains, because it may do otherwise to the next dig. DIG_ENOMEM.
+/// machine that no effect explains, because it may do otherwise to the next dig. Probabilities
+/// without free air are even at most. trace->residual says where what has no name is seen.
+/// DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_trace_fill_verdict(const struct dig_tracing         *t,
                                                       const struct dig_machine_finding *air,
                                                       struct dig_trace                 *trace);

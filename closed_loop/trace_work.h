@@ -21,6 +21,7 @@ struct dig_trace_work {
     struct dig_fitted           before;
     bool                        fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
     double                      size[DIG_MODEL_EFFECTS_MAX]; // of air's effects, in the soil
+    bool                        confirmed; // what was chosen may be applied: see below
 };
 
 /// The batch of the digs to fit to, its scatter that of the gravel it turns out to be (*plain).
@@ -43,5 +44,13 @@ DIG_MUST_CHECK enum dig_status dig_trace_doubt_air(struct dig_machine_side      
                                                    size_t digs, struct dig_measured measured[],
                                                    struct dig_trace_work *w,
                                                    struct dig_error      *error);
+
+/// Leaves in confirmed whether what the search chose may change the prediction: always where free
+/// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
+/// better. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *w);
+
+/// Says first that the recordings hold no free air, where they do not.
+void dig_trace_advise_on_air(const struct dig_trace_work *w, struct dig_trace *trace);
 
 #endif // DIG_CLOSED_LOOP_TRACE_WORK_H

@@ -69,6 +69,7 @@ struct fault {
     double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
     double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
     bool   bare;        // no pressures but the bucket's
+    bool   airless;     // recorded from the first touch of the ground to the last
 };
 
 static double push_N(const int j, const double head_Pa, const double rod_Pa)
@@ -132,6 +133,19 @@ static void lose_readings(const struct fault *const fault, uint64_t *const state
     }
 }
 
+static void cut_air(const struct dig_rig_track *const t, struct dig_machine_recording *const r)
+{
+    size_t first = 0, last = t->rows - 1;
+    while (!(fabs(t->row[first].soil.M_Nm) > 0.0)) {
+        first++;
+    }
+    while (!(fabs(t->row[last].soil.M_Nm) > 0.0)) {
+        last--;
+    }
+    r->rows = last + 1 - first;
+    memmove(r->row, r->row + first, r->rows * sizeof *r->row);
+}
+
 static struct dig_machine_recording record(const int kind, const size_t order,
                                            const struct fault *const fault, const uint64_t seed)
 {
@@ -163,6 +177,9 @@ static struct dig_machine_recording record(const int kind, const size_t order,
         r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
         dig_rig_quantise(&machine, &r.row[i]);
         lose_readings(fault, &state, &r.row[i]);
+    }
+    if (fault->airless) {
+        cut_air(t, &r);
     }
     return r;
 }
@@ -386,6 +403,22 @@ static void pressures_at_the_bucket_alone_tell_the_moment_and_its_seal(void **st
     end(d);
 }
 
+static void recordings_without_free_air_say_so_and_name_nothing(void **state)
+{
+    (void)state;
+    const struct fault     seal = { .dry_N = 4000.0, .airless = true };
+    struct campaign *const c    = trace(&seal, 71);
+    assert_true(c->finding.no_air);
+    assert_false(c->finding.significant || c->finding.unexplained);
+    assert_int_equal(c->finding.effects, 0);
+    assert_true(isnan(c->finding.residual_air));
+    end(c);
+    const struct fault     none = { .dry_N = 0.0 };
+    struct campaign *const d    = trace(&none, 72);
+    assert_false(d->finding.no_air);
+    end(d);
+}
+
 static void a_recording_without_its_dig_is_refused_by_name(void **state)
 {
     (void)state;
@@ -416,6 +449,7 @@ int main(void)
         cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
+        cmocka_unit_test(recordings_without_free_air_say_so_and_name_nothing),
         cmocka_unit_test(a_recording_without_its_dig_is_refused_by_name),
     };
     return cmocka_run_group_tests_name("machine_side", tests, build, tear_down);

@@ -188,7 +188,12 @@ static void no_effect_is_the_verdict_none_and_no_holdout_is_null(void **state)
     assert_contains(text, "\"indistinguishable\": []");
     expect(text, "error_after.holdout", "null");
     expect(text, "significant", "false");
+    expect(text, "no_air", "false");
     free(text);
+    trace.no_air      = true;
+    char *const blind = json_of(&trace);
+    expect(blind, "no_air", "true");
+    free(blind);
 }
 
 static void control_characters_stay_inside_a_json_string(void **state)
@@ -215,6 +220,11 @@ static void a_sentence_says_the_verdict(void **state)
     e->trace.significant = false;
     dig_trace_sentence(&e->trace, sizeof text, text);
     assert_contains(text, "Nothing is missing");
+    e->trace.no_air = true;
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    assert_contains(text, "no free air tells of the machine");
+    e->trace.no_air = false;
+    dig_trace_sentence(&e->trace, sizeof text, text);
     // Cut, not overrun.
     dig_trace_sentence(&e->trace, 8, text);
     assert_string_equal(text, "Nothing");

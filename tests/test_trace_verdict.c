@@ -95,6 +95,49 @@ static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
     free(trace.unlisted);
 }
 
+// Without free air what has a name may be the machine's as well as what has none.
+static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
+{
+    (void)state;
+    const struct dig_machine_finding told  = { .p_complete = 1.0 };
+    const struct dig_machine_finding none  = { .p_complete = 1.0, .no_air = true };
+    struct dig_tracing               t     = search(DIG_EFFECT_LAYERING, 0.8);
+    struct dig_trace                 with  = { 0 };
+    struct dig_trace                 trace = { 0 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &told, &with), DIG_OK);
+    assert_int_equal(dig_trace_fill_verdict(&t, &none, &trace), DIG_OK);
+    assert_true(with.effect[0].probability > 0.9);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
+    assert_close(trace.effect[0].probability, 0.5, 0.0);
+
+    t     = search(DIG_EFFECT_UNLISTED, 1.2);
+    trace = (struct dig_trace){ 0 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &none, &trace), DIG_OK);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_close(trace.effect[0].probability, 0.5, 0.0);
+    free(trace.unlisted);
+}
+
+static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t   = search(DIG_EFFECT_UNLISTED, 1.2);
+    const struct dig_machine_finding air = { .p_complete = 1.0 };
+    const double                     gap = (double)NAN;
+    const struct {
+        double        soil, lifted;
+        enum dig_part seen_in;
+    } cases[] = { { 3.0, 1.0, DIG_PART_SOIL },
+                  { 2.0, 4.0, DIG_PART_LIFTED },
+                  { 2.0, gap, DIG_PART_SOIL } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct dig_trace trace = { .residual = { gap, cases[i].soil, cases[i].lifted } };
+        assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+        assert_int_equal(trace.seen_in[0], cases[i].seen_in);
+        free(trace.unlisted);
+    }
+}
+
 static void both_sides_are_named_the_machine_first(void **state)
 {
     (void)state;
@@ -166,6 +209,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_unexplained_machine_leaves_the_prediction_alone),
         cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
+        cmocka_unit_test(without_free_air_no_more_than_even_odds_are_claimed),
+        cmocka_unit_test(what_has_no_name_is_seen_where_the_residual_is_largest),
         cmocka_unit_test(both_sides_are_named_the_machine_first),
         cmocka_unit_test(a_strange_machine_leaves_the_soil_without_a_name),
         cmocka_unit_test(a_rock_elsewhere_is_an_obstacle_without_a_template),

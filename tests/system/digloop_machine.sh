@@ -54,5 +54,13 @@ check "a bucket 400 kg too heavy is named by free air" grep -q '"verdict": \["bu
 check "and applied" grep -q '"applied": true' "$json"
 check "the model has it" [ "$(effects_of_model effects)/$(effects_of_model not_applied)" = "bucket_weight /" ]
 
+# The same bucket, recorded in the ground alone: nothing tells it from the soil.
+campaign airless 400 --no-air
+trace airless
+check "without free air the machine is not named" eval '! grep -q "\"verdict\": .*bucket_weight" "$json"'
+check "nor is anything else, with more than even odds" within "$(sed -nE 's/.*"probability": ([0-9.e-]+), "seen_in.*/\1/p' "$json" | sort -g | tail -n 1)" 0 0.5
+check "the report says why, first" eval 'grep -q "\"no_air\": true" "$json" &&
+    grep -q "next: no free air in the recordings: effects of the machine cannot be told" "$text"'
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
