@@ -102,7 +102,8 @@ struct dig_prediction {
     double moment_Nm[DIG_PREDICTION_POINTS];
     double sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
     double Fx_N[DIG_PREDICTION_POINTS], Fz_N[DIG_PREDICTION_POINTS];
-    double peak_Nm, energy_J; // of the whole dig
+    double peak_Nm, peak_sigma_Nm;   // of the whole dig: as it is to be expected, and 1 sigma of
+    double energy_J, energy_sigma_J; // one dig about that (estimator/whole.h)
 };
 
 /// What a match predicts along each trajectory of a table, machine scale for the whole dig's
@@ -113,7 +114,8 @@ struct dig_forecast {
         bool                off_table; // the dig going on is: none valid
         struct dig_approach approach;  // of the dig expected; zeroed: as the trajectory stands
         struct dig_curve    curve;     // over the progress that a tick tells
-        double              peak_Nm, energy_J;
+        double              peak_Nm, peak_sigma_Nm;
+        double              energy_J, energy_sigma_J;
     } along[DIG_TRAJECTORY_MAX];
 };
 
@@ -206,7 +208,7 @@ DIG_MUST_CHECK enum dig_status dig_raw_observe(const struct dig_curve_set       
 bool dig_estimator_take_dig(struct dig_estimator *estimator, struct dig_observation *observation);
 
 /// What a match predicts on a machine lambda times the table's size. Nothing is valid of a match
-/// that is not. About a millisecond.
+/// that is not. About four milliseconds a trajectory.
 void dig_forecast_make(const struct dig_curve_set *set, double lambda,
                        const struct dig_match *match, struct dig_forecast *forecast);
 
@@ -232,7 +234,7 @@ void dig_forecast_along_plain(const struct dig_curve_set *set, size_t trajectory
 void dig_estimator_give_forecast(struct dig_estimator      *estimator,
                                  const struct dig_forecast *forecast);
 
-/// Makes the forecast of a match in the estimator's own memory and gives it: about a millisecond.
+/// Makes the forecast of a match in the estimator's own memory and gives it: as long.
 void dig_estimator_give_match(struct dig_estimator *estimator, const struct dig_match *match);
 
 /// Prediction for the dig going on, from the current progress to its end; valid = false when no

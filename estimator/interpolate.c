@@ -95,6 +95,7 @@ enum dig_status dig_cell_at(const struct dig_curve_set *const set,
         found.curve[found.corners]  = &set->curve[slot];
         found.weight[found.corners] = weight;
         found.inverse_packings += weight / (double)set->packings[slot];
+        found.mean_variance += weight * weight / (double)set->packings[slot];
         found.corners++;
     }
     *cell = found;

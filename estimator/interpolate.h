@@ -16,6 +16,7 @@ struct dig_cell {
     const struct dig_curve *curve[DIG_CELL_CORNERS];
     double                  weight[DIG_CELL_CORNERS];
     double                  inverse_packings; // weighted mean of 1 / packings
+    double mean_variance; // what the mean is off by: sum of weight^2 / packings, of one dig's
 };
 
 /// Position of a value on an axis of the set, 0 … 1 from its first to its last point, linear in the

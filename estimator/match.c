@@ -99,6 +99,7 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
             .curve            = { &set->curve[slot] },
             .weight           = { 1.0 },
             .inverse_packings = 1.0 / (double)set->packings[slot],
+            .mean_variance    = 1.0 / (double)set->packings[slot],
         };
         dig_misfit_add(&all, dig_cell_misfit(&cell, &sums->group[g]));
     }

@@ -6,27 +6,41 @@
 #include "estimator/estimator_state.h"
 #include "estimator/match.h"
 #include "estimator/predict.h"
+#include "estimator/whole.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+// Curve and whole dig along one trajectory of the set.
+static void expect(const struct dig_curve_set *const set, const double lambda,
+                   const struct dig_match *const match, const size_t trajectory,
+                   struct dig_expected *const expected)
+{
+    struct dig_whole whole;
+    expected->off_table = false;
+    expected->valid     = dig_predict_curve(set, match, trajectory, &expected->curve) == DIG_OK &&
+                      dig_whole_predict(set, match, trajectory, &whole) == DIG_OK;
+    if (expected->valid) {
+        const double lambda4     = pow(lambda, 4.0);
+        expected->peak_Nm        = lambda4 * whole.peak_Nm;
+        expected->peak_sigma_Nm  = lambda4 * whole.peak_sigma_Nm;
+        expected->energy_J       = lambda4 * whole.energy_J;
+        expected->energy_sigma_J = lambda4 * whole.energy_sigma_J;
+    }
+}
+
 void dig_forecast_make(const struct dig_curve_set *const set, const double lambda,
                        const struct dig_match *const match, struct dig_forecast *const forecast)
 {
     assert(set != NULL && match != NULL && forecast != NULL);
-    const double lambda4 = pow(lambda, 4.0);
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
-        struct dig_expected *const along = &forecast->along[t];
-        along->off_table                 = false;
-        along->approach                  = dig_approach_plain();
-        along->valid =
-            t < set->trajectories && dig_predict_curve(set, match, t, &along->curve) == DIG_OK;
-        if (along->valid) {
-            along->peak_Nm = lambda4 * dig_predict_peak_Nm(&along->curve);
-            along->energy_J =
-                lambda4 * dig_predict_energy_J(&set->trajectory[t], set->tooth_m, &along->curve);
+        forecast->along[t].off_table = false;
+        forecast->along[t].valid     = false;
+        forecast->along[t].approach  = dig_approach_plain();
+        if (t < set->trajectories) {
+            expect(set, lambda, match, t, &forecast->along[t]);
         }
     }
 }
@@ -40,15 +54,8 @@ void dig_forecast_as_dug(const struct dig_curve_set *const set, const double lam
     assert(set != NULL && match != NULL && approach != NULL && expected != NULL);
     const struct dig_approached_slot  slot = { trajectory, *approach };
     const struct dig_curve_set *const dug  = dig_approached_make(set, 1, &slot, error, memory);
-    expected->off_table                    = false;
     expected->approach                     = *approach;
-    expected->valid = dig_predict_curve(dug, match, 0, &expected->curve) == DIG_OK;
-    if (expected->valid) {
-        const double lambda4 = pow(lambda, 4.0);
-        expected->peak_Nm    = lambda4 * dig_predict_peak_Nm(&expected->curve);
-        expected->energy_J =
-            lambda4 * dig_predict_energy_J(&dug->trajectory[0], set->tooth_m, &expected->curve);
-    }
+    expect(dug, lambda, match, 0, expected);
 }
 
 static double path_m(const struct dig_curve_set *const set, const struct dig_trajectory *const t)
@@ -113,7 +120,9 @@ static struct dig_prediction predict_from(const struct dig_estimator *const esti
         p.to_progress                          = 1.0;
         p.approach                             = along->approach;
         p.peak_Nm                              = along->peak_Nm;
+        p.peak_sigma_Nm                        = along->peak_sigma_Nm;
         p.energy_J                             = along->energy_J;
+        p.energy_sigma_J                       = along->energy_sigma_J;
         dig_predict_points(&along->curve, estimator->lambda, &p);
     }
     return p;

@@ -2,7 +2,6 @@
 
 #include "estimator/predict.h"
 
-#include "core/units.h"
 #include "estimator/match.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
@@ -91,29 +90,6 @@ static void refusals_write_nothing(void **state)
     made_table_destroy(set);
 }
 
-// By hand: a constant force of -2 N along a drag of 92.6 mm, of -3 N along a sink of 26.137 mm (it
-// pushes down, with the motion), back over 36.6 mm of lift, and 0.5 Nm over a turn.
-static void energy_is_what_the_bucket_does_on_the_soil(void **state)
-{
-    (void)state;
-    struct dig_curve curve;
-    memset(&curve, 0, sizeof curve);
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        curve.mean[DIG_CHANNEL_FX_N][k]  = -2.0f;
-        curve.mean[DIG_CHANNEL_FZ_N][k]  = -3.0f;
-        curve.mean[DIG_CHANNEL_MY_Nm][k] = 0.5f;
-    }
-    const struct dig_trajectory a = made_trajectory(MADE_SIMPLE_A);
-    const double in_x_m = 0.6 * 0.02515 + 2.0 * 0.0463, in_z_m = -0.6 * 0.04356107781 + 0.0366;
-    assert_close(dig_predict_energy_J(&a, 0.09, &curve), 2.0 * in_x_m + 3.0 * in_z_m, 1e-6);
-
-    const struct dig_trajectory b        = made_trajectory(MADE_SIMPLE_B);
-    const double                turn_rad = 2.5 * 20.05 * DIG_RAD_PER_DEG;
-    const double                x_m = 0.9 * 0.029565598190311397, z_m = -0.9 * 0.04069355481705986;
-    assert_close(dig_predict_energy_J(&b, 0.09, &curve), 2.0 * x_m + 3.0 * z_m + 0.5 * turn_rad,
-                 1e-6);
-}
-
 static void points_ahead_are_the_curve_at_machine_scale(void **state)
 {
     (void)state;
@@ -131,7 +107,6 @@ static void points_ahead_are_the_curve_at_machine_scale(void **state)
     assert_close(p.moment_Nm[21], 6000.0, 1e-2);
     assert_close(p.sigma_Nm[9], 2500.0, 1e-2);
     assert_close(p.Fx_N[9], 2000.0, 1e-2);
-    assert_close(dig_predict_peak_Nm(&curve), 1.0, 1e-6);
 }
 
 int main(void)
@@ -141,7 +116,6 @@ int main(void)
         cmocka_unit_test(doubt_about_the_gravel_widens_the_prediction),
         cmocka_unit_test(a_match_not_refined_predicts_for_its_gravel_or_its_entry),
         cmocka_unit_test(refusals_write_nothing),
-        cmocka_unit_test(energy_is_what_the_bucket_does_on_the_soil),
         cmocka_unit_test(points_ahead_are_the_curve_at_machine_scale),
     };
     return cmocka_run_group_tests_name("predict", tests, NULL, NULL);

@@ -1,8 +1,7 @@
-#include "estimator/predict.h"
-
 #include "closed_loop/score.h"
 #include "core/units.h"
 #include "estimator/match.h"
+#include "estimator/whole.h"
 #include "files/identity_json.h"
 #include "files/recording_csv.h"
 #include "tools/digloop/as_dug.h"
@@ -133,28 +132,31 @@ static enum dig_status score_measured(const struct digloop_options *const option
 struct prediction {
     struct dig_trajectory trajectory; // as dug
     struct dig_curve      curve;
+    struct dig_whole      whole;
     struct dig_score      score;
 };
 
-static void print(const struct digloop_options *const options,
-                  const struct dig_curve_set *const set, const struct prediction *const p)
+static void print(const struct digloop_options *const options, const struct prediction *const p)
 {
-    const double peak_Nm  = dig_predict_peak_Nm(&p->curve);
-    const double energy_J = dig_predict_energy_J(&p->trajectory, set->tooth_m, &p->curve);
+    const struct dig_whole *const whole = &p->whole;
     const struct dig_curve *const curve = &p->curve;
     char                          how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
-        (void)printf("  %s%s: peak %.3f N·m, energy %.3f J at the table's scale\n",
-                     p->trajectory.name, how, peak_Nm, energy_J);
+        (void)printf("  %s%s: peak %.3f ± %.3f N·m, energy %.3f ± %.3f J at the table's scale "
+                     "(1 sigma of one dig)\n",
+                     p->trajectory.name, how, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
+                     whole->energy_sigma_J);
         if (options->measured != NULL) {
             (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
                          dig_score_error(&p->score), dig_score_noise_floor(&p->score));
         }
         return;
     }
-    (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"energy_J\": %.6g",
-                 p->trajectory.name, peak_Nm, energy_J);
+    (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"peak_sigma_Nm\": %.6g, "
+                 "\"energy_J\": %.6g, \"energy_sigma_J\": %.6g",
+                 p->trajectory.name, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
+                 whole->energy_sigma_J);
     if (how[0] != '\0') {
         (void)printf(", \"depth\": %.6g, \"attack_deg\": %.6g", options->approach.depth,
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
@@ -185,6 +187,9 @@ static enum dig_status predict(const struct digloop_options *const options,
     }
     p->trajectory = table.set->trajectory[at];
     status        = dig_predict_curve(table.set, match, at, &p->curve);
+    if (status == DIG_OK) {
+        status = dig_whole_predict(table.set, match, at, &p->whole);
+    }
     digloop_as_dug_finish(&table);
     return status == DIG_OK
                ? DIG_OK
@@ -230,7 +235,7 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
         status = score_measured(options, set, machine, t, &match, &p.score, error);
     }
     if (status == DIG_OK) {
-        print(options, set, &p);
+        print(options, &p);
     }
     return status;
 }
