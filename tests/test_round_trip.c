@@ -12,47 +12,53 @@
 #include "tools/rig/track.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum { GRAVELS = 3, DIGS = 2 };
-static const char *const gravels[GRAVELS] = { "mu0.3_mur0.3", "mu0.5_mur0.5", "mu0.9_mur0.9" };
-static const char *const kinds[DIGS]      = { "simpleA", "actual" };
+enum { GRAVELS = 3, DIGS = 2, KINDS = 3, PARTS = 3 };
+static const char *const gravels[GRAVELS] = { "0.3", "0.5", "0.9" };
+static const char *const kinds[KINDS]     = { "simpleA", "actual", "simpleB" };
+static const char *const parts[PARTS]     = { "My", "Fx", "Fz" };
 
-struct round {
-    struct dig_machine   machine;
-    struct dig_recording recording[DIGS];
-    struct dig_rig_track track;
-};
-
-static struct round start(const char *const machine, const char *const of, const bool quasi_static)
+static void read_machine(const char *const name, struct dig_machine *const machine)
 {
     char             path[200];
     struct dig_error error = { "" };
-    struct round     round;
-    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", machine);
-    if (dig_machine_read(path, &round.machine, &error) != DIG_OK) {
+    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
+    if (dig_machine_read(path, machine, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    for (int d = 0; d < DIGS; d++) {
-        (void)snprintf(path, sizeof path, "tests/data/reference/%s_rho2500__%s.csv", of, kinds[d]);
-        if (dig_recording_read(path, &round.recording[d], &error) != DIG_OK) {
-            fail_msg("%s", error.text);
-        }
-    }
-    struct dig_rig_track_options options = dig_rig_track_options_default();
-    options.quasi_static                 = quasi_static;
-    if (dig_rig_track_build(&round.machine, &options, DIGS, round.recording, &round.track,
-                            &error) != DIG_OK) {
-        fail_msg("%s: %s: %s", machine, of, error.text);
-    }
-    return round;
 }
 
-static void finish(struct round *const round)
+static void scale(struct dig_recording *const recording, const double share)
 {
-    for (int d = 0; d < DIGS; d++) {
-        dig_recording_finish(&round->recording[d]);
+    for (size_t i = 0; i < recording->rows; i++) {
+        recording->row[i].Fx_N *= share;
+        recording->row[i].Fz_N *= share;
+        recording->row[i].My_Nm *= share;
     }
-    dig_rig_track_finish(&round->track);
+}
+
+// simpleB is no part of the reference digs: it was computed here (tests/data/round_trip).
+static void read_dig(const char *const gravel, const char *const kind,
+                     struct dig_recording *const recording)
+{
+    char             path[200];
+    struct dig_error error = { "" };
+    (void)snprintf(path, sizeof path, "tests/data/%s/mu%s_mur%s_rho2500__%s.csv",
+                   strcmp(kind, "simpleB") == 0 ? "round_trip" : "reference", gravel, gravel, kind);
+    if (dig_recording_read(path, recording, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+}
+
+static void build(const struct dig_machine *const           machine,
+                  const struct dig_rig_track_options *const options, const size_t digs,
+                  const struct dig_recording recording[], struct dig_rig_track *const track)
+{
+    struct dig_error error = { "" };
+    if (dig_rig_track_build(machine, options, digs, recording, track, &error) != DIG_OK) {
+        fail_msg("%s: %s", machine->name, error.text);
+    }
 }
 
 static int64_t row_ns(const struct dig_rig_track *const track, const size_t row)
@@ -60,75 +66,141 @@ static int64_t row_ns(const struct dig_rig_track *const track, const size_t row)
     return (int64_t)(1e9 * track->step_s * (double)row) + 1;
 }
 
-static void without_sensors_the_recording_comes_back_within_a_thousandth(void **state)
+// What each machine that ships is made to dig. The wide buckets of zx200 and zx120 would lift them
+// in any of these gravels: they dig one that is so much lighter, as whose loads a share of these is
+// taken. The places are digrig's own for the three digs together, whose search takes longest.
+static const struct run {
+    const char *machine, *gravel;
+    double      share, X_m, Z_m;
+} runs[] = {
+    { "zx200_trench", "0.3", 1.0, 7.60, -1.03 }, { "zx200_trench", "0.5", 1.0, 7.60, -1.03 },
+    { "zx200_trench", "0.9", 1.0, 6.15, -1.03 }, { "zx200", "0.3", 0.2, 7.69, -0.39 },
+    { "zx120", "0.3", 0.3, 6.41, -0.56 },        { "mini_2t8", "0.3", 1.0, 2.76, 0.0 },
+};
+#define RUNS (sizeof runs / sizeof runs[0])
+
+static struct dig_rig_track_options placed(const struct run *const run)
 {
-    (void)state;
-    const char *const machines[] = { "zx200_trench", "mini_2t8" };
-    const char *const of[]       = { gravels[2], gravels[0] }; // what each can dig
-    for (size_t m = 0; m < sizeof machines / sizeof machines[0]; m++) {
-        struct round round    = start(machines[m], of[m], true);
-        double       miss2[3] = { 0.0 }, whole2[3] = { 0.0 };
-        for (size_t i = 0; i < round.track.rows; i++) {
-            const struct dig_rig_row *const row = &round.track.row[i];
-            const struct dig_sample         sample =
-                dig_rig_sense(&round.machine, row, row_ns(&round.track, i), NULL);
-            struct dig_wrench w;
-            struct dig_front  front;
-            assert_int_equal(dig_wrench_solve(&round.machine, &sample, &w, &front), DIG_OK);
-            assert_true(w.moment_valid && w.force_valid);
-            assert_close(front.pin_m[DIG_JOINT_BUCKET].x, row->pose.X_m, 1e-9);
-            assert_close(front.pin_m[DIG_JOINT_BUCKET].y, row->pose.Z_m, 1e-9);
-            const double found[3] = { w.My_Nm, w.Fx_N, w.Fz_N };
-            const double truth[3] = { row->soil.M_Nm, -row->soil.FX_N, row->soil.FZ_N };
-            for (int k = 0; k < 3; k++) {
-                miss2[k] += pow(found[k] - truth[k], 2.0);
-                whole2[k] += truth[k] * truth[k];
-            }
+    struct dig_rig_track_options options = dig_rig_track_options_default();
+    options.placed                       = true;
+    options.pin_X_m                      = run->X_m;
+    options.pin_Z_m                      = run->Z_m;
+    return options;
+}
+
+// One dig of a run, without inertia; dig_rig_track_finish() frees it.
+static struct dig_rig_track one_dig(const struct run *const run, const char *const kind,
+                                    struct dig_machine *const machine)
+{
+    struct dig_recording         recording;
+    struct dig_rig_track         track;
+    struct dig_rig_track_options options = placed(run);
+    options.quasi_static                 = true;
+    options.placed                       = true;
+    options.pin_X_m                      = run->X_m;
+    options.pin_Z_m                      = run->Z_m;
+    read_machine(run->machine, machine);
+    read_dig(run->gravel, kind, &recording);
+    scale(&recording, run->share);
+    build(machine, &options, 1, &recording, &track);
+    dig_recording_finish(&recording);
+    return track;
+}
+
+// Of one part of the wrench, over the rows in the soil.
+struct tally {
+    int    all, in;
+    double miss2, sigma, whole2;
+};
+
+static void add_row(const struct dig_machine *const machine, const struct dig_rig_row *const row,
+                    const struct dig_sample *const sample, struct tally tally[const PARTS])
+{
+    struct dig_wrench w;
+    struct dig_front  front;
+    assert_int_equal(dig_wrench_solve(machine, sample, &w, &front), DIG_OK);
+    const double found[PARTS] = { w.My_Nm, w.Fx_N, w.Fz_N };
+    const double truth[PARTS] = { row->soil.M_Nm, -row->soil.FX_N, row->soil.FZ_N };
+    const double sigma[PARTS] = { w.sigma_My_Nm, w.sigma_Fx_N, w.sigma_Fz_N };
+    const bool   valid[PARTS] = { w.moment_valid, w.force_valid, w.force_valid };
+    for (int p = 0; p < PARTS; p++) {
+        if (valid[p]) {
+            tally[p].in += fabs(found[p] - truth[p]) < sigma[p] ? 1 : 0;
+            tally[p].miss2 += pow(found[p] - truth[p], 2.0);
+            tally[p].sigma += sigma[p];
+            tally[p].whole2 += truth[p] * truth[p];
+            tally[p].all++;
         }
-        for (int k = 0; k < 3; k++) {
-            print_message("%s: rms error of part %d: %.2g\n", machines[m], k,
-                          sqrt(miss2[k] / whole2[k]));
-            assert_true(sqrt(miss2[k] / whole2[k]) < 1e-3);
-        }
-        finish(&round);
     }
 }
 
-static void with_the_zx200s_sensors_one_sigma_covers_two_thirds_of_the_digs(void **state)
+// In the soil; still air shows one pose and one rounding for seconds.
+static bool digs(const struct dig_rig_track *const track, const size_t row)
+{
+    return hypot(track->row[row].soil.FX_N, track->row[row].soil.FZ_N) > 0.0;
+}
+
+static void without_sensors_the_recording_comes_back_within_a_thousandth(void **state)
 {
     (void)state;
-    for (int g = 0; g < GRAVELS; g++) {
-        struct round round = start("zx200_trench", gravels[g], true);
-        assert_close(round.machine.pressure_step_Pa, 2e5, 0.0);
-        assert_close(round.machine.angle_step_rad, 4e-4, 0.0);
+    for (size_t r = 0; r < RUNS; r++) {
+        struct tally tally[PARTS] = { { 0 } };
+        int          rows         = 0;
+        for (int k = 0; k < KINDS; k++) {
+            struct dig_machine   machine;
+            struct dig_rig_track track = one_dig(&runs[r], kinds[k], &machine);
+            for (size_t i = 0; i < track.rows; i++) {
+                const struct dig_sample sample =
+                    dig_rig_sense(&machine, &track.row[i], row_ns(&track, i), NULL);
+                add_row(&machine, &track.row[i], &sample, tally);
+                rows++;
+            }
+            dig_rig_track_finish(&track);
+        }
+        for (int p = 0; p < PARTS; p++) {
+            const double error = sqrt(tally[p].miss2 / tally[p].whole2);
+            print_message("%s %s: rms error of %s without sensors: %.2g\n", runs[r].machine,
+                          runs[r].gravel, parts[p], error);
+            // Of the stiffest gravel two rows come too near a relief pressure to be told.
+            assert_true(tally[p].all >= rows - 2);
+            assert_true(error < 1e-3);
+        }
+    }
+}
 
-        int    in = 0, all = 0;
-        double z2 = 0.0;
+// Noise and steps of the machine's sensors. Its geometry is the file's to the last digit here, so
+// sigma is held without what tolerances of the geometry add.
+static void with_sensors_one_sigma_covers_two_thirds_and_is_not_too_large(void **state)
+{
+    (void)state;
+    for (size_t d = 0; d < RUNS * KINDS; d++) {
+        const struct run *const run  = &runs[d / KINDS];
+        const char *const       kind = kinds[d % KINDS];
+        struct dig_machine      machine;
+        struct dig_rig_track    track        = one_dig(run, kind, &machine);
+        struct tally            tally[PARTS] = { { 0 } };
         for (uint64_t seed = 1; seed <= 3; seed++) {
             struct dig_rig_noise noise = dig_rig_noise_init(seed);
-            for (size_t i = 0; i < round.track.rows; i++) {
-                const struct dig_rig_row *const row = &round.track.row[i];
-                struct dig_sample               sample =
-                    dig_rig_sense(&round.machine, row, row_ns(&round.track, i), &noise);
-                dig_rig_quantise(&round.machine, &sample);
-                struct dig_wrench w;
-                struct dig_front  front;
-                assert_int_equal(dig_wrench_solve(&round.machine, &sample, &w, &front), DIG_OK);
-
-                // In the soil; still air shows one pose and one rounding for seconds.
-                if (fabs(row->soil.M_Nm) > 1000.0 && w.moment_valid) {
-                    const double z = (w.My_Nm - row->soil.M_Nm) / w.sigma_My_Nm;
-                    in += fabs(z) < 1.0 ? 1 : 0;
-                    z2 += z * z;
-                    all++;
+            for (size_t i = 0; i < track.rows; i++) {
+                struct dig_sample sample =
+                    dig_rig_sense(&machine, &track.row[i], row_ns(&track, i), &noise);
+                dig_rig_quantise(&machine, &sample);
+                if (digs(&track, i)) {
+                    add_row(&machine, &track.row[i], &sample, tally);
                 }
             }
         }
-        print_message("%s: %.1f %% within one sigma, rms of error / sigma %.3f\n", gravels[g],
-                      100.0 * in / all, sqrt(z2 / all));
-        assert_true(all > 10000);
-        assert_close((double)in / all, 0.68, 0.05);
-        finish(&round);
+        for (int p = 0; p < PARTS; p++) {
+            const struct tally *const t     = &tally[p];
+            const double              share = (double)t->in / t->all;
+            const double              ratio = t->sigma / t->all / sqrt(t->miss2 / t->all);
+            print_message("%s %s %s %s: %.1f %% within one sigma, mean sigma / rms error %.3f\n",
+                          run->machine, run->gravel, kind, parts[p], 100.0 * share, ratio);
+            assert_true(t->all > 5000);
+            assert_close(share, 0.68, 0.05);
+            assert_true(ratio < 1.2);
+        }
+        dig_rig_track_finish(&track);
     }
 }
 
@@ -176,17 +248,25 @@ static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **stat
     const struct made_options   options = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const set     = made_table(&options);
     for (int g = 0; g < GRAVELS; g++) {
-        struct round                        round     = start("zx200_trench", gravels[g], false);
+        struct dig_machine                 machine;
+        struct dig_recording               recording[DIGS];
+        const struct dig_rig_track_options at = placed(&runs[g]);
+        struct dig_rig_track               track;
+        read_machine("zx200_trench", &machine);
+        for (int d = 0; d < DIGS; d++) {
+            read_dig(gravels[g], kinds[d], &recording[d]);
+        }
+        build(&machine, &at, DIGS, recording, &track);
         struct dig_rig_noise                noise     = dig_rig_noise_init(7);
         struct dig_estimator *const         estimator = malloc(dig_estimator_size());
         const struct dig_estimator_settings settings  = dig_estimator_settings_default();
-        assert_int_equal(dig_estimator_init(estimator, &round.machine, set, &settings), DIG_OK);
+        assert_int_equal(dig_estimator_init(estimator, &machine, set, &settings), DIG_OK);
 
         int digs = 0;
-        for (size_t i = 0; i < round.track.rows; i++) {
+        for (size_t i = 0; i < track.rows; i++) {
             struct dig_sample sample =
-                dig_rig_sense(&round.machine, &round.track.row[i], row_ns(&round.track, i), &noise);
-            dig_rig_quantise(&round.machine, &sample);
+                dig_rig_sense(&machine, &track.row[i], row_ns(&track, i), &noise);
+            dig_rig_quantise(&machine, &sample);
             struct dig_estimate    estimate;
             struct dig_observation o;
             assert_int_equal(dig_estimator_step(estimator, &sample, &estimate), DIG_OK);
@@ -199,7 +279,7 @@ static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **stat
             double miss2 = 0.0, sigma2 = 0.0, whole2 = 0.0;
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
                 if (k / 255.0 >= o.first && k / 255.0 <= o.last) {
-                    const double truth = recorded_Nm(&round.recording[digs], k / 255.0);
+                    const double truth = recorded_Nm(&recording[digs], k / 255.0);
                     miss2 += pow(o.moment_Nm[k] - truth, 2.0);
                     sigma2 += pow(o.sigma_Nm[k], 2.0);
                     whole2 += truth * truth;
@@ -213,7 +293,10 @@ static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **stat
         }
         assert_int_equal(digs, DIGS);
         free(estimator);
-        finish(&round);
+        for (int d = 0; d < DIGS; d++) {
+            dig_recording_finish(&recording[d]);
+        }
+        dig_rig_track_finish(&track);
     }
     made_table_destroy(set);
 }
@@ -222,7 +305,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_sensors_the_recording_comes_back_within_a_thousandth),
-        cmocka_unit_test(with_the_zx200s_sensors_one_sigma_covers_two_thirds_of_the_digs),
+        cmocka_unit_test(with_sensors_one_sigma_covers_two_thirds_and_is_not_too_large),
         cmocka_unit_test(a_whole_run_gives_the_recorded_curves_within_their_sigma),
     };
     return cmocka_run_group_tests_name("round_trip", tests, NULL, NULL);
