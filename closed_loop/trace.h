@@ -83,6 +83,7 @@ struct dig_trace {
     size_t                   digs;
     struct dig_trace_curves *curves;      // [digs], in the campaign's order; malloc'ed
     char                     advice[512]; // which dig or table would tell more, for people
+    char command[4096]; // shell lines that make that table: of who knows its files; "": none
 };
 
 void dig_trace_finish(struct dig_trace *trace);

@@ -236,7 +236,7 @@ static enum dig_status put_digs(FILE *const to, const struct page *const page,
 
 static void put_next(FILE *const to, const struct page *const page)
 {
-    if (page->trace->advice[0] == '\0' && page->subject->command == NULL) {
+    if (page->trace->advice[0] == '\0' && page->trace->command[0] == '\0') {
         return;
     }
     (void)fputs("<h2>What to do next</h2>\n", to);
@@ -245,9 +245,9 @@ static void put_next(FILE *const to, const struct page *const page)
         dig_html_text(to, page->trace->advice);
         (void)fputs("</p>\n", to);
     }
-    if (page->subject->command != NULL) {
-        (void)fputs("<pre>", to);
-        dig_html_text(to, page->subject->command);
+    if (page->trace->command[0] != '\0') {
+        (void)fputs("<p>A table with it in its beds:</p>\n<pre>", to);
+        dig_html_text(to, page->trace->command);
         (void)fputs("</pre>\n", to);
     }
 }

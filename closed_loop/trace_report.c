@@ -171,6 +171,8 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     put_candidates(to, trace);
     (void)fputs(" \"advice\": ", to);
     put_string(to, trace->advice);
+    (void)fputs(",\n \"command\": ", to);
+    put_string(to, trace->command);
     (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
                 "±0.16 s\"}\n",
                 to);
@@ -280,5 +282,8 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
                   trace->noise_floor, trace->p_complete, trace->false_alarm);
     if (trace->advice[0] != '\0') {
         (void)fprintf(to, "  next: %s\n", trace->advice);
+    }
+    if (trace->command[0] != '\0') {
+        (void)fprintf(to, "\nA table with it in its beds:\n\n%s", trace->command);
     }
 }

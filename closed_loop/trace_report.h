@@ -15,7 +15,6 @@
 struct dig_trace_subject {
     const char                 *campaign; // folder or title, for people
     const char                 *table;    // file
-    const char                 *command;  // that serves on with what was found; NULL: none
     const struct dig_curve_set *set;      // whose trajectories the digs are of
     size_t                      digs;     // as traced
     const struct dig_measured  *measured; // [digs]

@@ -90,6 +90,7 @@ static struct example *make(void)
         .holdouts      = 1,
         .digs          = DIGS,
         .curves        = e->curves,
+        .command       = "cat >g.yaml <<'END'\npoints: []\nEND\n",
         .advice        = "dig \"simpleB\" & see <again>",
     };
     (void)snprintf(e->unlisted.depends_on, sizeof e->unlisted.depends_on, "speed and depth");
@@ -98,7 +99,6 @@ static struct example *make(void)
     e->subject                        = (struct dig_trace_subject){
                                .campaign = "pit <7>",
                                .table    = "rig.sqlite",
-                               .command  = "digsightd -c c.yaml",
                                .set      = e->set,
                                .digs     = DIGS,
                                .measured = e->measured,
@@ -163,6 +163,7 @@ static void json_holds_the_keys_of_the_contract(void **state)
     char *const           text = json_of(&e->trace);
     expect(text, "significant", "true");
     expect(text, "applied", "true");
+    expect(text, "command", "cat >g.yaml <<'END'\npoints: []\nEND\n");
     expect(text, "noise_floor", "0.11");
     expect(text, "material.density_kgpm3.value", "2431");
     expect(text, "material.friction.low", "0.44");
@@ -250,6 +251,8 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_contains(text, "error before unknown: no holdout dig");
     assert_null(strstr(text, "not applied"));
     assert_contains(text, "next: dig \"simpleB\"");
+    // To be pasted: each line where a shell wants it.
+    assert_contains(text, "\n\ncat >g.yaml <<'END'\npoints: []\nEND\n");
     free(text);
     drop(e);
 }
@@ -303,7 +306,7 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     assert_contains(page, "dig \"simpleB\" &amp; see &lt;again&gt;");
     assert_contains(page, "cohesion, ground_slope");
     assert_contains(page, "noise floor 0.110");
-    assert_contains(page, "digsightd -c c.yaml");
+    assert_contains(page, "<pre>cat &gt;g.yaml &lt;&lt;'END'\npoints: []\nEND\n</pre>");
     size_t pictures = 0;
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
         pictures++;
@@ -337,7 +340,7 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     e->trace.digs               = 0;
     e->trace.before.value       = (double)NAN;
     e->trace.advice[0]          = '\0';
-    e->subject.command          = NULL;
+    e->trace.command[0]         = '\0';
     assert_int_equal(dig_trace_html(&e->trace, &e->subject, path, &error), DIG_OK);
     size_t      size = 0;
     char *const page = scratch_read(path, &size);

@@ -9,7 +9,7 @@ data=$PWD/tests/data/liggghts_more
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-trace() { # GRAVEL: all its beds, into $work/GRAVEL.json
+trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
     local role=identify simple
     mkdir -p "$work/$1"
     {
@@ -21,7 +21,7 @@ trace() { # GRAVEL: all its beds, into $work/GRAVEL.json
             role=fit
         done
     } >"$work/$1/campaign.yaml"
-    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" >/dev/null 2>"$work/err" || cat "$work/err"
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" "${@:2}" >"$work/$1.txt" 2>"$work/err" || cat "$work/err"
 }
 verdict() { tr -d ' \n' <"$work/$1.json" | sed -nE 's/.*"verdict":\[([^]]*)\].*/\1/p'; }
 number() { # GRAVEL KEY FIELD: a field of the first object of that key
@@ -33,7 +33,9 @@ for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
     check "$gravel: nothing is missing" [ "$(verdict "$gravel")" = '"none"' ]
 done
 
-trace slope_up
+# The table of effects is a copy, for the command that the report prints is run below.
+cp "${table%.sqlite}_effects.sqlite" "$work/effects.sqlite"
+trace slope_up --effects "$work/effects.sqlite"
 check "ground that rises by 8 degrees is a slope" [ "$(verdict slope_up)" = '"ground_slope"' ]
 check "... of 8 degrees, within its interval" within 8 "$(number slope_up slope_deg low)" "$(number slope_up slope_deg high)"
 check "... which is narrower than 5 degrees" within \
@@ -43,6 +45,21 @@ check "... and of 2500 kg/m3, within its interval" within 2500 \
     "$(number slope_up density_kgpm3 low)" "$(number slope_up density_kgpm3 high)"
 check "... which is narrower than a quarter" within "$(awk -v l="$(number slope_up density_kgpm3 low)" \
     -v h="$(number slope_up density_kgpm3 high)" 'BEGIN { print (h - l) / 2500 }')" 0.02 0.25
+
+# The command, pasted as it stands; digtable gets no time, so it reads the grid and the table and stops.
+sed -n '/^cat >/,/^digtable/p' "$work/slope_up.txt" >"$work/paste.sh"
+ln -s "$PWD/config" "$work/config"
+digtable() { "$bin/digtable" "$@" -j 1 --time-limit 0; }
+paste() (
+    bin=$(realpath "$BIN")
+    cd "$work" || exit
+    # shellcheck disable=SC1091 # written above
+    . ./paste.sh
+)
+check "the report prints a digtable command" eval '[ "$(grep -c "^digtable generate " "$work/paste.sh")" = 1 ]'
+check "... that digtable takes as it stands" paste 2>"$work/err"
+check "... for beds with the slope found" eval 'grep -q "8 digs" "$work/err" && grep -qE "ground_slope, magnitudes: \[[-0-9.]+\]" "$work/effects_grid.yaml"'
+check "nothing is asked for where nothing is missing" eval '! grep -q digtable "$work/mu0.4_mur0.6_rho2000.txt"'
 
 # Cohesion of this size and a gravel of more rolling friction dig alike: no claim is made.
 trace cohesion

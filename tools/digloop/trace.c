@@ -5,6 +5,7 @@
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/next_table.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -112,6 +113,12 @@ enum dig_status digloop_trace(const struct digloop_options *const options,
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", options->recording[0], why.text);
         }
+    }
+    if (status == DIG_OK) {
+        char beside[DIGLOOP_PATH_SIZE];
+        name_effects(options->table, beside);
+        status = digloop_next_table(options, set, path[0] != '\0' ? path : beside, campaign.digs,
+                                    campaign.measured, trace, error);
     }
     if (status == DIG_OK) {
         status = write_results(options, set, path, &campaign, trace, error);

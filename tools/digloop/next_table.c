@@ -1,0 +1,173 @@
+#include "tools/digloop/next_table.h"
+
+#include "core/sha256.h"
+#include "files/campaign_yaml.h"
+#include "files/scene_yaml.h"
+#include "offline_dem/variant.h"
+#include "tables/scene.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PACKINGS = 4, CANONICAL_SIZE = 16384 };
+
+struct work {
+    struct dig_campaign campaign;
+    struct dig_scene    own, file, varied; // the table's, a file's, with an effect in it
+    char                text[CANONICAL_SIZE];
+};
+
+// Appends, as far as there is room.
+__attribute__((format(printf, 2, 3))) static void add(struct dig_trace *const trace,
+                                                      const char *const       format, ...)
+{
+    const size_t used = strlen(trace->command);
+    va_list      arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(trace->command + used, sizeof trace->command - used, format, arguments);
+    va_end(arguments);
+}
+
+// For a shell: as it stands, or between quotes.
+static void add_path(struct dig_trace *const trace, const char *const path)
+{
+    static const char plain[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-";
+    if (path[0] != '\0' && path[strspn(path, plain)] == '\0') {
+        add(trace, "%s", path);
+        return;
+    }
+    add(trace, "'");
+    for (const char *c = path; *c != '\0'; c++) {
+        add(trace, *c == '\'' ? "'\\''" : "%c", *c);
+    }
+    add(trace, "'");
+}
+
+// Three digits: what is behind them no fit knows.
+static double rounded(const double value)
+{
+    char text[32];
+    (void)snprintf(text, sizeof text, "%.3g", value);
+    return strtod(text, NULL);
+}
+
+// The magnitude of a bed like what was found. False: none can hold it.
+static bool magnitude_of(const struct dig_model_effect *const effect, struct work *const w,
+                         double *const magnitude)
+{
+    // A rock that lies elsewhere has a place in place of a size.
+    if (dig_variant_unit(effect->effect) == NULL || effect->parameters == 0 ||
+        strcmp(effect->parameter[0].name, "ahead_m") == 0) {
+        return false;
+    }
+    const double found = effect->parameter[0].value;
+    *magnitude = effect->effect == DIG_EFFECT_COMPACTION ? fmax(round(found), 1.0) : rounded(found);
+    return dig_variant_make(&w->own, effect->effect, *magnitude, &w->varied, NULL) == DIG_OK;
+}
+
+static bool is_scene_of(const struct dig_curve_set *const set, const char *const path,
+                        struct work *const w)
+{
+    char hash[sizeof set->scene_hash];
+    if (dig_scene_read(path, &w->file, NULL) != DIG_OK) {
+        return false;
+    }
+    const size_t length = dig_scene_canonical(&w->file, sizeof w->text, w->text);
+    if (length >= sizeof w->text) {
+        return false;
+    }
+    dig_sha256_hex(w->text, length, hash);
+    return strcmp(hash, set->scene_hash) == 0;
+}
+
+// A file that holds the table's own scene: the campaign's, or the one of its name that ships.
+static bool find_scene(const struct dig_curve_set *const set, const char *const folder,
+                       struct work *const w, const size_t size, char path[])
+{
+    if (dig_campaign_read(folder, &w->campaign, NULL) == DIG_OK &&
+        is_scene_of(set, w->campaign.scene, w)) {
+        (void)snprintf(path, size, "%s", w->campaign.scene);
+        return true;
+    }
+    (void)snprintf(path, size, "config/scenes/%s.yaml", set->scene_name);
+    return is_scene_of(set, path, w);
+}
+
+static void add_trajectories(const struct dig_curve_set *const set, const size_t digs,
+                             const struct dig_measured measured[], struct dig_trace *const trace)
+{
+    bool dug[DIG_TRAJECTORY_MAX] = { false };
+    bool first                   = true;
+    for (size_t i = 0; i < digs; i++) {
+        dug[measured[i].trajectory] = true;
+    }
+    add(trace, "trajectories: [");
+    for (size_t t = 0; t < set->trajectories; t++) {
+        if (dug[t]) {
+            add(trace, "%s%s", first ? "" : ", ", set->trajectory[t].name);
+            first = false;
+        }
+    }
+    add(trace, "]\n");
+}
+
+static void add_grid(const struct dig_curve_set *const set, const size_t digs,
+                     const struct dig_measured measured[], struct work *const w,
+                     struct dig_trace *const trace)
+{
+    add(trace, "cat >effects_grid.yaml <<'END'\npoints:\n  - {friction: %.3g, rolling: %.3g, ",
+        trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING]);
+    add(trace, "density_kgpm3: %.0f, packings: %d}\n", trace->gravel.value[DIG_AXIS_DENSITY_kgpm3],
+        PACKINGS);
+    add_trajectories(set, digs, measured, trace);
+    add(trace, "effects:\n");
+    for (size_t e = 0; e < trace->effects; e++) {
+        double magnitude;
+        if (magnitude_of(&trace->effect[e], w, &magnitude)) {
+            add(trace, "  - {name: %s, magnitudes: [%.6g]}\n",
+                dig_effect_name(trace->effect[e].effect), magnitude);
+        }
+    }
+    add(trace, "END\n");
+}
+
+enum dig_status digloop_next_table(const struct digloop_options *const options,
+                                   const struct dig_curve_set *const set, const char *const effects,
+                                   const size_t digs, const struct dig_measured measured[],
+                                   struct dig_trace *const trace, struct dig_error *const error)
+{
+    assert(options != NULL && set != NULL && effects != NULL && trace != NULL);
+    struct work *const w = calloc(1, sizeof *w);
+    if (w == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    const enum dig_status status = dig_table_scene(options->table, &w->own, error);
+
+    size_t held = 0;
+    for (size_t e = 0; status == DIG_OK && !trace->no_air && e < trace->effects; e++) {
+        double magnitude;
+        held += magnitude_of(&trace->effect[e], w, &magnitude) ? 1 : 0;
+    }
+    if (held > 0) {
+        char       scene[DIGLOOP_PATH_SIZE];
+        const bool known  = find_scene(set, options->recording[0], w, sizeof scene, scene);
+        trace->command[0] = '\0';
+        add_grid(set, digs, measured, w, trace);
+        if (!known) {
+            add(trace, "# SCENE.yaml: the scene \"%s\" that the table was computed in\n",
+                w->own.name);
+        }
+        add(trace, "digtable generate ");
+        add_path(trace, known ? scene : "SCENE.yaml");
+        add(trace, " effects_grid.yaml -o ");
+        add_path(trace, effects);
+        add(trace, "\n");
+    }
+    free(w);
+    return status;
+}
