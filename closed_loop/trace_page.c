@@ -62,11 +62,13 @@ static void put_errors(FILE *const to, const struct dig_trace *const trace)
     }
     put_range(to, "before", "#c77f00", 24.0, scale, &trace->before);
     put_range(to, "after", "#1f5fa8", 62.0, scale, &trace->after);
-    (void)fprintf(to,
-                  "</svg></figure>\n<p class=muted>On %zu dig%s that took no part in the fit, with "
-                  "90 %% intervals over recordings. The floor is 1 σ of what the error would be if "
-                  "the model were complete. Both use the gravel refitted on the same digs.</p>\n",
-                  trace->holdouts, trace->holdouts == 1 ? "" : "s");
+    (void)fprintf(
+        to,
+        "</svg></figure>\n<p class=muted>On %zu dig%s that took no part in the fit%s. The "
+        "floor is 1 σ of what the error would be if "
+        "the model were complete. Both use the gravel refitted on the same digs.</p>\n",
+        trace->holdouts, trace->holdouts == 1 ? "" : "s",
+        trace->holdouts == 1 ? " (one dig: no interval)" : ", with 90 % intervals over recordings");
 }
 
 static void put_found(FILE *const to, const struct dig_trace *const trace)

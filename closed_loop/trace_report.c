@@ -235,14 +235,17 @@ void dig_trace_not_applied(const struct dig_trace *const trace, const size_t siz
     add(text, size, "; the prediction is not surely better for it, and stays as it was");
 }
 
+// An interval is drawn from recordings: of one there is none.
 static void put_error_line(FILE *const to, const char *const title,
-                           const struct dig_error_range *const range)
+                           const struct dig_error_range *const range, const size_t holdouts)
 {
-    if (isfinite(range->value)) {
+    if (!isfinite(range->value)) {
+        (void)fprintf(to, "  error %s unknown: no holdout dig\n", title);
+    } else if (holdouts == 1) {
+        (void)fprintf(to, "  error %s %.3f   one dig: no interval\n", title, range->value);
+    } else {
         (void)fprintf(to, "  error %s %.3f   90 %%: %.3f to %.3f\n", title, range->value,
                       range->low, range->high);
-    } else {
-        (void)fprintf(to, "  error %s unknown: no holdout dig\n", title);
     }
 }
 
@@ -274,8 +277,8 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
     (void)fprintf(to, "  gravel: friction %.3g, rolling %.3g, density %.4g kg/m3\n",
                   trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
                   trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
-    put_error_line(to, "before", &trace->before);
-    put_error_line(to, "after ", &trace->after);
+    put_error_line(to, "before", &trace->before, trace->holdouts);
+    put_error_line(to, "after ", &trace->after, trace->holdouts);
     (void)fprintf(to,
                   "  noise floor  %.3f   chance of such residuals if nothing were missing "
                   "%.3g, decided at %.3g\n",

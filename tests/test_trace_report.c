@@ -87,7 +87,7 @@ static struct example *make(void)
         .high          = { { 0.63, 0.66, 2800.0 } },
         .before        = { 0.31, 0.27, 0.36 },
         .after         = { 0.14, 0.12, 0.17 },
-        .holdouts      = 1,
+        .holdouts      = 2,
         .digs          = DIGS,
         .curves        = e->curves,
         .command       = "cat >g.yaml <<'END'\npoints: []\nEND\n",
@@ -241,6 +241,7 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_non_null(file);
     dig_trace_text(&e->trace, file);
     e->trace.before.value = (double)NAN;
+    e->trace.holdouts     = 1;
     dig_trace_text(&e->trace, file);
     assert_int_equal(fclose(file), 0);
     size_t      size = 0;
@@ -249,6 +250,7 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_contains(text, "cannot tell apart: cohesion, ground_slope");
     assert_contains(text, "error after  0.140   90 %: 0.120 to 0.170");
     assert_contains(text, "error before unknown: no holdout dig");
+    assert_contains(text, "error after  0.140   one dig: no interval");
     assert_null(strstr(text, "not applied"));
     assert_contains(text, "next: dig \"simpleB\"");
     // To be pasted: each line where a shell wants it.
@@ -278,9 +280,11 @@ static void what_is_named_and_not_applied_is_told(void **state)
     expect(json, "applied", "false");
     free(json);
     const char *const html = scratch_path("refused.html");
+    e->trace.holdouts      = 1;
     assert_int_equal(dig_trace_html(&e->trace, &e->subject, html, &error), DIG_OK);
     char *const page = scratch_read(html, &size);
     assert_contains(page, "named, not applied: cylinder_friction, unlisted;");
+    assert_contains(page, "On 1 dig that took no part in the fit (one dig: no interval).");
     free(page);
     // Nothing was found: nothing was refused either.
     char sentence[64];
@@ -306,6 +310,7 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     assert_contains(page, "dig \"simpleB\" &amp; see &lt;again&gt;");
     assert_contains(page, "cohesion, ground_slope");
     assert_contains(page, "noise floor 0.110");
+    assert_contains(page, "On 2 digs that took no part in the fit, with 90 % intervals");
     assert_contains(page, "<pre>cat &gt;g.yaml &lt;&lt;'END'\npoints: []\nEND\n</pre>");
     size_t pictures = 0;
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
