@@ -5,6 +5,7 @@
 
 hydraulic=$machine
 make_digs
+speed=$(slowed 4)
 machine=config/machines/rig_sensor.yaml
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" --truth "$work/truth.csv" \
     2>"$work/rig.err"
@@ -36,10 +37,10 @@ check "and from the daemon's log" near "$direct" "$(identify "$work/csv.lcm" --m
 
 # The same from a bus.
 config bus "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_sensor.yaml}}" \
-    "time_scale: 4"
+    "time_scale: $speed"
 log bus
 start "$work/rigbus.err" "$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
-    --modbus-tcp "127.0.0.1:$port" --speed 4 --start-delay 3
+    --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 3
 rig=$started
 sleep 0.5
 start "$work/bus.log" "$BIN/digsightd" -c "$work/bus.yaml"
@@ -47,9 +48,9 @@ daemon=$started
 wait "$rig"
 stop "$daemon"
 read_log bus
-check "from Modbus the gravel is identified, too" identified "$work/bus.txt"
-check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
-check "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
+check_timed "from Modbus the gravel is identified, too" identified "$work/bus.txt"
+check_timed "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
+check_timed "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
 
 refused() { # STATUS WORDS FILE: exit status 2, and the words in the file
     [ "$1" = 2 ] && grep -q "$2" "$3"
