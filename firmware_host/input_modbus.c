@@ -26,6 +26,7 @@ struct modbus_source {
     struct dig_modbus_address    address;
     const struct dig_signal_map *map;
     modbus_t                    *bus;
+    bool                         doubted; // serial: the next answer may be one that came too late
     // of each block
     int64_t next_ns[DIG_GROUPS_MAX];  // when the next poll is due
     int     failures[DIG_GROUPS_MAX]; // in a row
@@ -120,9 +121,12 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
     } else if (why == ETIMEDOUT) {
         atomic_fetch_add(&input->timeouts, 1);
     }
+    // A refusal is an answer; what did not come, or came damaged, may come yet.
+    if (s->address.host[0] == '\0' && (why == ETIMEDOUT || why >= EMBBADCRC)) {
+        s->doubted = true;
+    }
     const bool few = ++s->failures[block] < FAILURES_BORNE;
     if (borne && (few || can_be_spared(group))) {
-        (void)modbus_flush(s->bus);
         s->next_ns[block] += few ? 0 : SPARED_ns;
         if (why == ETIMEDOUT) {
             hear_nothing(input, block);
@@ -145,12 +149,14 @@ static size_t due(const struct modbus_source *const s)
     return block;
 }
 
+// What lies on the line before the question cannot be the answer to it.
 static int ask(const struct modbus_source *const s, const size_t block,
                uint16_t registers[const DIG_REGISTERS_MAX])
 {
     const struct dig_map_group *const group = &s->map->group[block];
-    const int                         first = (int)group->first_register;
-    const int                         count = (int)group->registers;
+    (void)modbus_flush(s->bus);
+    const int first = (int)group->first_register;
+    const int count = (int)group->registers;
     return group->function == 3 ? modbus_read_registers(s->bus, first, count, registers)
                                 : modbus_read_input_registers(s->bus, first, count, registers);
 }
@@ -173,6 +179,14 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     uint16_t registers[DIG_REGISTERS_MAX];
     if (ask(s, block, registers) != (int)group->registers) {
         return bear(input, block, error);
+    }
+    // An answer on a serial line does not say which question it belongs to: after one that failed
+    // it may be that one's, from before.
+    if (s->doubted) {
+        s->doubted         = false;
+        s->failures[block] = 0;
+        atomic_fetch_add(&input->malformed, 1);
+        return DIG_OK;
     }
     struct dig_reading reading;
     dig_signal_map_registers(s->map, (unsigned)block, registers, dig_input_now_ns(), &reading);

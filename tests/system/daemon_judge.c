@@ -25,7 +25,7 @@
 #define ROWS    200000
 #define DIGS    64
 #define STEP_s  0.002
-#define RANGE_s 3.0
+#define RANGE_s 15.0
 
 struct row {
     double t_s, X_m, Z_m, phi_rad, My_Nm;

@@ -1,23 +1,30 @@
 #!/bin/bash
-# Modbus RTU over a pair of pseudo terminals.
+# Modbus RTU over a pair of pseudo terminals: a dig on a line that damages a tenth of the answers, and one
+# on a good line.
 . tests/system/daemon_lib.bash
 
 make_digs
+speed=$(slowed 4)
+series 2
 sed 's/^function: 4/function: 3/' config/signals/modbus_default.yaml >"$work/holding.yaml"
 config rtu "{kind: modbus-rtu, modbus: {device: $work/controller, baud: 115200, parity: none, poll_Hz: 200, map: holding.yaml}}" \
-    "time_scale: 4"
+    "time_scale: $speed"
 start "$work/socat.log" socat "pty,raw,echo=0,link=$work/controller" "pty,raw,echo=0,link=$work/rig"
 wait_for 5 test -e "$work/rig" -a -e "$work/controller"
 log rtu
 start "$work/daemon.log" "$BIN/digsightd" -c "$work/rtu.yaml"
 daemon=$started
-"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-rtu "$work/rig:115200" --speed 4 --start-delay 6 \
-    --json >"$work/rig.json" 2>"$work/rig.err"
-check "the rig served to its end" [ $? = 0 ]
+serve_series rtu --modbus-rtu "$work/rig:115200" --start-delay 6 --fault "$(fault corrupt=0.1 1)"
 stop "$daemon"
 check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
 read_log rtu
-check "the gravel is identified over RTU" identified "$work/rtu.txt"
+judge rtu
+f=$work/rtu.txt
+check_timed "the gravel is identified over RTU" identified "$f"
+check_timed "by the dig on the good line" [ "$(judged dig 6 "$(last health "$f" $h_digs)")" = 1 ]
+# The three bytes take the answer's place; what is left of it is no answer either, and the next one is doubted.
+check_timed "damaged answers are counted" eval '[ "$(rig modbus_damaged)" -ge 5 ] && within \
+    $(($(last health "$f" $h_malformed) + $(last health "$f" $h_timeouts))) "$(rig modbus_damaged)" $(($(rig modbus_damaged) * 4 + 10))'
 check "holding registers are read with function 3 when the map says so" \
-    grep -q '"modbus_served": {"3": [0-9]*}' "$work/rig.json"
+    grep -q '"modbus_served": {"3": [0-9]*}' "$work/rtu.json"
 finish
