@@ -198,6 +198,28 @@ static void silent_board_answers_nothing_and_speaks_again_later(void **state)
     assert_int_equal(rig.requests.unanswered, 1);
 }
 
+static void damaged_answers_are_refused_by_the_client_and_counted(void **state)
+{
+    (void)state;
+    struct rig rig;
+    uint16_t   read[12];
+    start_tcp(&rig);
+    modbus_t *const client = join(&rig);
+    dig_rig_board_behave(&rig.board, &(struct dig_rig_manner){ .corrupt = 1.0 });
+    for (int i = 0; i < 9; i++) {
+        assert_int_equal(modbus_read_input_registers(client, 0, 12, read), -1);
+        assert_int_equal(errno, EMBBADDATA);
+        (void)modbus_flush(client);
+    }
+    dig_rig_board_behave(&rig.board, &(struct dig_rig_manner){ .corrupt = 0.0 });
+    assert_int_equal(modbus_read_input_registers(client, 0, 12, read), 12);
+    assert_memory_equal(read, registers, sizeof read);
+    leave(client);
+    stop(&rig);
+    assert_int_equal(rig.requests.damaged, 9);
+    assert_int_equal(rig.requests.served[4], 1);
+}
+
 static void port_that_is_taken_and_addresses_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -364,6 +386,7 @@ int main(void)
         cmocka_unit_test(reads_outside_the_map_are_refused),
         cmocka_unit_test(several_clients_come_and_go_and_one_that_drops_stops_nobody),
         cmocka_unit_test(silent_board_answers_nothing_and_speaks_again_later),
+        cmocka_unit_test(damaged_answers_are_refused_by_the_client_and_counted),
         cmocka_unit_test(port_that_is_taken_and_addresses_that_are_none_are_refused),
         cmocka_unit_test(slave_1_on_a_serial_line_serves_reads_and_refuses_writes),
     };

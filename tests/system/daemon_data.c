@@ -1,6 +1,8 @@
 // What the daemon's system tests dig in: a table and two digs of a made-up soil whose curves are
 // formulas, so that no DEM is needed and the truth is known.
 //   daemon_data SCENE.yaml OUTDIR     writes OUTDIR/table.sqlite, simpleA.csv, actual.csv
+//   daemon_data SCENE.yaml OUTDIR other
+//       writes OUTDIR/other.sqlite alone: the same soil, in 27 other gravels
 //   daemon_data SCENE.yaml OUTDIR ways
 //       writes OUTDIR/ways.sqlite, of simpleA dug at several depths and attacks, and deep.csv and
 //       far.csv, in the table's depths and beyond
@@ -112,6 +114,23 @@ static enum dig_status fill(struct dig_store *const store, const struct dig_scen
     return status;
 }
 
+static enum dig_status fill_other(struct dig_store *const       store,
+                                  const struct dig_scene *const scene,
+                                  struct dig_error *const       error)
+{
+    static const double mu[] = { 0.25, 0.55, 0.85 }, rho[] = { 1400.0, 2000.0, 2600.0 };
+    enum dig_status     status = DIG_OK;
+    for (size_t i = 0; status == DIG_OK && i < 3 * 3 * 3 * 3 * scene->trajectories; i++) {
+        const struct dig_run_origin key = {
+            .gravel     = { { mu[i % 3], mu[i / 3 % 3], rho[i / 9 % 3] } },
+            .packing    = i / 27 % 3,
+            .trajectory = i / 81,
+        };
+        status = put(store, &scene->trajectory[key.trajectory], &key, false, error);
+    }
+    return status;
+}
+
 // simpleA at a cross of depths and attacks, in four gravels, two packings where it is plain, 2 % to
 // either side.
 static enum dig_status fill_ways(struct dig_store *const store, const struct dig_scene *const scene,
@@ -183,25 +202,29 @@ static enum dig_status write_digs(const struct dig_scene *const scene, const cha
 
 int main(const int argc, char *argv[])
 {
-    const bool ways = argc == 4 && strcmp(argv[3], "ways") == 0;
-    if (argc != 3 && !ways) {
-        (void)fprintf(stderr, "usage: daemon_data SCENE.yaml OUTDIR [ways]\n");
+    const char *const which = argc == 4 ? argv[3] : "table";
+    const bool        ways  = strcmp(which, "ways") == 0;
+    const bool        other = strcmp(which, "other") == 0;
+    if (argc != 3 && !(argc == 4 && (ways || other))) {
+        (void)fprintf(stderr, "usage: daemon_data SCENE.yaml OUTDIR [ways|other]\n");
         return 2;
     }
     struct dig_error  error = { "" };
     struct dig_scene  scene;
     struct dig_store *store = NULL;
     char              path[4096];
-    (void)snprintf(path, sizeof path, "%.4000s/%s.sqlite", argv[2], ways ? "ways" : "table");
+    (void)snprintf(path, sizeof path, "%.4000s/%s.sqlite", argv[2], which);
     enum dig_status status = dig_scene_read(argv[1], &scene, &error);
     if (status == DIG_OK) {
         status = dig_store_create(path, &scene, &store, &error);
     }
     if (status == DIG_OK) {
-        status = ways ? fill_ways(store, &scene, &error) : fill(store, &scene, &error);
+        status = ways    ? fill_ways(store, &scene, &error)
+                 : other ? fill_other(store, &scene, &error)
+                         : fill(store, &scene, &error);
     }
     dig_store_close(store);
-    if (status == DIG_OK) {
+    if (status == DIG_OK && !other) {
         status = write_digs(&scene, argv[2], ways, &error);
     }
     if (status != DIG_OK) {

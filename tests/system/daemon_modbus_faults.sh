@@ -4,7 +4,8 @@
 . tests/system/daemon_lib.bash
 
 make_digs
-speed=4
+"$helpers/daemon_data" "$scene" "$work" other >>"$work/data.log" 2>&1
+speed=$(slowed 4)
 series 6
 config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: $speed
@@ -16,7 +17,8 @@ log tcp
 start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started
 wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
-# The table it runs on: cut off, asked for, refused; put back, asked for, taken; removed.
+# The table it runs on: cut off, asked for, refused; put back, asked for, taken; another one in its place,
+# asked for in a dig; removed.
 (
     sleep 3
     cp "$work/table.sqlite" "$work/good.sqlite"
@@ -26,7 +28,10 @@ wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
     sleep 2
     cp "$work/good.sqlite" "$work/table.sqlite"
     kill -HUP "$daemon"
-    sleep 12
+    sleep "$(awk -v c="${contacts[1]}" -v speed="$speed" 'BEGIN { print (c + 3) / speed }')"
+    cp "$work/other.sqlite" "$work/table.sqlite"
+    kill -HUP "$daemon"
+    sleep 4
     rm "$work/table.sqlite"
 ) &
 tables=$!
@@ -40,14 +45,15 @@ read_log tcp
 f=$work/tcp.txt
 judge tcp
 digs_told=$(last health "$f" $h_digs)
-check "the digs after the faults identify the gravel" \
+check_timed "the digs after the faults identify the gravel" \
     [ "$(judged dig 6 "$digs_told")$(judged dig 6 $((digs_told - 1)))" = 11 ]
-check "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
+check_timed "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
 check "exceptions are counted" [ "$(last health "$f" $h_malformed)" = "$(rig modbus_excepted)" ]
 check "a table that is cut off is refused, and said" \
     eval '[ "$(last health "$f" $h_reloads_refused)" = 1 ] && grep -q "reload refused, the table before stays: .*table.sqlite" "$work/tcp.log"'
-check "a good one is taken without a gap" \
-    eval '[ "$(last health "$f" $h_reloads)" = 1 ] && grep -q "table exchanged: scene rig" "$work/tcp.log"'
+check "a good one is taken without a gap, and so is another one in its place" \
+    eval '[ "$(last health "$f" $h_reloads)" = 2 ] &&
+          [ "$(sed -nE "s/.*table exchanged: scene rig .*, ([0-9]+) gravels/\1/p" "$work/tcp.log" | tr "\n" " ")" = "18 27 " ]'
 check "a match that cannot be kept is said, and stands" grep -q "full/match.json" "$work/tcp.log"
 check "nothing was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 
@@ -66,12 +72,18 @@ wait_for 30 grep -q "serving" "$work/rig1.err"
 sleep "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
 stop "$first" KILL
 check "a server that went away is said" wait_for 5 grep -q "127.0.0.1:$port: " "$work/gone.log"
-serve_series gone --modbus-tcp "127.0.0.1:$port"
-stop "$daemon"
 read_log gone
-f=$work/gone.txt
+judge gone
+check_timed "it went away in a dig" eval '[ "$(awk '"'"'$1 == "estimate" { phase = $3 } END { print phase }'"'"' "$work/gone.txt")" = 2 ]'
+check "which is no whole dig" [ "$(last health "$work/gone.txt" $h_matches)" = 0 ]
+log back
+serve_series back --modbus-tcp "127.0.0.1:$port" --start-delay 6
+stop "$daemon"
+read_log back
+judge back
+f=$work/back.txt
 check "the server is found again" within "$(last health "$f" $h_reconnects)" 1 100
-check "the gravel is identified after that" identified "$f"
+check_timed "the gravel is identified after that" identified "$f"
 
 start "$work/again.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started

@@ -11,8 +11,9 @@
 //   drop=0.1@5:2        that share of frames is lost, of requests is not answered
 //   duplicate=0.1@5:2   CAN: that share of frames is sent twice
 //   reorder=0.1@5:2     CAN: that share of frames is sent after the next of its kind
-//   corrupt=0.1@5:2     that share of frames has one bit flipped; RTU: rubbish goes before the
-//   answer delay=0.05@5:2      CAN: frames are held back and sent in bursts, every so many seconds
+//   corrupt=0.1@5:2     that share of frames has one bit flipped; RTU: rubbish goes before that
+//                       share of answers; TCP: they are answers to another request
+//   delay=0.05@5:2      CAN: frames are held back and sent in bursts, every so many seconds
 //   exception=0.1@5:2   Modbus: that share of requests is answered with exception 6, busy
 //   slow=0.1@5:2        Modbus: every answer comes that many (real) seconds late
 //   far@5:2             Modbus: requests of registers from 1000 on get exception 6

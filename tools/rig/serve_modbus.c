@@ -77,6 +77,30 @@ static struct dig_rig_modbus *create(struct dig_rig_board *const board, modbus_t
     return server;
 }
 
+// On a serial line what a disturbed one would bring before the answer; over TCP, whose own checksum
+// lets no flipped bit through, an answer that is not one to this request: of another transaction,
+// of another function, or of one register where more were asked for. True: it stands for the
+// answer.
+static bool damage(const struct dig_rig_modbus *const server, const uint8_t request[])
+{
+    const int line = modbus_get_socket(server->context);
+    if (server->listening < 0) {
+        static const uint8_t rubbish[] = { 0x01, 0x04, 0x55 };
+        (void)write(line, rubbish, sizeof rubbish);
+        return false;
+    }
+    uint8_t answer[] = {
+        request[0], request[1], 0, 0, 0, 5, request[6], request[7], 2, 0x12, 0x34
+    };
+    switch (server->requests.damaged % 3) {
+    case 0: answer[1] ^= 0x55; break;
+    case 1: answer[7] ^= 0x07; break;
+    default: break;
+    }
+    (void)send(line, answer, sizeof answer, MSG_NOSIGNAL);
+    return true;
+}
+
 // What a fault makes of a request: true when it is not to be answered as it should.
 static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[], const bool far)
 {
@@ -96,12 +120,9 @@ static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request
                                      MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
         return true;
     }
-    // On a serial line: what a disturbed one would bring.
-    if (manner.corrupt > 0.0 && server->listening < 0 &&
-        dig_rig_wire_random(&server->random) < manner.corrupt) {
-        static const uint8_t rubbish[] = { 0x01, 0x04, 0x55 };
+    if (manner.corrupt > 0.0 && dig_rig_wire_random(&server->random) < manner.corrupt) {
         server->requests.damaged++;
-        (void)write(modbus_get_socket(server->context), rubbish, sizeof rubbish);
+        return damage(server, request);
     }
     return false;
 }
