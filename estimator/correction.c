@@ -107,3 +107,25 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
     }
     return status;
 }
+
+enum dig_status dig_correction_take(const struct dig_machine *const    machine,
+                                    const struct dig_correction *const correction,
+                                    struct dig_taken *const            taken)
+{
+    assert(machine != NULL && taken != NULL);
+    struct dig_taken made = { .corrects = false };
+    if (correction != NULL) {
+        const enum dig_status status = dig_correction_check(machine, correction);
+        if (status != DIG_OK) {
+            return status;
+        }
+        // Of a force sensor's rig there is nothing to correct, or it was refused.
+        made.corrects = !machine->sensor.fitted;
+    }
+    if (made.corrects) {
+        made.correction = *correction;
+        made.machine    = dig_correction_machine(machine, correction);
+    }
+    *taken = made;
+    return DIG_OK;
+}

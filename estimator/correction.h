@@ -72,4 +72,17 @@ bool dig_correction_is_geometric(const struct dig_correction *correction);
 struct dig_machine dig_correction_drawn(const struct dig_machine    *corrected,
                                         const struct dig_correction *correction);
 
+/// A machine as it is taken to be: made where there is time, copied where there is none.
+struct dig_taken {
+    bool                  corrects; // false: as its file says; then the rest is zero
+    struct dig_correction correction;
+    struct dig_machine    machine; // with it
+};
+
+/// correction NULL, or of a rig with a force sensor: as its file says. Errors and cost as
+/// dig_correction_check(); then nothing is written.
+DIG_MUST_CHECK enum dig_status dig_correction_take(const struct dig_machine    *machine,
+                                                   const struct dig_correction *correction,
+                                                   struct dig_taken            *taken);
+
 #endif // DIG_ESTIMATOR_CORRECTION_H

@@ -349,26 +349,32 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     }
 }
 
+void dig_estimator_take(struct dig_estimator *const estimator, const struct dig_taken *const taken)
+{
+    assert(estimator != NULL && taken != NULL && dig_estimator_is_idle(estimator));
+    struct dig_taken *const before = &estimator->taken;
+    if (taken->corrects == before->corrects &&
+        memcmp(&taken->correction, &before->correction, sizeof before->correction) == 0) {
+        return;
+    }
+    if (taken->corrects && !before->corrects) {
+        estimator->rates = (struct dig_rates_filter){ .window_s = rates_window_s };
+    }
+    *before = *taken;
+
+    dig_phase_forget(&estimator->phase);
+}
+
 enum dig_status dig_estimator_correct(struct dig_estimator *const        estimator,
                                       const struct dig_correction *const correction)
 {
     assert(estimator != NULL);
-    if (correction == NULL) {
-        estimator->corrects = false;
-        return DIG_OK;
+    struct dig_taken      taken;
+    const enum dig_status status = dig_correction_take(estimator->machine, correction, &taken);
+    if (status == DIG_OK) {
+        dig_estimator_take(estimator, &taken);
     }
-    const enum dig_status status = dig_correction_check(estimator->machine, correction);
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (estimator->machine->sensor.fitted) {
-        return DIG_OK; // nothing to correct, or it was refused
-    }
-    estimator->corrects   = true;
-    estimator->correction = *correction;
-    estimator->corrected  = dig_correction_machine(estimator->machine, correction);
-    estimator->rates      = (struct dig_rates_filter){ .window_s = rates_window_s };
-    return DIG_OK;
+    return status;
 }
 
 // The wrench of a rig by its force sensor, inertia taken off. A number that is not finite must not
@@ -394,7 +400,7 @@ static enum dig_status solve(struct dig_estimator *const e, const struct dig_sam
     if (e->machine->sensor.fitted) {
         return solve_sensed(e, sample, wrench, front);
     }
-    if (!e->corrects) {
+    if (!e->taken.corrects) {
         return dig_wrench_solve(e->machine, sample, wrench, front);
     }
     if (!dig_sample_has_moment(sample)) {
@@ -409,14 +415,14 @@ static enum dig_status solve(struct dig_estimator *const e, const struct dig_sam
     rates =
         dig_rates_step(&e->rates, sample->time_ns, now_rad,
                        dig_reading_sigma(e->machine->angle_step_rad, e->machine->angle_sigma_rad));
-    const double delay_s = e->correction.delay_s;
+    const double delay_s = e->taken.correction.delay_s;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const double back_rad =
             delay_s * (rates.velocity_radps[j] - 0.5 * delay_s * rates.acceleration_radps2[j]);
         at.value[DIG_SIGNAL_BOOM_rad + j] -= back_rad;
         rates.velocity_radps[j] -= delay_s * rates.acceleration_radps2[j];
     }
-    return dig_wrench_correct(&e->corrected, &e->correction, &at, &rates, wrench, front);
+    return dig_wrench_correct(&e->taken.machine, &e->taken.correction, &at, &rates, wrench, front);
 }
 
 enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,

@@ -148,14 +148,20 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
                                                   const struct dig_estimator_settings *settings);
 
 struct dig_correction; // estimator/correction.h
+struct dig_taken;
 
-/// From now on the machine is taken as corrected, and its links' inertia is taken off with rates
-/// from the angles of the last quarter second. The machine's geometry, weights and inertias are the
-/// corrected ones; a delay puts the pose back to the time of the pressures. NULL: as its file says,
-/// without inertia. DIG_EINVAL, DIG_EUNREACHABLE as dig_correction_check(); then nothing changes.
-/// Between ticks; about a millisecond.
+/// While idle, from now on the machine is taken as corrected, and its links' inertia is taken off
+/// with rates from the angles of the last quarter second. The machine's geometry, weights and
+/// inertias are the corrected ones; a delay puts the pose back to the time of the pressures. NULL:
+/// as its file says, without inertia. DIG_EINVAL, DIG_EUNREACHABLE as dig_correction_check(); then
+/// nothing changes. Between ticks; about a millisecond.
 DIG_MUST_CHECK enum dig_status dig_estimator_correct(struct dig_estimator        *estimator,
                                                      const struct dig_correction *correction);
+
+/// The same with a machine made before, of the one it was initialised with: a copy of two
+/// kilobytes. Where it is another than before, what was learnt of the moment in free air is
+/// forgotten; where it is the same, nothing changes.
+void dig_estimator_take(struct dig_estimator *estimator, const struct dig_taken *taken);
 
 /// One tick. DIG_ESTALE: a sample without a moment or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but

@@ -18,9 +18,7 @@ struct dig_estimator {
     struct dig_estimator_settings settings;
     double                        lambda;
     struct dig_route              route[DIG_TRAJECTORY_MAX];
-    bool                          corrects;
-    struct dig_correction         correction;
-    struct dig_machine            corrected; // the machine with it
+    struct dig_taken              taken; // the machine as a model corrects it
 
     // of the last quarter second, while it corrects; of a tenth where a force sensor tells
     struct dig_rates_filter rates;

@@ -89,3 +89,11 @@ void dig_phase_end(struct dig_phase_state *const state)
     enter(state, DIG_PHASE_EXIT);
     state->done = true;
 }
+
+void dig_phase_forget(struct dig_phase_state *const state)
+{
+    assert(state != NULL);
+    state->filtered_Nm = 0.0;
+    state->bias_Nm     = 0.0;
+    state->held_s      = 0.0;
+}

@@ -38,4 +38,7 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state              *state,
 /// until the moment has gone, and cannot fall back to DIG.
 void dig_phase_end(struct dig_phase_state *state);
 
+/// Forgets what was learnt of the moment, as it is another one from now on; the phase stays.
+void dig_phase_forget(struct dig_phase_state *state);
+
 #endif // DIG_ESTIMATOR_PHASE_H

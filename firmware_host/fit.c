@@ -289,14 +289,15 @@ static bool has_same_digs(const struct dig_curve_set *const a, const struct dig_
     return same;
 }
 
-// The table the configuration names now. All is checked before anything changes; a gravel that is
-// known stays known where the new table holds it.
+// The table and the model the configuration names now. All is checked before anything changes; a
+// gravel that is known stays known where the new table holds it.
 static void reload(struct dig_fit *const fit)
 {
-    struct dig_error      error  = { "" };
-    struct dig_curve_set *set    = NULL;
-    enum dig_status       status = dig_load_table(fit->config_path, fit->machine, &set, &error);
-    status                       = status == DIG_OK ? check_table(fit, set, &error) : status;
+    struct dig_error      error = { "" };
+    struct dig_curve_set *set   = NULL;
+    struct dig_taken      taken;
+    enum dig_status status = dig_load_table(fit->config_path, fit->machine, &set, &taken, &error);
+    status                 = status == DIG_OK ? check_table(fit, set, &error) : status;
     if (status != DIG_OK) {
         char text[200];
         dig_curve_set_destroy(set);
@@ -306,8 +307,9 @@ static void reload(struct dig_fit *const fit)
         atomic_fetch_add(&fit->reloads_refused, 1);
         return;
     }
-    fit->retiring = fit->set;
-    fit->set      = set;
+    fit->retiring     = fit->set;
+    fit->set          = set;
+    fit->next.machine = taken;
     dig_matcher_take_up(&fit->matcher, set);
     fit->generation++;
     fit->lambda = fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;

@@ -135,25 +135,31 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
 }
 
 enum dig_status dig_load_table(const char *const path, const struct dig_machine *const machine,
-                               struct dig_curve_set **const set, struct dig_error *const error)
+                               struct dig_curve_set **const set, struct dig_taken *const taken,
+                               struct dig_error *const error)
 {
-    assert(path != NULL && machine != NULL && set != NULL);
+    assert(path != NULL && machine != NULL && set != NULL && taken != NULL);
     struct dig_config     config;
-    struct dig_curve_set *loaded = NULL;
-    enum dig_status       status = dig_config_read(path, &config, error);
+    struct dig_correction correction;
+    struct dig_taken      made;
+    bool                  corrects = false;
+    struct dig_curve_set *loaded   = NULL;
+    enum dig_status       status   = dig_config_read(path, &config, error);
     status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
     status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
     if (status == DIG_OK && config.model.text[0] != '\0') {
-        struct dig_correction unused; // the machine is fixed at start
-        bool                  corrects;
-        status = dig_load_model(config.model.text, config.table.text, machine, loaded, &unused,
+        status = dig_load_model(config.model.text, config.table.text, machine, loaded, &correction,
                                 &corrects, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_correction_take(machine, corrects ? &correction : NULL, &made);
     }
     if (status != DIG_OK) {
         dig_curve_set_destroy(loaded);
         return status;
     }
-    *set = loaded;
+    *set   = loaded;
+    *taken = made;
     return DIG_OK;
 }
 

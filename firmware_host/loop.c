@@ -78,7 +78,7 @@ static void share_estimate(struct dig_loop *const loop)
     }
 }
 
-// A gravel at once; another table only while no dig goes on.
+// A gravel at once; another table and machine only while no dig goes on.
 static void take_offers(struct dig_loop *const loop)
 {
     const struct dig_offer *const offer = dig_latest_look(loop->ports.offer);
@@ -92,6 +92,7 @@ static void take_offers(struct dig_loop *const loop)
     const struct dig_offer *const table = dig_latest_look(loop->ports.table);
     if (table != NULL) {
         dig_estimator_adopt(loop->estimator, table->set);
+        dig_estimator_take(loop->estimator, &table->machine);
         dig_estimator_give_forecast(loop->estimator, table->known ? &table->forecast : NULL);
         loop->set              = table->set;
         loop->offer            = table;

@@ -4,11 +4,13 @@
 // ticks (reading the clock is a vDSO call, and the thread's CPU time one call more).
 //
 // What takes long is the matcher's: a finished dig leaves as it was recorded, in memory the matcher
-// lends; what a gravel will resist with comes back computed. A table is exchanged between two digs.
+// lends; what a gravel will resist with comes back computed. A table, and with it the machine's
+// correction, is exchanged between two digs.
 
 #ifndef DIG_FIRMWARE_HOST_LOOP_H
 #define DIG_FIRMWARE_HOST_LOOP_H
 
+#include "estimator/correction.h"
 #include "estimator/estimator.h"
 #include "firmware_host/assemble.h"
 #include "firmware_host/handoff.h"
@@ -51,9 +53,10 @@ struct dig_outlook {
 };
 
 /// What the matcher tells the tick: the table that digs are told by, the gravel they are predicted
-/// for.
+/// for; with another table, how the machine is taken to be from then on.
 struct dig_offer {
     const struct dig_curve_set *set;
+    struct dig_taken            machine;
     int64_t                     generation; // of the table, counted from 1
     bool                        known;      // a gravel is
     bool                        outside;    // it is none of the table's
