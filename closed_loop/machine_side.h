@@ -30,7 +30,8 @@ struct dig_machine_finding {
     double                   p_complete;
     bool                     no_air;       // in the recordings: nothing was traced
     double                   residual_air; // rms over the rms expected
-    size_t                   effects;      // found, most certain first
+    double                   residual_air_of[DIG_MEASURED_MAX]; // the same dig by dig; NaN: no air
+    size_t                   effects;                           // found, most certain first
     struct dig_model_effect  effect[DIG_MODEL_EFFECTS_MAX];
     size_t                   candidates;
     struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first

@@ -41,6 +41,7 @@ struct search {
     double           rest2_none; // without any effect, not linear
     double           rest2;      // with the set, not linear, rows as far as they are trusted
     double           slow;       // of it, in the means of segments: chi-squared
+    double           none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
 };
 
 static void search_finish(struct search *const s)
@@ -154,10 +155,33 @@ static enum dig_status begin(struct search *const s)
     return status == DIG_OK ? dig_lines_judge(&s->lines, &s->slow) : status;
 }
 
+// What is left of the rows of each dig where the lines stand, for a report.
+static enum dig_status rest_by_dig(struct search *const s)
+{
+    double *const   rest                    = malloc((s->air.rows + 1) * sizeof *rest);
+    double          count[DIG_MEASURED_MAX] = { 0.0 };
+    double          sum[DIG_MEASURED_MAX]   = { 0.0 };
+    enum dig_status status =
+        rest != NULL ? dig_lines_rest(&s->lines, s->lines.at, rest) : DIG_ENOMEM;
+    for (size_t r = 0; r < s->air.rows && status == DIG_OK; r++) {
+        const size_t d = s->air.segment[s->air.row[r].segment].dig;
+        sum[d] += pow(s->lines.trust[r] * rest[r], 2.0);
+        count[d] += 1.0;
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        s->none_of[d] = count[d] > 0.0 ? sqrt(sum[d] / count[d]) : (double)NAN;
+    }
+    free(rest);
+    return status;
+}
+
 // Effects join until none earns its place.
 static enum dig_status select_effects(struct search *const s)
 {
     enum dig_status status = begin(s);
+    if (status == DIG_OK) {
+        status = rest_by_dig(s);
+    }
     if (status != DIG_OK) {
         return status;
     }
@@ -340,6 +364,9 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
                                                  .no_air       = true,
                                                  .residual_air = (double)NAN };
+        for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+            finding->residual_air_of[d] = (double)NAN;
+        }
         search_finish(&s);
         return DIG_OK;
     }
@@ -355,7 +382,8 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
 
         *finding              = (struct dig_machine_finding){ .unexplained = unclear };
         finding->residual_air = sqrt(s.rest2_none / rows);
-        finding->significant  = s.set != 0 || unclear;
+        memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
+        finding->significant = s.set != 0 || unclear;
         bootstrap(&s, seed, inclusion);
         write_candidates(&s, inclusion, finding);
         if (!unclear) {

@@ -93,11 +93,11 @@ static void draw_scatter(const struct dig_batch *const batch, const size_t g, ui
     dig_batch_whiten(group, feature, y);
 }
 
-// Fills drawn with digs that the fitted hypothesis might have made.
-static void draw_batch(const struct dig_batch *const batch, const struct dig_soil *const soil,
-                       const struct dig_fitted *const fitted, uint64_t *const seed,
-                       struct dig_batch *const drawn)
+void dig_null_digs(const struct dig_batch *const batch, const struct dig_soil *const soil,
+                   const struct dig_fitted *const fitted, uint64_t *const seed,
+                   struct dig_batch *const drawn)
 {
+    assert(batch != NULL && fitted != NULL && seed != NULL && drawn != NULL);
     double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
     for (size_t g = 0; g < batch->groups; g++) {
         draw_scatter(batch, g, seed, common[g]);
@@ -141,7 +141,7 @@ enum dig_status dig_null_draw(const struct dig_batch *const  batch,
     double          squares[3] = { 0.0 };
     for (size_t d = 0; d < draws; d++) {
         struct dig_statistic s;
-        draw_batch(batch, soil, fitted, seed, drawn);
+        dig_null_digs(batch, soil, fitted, seed, drawn);
         dig_null_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number, false, again,
                      &s);
         const double value[3] = { s.misfit, s.about, s.gain };

@@ -36,6 +36,10 @@ void dig_null_fit(const struct dig_batch *batch, const struct dig_soil *soil,
                   const struct dig_hypothesis rival[], const double start[], bool thorough,
                   struct dig_fitted fitted[], struct dig_statistic *statistic);
 
+/// Draws the digs of one campaign from fitted into drawn, which is a copy of batch.
+void dig_null_digs(const struct dig_batch *batch, const struct dig_soil *soil,
+                   const struct dig_fitted *fitted, uint64_t *seed, struct dig_batch *drawn);
+
 /// Draws from fitted and fits again, draws times. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_null_draw(const struct dig_batch  *batch,
                                              const struct dig_soil   *soil,

@@ -2,6 +2,7 @@
 
 #include "closed_loop/consequence.h"
 #include "closed_loop/judge.h"
+#include "closed_loop/residuals.h"
 #include "closed_loop/trace_parts.h"
 #include "closed_loop/trace_verdict.h"
 #include "closed_loop/trace_work.h"
@@ -27,6 +28,7 @@ void dig_trace_finish(struct dig_trace *const trace)
     if (trace != NULL) {
         free(trace->unlisted);
         free(trace->curves);
+        free(trace->residuals);
         memset(trace, 0, sizeof *trace);
     }
 }
@@ -220,6 +222,12 @@ static enum dig_status report(const struct dig_tracing *const      t,
         dig_trace_fill_curves(t, trace->unlisted, trace->curves);
         drop_what_is_not_worth_it(t, w, trace);
         fill_errors(t, w, trace);
+        trace->residuals = malloc(sizeof *trace->residuals);
+        status = trace->residuals != NULL ? dig_residuals_make(t, machine != NULL ? w->air : NULL,
+                                                               trace->curves, trace->residuals)
+                                          : DIG_ENOMEM;
+    }
+    if (status == DIG_OK) {
         dig_trace_advise(t, trace);
         advise_on_size(w, trace);
         dig_trace_advise_on_air(w, trace);

@@ -52,6 +52,8 @@ struct dig_trace_curves {
     double after[DIG_CHANNELS][DIG_CURVE_POINTS], after_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
 };
 
+struct dig_residuals; // closed_loop/residuals.h
+
 struct dig_trace {
     bool   significant;
     double p_complete;                 // chance of residuals this large if nothing were missing
@@ -82,6 +84,7 @@ struct dig_trace {
 
     size_t                   digs;
     struct dig_trace_curves *curves;      // [digs], in the campaign's order; malloc'ed
+    struct dig_residuals    *residuals;   // dig by dig; malloc'ed; NULL: not worked out
     char                     advice[512]; // which dig or table would tell more, for people
     char command[4096]; // shell lines that make that table: of who knows its files; "": none
 };

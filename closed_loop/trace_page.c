@@ -1,5 +1,6 @@
 #include "closed_loop/html.h"
 #include "closed_loop/plot.h"
+#include "closed_loop/residual_report.h"
 #include "closed_loop/trace_report.h"
 
 #include <assert.h>
@@ -281,6 +282,10 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
         return status;
     }
     put_residuals(to, page->trace);
+    const enum dig_status left = dig_residuals_html(page->trace->residuals, to, error);
+    if (left != DIG_OK) {
+        return left;
+    }
     put_candidates(to, page->trace);
     put_next(to, page);
     (void)fputs("<footer>Error: relative Euclidean norm of the moment over rig time from contact "

@@ -1,6 +1,7 @@
 #include "closed_loop/trace_parts.h"
 
 #include "closed_loop/judge.h"
+#include "closed_loop/state.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -35,13 +36,11 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
 static bool is_lifting(const struct dig_curve_set *const set, const size_t trajectory,
                        const size_t bin)
 {
-    const struct dig_trajectory *const t = &set->trajectory[trajectory];
-    size_t                             from;
-    size_t                             to;
+    size_t from;
+    size_t to;
     dig_feature_bin(bin, &from, &to);
-    const double middle = 0.5 * (double)(from + to - 1) / (DIG_CURVE_POINTS - 1);
-    const size_t phase  = dig_trajectory_phase(t, dig_trajectory_time_s(t, set->tooth_m, middle));
-    return phase + 1 == t->phases && t->phase[phase].vz_mps > 0.0;
+    return dig_state_is_lifted(set, trajectory,
+                               0.5 * (double)(from + to - 1) / (DIG_CURVE_POINTS - 1));
 }
 
 // Sums squares over the scatter's by part: what[] is in units of the table.

@@ -1,5 +1,8 @@
 #include "closed_loop/trace_report.h"
 
+#include "closed_loop/json.h"
+#include "closed_loop/residual_report.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdarg.h>
@@ -12,48 +15,16 @@ const char *dig_part_name(const enum dig_part part)
     return name[part];
 }
 
-// JSON knows no NaN: what is not known is null.
-static void put_number(FILE *const to, const double value)
-{
-    if (isfinite(value)) {
-        (void)fprintf(to, "%.6g", value);
-    } else {
-        (void)fputs("null", to);
-    }
-}
-
-static void put_member(FILE *const to, const char *const before, const char *const name,
-                       const double value)
-{
-    (void)fprintf(to, "%s\"%s\": ", before, name);
-    put_number(to, value);
-}
-
-static void put_string(FILE *const to, const char *const text)
-{
-    (void)fputc('"', to);
-    for (const char *c = text; *c != '\0'; c++) {
-        if (*c == '"' || *c == '\\') {
-            (void)fprintf(to, "\\%c", *c);
-        } else if ((unsigned char)*c < 0x20U) {
-            (void)fprintf(to, "\\u%04x", (unsigned)*c);
-        } else {
-            (void)fputc(*c, to);
-        }
-    }
-    (void)fputc('"', to);
-}
-
 static void put_parameters(FILE *const to, const size_t n,
                            const struct dig_model_parameter parameter[])
 {
     (void)fputs("\"parameters\": {", to);
     for (size_t p = 0; p < n; p++) {
         (void)fputs(p == 0 ? "" : ", ", to);
-        put_string(to, parameter[p].name);
-        put_member(to, ": {", "value", parameter[p].value);
-        put_member(to, ", ", "low", parameter[p].low);
-        put_member(to, ", ", "high", parameter[p].high);
+        dig_json_string(to, parameter[p].name);
+        dig_json_member(to, ": {", "value", parameter[p].value);
+        dig_json_member(to, ", ", "low", parameter[p].low);
+        dig_json_member(to, ", ", "high", parameter[p].high);
         (void)fputs("}", to);
     }
     (void)fputs("}", to);
@@ -89,11 +60,11 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
         const struct dig_model_effect *const effect = &trace->effect[e];
         (void)fprintf(to, "%s\n  {\"name\": \"%s\"", e == 0 ? "" : ",",
                       dig_effect_name(effect->effect));
-        put_member(to, ", ", "probability", effect->probability);
+        dig_json_member(to, ", ", "probability", effect->probability);
         (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(trace->seen_in[e]));
         if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
             (void)fputs("\"depends_on\": ", to);
-            put_string(to, trace->unlisted->depends_on);
+            dig_json_string(to, trace->unlisted->depends_on);
             (void)fputs(", ", to);
         }
         put_parameters(to, effect->parameters, effect->parameter);
@@ -107,15 +78,15 @@ static void put_material(FILE *const to, const struct dig_trace *const trace)
     (void)fputs(" \"material\": {", to);
     for (int a = 0; a < DIG_AXES; a++) {
         (void)fprintf(to, "%s\"%s\": ", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a));
-        put_member(to, "{", "value", trace->gravel.value[a]);
-        put_member(to, ", ", "low", trace->low.value[a]);
-        put_member(to, ", ", "high", trace->high.value[a]);
+        dig_json_member(to, "{", "value", trace->gravel.value[a]);
+        dig_json_member(to, ", ", "low", trace->low.value[a]);
+        dig_json_member(to, ", ", "high", trace->high.value[a]);
         (void)fputs("}", to);
     }
     (void)fputs("},\n \"material_before\": {", to);
     for (int a = 0; a < DIG_AXES; a++) {
-        put_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
-                   trace->gravel_before.value[a]);
+        dig_json_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                        trace->gravel_before.value[a]);
     }
     (void)fputs("},\n", to);
 }
@@ -124,9 +95,9 @@ static void put_error(FILE *const to, const char *const name,
                       const struct dig_error_range *const range)
 {
     (void)fprintf(to, " \"%s\": ", name);
-    put_member(to, "{", "holdout", range->value);
-    put_member(to, ", ", "low", range->low);
-    put_member(to, ", ", "high", range->high);
+    dig_json_member(to, "{", "holdout", range->value);
+    dig_json_member(to, ", ", "low", range->low);
+    dig_json_member(to, ", ", "high", range->high);
     (void)fputs("},\n", to);
 }
 
@@ -136,10 +107,10 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
     for (size_t i = 0; i < trace->candidates; i++) {
         const struct dig_candidate *const c = &trace->candidate[i];
         (void)fprintf(to, "%s\n  {\"name\": \"%s\"", i == 0 ? "" : ",", dig_effect_name(c->effect));
-        put_member(to, ", ", "log_evidence", c->log_evidence);
-        put_member(to, ", ", "p_fit", c->p_fit);
-        put_member(to, ", ", "inclusion", c->inclusion);
-        put_member(to, ", ", "error", c->error);
+        dig_json_member(to, ", ", "log_evidence", c->log_evidence);
+        dig_json_member(to, ", ", "p_fit", c->p_fit);
+        dig_json_member(to, ", ", "inclusion", c->inclusion);
+        dig_json_member(to, ", ", "error", c->error);
         (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(c->seen_in));
         put_parameters(to, c->parameters, c->parameter);
         (void)fputs("}", to);
@@ -151,9 +122,9 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
     (void)fprintf(to, "{\"significant\": %s", trace->significant ? "true" : "false");
-    put_member(to, ", ", "p_complete", trace->p_complete);
-    put_member(to, ", ", "false_alarm", trace->false_alarm);
-    put_member(to, ", ", "noise_floor", trace->noise_floor);
+    dig_json_member(to, ", ", "p_complete", trace->p_complete);
+    dig_json_member(to, ", ", "false_alarm", trace->false_alarm);
+    dig_json_member(to, ", ", "noise_floor", trace->noise_floor);
     (void)fputs(",\n ", to);
     put_verdict(to, trace);
     (void)fprintf(to, " \"applied\": %s,\n", trace->applied ? "true" : "false");
@@ -165,14 +136,16 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     (void)fprintf(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
                   trace->holdouts);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
-        put_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p), trace->residual[p]);
+        dig_json_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p),
+                        trace->residual[p]);
     }
     (void)fprintf(to, "}, \"no_air\": %s,\n", trace->no_air ? "true" : "false");
     put_candidates(to, trace);
+    dig_residuals_json(trace->residuals, to);
     (void)fputs(" \"advice\": ", to);
-    put_string(to, trace->advice);
+    dig_json_string(to, trace->advice);
     (void)fputs(",\n \"command\": ", to);
-    put_string(to, trace->command);
+    dig_json_string(to, trace->command);
     (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
                 "±0.16 s\"}\n",
                 to);

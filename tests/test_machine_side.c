@@ -228,6 +228,17 @@ static void a_machine_as_its_file_says_raises_no_alarm(void **state)
         assert_false(c->finding.unexplained);
         assert_int_equal(c->finding.effects, 0);
         assert_close(c->finding.residual_air, 0.9, 0.15);
+        double squares = 0.0;
+        double digs    = 0.0;
+        for (int d = 0; d < DIGS; d++) {
+            const bool traced = c->measured[d].use != DIG_USE_HOLDOUT;
+            assert_true(isnan(c->finding.residual_air_of[d]) == !traced);
+            squares += traced ? pow(c->finding.residual_air_of[d], 2.0) : 0.0;
+            digs += traced ? 1.0 : 0.0;
+        }
+        // Digs have nearly as much air each.
+        assert_close(sqrt(squares / digs) / c->finding.residual_air, 1.0, 0.02);
+        assert_true(isnan(c->finding.residual_air_of[DIGS]));
         for (int d = 0; d < DIGS; d++) {
             assert_close(c->measured[d].pace, 1.0, 0.01);
             assert_true(c->measured[d].measured[DIG_CHANNEL_FX_N]);

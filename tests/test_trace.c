@@ -1,8 +1,11 @@
 #include "closed_loop/trace.h"
 
+#include "closed_loop/residuals.h"
+
 #include "tests/model_front.h"
 #include "tests/world_fixture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +54,46 @@ static void adding_the_effect_makes_the_holdout_better(void **state)
     assert_true(trace.after.value < 2.0 * trace.noise_floor);
     assert_true(isnan(trace.residual[DIG_PART_AIR]));
     assert_true(trace.candidate[0].effect == DIG_EFFECT_LAYERING);
+    dig_trace_finish(&trace);
+}
+
+// Of two holdouts: the root of the mean square of their own errors, as near as they are of one
+// size.
+static void what_is_left_is_told_dig_by_dig(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_COHESION, 0.8, 31);
+    (void)snprintf(measured[5].name, sizeof measured[5].name, "five.csv");
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    const struct dig_residuals *const r = trace.residuals;
+    assert_non_null(r);
+    assert_int_equal(r->digs, DIGS);
+    assert_string_equal(r->dig[5].name, "five.csv");
+    assert_string_equal(r->dig[5].trajectory, "actual");
+    assert_int_equal(r->dig[5].use, DIG_USE_HOLDOUT);
+    double before = 0.0;
+    double after  = 0.0;
+    for (size_t i = 5; i < DIGS; i += 2) {
+        for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {
+            before += pow(r->dig[i].before[p][DIG_CHANNEL_MY_Nm].relative, 2.0) / 2.0;
+            after += pow(r->dig[i].after[p][DIG_CHANNEL_MY_Nm].relative, 2.0) / 2.0;
+        }
+        assert_true(isnan(r->dig[i].air_sigmas));
+    }
+    assert_close(sqrt(before) / trace.before.value, 1.0, 0.02);
+    assert_close(sqrt(after) / trace.after.value, 1.0, 0.02);
+    // Not white without cohesion, white with it; and the digs say where along the path it shows:
+    // the sine that it is made of falls from its first quarter to its third.
+    assert_true(r->without.p <= 0.01);
+    assert_true(r->with.p > 0.05);
+    assert_int_equal(r->without.digs, DIGS - 2);
+    assert_true(r->known[DIG_CHANNEL_MY_Nm] && r->known[DIG_CHANNEL_FZ_N]);
+    const struct dig_trend *const path = &r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PATH];
+    assert_true(path->slope < 0.0 && path->p < 0.01);
+    assert_int_equal(path->bin[0].digs, DIGS - 2);
+    assert_true(isnan(r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PASS].slope));
     dig_trace_finish(&trace);
 }
 
@@ -162,6 +205,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(adding_the_effect_makes_the_holdout_better),
+        cmocka_unit_test(what_is_left_is_told_dig_by_dig),
         cmocka_unit_test(without_an_effect_before_and_after_are_the_same),
         cmocka_unit_test(what_has_no_name_is_corrected_all_the_same),
         cmocka_unit_test(the_machines_share_is_the_machines),

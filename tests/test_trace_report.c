@@ -2,6 +2,7 @@
 
 #include "closed_loop/trace_report.h"
 
+#include "closed_loop/residual_report.h"
 #include "files/yaml_tree.h"
 #include "tests/made_table.h"
 #include "tests/scratch.h"
@@ -15,6 +16,7 @@ struct example {
     struct dig_trace_curves   curves[DIGS];
     struct dig_measured       measured[DIGS];
     struct dig_model_unlisted unlisted;
+    struct dig_residuals      residuals;
     struct dig_curve_set     *set;
     struct dig_trace_subject  subject;
 };
@@ -43,6 +45,47 @@ static void fill_digs(struct example *const e)
             e->curves[d].after_sd[DIG_CHANNEL_MY_Nm][k] = 0.1 * y;
         }
     }
+}
+
+static struct dig_residual left(const double rms)
+{
+    return (struct dig_residual){ rms, rms / 4.0, 5.0 * rms };
+}
+
+// Two digs: of the second, a holdout that was not lifted, the moment alone was measured.
+static void fill_residuals(struct dig_residuals *const r)
+{
+    const struct dig_residual none = left((double)NAN);
+    r->digs                        = 2;
+    for (size_t i = 0; i < r->digs; i++) {
+        struct dig_residuals_dig *const dig = &r->dig[i];
+        for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                const bool known  = p != DIG_PART_AIR && (i == 0 || (c == 0 && p == DIG_PART_SOIL));
+                dig->before[p][c] = known ? left(0.5 * (double)(c + 1)) : none;
+                dig->after[p][c]  = known ? left(0.125 * (double)(c + 1)) : none;
+            }
+        }
+        dig->air_sigmas = i == 0 ? 2.5 : (double)NAN;
+        dig->use        = i == 0 ? DIG_USE_FIT : DIG_USE_HOLDOUT;
+        dig->pass       = (unsigned)i + 1;
+        (void)snprintf(dig->name, sizeof dig->name, "dig <%zu>.csv", i + 1);
+        (void)snprintf(dig->trajectory, sizeof dig->trajectory, "simpleA");
+    }
+    r->known[DIG_CHANNEL_MY_Nm] = true;
+    for (int s = 0; s < DIG_STATES; s++) {
+        r->trend[DIG_CHANNEL_MY_Nm][s] = (struct dig_trend){
+            .slope       = s == DIG_STATE_PASS ? (double)NAN : 0.5,
+            .low         = s == DIG_STATE_PASS ? (double)NAN : 0.25,
+            .high        = s == DIG_STATE_PASS ? (double)NAN : 0.75,
+            .correlation = s == DIG_STATE_PASS ? (double)NAN : 0.375,
+            .p           = s == DIG_STATE_PASS ? (double)NAN : 0.002,
+            .bins        = 2,
+            .bin         = { { 0.25, -0.125, 0.0625, 2 }, { 0.75, 0.125, (double)NAN, 1 } },
+        };
+    }
+    r->without = (struct dig_whiteness){ 2, 24.5, 20.0, 30.0, 9.0, 0.005 };
+    r->with    = (struct dig_whiteness){ 2, 8.5, 8.0, 9.0, 9.25, 0.5 };
 }
 
 // On the heap: the curves are large.
@@ -91,6 +134,7 @@ static struct example *make(void)
         .digs          = DIGS,
         .curves        = e->curves,
         .command       = "cat >g.yaml <<'END'\npoints: []\nEND\n",
+        .residuals     = &e->residuals,
         .advice        = "dig \"simpleB\" & see <again>",
     };
     (void)snprintf(e->unlisted.depends_on, sizeof e->unlisted.depends_on, "speed and depth");
@@ -104,6 +148,7 @@ static struct example *make(void)
                                .measured = e->measured,
     };
     fill_digs(e);
+    fill_residuals(&e->residuals);
     return e;
 }
 
@@ -175,6 +220,14 @@ static void json_holds_the_keys_of_the_contract(void **state)
     assert_contains(text, "\"indistinguishable\": [[\"cohesion\", \"ground_slope\"]]");
     assert_contains(text, "\"seen_in\": \"air\", \"parameters\": {\"coulomb_N\": {\"value\": 812, "
                           "\"low\": 760, \"high\": 861}}");
+    expect(text, "whiteness.without.p", "0.005");
+    expect(text, "whiteness.with.expected", "9.25");
+    assert_contains(text, "{\"file\": \"dig <2>.csv\", \"trajectory\": \"simpleA\", \"role\": "
+                          "\"holdout\", \"pass\": 2, \"air\": {\"sigmas\": null}");
+    assert_contains(text,
+                    "\"fz_N\": {\"before\": {\"rms\": 1.5, \"relative\": 0.375, \"sigmas\": 7.5}, "
+                    "\"after\": {\"rms\": 0.375,");
+    assert_contains(text, "{\"of\": \"moment_Nm\", \"against\": \"depth_m\", \"slope\": 0.5,");
     free(text);
     drop(e);
 }
@@ -190,6 +243,8 @@ static void no_effect_is_the_verdict_none_and_no_holdout_is_null(void **state)
     expect(text, "error_after.holdout", "null");
     expect(text, "significant", "false");
     expect(text, "no_air", "false");
+    expect(text, "whiteness", "null");
+    assert_contains(text, "\"residuals\": [],\n \"residual_against\": [],");
     free(text);
     trace.no_air      = true;
     char *const blind = json_of(&trace);
@@ -316,7 +371,12 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
         pictures++;
     }
-    assert_int_equal(pictures, DIGS + 1);
+    // The error, each dig, and the residual over path and depth.
+    assert_int_equal(pictures, 1 + DIGS + 2);
+    assert_contains(page, "<th>dig &lt;1&gt;.csv</th><td>fit</td><td>moment</td><td>2.5</td>");
+    assert_contains(page, "it is not white");
+    assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
+    assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
     // Namespaces are names; anything else with a scheme would be fetched.
     for (const char *at = page; (at = strstr(at, "://")) != NULL; at++) {
         if (strncmp(at, "://www.w3.org/", 14) != 0) {
@@ -343,6 +403,7 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     e->trace.candidates         = 0;
     e->trace.sets               = 0;
     e->trace.digs               = 0;
+    e->trace.residuals          = NULL;
     e->trace.before.value       = (double)NAN;
     e->trace.advice[0]          = '\0';
     e->trace.command[0]         = '\0';
@@ -351,6 +412,7 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     char *const page = scratch_read(path, &size);
     assert_contains(page, "No dig was held out");
     assert_null(strstr(page, "What to do next"));
+    assert_null(strstr(page, "Residual dig by dig"));
     free(page);
     assert_int_equal(dig_trace_html(&e->trace, &e->subject, scratch_path("no/such.html"), &error),
                      DIG_EIO);

@@ -1,0 +1,115 @@
+#include "closed_loop/portmanteau.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 6, DRAWS = 99 };
+
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+static struct made_world       world;
+static struct dig_soil        *soil;
+static struct dig_batch       *batch;
+static struct dig_measured    *measured;
+
+static int make(void **state)
+{
+    (void)state;
+    world    = made_world(5);
+    measured = calloc(DIGS, sizeof *measured);
+    batch    = malloc(sizeof *batch);
+    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    free(batch);
+    free(measured);
+    made_world_finish(&world);
+    return 0;
+}
+
+// Three simple and three real digs of a gravel that coheres, which none of the table does.
+static struct dig_whiteness judge(const double magnitude, uint64_t seed)
+{
+    const enum dig_effect_id cohesion = DIG_EFFECT_COHESION;
+    bool                     take[DIGS];
+    double                   place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &cohesion,
+                               &magnitude, &seed);
+        take[i]     = true;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    const struct dig_hypothesis none                          = { .effects = 0 };
+    double                      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_fitted           plain;
+    struct dig_whiteness        white = { .digs = 77 };
+    memcpy(start, place, sizeof place);
+    dig_hypothesis_fit(batch, soil, &none, start, true, &plain);
+    assert_int_equal(dig_portmanteau_judge(batch, soil, &plain, DRAWS, seed, &white), DIG_OK);
+    assert_int_equal(white.digs, DIGS);
+    return white;
+}
+
+// Worked out on paper: r = -9/10, 8/10, -7/10; 10 * 12 * (.81 / 9 + .64 / 8 + .49 / 7).
+static void numbers_that_alternate_are_28_point_8(void **state)
+{
+    (void)state;
+    const double z[] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
+    assert_close(dig_portmanteau(10, z), 28.8, 1e-9);
+    // One that stands alone is correlated with nothing; scale does not matter.
+    const double lone[] = { 0.0, 0.0, 5.0, 0.0, 0.0 };
+    const double pair[] = { 2.0, 2.0 };
+    const double same[] = { 7.0, 7.0 };
+    assert_close(dig_portmanteau(5, lone), 0.0, 0.0);
+    assert_close(dig_portmanteau(2, pair), 2.0 * 4.0 * 0.25, 1e-12);
+    assert_close(dig_portmanteau(2, same), dig_portmanteau(2, pair), 1e-12);
+    assert_close(dig_portmanteau(1, pair), 0.0, 0.0);
+    assert_close(dig_portmanteau(0, NULL), 0.0, 0.0);
+}
+
+static void digs_that_lack_nothing_are_white(void **state)
+{
+    (void)state;
+    enum { CAMPAIGNS = 40 };
+    int small = 0;
+    int large = 0;
+    for (uint64_t c = 0; c < CAMPAIGNS; c++) {
+        const struct dig_whiteness w = judge(0.0, 100 + c);
+        small += w.p < 0.1 ? 1 : 0;
+        large += w.p > 0.5 ? 1 : 0;
+        assert_true(w.low <= w.statistic && w.statistic <= w.high);
+    }
+    // Binomial: 4 of 40 expected below .1, more than 11 with a chance below 1e-3; 20 above .5,
+    // fewer than 10 or more than 30 likewise.
+    assert_true(small <= 11);
+    assert_true(large >= 10 && large <= 30);
+}
+
+static void what_lasts_along_the_dig_is_not_white(void **state)
+{
+    (void)state;
+    for (uint64_t c = 0; c < 5; c++) {
+        const struct dig_whiteness w = judge(0.8, 200 + c);
+        assert_true(w.p <= 0.05);
+        assert_true(w.statistic > w.expected);
+        assert_true(w.low < w.high);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_that_alternate_are_28_point_8),
+        cmocka_unit_test(digs_that_lack_nothing_are_white),
+        cmocka_unit_test(what_lasts_along_the_dig_is_not_white),
+    };
+    return cmocka_run_group_tests_name("portmanteau", tests, make, clean);
+}
