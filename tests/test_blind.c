@@ -253,6 +253,15 @@ static void the_pool_holds_whole_beds_of_known_gravel(void **state)
         }
     }
     assert_true(plain >= 3);
+    size_t both[2] = { 0, 0 };
+    for (size_t g = 0; g < pool.groups; g++) {
+        const struct blind_group *const group = &pool.group[g];
+        const bool                      rock  = strcmp(group->effect, "obstacle") == 0;
+        if (strcmp(group->source, "ours") == 0 && (rock || group->effect[0] == '\0')) {
+            both[rock] += blind_group_has(group, BLIND_OTHER_SIMPLE) ? 1 : 0;
+        }
+    }
+    assert_true(both[0] > 0 && both[1] == 0); // no card digs a rock
     blind_pool_finish(&pool);
 }
 

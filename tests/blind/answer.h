@@ -21,8 +21,8 @@ struct blind_result {
     char                 why[160]; // when it was not traced
     char                 source[16];
     struct dig_gravel    gravel;
-    double               magnitude; // of a pool effect
-    bool                 by_machine;
+    double               magnitude;                // of a pool effect
+    bool                 by_machine, other_simple; // some simple digs along the other path
     size_t               digs;
     struct blind_truth   truth;
     struct blind_verdict verdict;

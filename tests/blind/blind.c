@@ -272,6 +272,9 @@ static struct blind_result play(const struct bench *const       bench,
     r.magnitude  = c->group->magnitude;
     r.by_machine = c->by_machine;
     r.digs       = c->digs;
+    for (size_t d = 0; d < c->digs; d++) {
+        r.other_simple = r.other_simple || c->dig[d].path == BLIND_OTHER_SIMPLE;
+    }
     if (blind_oracle_judge(bench->oracle, c, &r.truth) != DIG_OK) {
         (void)snprintf(r.why, sizeof r.why, "the oracle has no gravel for it");
     } else if (bench->o.make_only) {

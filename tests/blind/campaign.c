@@ -108,6 +108,21 @@ static void draw_path(struct blind_campaign *const c, const enum blind_path path
     }
 }
 
+// In a third of the campaigns whose beds were dug along the other simple path too, every other
+// simple dig goes along it, or each.
+static void vary_path(struct blind_campaign *const c, const size_t simple,
+                      struct blind_draw *const draw)
+{
+    const double which = blind_uniform(draw);
+    const bool   can   = blind_group_has(c->group, BLIND_OTHER_SIMPLE) &&
+                     (c->plain == NULL || blind_group_has(c->plain, BLIND_OTHER_SIMPLE));
+    for (size_t i = 0; can && i < simple; i++) {
+        if (which < 1.0 / 6.0 || (which < 1.0 / 3.0 && i % 2 == 1)) {
+            c->dig[i].path = BLIND_OTHER_SIMPLE;
+        }
+    }
+}
+
 // Simple digs and real ones mixed, a simple one first that identifies, real ones last held out.
 static void draw_digs(struct blind_campaign *const c, struct blind_draw *const draw)
 {
@@ -115,6 +130,7 @@ static void draw_digs(struct blind_campaign *const c, struct blind_draw *const d
     const size_t simple = 2 + blind_below(draw, most - 1);
     const size_t actual = 2 + blind_below(draw, most - 1);
     draw_path(c, BLIND_SIMPLE, simple, draw);
+    vary_path(c, simple, draw);
     draw_path(c, BLIND_ACTUAL, actual, draw);
 
     size_t           index[BLIND_DIGS_MAX];
@@ -128,7 +144,7 @@ static void draw_digs(struct blind_campaign *const c, struct blind_draw *const d
     const double hurry = blind_between(draw, 1.4, 2.0);
     const bool   rates =
         has_rate(&c->order) || (c->order.kind == BLIND_NONE && blind_uniform(draw) < 0.15);
-    size_t turn[BLIND_PATHS] = { 0, 0 };
+    size_t turn[BLIND_PATHS] = { 0 };
     for (size_t d = 0; d < c->digs; d++) {
         c->dig[d] = as_drawn[index[d]];
         if (rates && turn[c->dig[d].path]++ % 2 == 1) {

@@ -205,6 +205,9 @@ static enum dig_status difference(const struct blind_oracle *const   o,
         struct blind_curve plain = without->y[p];
         double             a     = 0.0;
         double             b     = 0.0;
+        if (alone->digs[p] == 0) {
+            continue;
+        }
         if (in_pool) {
             const enum blind_path path   = (enum blind_path)p;
             enum dig_status       status = group_mean(o, c->group, path, -1, &there, &a);
@@ -231,6 +234,9 @@ static double floor_square(const struct blind_oracle *const o, const struct mean
     const struct blind_curve zero = { { 0.0 } };
     double                   sum  = 0.0;
     for (int p = 0; p < BLIND_PATHS; p++) {
+        if (m->digs[p] == 0) {
+            continue;
+        }
         const double one = apart(&o->weight[p], &at->sd[p], &zero);
         sum += (double)m->digs[p] * one * (1.0 / (double)m->digs[p] + at->inverse_packings[p]);
     }
@@ -249,7 +255,10 @@ static enum dig_status size_of(const struct blind_oracle *const   o,
     enum dig_status status = difference(o, c, e, alone, without, &d, &noise);
     for (int p = 0; p < BLIND_PATHS && c->plain != NULL && status == DIG_OK; p++) {
         double scatter = 0.0;
-        status         = group_mean(o, c->plain, (enum blind_path)p, -1, &base.y[p], &scatter);
+        if (without->digs[p] == 0) {
+            continue;
+        }
+        status = group_mean(o, c->plain, (enum blind_path)p, -1, &base.y[p], &scatter);
     }
     const struct point *const plain = status == DIG_OK ? nearest(o, &base, &least) : NULL;
     if (plain == NULL) {

@@ -16,7 +16,7 @@
 
 const char *blind_path_name(const enum blind_path path)
 {
-    static const char *const name[BLIND_PATHS] = { "simpleA", "actual" };
+    static const char *const name[BLIND_PATHS] = { "simpleA", "actual", "simpleB" };
     return name[path];
 }
 
@@ -256,7 +256,8 @@ static enum dig_status read_tables(const char *const folder, struct blind_pool *
     return status;
 }
 
-// Keeps beds dug along every path, in the order of their packings, whatever the folder's order.
+// Keeps beds dug along the first two paths, in the order of their packings, whatever the folder's
+// order.
 static void tidy(struct blind_group *const group)
 {
     size_t kept = 0;
@@ -270,8 +271,9 @@ static void tidy(struct blind_group *const group)
             }
             group->bed[at] = whole;
         } else {
-            dig_recording_finish(&bed->dig[BLIND_SIMPLE]);
-            dig_recording_finish(&bed->dig[BLIND_ACTUAL]);
+            for (int p = 0; p < BLIND_PATHS; p++) {
+                dig_recording_finish(&bed->dig[p]);
+            }
         }
     }
     group->beds = kept;
@@ -339,6 +341,15 @@ void blind_pool_finish(struct blind_pool *const pool)
     }
     free(pool->group);
     *pool = (struct blind_pool){ 0, NULL };
+}
+
+bool blind_group_has(const struct blind_group *const group, const enum blind_path path)
+{
+    bool all = group->beds > 0;
+    for (size_t b = 0; b < group->beds; b++) {
+        all = all && group->bed[b].dig[path].rows > 0;
+    }
+    return all;
 }
 
 const struct blind_group *blind_pool_plain(const struct blind_pool *const  pool,

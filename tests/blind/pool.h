@@ -11,8 +11,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// Trajectories the bench uses, in this order everywhere.
-enum blind_path { BLIND_SIMPLE, BLIND_ACTUAL, BLIND_PATHS };
+/// Trajectories the bench uses, in this order everywhere: a simple one, the real one, and another
+/// simple one that not all beds were dug along.
+enum blind_path { BLIND_SIMPLE, BLIND_ACTUAL, BLIND_OTHER_SIMPLE, BLIND_PATHS };
 
 const char *blind_path_name(enum blind_path path);
 
@@ -43,11 +44,14 @@ struct blind_pool {
 /// Reads the digs of LIGGGHTS under data/reference and data/liggghts_digs, and ours in
 /// data/blind/*.sqlite, as far as they are there; to judge with, also in data/blind/judge. A table
 /// there whose runs have no effect and whose file is not "plain" holds an effect of its file's
-/// name, up to a dash. Only beds dug along every path are kept.
+/// name, up to a dash. Only beds dug along the first two paths are kept.
 DIG_MUST_CHECK enum dig_status blind_pool_read(const char *data, bool to_judge,
                                                struct blind_pool *pool, struct dig_error *error);
 
 void blind_pool_finish(struct blind_pool *pool);
+
+/// Whether all beds of a group were dug along a path.
+bool blind_group_has(const struct blind_group *group, enum blind_path path);
 
 /// The plain group of that gravel and source, or NULL.
 const struct blind_group *blind_pool_plain(const struct blind_pool  *pool,

@@ -206,8 +206,11 @@ static void put_campaign(FILE *const to, const struct blind_result *const r)
     for (size_t e = 0; e < r->order.effects; e++) {
         (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ", r->order.effect[e].name);
     }
-    (void)fprintf(to, "], \"source\": \"%s\", \"machine\": %s, \"digs\": %zu, \"state\": %d",
-                  r->source, r->by_machine ? "true" : "false", r->digs, (int)r->state);
+    (void)fprintf(to,
+                  "], \"source\": \"%s\", \"machine\": %s, \"other_simple\": %s, \"digs\": %zu, "
+                  "\"state\": %d",
+                  r->source, r->by_machine ? "true" : "false", r->other_simple ? "true" : "false",
+                  r->digs, (int)r->state);
     for (size_t e = 0; e < r->order.effects; e++) {
         put_number(to, e == 0 ? "size" : "size2", r->truth.size[e]);
         put_number(to, e == 0 ? "size_air" : "size_air2", r->truth.size_air[e]);
