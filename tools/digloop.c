@@ -39,7 +39,7 @@ int main(const int argc, char *argv[])
         return 2;
     }
     struct dig_curve_set *set    = NULL;
-    enum dig_status       status = dig_table_load(options.table, &set, &error);
+    enum dig_status       status = digloop_input(dig_table_load(options.table, &set, &error));
     if (status == DIG_OK) {
         status = run(&options, set, &error);
     }

@@ -116,8 +116,19 @@ check "a recording without a dig is refused" refuses "air.csv" "digs in it: 0" -
 check "digloop without arguments is bad usage" refuses "expected a command" -- "$BIN/digloop"
 check "an unknown command is named" refuses "frobnicate" -- "$BIN/digloop" frobnicate "$table"
 check "a table that is none is named" refuses README.md -- "$BIN/digloop" identify README.md "$reference"__simpleA.csv
-check "a missing recording is named" \
-    eval '! "$BIN/digloop" identify "$table" "$work/none.csv" 2>"$work/err" && grep -q none.csv "$work/err"'
+simple=${reference}__simpleA.csv
+check "a missing recording is bad input, and named" refuses none.csv "No such file" -- "$BIN/digloop" identify "$table" "$work/none.csv"
+check "so is a missing table" refuses none.sqlite "No such file" -- "$BIN/digloop" identify "$work/none.sqlite" "$simple"
+check "... machine" refuses none.yaml "No such file" -- "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$work/none.yaml"
+check "... machine's recording or log" refuses none.lcm "No such file" -- "$BIN/digloop" identify "$table" "$work/none.lcm" --machine "$machine"
+check "... model" refuses none.json "No such file" -- "$BIN/digloop" identify "$table" "$simple" --model "$work/none.json"
+check "... identity" refuses none.json "No such file" -- "$BIN/digloop" predict "$table" --identified "$work/none.json" --trajectory actual -o "$work/never"
+check "... dig to compare with" refuses none.csv "No such file" -- \
+    "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --measured "$work/none.csv"
+check "... table of effects" refuses none.sqlite "No such file" -- "$BIN/digloop" design "$table" --effects "$work/none.sqlite"
+check "a folder is no recording" refuses "$work: Is a directory" -- "$BIN/digloop" identify "$table" "$work"
+"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/no/folder.csv" >"$work/out" 2>"$work/err"
+check "a file that cannot be written is a failure of the work" eval '[ $? = 1 ] && grep -q "no/folder.csv" "$work/err"'
 sed '3s/[^,]*$/x/' "$reference"__simpleA.csv >"$work/bad.csv"
 check "a bad number is named by file, line and column" \
     refuses "bad.csv:3" "Mz_Nm" "expected" -- "$BIN/digloop" identify "$table" "$work/bad.csv"
@@ -151,10 +162,10 @@ check "and kept in the identity" grep -qE '^ "depth": 1\.(09|10)[0-9]*, "attack_
 check "a prediction may be of a dig as deep, which is another" eval 'grep -q "\"depth\": 1.1, \"attack_deg\": 2" "$work/ways.out" && ! cmp -s <(tail -4 "$work/ways.out") <(tail -4 "$work/plain.out")'
 check "and is compared with a dig as it was made" eval '"$BIN/digloop" predict "$work/ways.sqlite" \
     --identified "$work/ways.json" --trajectory scrape --measured "$work/deep.csv" | grep -q "error against"'
-check "a depth off the table is no prediction" eval '! "$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" \
-    --trajectory scrape --depth 1.9 -o "$work/never" >"$work/out" 2>"$work/err" && grep -qE "scrape, depth 1.9, attack 0 deg: off the table by 0\.[0-9]+ bucket lengths" "$work/err" && [ ! -e "$work/never" ]'
-check "a table that was dug plainly alone has none" eval '! "$BIN/digloop" predict "$table" --identified "$work/id.json" \
-    --trajectory actual --depth 1.2 >"$work/out" 2>"$work/err" && grep -q "off the table" "$work/err"'
+check "a depth off the table is no prediction" refuses "scrape, depth 1.9, attack 0 deg: off the table by 0." "bucket lengths" -- \
+    "$BIN/digloop" predict "$work/ways.sqlite" --identified "$work/ways.json" --trajectory scrape --depth 1.9 -o "$work/never"
+check "a table that was dug plainly alone has none" refuses "off the table" -- \
+    "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --depth 1.2
 
 check "digreport without a log is bad usage" refuses "NAME=LOG.lcm" -- "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml
 check "a truth that is no gravel is named" refuses "--truth" "expected FRICTION" -- \

@@ -93,10 +93,18 @@ check "a dig along another trajectory is named" refuses "mu0.5_mur0.5_rho2500__s
 campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
 check "a trajectory that the table lacks is named" refuses "sideways" -- "$work/nowhere"
 campaign gone rig none.csv simpleA identify "$A$R" actual fit
-check "a missing recording is named" eval '! "$BIN/digloop" trace "$table" "$work/gone" >/dev/null 2>"$work/err" && grep -q none.csv "$work/err"'
+check "a missing recording is named" refuses "gone/none.csv: No such file" -- "$work/gone"
+sed -i 1d "$work/gone/campaign.yaml"
+echo "scene: none.yaml" >>"$work/gone/campaign.yaml"
+check "so is a missing scene" refuses "gone/none.yaml: no such scene file" -- "$work/gone"
 campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
 check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- "$work/machine"
-check "a folder without a campaign is named" eval '! "$BIN/digloop" trace "$table" "$work" >/dev/null 2>"$work/err" && grep -q campaign.yaml "$work/err"'
+sed 's/^scene/machine: none.yaml\n&/' "$work/machine/campaign.yaml" >"$work/m" && mv "$work/m" "$work/machine/campaign.yaml"
+check "a machine that is not there is named" refuses "machine/none.yaml: No such file" -- "$work/machine"
+check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- "$work"
+check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- "$work/nothing"
+"$BIN/digloop" trace "$table" "$work/plain" --effects "$work/none.sqlite" >/dev/null 2>"$work/err"
+check "and a table of effects" eval '[ $? = 2 ] && grep -q "none.sqlite: No such file" "$work/err"'
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

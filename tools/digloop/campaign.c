@@ -4,6 +4,7 @@
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
+#include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 #include "tools/digloop/scene.h"
 
@@ -162,7 +163,7 @@ enum dig_status digloop_campaign_load(const char *const folder, const char *cons
     free(from);
     if (status != DIG_OK) {
         digloop_campaign_finish(&loaded);
-        return status;
+        return digloop_input(status);
     }
     *campaign = loaded;
     return DIG_OK;

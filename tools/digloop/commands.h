@@ -31,6 +31,10 @@ struct digloop_options {
 DIG_MUST_CHECK enum dig_status
 digloop_parse(int argc, char *argv[], struct digloop_options *options, struct dig_error *error);
 
+/// The status of reading an input: a file that is not there or cannot be read is bad input, not a
+/// failure of the work.
+enum dig_status digloop_input(enum dig_status status);
+
 /// The index of --trajectory in the set. DIG_EINVAL names it when there is none.
 DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_options *options,
                                                        const struct dig_curve_set   *set,

@@ -214,6 +214,11 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
     return status;
 }
 
+enum dig_status digloop_input(const enum dig_status status)
+{
+    return status == DIG_EIO ? DIG_EINVAL : status;
+}
+
 enum dig_status digloop_find_trajectory(const struct digloop_options *const options,
                                         const struct dig_curve_set *const   set,
                                         int *const trajectory, struct dig_error *const error)

@@ -200,7 +200,7 @@ static enum dig_status read_identity(const struct digloop_options *const options
                                      const struct dig_curve_set *const   set,
                                      struct dig_identity *const id, struct dig_error *const error)
 {
-    const enum dig_status status = dig_identity_read(options->identified, id, error);
+    const enum dig_status status = digloop_input(dig_identity_read(options->identified, id, error));
     if (status == DIG_OK && strcmp(id->scene_hash, set->scene_hash) != 0) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "

@@ -103,7 +103,7 @@ enum dig_status digloop_load_machine(const struct digloop_options *const options
     if (status == DIG_OK) {
         *machine = loaded;
     }
-    return status;
+    return digloop_input(status);
 }
 
 // Moment and forces, as a sensor of all three gives them: without a sigma of its own.
@@ -201,7 +201,7 @@ enum dig_status digloop_read_digs(const char *const                   path,
                                           ? read_force(path, set, &read, error)
                                           : read_samples(path, machine, set, &read, error);
     if (status != DIG_OK || read.dig == NULL) {
-        return status;
+        return digloop_input(status);
     }
     size_t kept = 0;
     for (size_t i = 0; i < read.digs; i++) {

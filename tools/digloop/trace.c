@@ -42,7 +42,7 @@ enum dig_status digloop_load_effects(const struct digloop_options *const options
             return DIG_OK;
         }
     }
-    return dig_effects_load(path, set, effects, error);
+    return digloop_input(dig_effects_load(path, set, effects, error));
 }
 
 static enum dig_status write_json(const char *const path, const struct dig_trace *const trace,
