@@ -14,7 +14,10 @@ struct columns {
     size_t  rows;
     double *t_s;
     double *progress; // path travelled as a fraction of the whole
-    double *raw;      // of one channel
+    // Of one channel, over the rows that have it.
+    double *held_t_s;
+    double *held_progress;
+    double *raw;
     double *smooth;
 };
 
@@ -41,19 +44,29 @@ static double fill_columns(const struct dig_recording *const recording, const do
     return path_m;
 }
 
-// Index of the last row at or before this progress; calls with ascending progress walk on.
-static size_t row_at(const struct columns *const c, const double progress, size_t i)
+// Index of the last of n at or before this progress; calls with ascending progress walk on.
+static size_t index_at(const size_t n, const double of[const], const double progress, size_t i)
 {
-    while (i + 2 < c->rows && c->progress[i + 1] <= progress) {
+    while (i + 2 < n && of[i + 1] <= progress) {
         i++;
     }
     return i;
 }
 
+static double fraction_of(const double of[const], const size_t i, const double progress)
+{
+    const double span = of[i + 1] - of[i];
+    return span > 0.0 ? fmin(fmax((progress - of[i]) / span, 0.0), 1.0) : 0.0;
+}
+
+static size_t row_at(const struct columns *const c, const double progress, const size_t i)
+{
+    return index_at(c->rows, c->progress, progress, i);
+}
+
 static double fraction_at(const struct columns *const c, const size_t i, const double progress)
 {
-    const double span = c->progress[i + 1] - c->progress[i];
-    return span > 0.0 ? fmin(fmax((progress - c->progress[i]) / span, 0.0), 1.0) : 0.0;
+    return fraction_of(c->progress, i, progress);
 }
 
 // RMS distance between recorded and prescribed poses at equal progress, the mean offset of the pin
@@ -136,28 +149,55 @@ static double channel_of(const struct dig_force_row *const row, const enum dig_c
     return channel == DIG_CHANNEL_FX_N ? row->Fx_N : row->Fz_N;
 }
 
-// Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when a row
-// lacks it.
+// Takes over the rows that have a channel; returns how many.
+static size_t hold_channel(const struct dig_recording *const recording,
+                           const struct columns *const c, const enum dig_channel channel)
+{
+    size_t held = 0;
+    for (size_t i = 0; i < c->rows; i++) {
+        c->raw[held]           = channel_of(&recording->row[i], channel);
+        c->held_t_s[held]      = c->t_s[i];
+        c->held_progress[held] = c->progress[i];
+        held += isfinite(c->raw[held]) ? 1 : 0;
+    }
+    return held;
+}
+
+// The longest time that none of the held rows tells of, from the recording's first row to its last.
+static double longest_gap_s(const struct columns *const c, const size_t held)
+{
+    double gap_s = 0.0;
+    for (size_t i = 0; i <= held; i++) {
+        const double from_s = i == 0 ? c->t_s[0] : c->held_t_s[i - 1];
+        const double to_s   = i == held ? c->t_s[c->rows - 1] : c->held_t_s[i];
+        gap_s               = fmax(gap_s, to_s - from_s);
+    }
+    return gap_s;
+}
+
+// Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
+// lack it for longer than the smoothing reaches to one side.
 static bool read_channel(const struct dig_curve_set *const set,
                          const struct dig_recording *const recording, const struct columns *const c,
                          const enum dig_channel channel, double value[DIG_CURVE_POINTS])
 {
-    bool whole = true;
-    for (size_t i = 0; i < c->rows; i++) {
-        c->raw[i] = channel_of(&recording->row[i], channel);
-        whole     = whole && isfinite(c->raw[i]);
-    }
-    if (whole) {
-        dig_curve_smooth(c->rows, c->t_s, c->raw, set->smooth_half_s, c->smooth);
+    const size_t held = hold_channel(recording, c, channel);
+    const bool   told =
+        held == c->rows || (held >= 2 && longest_gap_s(c, held) <= set->smooth_half_s);
+    if (told) {
+        dig_curve_smooth(held, c->held_t_s, c->raw, set->smooth_half_s, c->smooth);
     }
     size_t i = 0;
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-        i                     = row_at(c, progress, i);
-        const double f        = fraction_at(c, i, progress);
-        value[k]              = whole ? c->smooth[i] + f * (c->smooth[i + 1] - c->smooth[i]) : 0.0;
+        value[k] = 0.0;
+        if (told) {
+            const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+            i                     = index_at(held, c->held_progress, progress, i);
+            const double f        = fraction_of(c->held_progress, i, progress);
+            value[k]              = c->smooth[i] + f * (c->smooth[i + 1] - c->smooth[i]);
+        }
     }
-    return whole;
+    return told;
 }
 
 static enum dig_status find_trajectory(const struct dig_curve_set *const set,
@@ -214,7 +254,10 @@ static enum dig_status observe(const struct dig_curve_set *const set,
             read_channel(set, recording, c, (enum dig_channel)channel, o.value[channel]);
     }
     if (!o.measured[DIG_CHANNEL_MY_Nm]) {
-        return dig_error_set(error, DIG_EINVAL, "My_Nm is missing in a row, expected it in all");
+        return dig_error_set(error, DIG_EINVAL,
+                             "My_Nm is missing for more than %.2f s, expected the moment of the "
+                             "whole dig",
+                             set->smooth_half_s);
     }
     *observed = o;
     return DIG_OK;
@@ -231,12 +274,14 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
                              recording->rows);
     }
     const size_t  n      = recording->rows;
-    double *const memory = calloc(4 * n, sizeof *memory);
+    double *const memory = calloc(6 * n, sizeof *memory);
     if (memory == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    const struct columns  columns = { n, memory, memory + n, memory + 2 * n, memory + 3 * n };
-    const enum dig_status status  = observe(set, recording, &columns, as_dug, observed, error);
+    const struct columns columns = {
+        n, memory, memory + n, memory + 2 * n, memory + 3 * n, memory + 4 * n, memory + 5 * n
+    };
+    const enum dig_status status = observe(set, recording, &columns, as_dug, observed, error);
     free(memory);
     return status;
 }

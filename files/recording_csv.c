@@ -19,13 +19,13 @@ static const struct dig_csv_column force_column[] = {
     { .name = "pin_x_m" },
     { .name = "pin_z_m" },
     { .name = "theta_deg" },
-    { .name = "Fx_N" },
-    { .name = "Fy_N" },
-    { .name = "Fz_N" },
-    { .name = "Mx_Nm" },
-    { .name = "My_Nm" },
-    { .name = "Mz_Nm" },
-    { .name = "carried_kg", .optional = true },
+    { .name = "Fx_N", .optional = true, .may_empty = true },
+    { .name = "Fy_N", .optional = true, .may_empty = true },
+    { .name = "Fz_N", .optional = true, .may_empty = true },
+    { .name = "Mx_Nm", .optional = true, .may_empty = true },
+    { .name = "My_Nm", .may_empty = true },
+    { .name = "Mz_Nm", .optional = true, .may_empty = true },
+    { .name = "carried_kg", .optional = true, .may_empty = true },
 };
 #define FORCE_COLUMNS (sizeof force_column / sizeof force_column[0])
 
@@ -222,6 +222,15 @@ static void put_header(FILE *const file, const size_t columns, const struct dig_
     (void)fputc('\n', file);
 }
 
+static void put_field(FILE *const file, const double value)
+{
+    if (isnan(value)) {
+        (void)fputc(',', file);
+    } else {
+        (void)fprintf(file, ",%.9g", value);
+    }
+}
+
 static bool has_carried(const struct dig_recording *const recording)
 {
     size_t known = 0;
@@ -247,11 +256,12 @@ enum dig_status dig_recording_write(const char *const                 path,
     put_header(out.file, carried ? FORCE_COLUMNS : FORCE_COLUMNS - 1, force_column);
     for (size_t i = 0; i < recording->rows; i++) {
         const struct dig_force_row *const r = &recording->row[i];
-        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", r->t_s,
-                      r->pin_x_m, r->pin_z_m, r->theta_deg, r->Fx_N, r->Fy_N, r->Fz_N, r->Mx_Nm,
-                      r->My_Nm, r->Mz_Nm);
-        if (carried) {
-            (void)fprintf(out.file, ",%.9g", r->carried_kg);
+        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g", r->t_s, r->pin_x_m, r->pin_z_m,
+                      r->theta_deg);
+        const double felt[] = { r->Fx_N,  r->Fy_N,  r->Fz_N,      r->Mx_Nm,
+                                r->My_Nm, r->Mz_Nm, r->carried_kg };
+        for (size_t f = 0; f < (carried ? 7 : 6); f++) {
+            put_field(out.file, felt[f]);
         }
         (void)fputc('\n', out.file);
     }

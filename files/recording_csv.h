@@ -1,5 +1,5 @@
 // Force recordings and machine recordings as CSV (docs/formats.md): a header line, SI, `#`
-// lines are comments, missing machine samples are empty fields.
+// lines are comments, missing samples are empty fields.
 
 #ifndef DIG_FILES_RECORDING_CSV_H
 #define DIG_FILES_RECORDING_CSV_H
@@ -11,7 +11,8 @@
 #include <stdio.h>
 
 /// Read a whole file. DIG_EINVAL names file, line, column and what was expected: unknown or missing
-/// columns (the boom's and arm's pressures, pitch and temperature may be missing), text where a
+/// columns (of forces all but My_Nm, of a machine the boom's and arm's pressures, pitch and
+/// temperature may be missing; NaN in a force row), text where a
 /// number belongs, NaN or infinity, time that does not ascend, sampling below 50 Hz, fewer than two
 /// rows. A machine recording with a column sensor_My_Nm is of a rig with a force sensor, which has
 /// no boom, arm and cylinders (core/machine.h). DIG_EIO: errno's text. *recording is written on

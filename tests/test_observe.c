@@ -180,6 +180,72 @@ static void a_path_of_another_kind_is_refused_and_writes_nothing(void **state)
     dig_recording_finish(&r2);
 }
 
+static double straight(const double time_s)
+{
+    return 3.0 * time_s;
+}
+
+// Rows [from, to) lack a channel.
+static void lose(struct dig_recording *const r, const size_t from, const size_t to,
+                 const bool moment)
+{
+    for (size_t i = from; i < to; i++) {
+        *(moment ? &r->row[i].My_Nm : &r->row[i].Fx_N) = (double)NAN;
+    }
+}
+
+// A moving average of a straight line is the line, whichever of its samples are there.
+static void short_gaps_are_bridged_by_what_lies_about_them(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set = two_digs();
+    struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
+    struct dig_observed        whole, holed;
+    assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
+    for (size_t i = 1; i < r.rows; i += 3) {
+        lose(&r, i, i + 1, true);
+    }
+    lose(&r, 200, 228, true);
+    lose(&r, 0, 10, false);
+    assert_int_equal(dig_observe_dig(&set, &r, &holed, NULL), DIG_OK);
+    assert_true(holed.measured[DIG_CHANNEL_FX_N]);
+    const double end_s = dig_trajectory_duration_s(&set.trajectory[0]);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double time_s =
+            dig_trajectory_time_s(&set.trajectory[0], set.tooth_m, k / (DIG_CURVE_POINTS - 1.0));
+        if (time_s > 0.2 && time_s < end_s - 0.2) {
+            assert_close(holed.value[DIG_CHANNEL_MY_Nm][k], straight(time_s), 1e-3);
+            assert_close(whole.value[DIG_CHANNEL_MY_Nm][k], straight(time_s), 1e-3);
+        }
+    }
+    dig_recording_finish(&r);
+}
+
+static void a_long_gap_is_not_measured_and_of_the_moment_refused(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set       = two_digs();
+    struct dig_error           e         = { "" };
+    struct dig_observed        o         = { .pace = 42.0 };
+    const size_t               gaps[][2] = { { 0, 40 }, { 200, 240 }, { 481, 521 }, { 0, 521 } };
+    for (size_t g = 0; g < 4; g++) {
+        struct dig_recording r = drive(&set.trajectory[0], 1.0, slow_wave);
+        assert_int_equal(r.rows, 521);
+        lose(&r, gaps[g][0], gaps[g][1], false);
+        assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+        assert_true(o.measured[DIG_CHANNEL_MY_Nm] && o.measured[DIG_CHANNEL_FZ_N]);
+        assert_false(o.measured[DIG_CHANNEL_FX_N]);
+        assert_close(o.value[DIG_CHANNEL_FX_N][100], 0.0, 0.0);
+
+        o.pace = 42.0;
+        lose(&r, gaps[g][0], gaps[g][1], true);
+        assert_int_equal(dig_observe_dig(&set, &r, &o, &e), DIG_EINVAL);
+        assert_non_null(strstr(e.text, "My_Nm is missing for more than 0.16 s, expected"));
+        assert_close(o.pace, 42.0, 0.0);
+        dig_recording_finish(&r);
+    }
+}
+
 static void the_mean_is_over_digs_of_one_trajectory_only(void **state)
 {
     (void)state;
@@ -217,6 +283,8 @@ int main(void)
         cmocka_unit_test(depth_and_attack_of_a_dig_are_told_where_the_table_has_them),
         cmocka_unit_test(what_lies_beyond_the_table_is_distance),
         cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
+        cmocka_unit_test(short_gaps_are_bridged_by_what_lies_about_them),
+        cmocka_unit_test(a_long_gap_is_not_measured_and_of_the_moment_refused),
         cmocka_unit_test(the_mean_is_over_digs_of_one_trajectory_only),
     };
     return cmocka_run_group_tests_name("observe", tests, NULL, NULL);

@@ -176,7 +176,11 @@ static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,1e999,0,0,0,0,0\n", ":3: column Fx_N: \"1e999\"" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0x1,0,0,0,0,0\n", ":3: column Fx_N: \"0x1\"" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,1 2,0,0,0,0,0\n", ":3: column Fx_N: \"1 2\"" },
-        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,,0,0,0,0,0\n", ":3: column Fx_N: \"\"" },
+        { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,,0,0,0,0,0,0,0\n", ":3: column pin_z_m: \"\"" },
+        { "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fz_N\n0,0,0,0,0,0\n",
+          ":1: column My_Nm: missing, expected a header of" },
+        { "t_s,pin_x_m,pin_z_m,theta_deg,My_Nm,Fx_n\n0,0,0,0,0,0\n",
+          ":1: column \"Fx_n\": unknown" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,0\n",
           ":3: column Mz_Nm: the line has 9 fields, expected 10" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,0,0,0\n",
@@ -221,6 +225,39 @@ static void defects_of_machine_recordings_are_told_too(void **state)
                      DIG_EINVAL);
     assert_contains(error.text, "bad.csv:3: column t_s: \"\"");
     assert_int_equal(r.rows, 42);
+}
+
+// A rig may measure the moment alone, or lose samples: missing is never zero.
+static void forces_may_be_missing_here_and_there_or_altogether(void **state)
+{
+    (void)state;
+    struct dig_recording r = { 0 };
+    const char *path = scratch_write("some.csv", FORCE "0,1,2,3,,5,6,,8,9\n.01,1,2,3,4,,,7,,\n");
+    assert_int_equal(dig_recording_read(path, &r, NULL), DIG_OK);
+    assert_true(isnan(r.row[0].Fx_N) && isnan(r.row[0].Mx_Nm) && isnan(r.row[1].Fy_N) &&
+                isnan(r.row[1].Fz_N) && isnan(r.row[1].My_Nm) && isnan(r.row[1].Mz_Nm));
+    assert_close(r.row[0].Fz_N, 6.0, 0.0);
+    assert_close(r.row[1].Fx_N, 4.0, 0.0);
+
+    // Written, they are empty again.
+    struct dig_recording again = { 0 };
+    path                       = scratch_path("again.csv");
+    assert_int_equal(dig_recording_write(path, &r, NULL), DIG_OK);
+    char *const text = scratch_read(path, &(size_t){ 0 });
+    assert_contains(text, "\n0,1,2,3,,5,6,,8,9\n0.01,1,2,3,4,,,7,,\n");
+    free(text);
+    assert_int_equal(dig_recording_read(path, &again, NULL), DIG_OK);
+    assert_true(isnan(again.row[1].My_Nm));
+    assert_close(again.row[1].Mx_Nm, 7.0, 0.0);
+    dig_recording_finish(&again);
+    dig_recording_finish(&r);
+
+    path = scratch_write("alone.csv", "t_s,My_Nm,pin_x_m,pin_z_m,theta_deg\n"
+                                      "0,8,1,2,3\n.01,9,1,2,3\n");
+    assert_int_equal(dig_recording_read(path, &r, NULL), DIG_OK);
+    assert_close(r.row[1].My_Nm, 9.0, 0.0);
+    assert_true(isnan(r.row[1].Fx_N) && isnan(r.row[1].Fz_N) && isnan(r.row[1].carried_kg));
+    dig_recording_finish(&r);
 }
 
 static void what_is_written_is_read_back(void **state)
@@ -393,6 +430,7 @@ int main(void)
         cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
         cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
         cmocka_unit_test(defects_of_machine_recordings_are_told_too),
+        cmocka_unit_test(forces_may_be_missing_here_and_there_or_altogether),
         cmocka_unit_test(what_is_written_is_read_back),
         cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
         cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),

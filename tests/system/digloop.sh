@@ -117,6 +117,9 @@ check "digloop without arguments is bad usage" refuses "expected a command" -- "
 check "an unknown command is named" refuses "frobnicate" -- "$BIN/digloop" frobnicate "$table"
 check "a table that is none is named" refuses README.md -- "$BIN/digloop" identify README.md "$reference"__simpleA.csv
 simple=${reference}__simpleA.csv
+awk -F, -v OFS=, 'NR == 50 { $7 = "" } 1' "$simple" >"$work/holed.csv"
+check "forces that are missing are put on no machine" refuses "holed.csv" "is missing at t_s" -- \
+    "$BIN/digrig" record "$work/holed.csv" --machine "$machine" -o "$work/never"
 check "a missing recording is bad input, and named" refuses none.csv "No such file" -- "$BIN/digloop" identify "$table" "$work/none.csv"
 check "so is a missing table" refuses none.sqlite "No such file" -- "$BIN/digloop" identify "$work/none.sqlite" "$simple"
 check "... machine" refuses none.yaml "No such file" -- "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$work/none.yaml"

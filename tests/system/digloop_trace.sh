@@ -55,6 +55,24 @@ sed -i "s|scene: .*|scene: $PWD/config/scenes/rig.yaml|" "$work/named/campaign.y
 check "a scene may be a file; without a holdout the errors are not known" \
     eval '[ $? = 0 ] && grep -q "\"holdout\": null" "$work/n.json"'
 
+# The moment alone; and all of it, with samples lost: every tenth line, and Fz on a stretch.
+campaign moment rig moment_a.csv simpleA identify moment_b.csv actual fit
+campaign lossy rig lossy_a.csv simpleA identify lossy_b.csv actual fit
+for dig in "a $A$S" "b $A$R"; do
+    cut -d, -f1-4,9 "${dig#* }" >"$work/moment/moment_${dig%% *}.csv"
+    awk -F, -v OFS=, 'NR > 1 && NR % 10 == 0 { $5 = $6 = $7 = $8 = $9 = $10 = "" } NR > 99 && NR < 120 { $7 = "" } 1' \
+        "${dig#* }" >"$work/lossy/lossy_${dig%% *}.csv"
+done
+for name in moment lossy; do
+    "$BIN/digloop" trace "$table" "$work/$name" --json "$work/$name.json" >/dev/null 2>"$work/err"
+    check "digs of which not all was measured are traced: $name" eval '[ $? = 0 ] && grep -q "\"verdict\": \[\"none\"\]" "$work/$name.json"'
+done
+friction() { tr -d ' \n' <"$1" | sed -nE 's/.*"friction":\{"value":([-0-9.e+]+).*/\1/p'; }
+check "lost samples hardly change the gravel" within "$(friction "$work/lossy.json")" \
+    "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f - .01 }')" "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f + .01 }')"
+awk -F, -v OFS=, 'NR > 99 && NR < 140 { $9 = "" } 1' "$A$R" >"$work/lossy/lossy_b.csv"
+check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for more than 0.16 s" -- "$work/lossy"
+
 # A scene file that is the rig's with one thing changed, or another that ships.
 scene_is() { # NAME SED-SCRIPT
     sed "$2" config/scenes/rig.yaml >"$work/$1.yaml"
@@ -84,6 +102,12 @@ campaign wide rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identi
 echo "machine: ../wide.yaml" >>"$work/wide/campaign.yaml"
 check "a machine whose bucket is of another shape is refused" refuses "wide.yaml: a bucket" "scene \"rig\" in $table" -- "$work/wide"
 
+campaign mixed rig "$A$S" simpleA identify "$A$R" actual fit "$PWD/tests/data/formats/machine_recording.csv" actual fit
+check "recordings of a rig and of a machine are not mixed" \
+    refuses "machine_recording.csv: a machine recording, but mu0.5_mur0.5_rho2500__simpleA.csv is a force recording" -- "$work/mixed"
+campaign colour rig colour.csv simpleA identify "$A$R" actual fit
+sed 's/^t_s/colour,t_s/; 2,$s/^/0,/' "$A$S" >"$work/colour/colour.csv"
+check "a column that nobody knows is named" refuses 'colour/colour.csv:1: column "colour": unknown' -- "$work/colour"
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char *last_part(const char *const path)
 {
@@ -120,6 +121,31 @@ static enum dig_status load_machine(const struct dig_campaign *const from, const
     return status;
 }
 
+static bool exists(const char *const path)
+{
+    struct stat found;
+    return stat(path, &found) == 0;
+}
+
+// A file that is not there is of no kind; reading it says so.
+static enum dig_status check_kinds(const struct dig_campaign *const from,
+                                   struct dig_error *const          error)
+{
+    static const char *const kind[] = { "a machine recording", "a force recording" };
+    const char *const        first  = from->recording[0].file;
+    const bool               force  = digloop_is_force_recording(first);
+    for (size_t i = 1; i < from->recordings && exists(first); i++) {
+        const char *const file = from->recording[i].file;
+        if (exists(file) && digloop_is_force_recording(file) != force) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: %s, but %s is %s; expected one kind in a campaign: trace "
+                                 "each in one of its own",
+                                 file, kind[force ? 0 : 1], last_part(first), kind[force ? 1 : 0]);
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status load(const struct dig_campaign *const from, const char *const table,
                             const struct dig_curve_set *const set,
                             struct digloop_campaign *const campaign, struct dig_error *const error)
@@ -132,6 +158,9 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
     enum dig_status status = digloop_check_scene(from->scene, table, set, error);
     if (status == DIG_OK) {
         status = fill_heads(from, set, campaign->measured, error);
+    }
+    if (status == DIG_OK) {
+        status = check_kinds(from, error);
     }
     if (status != DIG_OK) {
         return status;

@@ -12,6 +12,7 @@
 #include "tools/rig/serve.h"
 #include "tools/rig/track.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -48,6 +49,22 @@ static void digs_finish(struct digs *const digs)
     free(digs);
 }
 
+// What is missing cannot be put on a machine.
+static enum dig_status check_forces(const struct dig_recording *const recording,
+                                    const char *const path, struct dig_error *const error)
+{
+    for (size_t i = 0; i < recording->rows; i++) {
+        const struct dig_force_row *const row = &recording->row[i];
+        if (!(isfinite(row->Fx_N) && isfinite(row->Fz_N) && isfinite(row->My_Nm))) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: Fx_N, Fz_N or My_Nm is missing at t_s %.6g, expected all "
+                                 "three in every row",
+                                 path, row->t_s);
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status add_dig(struct digs *const digs, const char *const path,
                                struct dig_error *const error)
 {
@@ -55,10 +72,10 @@ static enum dig_status add_dig(struct digs *const digs, const char *const path,
         return dig_error_set(error, DIG_EINVAL, "%s: more than %d recordings", path,
                              DIG_CAMPAIGN_MAX);
     }
-    const enum dig_status status =
-        dig_recording_read(path, &digs->recording[digs->recordings], error);
+    struct dig_recording *const recording = &digs->recording[digs->recordings];
+    const enum dig_status       status    = dig_recording_read(path, recording, error);
     digs->recordings += status == DIG_OK ? 1 : 0;
-    return status;
+    return status == DIG_OK ? check_forces(recording, path, error) : status;
 }
 
 // All of a campaign, in its order; its scene counts unless another was given.
