@@ -52,11 +52,25 @@ void dig_html_end(FILE *const to)
     (void)fputs("</body></html>\n", to);
 }
 
+// Renaming over the program's own output would be a file named "-".
+static enum dig_status put_out(enum dig_status (*const put)(void *, FILE *, struct dig_error *),
+                               void *const context, struct dig_error *const error)
+{
+    const enum dig_status status  = put(context, stdout, error);
+    const bool            written = fflush(stdout) == 0 && ferror(stdout) == 0;
+    return status != DIG_OK || written
+               ? status
+               : dig_error_set(error, DIG_EIO, "standard output: %s", strerror(errno));
+}
+
 enum dig_status dig_html_save(const char *const path,
                               enum dig_status (*const put)(void *, FILE *, struct dig_error *),
                               void *const context, struct dig_error *const error)
 {
     assert(path != NULL && put != NULL);
+    if (strcmp(path, "-") == 0) {
+        return put_out(put, context, error);
+    }
     const size_t size = strlen(path) + sizeof ".part";
     char *const  part = malloc(size);
     if (part == NULL) {

@@ -17,7 +17,7 @@ void dig_html_begin(FILE *to, const char *title);
 void dig_html_end(FILE *to);
 
 /// Opens PATH.part, lets put write into it, and renames it to PATH when all went well; removes it
-/// otherwise. The status and *error are put's, or DIG_EIO, or DIG_ENOMEM.
+/// otherwise. "-" is standard output. The status and *error are put's, or DIG_EIO, or DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_html_save(const char *path, enum dig_status (*put)(void *context, FILE *to, struct dig_error *),
               void *context, struct dig_error *error);

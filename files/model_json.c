@@ -1,9 +1,9 @@
 #include "files/model_json.h"
 
+#include "files/whole.h"
 #include "files/yaml.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -129,22 +129,13 @@ enum dig_status dig_model_save(const char *const path, const struct dig_model *c
                                struct dig_error *const error)
 {
     assert(path != NULL && model != NULL);
-    char part[DIG_MODEL_PATH_SIZE + 8];
-    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
-        return dig_error_set(error, DIG_EINVAL, "%s: the path is too long", path);
+    struct dig_out        out;
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    FILE *const to = fopen(part, "we");
-    if (to == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-    }
-    dig_model_write(to, model);
-    const bool failed = ferror(to) != 0;
-    if (fclose(to) != 0 || failed || rename(part, path) != 0) {
-        const int why = errno;
-        (void)remove(part);
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(why));
-    }
-    return DIG_OK;
+    dig_model_write(out.file, model);
+    return dig_out_commit(&out, error);
 }
 
 #define REQUIRED CYAML_FLAG_DEFAULT

@@ -49,6 +49,21 @@ check "the same campaign gives the same answer" cmp -s "$work/t.json" "$work/aga
 "$BIN/digloop" trace "$table" "$work/plain" --json - >"$work/stdout.json" 2>/dev/null
 check "JSON may go to standard output, alone" cmp -s "$work/t.json" "$work/stdout.json"
 
+(program=$(realpath "$BIN/digloop") data=$(realpath "$table") && cd "$work" && "$program" trace "$data" plain --html - >page 2>told)
+check "so may the page" eval 'head -n 1 "$work/page" | grep -q "<!doctype html>" && tail -n 1 "$work/page" | grep -q "</html>" && [ ! -e "$work/-" ] && [ ! -e "$work/-.part" ]'
+check "... with what is for people on standard error" grep -qi "nothing is missing" "$work/told"
+"$BIN/digloop" trace "$table" "$work/plain" --add - 2>/dev/null | sed 's/digloop trace .*/x/' >"$work/page"
+check "... and the model" cmp -s "$work/page" <(sed 's/digloop trace .*/x/' "$work/m.json")
+echo old >"$work/old.json" && cp "$work/old.json" "$work/old_model.json"
+for option in "--json $work/old.json" "--add $work/old_model.json"; do
+    # No file may grow; what is said goes through a pipe.
+    # shellcheck disable=SC2086 # two words
+    told=$( (trap '' XFSZ && ulimit -f 0 && exec "$BIN/digloop" trace "$table" "$work/plain" $option) 2>&1 >/dev/null)
+    status=$? file=${option#* }
+    check "what cannot be written whole leaves the old file: ${option%% *}" \
+        eval '[ "$status" = 1 ] && [ "$(cat "$file")" = old ] && [ ! -e "$file.part" ] && [[ $told == *"$file"* ]]'
+done
+
 campaign named config/scenes/rig.yaml "$A$S" simpleA identify "$A$R" actual fit
 sed -i "s|scene: .*|scene: $PWD/config/scenes/rig.yaml|" "$work/named/campaign.yaml"
 "$BIN/digloop" trace "$table" "$work/named" --json "$work/n.json" >/dev/null 2>&1

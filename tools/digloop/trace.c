@@ -2,12 +2,12 @@
 
 #include "closed_loop/trace.h"
 #include "closed_loop/trace_report.h"
+#include "files/whole.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/next_table.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,18 +48,18 @@ enum dig_status digloop_load_effects(const struct digloop_options *const options
 static enum dig_status write_json(const char *const path, const struct dig_trace *const trace,
                                   struct dig_error *const error)
 {
-    if (strcmp(path, "-") == 0) {
-        dig_trace_json(trace, stdout);
-        return DIG_OK;
+    struct dig_out        out;
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    FILE *const to = fopen(path, "w");
-    if (to == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
-    }
-    dig_trace_json(trace, to);
-    const bool failed = ferror(to) != 0;
-    return fclose(to) == 0 && !failed ? DIG_OK
-                                      : dig_error_set(error, DIG_EIO, "%s: not written", path);
+    dig_trace_json(trace, out.file);
+    return dig_out_commit(&out, error);
+}
+
+static bool is_stdout(const char *const path)
+{
+    return path != NULL && strcmp(path, "-") == 0;
 }
 
 static enum dig_status
@@ -85,7 +85,8 @@ write_results(const struct digloop_options *const options, const struct dig_curv
         status = digloop_save_model(options, set, effects, trace, error);
     }
     // People read on standard error when a program reads standard output.
-    const bool for_program = options->json_out != NULL && strcmp(options->json_out, "-") == 0;
+    const bool for_program =
+        is_stdout(options->json_out) || is_stdout(options->html) || is_stdout(options->add);
     dig_trace_text(trace, for_program ? stderr : stdout);
     return status;
 }
