@@ -11,8 +11,27 @@ mkdir -p "$out" "$plots"
 plots=$(cd "$plots" && pwd)
 digs=tests/data/paper # our own digs of what no table holds; README.md there says how they were made
 
+# Runs of a table of another stiffness as force recordings, whose poses are those of the
+# reference's actual dig: the path is the same.
+recordings() { # TABLE.sqlite NAME: $out/NAME_muF_seedN__actual.csv
+    "$bin/digtable" export "$1" --runs | awk -F, -v n=0 -v name="$out/$2" '
+        FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+        NR == FNR { if (/^#/) next
+                    if (n == 0) { for (k in at) of[k] = at[k] }
+                    t[n] = $of["t_s"]; x[n] = $of["pin_x_m"]; z[n] = $of["pin_z_m"]; a[n++] = $of["theta_deg"]; next }
+        { file = sprintf("%s_mu%s_seed%d__actual.csv", name, $at["friction"], $at["packing"] + 1)
+          if (file != last) { print "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm" > file; i = 0; last = file }
+          s = $at["t_s"]
+          while (i + 2 < n && t[i + 1] < s) i++
+          w = (s - t[i]) / (t[i + 1] - t[i])
+          printf "%s,%.9g,%.9g,%.9g,%s,0,%s,0,%s,0\n", s, x[i] + w * (x[i + 1] - x[i]), z[i] + w * (z[i + 1] - z[i]),
+              a[i] + w * (a[i + 1] - a[i]), $at["Fx_N"], $at["Fz_N"], $at["My_Nm"] > file }' \
+        tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv -
+}
+recordings $digs/basic.sqlite basic
+recordings $digs/steel.sqlite steel
 "$paper" "$table" "$effects" "$out" tests/data/reference/*.csv tests/data/liggghts_digs/*__*.csv \
-    $(ls $digs/basic_*.csv 2>/dev/null) | tee "$out/paper.txt"
+    $digs/basic_*.csv "$out"/basic_*.csv "$out"/steel_*.csv | tee "$out/paper.txt"
 
 # (a), (b): the shapes of digs of one gravel together.
 awk '/^shape/ { k = $2; sub(/(_seed[0-9]*)?__actual|_bed[0-9]*$/, "", k); if (k ~ /^table/) next
@@ -55,7 +74,7 @@ smooth() { # RECORDING: time and smoothed moment
         END { for (i = 0; i < n; i++) { s = k = 0; for (j = i; j >= 0 && t[i] - t[j] <= .16; j--) { s += y[j]; k++ }
               for (j = i + 1; j < n && t[j] - t[i] <= .16; j++) { s += y[j]; k++ } print t[i], s / k } }' "$1"
 }
-[ ! -e $digs/steel__actual.csv ] || smooth $digs/steel__actual.csv >"$out/steel.dat"
+smooth "$out/steel_mu0.3_seed1__actual.csv" >"$out/steel.dat"
 smooth "$out/X_0.7_0.7_2500__actual.csv" >"$out/X_measured.dat"
 
 svg() { # NAME: gnuplot's commands from stdin
@@ -65,17 +84,16 @@ svg() { # NAME: gnuplot's commands from stdin
 }
 svg peaks <<'P'
 set title 'a: the actual dig without and with rolling friction (LIGGGHTS, friction .5)'
-plot 'mu0.5_mur0.0_rho2500__actual.dat' w l lw 2 t 'none', 'mu0.5_mur0.5_rho2500__actual.dat' w l lw 2 t '.5', \
+plot 'mu0.5_mur0.0_rho2500__actual.dat' w l lw 2 t 'none', 'basic_mu0.6_seed1__actual.dat' w l lw 2 t 'basic model (ours, 1e8 Pa, .6)', 'mu0.5_mur0.5_rho2500__actual.dat' w l lw 2 t '.5', \
      'mu0.5_mur0.9_rho2500__actual.dat' w l lw 2 t '.9', 'table_0.5_0.5_2500.dat' w l dt 2 lc 'black' t '.5, ours, mean of ten beds'
 P
-steel=
-[ ! -e "$out/steel.dat" ] || steel=", 'steel.dat' axes x1y2 w l dt 2 lc 'blue' t 'steel balls, ours (right axis)'"
 svg sizes <<P
 set title 'b: equal spheres and mixed sizes (LIGGGHTS, .5/.5)'
-${steel:+set y2tics; set y2label 'My [N m]'}
+set y2tics; set y2label 'My [N m]'
 plot for [f in system("ls mu0.5_mur0.5_rho2500*actual.dat")] f w l lc 'gray' notitle, \\
      for [f in system("ls poly_*actual.dat")] f w l lw 2 t 'mixed', \\
-     'table_0.5_0.5_2500.dat' w l lw 2 lc 'black' t 'equal, ours, mean of ten beds' $steel
+     'table_0.5_0.5_2500.dat' w l lw 2 lc 'black' t 'equal, ours, mean of ten beds', \\
+     'steel.dat' axes x1y2 w l dt 2 lc 'blue' t 'steel balls, ours (right axis)'
 P
 svg objects <<P
 set title 'c: actual digs of objects A, B, C (LIGGGHTS) and of the gravels chosen for them'

@@ -181,12 +181,33 @@ static size_t nearest(const struct paper_table *const table, const size_t trajec
     return best;
 }
 
+enum { VALUES_MAX = 8 }; // of an axis
+
 struct tally {
     size_t digs, right, axis[DIG_AXES];
     double right_error, chosen_error; // summed over digs
     size_t wrong;
     double wrong_error, wrong_right_error; // of the digs for which another gravel was chosen
+    size_t values[DIG_AXES];
+    double value[DIG_AXES][VALUES_MAX];
+    size_t chosen[DIG_AXES][VALUES_MAX][VALUES_MAX]; // truth, choice
 };
+
+// Which of an axis' values that is, in the order in which they were seen.
+static size_t value_of(struct tally *const t, const int axis, const double value)
+{
+    size_t v = 0;
+    while (v < t->values[axis] && fabs(t->value[axis][v] - value) > 1e-9) {
+        v++;
+    }
+    if (v == VALUES_MAX) {
+        (void)fprintf(stderr, "paper: an axis has more than %d values\n", VALUES_MAX);
+        exit(1);
+    }
+    t->value[axis][v] = value;
+    t->values[axis] += v == t->values[axis] ? 1 : 0;
+    return v;
+}
 
 static void count(struct tally *const t, const struct dig_gravel *const truth,
                   const struct dig_gravel *const chosen, const double right_error,
@@ -196,6 +217,8 @@ static void count(struct tally *const t, const struct dig_gravel *const truth,
     for (int a = 0; a < DIG_AXES; a++) {
         const bool hit = fabs(truth->value[a] - chosen->value[a]) < 1e-9;
         t->axis[a] += hit ? 1 : 0;
+        const size_t is = value_of(t, a, truth->value[a]);
+        t->chosen[a][is][value_of(t, a, chosen->value[a])]++;
         same = same && hit;
     }
     t->digs++;
@@ -219,6 +242,21 @@ static void tell_tally(const char *const what, const struct tally *const t)
                  100.0 * (double)t->axis[1] / n, 100.0 * (double)t->axis[2] / n, t->right_error / n,
                  t->chosen_error / n, t->wrong, t->wrong_error / fmax((double)t->wrong, 1.0),
                  t->wrong_right_error / fmax((double)t->wrong, 1.0));
+}
+
+// A line for every value of an axis: of the digs that have it, how many were given which.
+static void tell_confusion(const char *const what, const struct tally *const t)
+{
+    static const char *const axis[DIG_AXES] = { "friction", "rolling", "density" };
+    for (int a = 0; a < DIG_AXES; a++) {
+        for (size_t is = 0; is < t->values[a]; is++) {
+            (void)printf("confusion %s: %s %g taken for", what, axis[a], t->value[a][is]);
+            for (size_t c = 0; c < t->values[a]; c++) {
+                (void)printf("  %g: %zu", t->value[a][c], t->chosen[a][is][c]);
+            }
+            (void)printf("\n");
+        }
+    }
 }
 
 static void tell_choice(const char *const name, const struct paper_table *const table,
@@ -264,6 +302,7 @@ static void select_own(const struct paper_table *const table)
         }
     }
     tell_tally("own beds", &all);
+    tell_confusion("own beds", &all);
 }
 
 // (c) with digs of LIGGGHTS whose gravel is in the table.
