@@ -10,11 +10,15 @@
 
 static const double gravity_mps2 = 9.81;
 
+// Plates and teeth reach beyond the pins that a link's length is between, by this much at most.
+static const double beyond = 1.25;
+
 // How far the parts of a link lie from its pin at most.
 static double reach_m(const struct dig_machine *const machine, const int joint)
 {
     const double length_m = machine->link[joint].length_m;
-    return machine->sensor.fitted ? length_m + dig_vec2_norm(machine->sensor.place_m) : length_m;
+    return machine->sensor.fitted ? length_m + dig_vec2_norm(machine->sensor.place_m)
+                                  : beyond * length_m;
 }
 
 static enum dig_status check_mass(const struct dig_machine *const machine, const int joint,
@@ -43,12 +47,12 @@ static enum dig_status check_mass(const struct dig_machine *const machine, const
 static enum dig_status check_whole(const struct dig_machine *const machine,
                                    struct dig_error *const         error)
 {
-    const double arm_m    = machine->link[DIG_JOINT_ARM].length_m;
+    const double most_m   = 2.0 * machine->link[DIG_JOINT_ARM].length_m;
     const double bucket_m = machine->link[DIG_JOINT_BUCKET].length_m;
-    if (!(bucket_m <= arm_m)) {
+    if (!(bucket_m <= most_m)) {
         return dig_error_set(error, DIG_EINVAL,
-                             "bucket.length_m: %.4g, expected at most the arm's %.4g", bucket_m,
-                             arm_m);
+                             "bucket.length_m: %.4g, expected at most twice the arm's, %.4g",
+                             bucket_m, most_m);
     }
     double front_N = 0.0;
     for (int j = 0; j < DIG_JOINTS; j++) {
@@ -70,18 +74,31 @@ struct pose {
     struct dig_lever lever;
 };
 
-// The poses of a joint's range where its cylinder is shortest and longest, and its lever, with its
-// sign, least and greatest.
+// The poses of a joint's range where its cylinder is shortest and longest; of those that its stops
+// let it come to, where its lever, with its sign, is least and greatest, and how many of all.
 struct extremes {
     struct pose shortest, longest, low, high;
+    double      share;
 };
+
+static double spare_m(const struct pose *const pose)
+{
+    return DIG_GEOMETRY_ANGLE_TOLERANCE_rad * fabs(pose->lever.arm_m);
+}
+
+static bool is_within(const struct dig_cylinder *const cylinder, const struct pose *const pose)
+{
+    return pose->lever.length_m >= cylinder->min_length_m - spare_m(pose) &&
+           pose->lever.length_m <= cylinder->max_length_m + spare_m(pose);
+}
 
 static enum dig_status find_extremes(const struct dig_machine *const machine, const int joint,
                                      struct extremes *const extremes, struct dig_error *const error)
 {
     enum { STEPS = 512 };
-    const struct dig_link *const link = &machine->link[joint];
-    struct extremes              e    = { .shortest = { .at_deg = 0.0 } };
+    const struct dig_link *const link   = &machine->link[joint];
+    struct extremes              e      = { .share = 0.0 };
+    int                          within = 0;
     for (int i = 0; i <= STEPS; i++) {
         const double at_rad = link->min_rad + (link->max_rad - link->min_rad) * (double)i / STEPS;
         struct pose  pose   = { .at_deg = at_rad / DIG_RAD_PER_DEG };
@@ -96,16 +113,15 @@ static enum dig_status find_extremes(const struct dig_machine *const machine, co
         const struct dig_lever *const now = &pose.lever;
         e.shortest = i == 0 || now->length_m < e.shortest.lever.length_m ? pose : e.shortest;
         e.longest  = i == 0 || now->length_m > e.longest.lever.length_m ? pose : e.longest;
-        e.low      = i == 0 || now->arm_m < e.low.lever.arm_m ? pose : e.low;
-        e.high     = i == 0 || now->arm_m > e.high.lever.arm_m ? pose : e.high;
+        if (is_within(&machine->cylinder[joint], &pose)) {
+            e.low  = within == 0 || now->arm_m < e.low.lever.arm_m ? pose : e.low;
+            e.high = within == 0 || now->arm_m > e.high.lever.arm_m ? pose : e.high;
+            within++;
+        }
     }
+    e.share   = (double)within / (STEPS + 1);
     *extremes = e;
     return DIG_OK;
-}
-
-static double spare_m(const struct pose *const pose)
-{
-    return DIG_GEOMETRY_ANGLE_TOLERANCE_rad * fabs(pose->lever.arm_m);
 }
 
 static enum dig_status check_stroke(const struct dig_cylinder *const cylinder,
@@ -118,19 +134,14 @@ static enum dig_status check_stroke(const struct dig_cylinder *const cylinder,
                              "min_length_m, %.4g: the rod must go into the tube",
                              name, cylinder->max_length_m, 2.0 * cylinder->min_length_m);
     }
-    const double least_m = seen->shortest.lever.length_m;
-    const double most_m  = seen->longest.lever.length_m;
-    if (!(cylinder->min_length_m <= least_m + spare_m(&seen->shortest))) {
+    if (!(seen->share >= DIG_GEOMETRY_LEAST_RANGE)) {
         return dig_error_set(error, DIG_EINVAL,
-                             "cylinders.%s.min_length_m: %.4g, expected at most %.4g: so short is "
-                             "the cylinder pin to pin at %s %.2f deg",
-                             name, cylinder->min_length_m, least_m, name, seen->shortest.at_deg);
-    }
-    if (!(cylinder->max_length_m >= most_m - spare_m(&seen->longest))) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "cylinders.%s.max_length_m: %.4g, expected at least %.4g: so long is "
-                             "the cylinder pin to pin at %s %.2f deg",
-                             name, cylinder->max_length_m, most_m, name, seen->longest.at_deg);
+                             "cylinders.%s.max_length_m: from %.4g to %.4g, expected to move the "
+                             "%s through half of min_deg to max_deg at least, where it is %.4g "
+                             "long at %.2f deg and %.4g at %.2f deg",
+                             name, cylinder->min_length_m, cylinder->max_length_m, name,
+                             seen->shortest.lever.length_m, seen->shortest.at_deg,
+                             seen->longest.lever.length_m, seen->longest.at_deg);
     }
     return DIG_OK;
 }
@@ -143,7 +154,7 @@ static enum dig_status check_levers(const struct extremes *const seen, const cha
     if (!(low_m > 0.0 || high_m < 0.0)) {
         return dig_error_set(error, DIG_EINVAL,
                              "cylinders.%s: a lever of %.3f m at %.2f deg and of %.3f m at %.2f "
-                             "deg, expected one sign from min_deg to max_deg",
+                             "deg, expected one sign between its stops",
                              name, low_m, seen->low.at_deg, high_m, seen->high.at_deg);
     }
     const bool   pushes_up = low_m > 0.0;
@@ -153,7 +164,7 @@ static enum dig_status check_levers(const struct extremes *const seen, const cha
         return dig_error_set(
             error, DIG_EINVAL,
             "cylinders.%s: a lever of %.4f m at %.2f deg, expected %.4f or more, a "
-            "twentieth of its largest from min_deg to max_deg",
+            "twentieth of its largest between its stops",
             name, least_m, pushes_up ? seen->low.at_deg : seen->high.at_deg,
             DIG_GEOMETRY_LEAST_LEVER * most_m);
     }
