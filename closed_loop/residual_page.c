@@ -30,11 +30,9 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
         (void)fputs("<tr><th>", to);
         if (c == DIG_CHANNEL_MY_Nm) {
             dig_html_text(to, dig->name);
-            (void)fprintf(to, "</th><td>%s</td>", use[dig->use]);
-        } else {
-            (void)fputs("</th><td></td>", to);
+            (void)fprintf(to, "<br><span class=muted>%s</span>", use[dig->use]);
         }
-        (void)fprintf(to, "<td>%s</td>", of_channel[c]);
+        (void)fprintf(to, "</th><td>%s</td>", of_channel[c]);
         put_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);
         put_cell(to, 1, soil->sigmas);
         put_cell(to, 1, lifted->sigmas);
@@ -48,7 +46,7 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
 
 static void put_digs(FILE *const to, const struct dig_residuals *const residuals)
 {
-    (void)fputs("<h2>Residual dig by dig</h2>\n<table><tr><th>dig</th><th>role</th><th>of</th>"
+    (void)fputs("<h2>Residual dig by dig</h2>\n<table><tr><th>dig</th><th>of</th>"
                 "<th>air, σ</th><th>soil, σ</th><th>lifted, σ</th><th>before</th><th>after</th>"
                 "</tr>\n",
                 to);

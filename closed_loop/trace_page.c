@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #define CANDIDATES_SHOWN 12
 
@@ -121,7 +122,8 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         most = isfinite(trace->residual[p]) ? fmax(most, trace->residual[p]) : most;
     }
-    (void)fputs("<h2>Where the residual shows</h2>\n<table>\n", to);
+    (void)fputs(
+        "<h2>Where the residual shows</h2>\n<table><tr><th></th><th>rms</th><th></th></tr>\n", to);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         (void)fprintf(to, "<tr><th>%s</th>", title[p]);
         put_cell(to, 2, trace->residual[p]);
@@ -170,49 +172,93 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         to);
 }
 
-// The moment of one dig; what lies outside contact to exit is a gap.
+// A channel of one dig over its path, with 1 sigma of one dig about what was predicted.
+struct dig_picture {
+    double x[DIG_CURVE_POINTS], measured[DIG_CURVE_POINTS];
+    double low[2][DIG_CURVE_POINTS], high[2][DIG_CURVE_POINTS]; // before, after
+};
+
+// What lies outside contact to exit is a gap.
+static void fill_picture(const struct dig_trace_curves *const curves,
+                         const struct dig_measured *const dig, const size_t channel,
+                         struct dig_picture *const p)
+{
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        p->x[k]               = 100.0 * progress;
+        p->low[0][k]          = curves->before[channel][k] - curves->before_sd[channel][k];
+        p->high[0][k]         = curves->before[channel][k] + curves->before_sd[channel][k];
+        p->low[1][k]          = curves->after[channel][k] - curves->after_sd[channel][k];
+        p->high[1][k]         = curves->after[channel][k] + curves->after_sd[channel][k];
+        p->measured[k] =
+            progress >= dig->first && progress <= dig->last ? dig->value[channel][k] : (double)NAN;
+    }
+}
+
+static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves *const curves,
+                                   const struct dig_measured *const dig,
+                                   const char *const trajectory, const size_t channel,
+                                   struct dig_error *const error)
+{
+    static const char *const use[]                       = { "identify", "fit", "holdout" };
+    static const char *const y_label[DIG_FORCE_CHANNELS] = { "moment, N·m at rig scale",
+                                                             "Fx, N at rig scale",
+                                                             "Fz, N at rig scale" };
+    static const char *const of[DIG_FORCE_CHANNELS]      = { "", ", Fx", ", Fz" };
+
+    struct dig_picture p;
+    char               title[192];
+    const size_t       n = DIG_CURVE_POINTS;
+    fill_picture(curves, dig, channel, &p);
+    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s", dig->name, trajectory, use[dig->use],
+                   dig->pass > 1 ? ", dug before" : "", of[channel]);
+    // Where nothing was changed before is after, and is drawn once.
+    const bool same =
+        memcmp(curves->before[channel], curves->after[channel], sizeof curves->after[channel]) == 0;
+    struct dig_plot plot = {
+        .title   = title,
+        .x_label = "path of the dig done, %",
+        .y_label = y_label[channel],
+        .width   = 480,
+        .height  = 370,
+    };
+    if (!same) {
+        plot.s[plot.series++] =
+            (struct dig_plot_series){ NULL, DIG_PLOT_BAND, "#e0a030", n, p.x, p.low[0], p.high[0] };
+    }
+    plot.s[plot.series++] = (struct dig_plot_series){
+        same ? "1 σ of one dig" : NULL, DIG_PLOT_BAND, "#1f5fa8", n, p.x, p.low[1], p.high[1]
+    };
+    if (!same) {
+        plot.s[plot.series++] =
+            (struct dig_plot_series){ "before", DIG_PLOT_DASHED,         "#c77f00", n,
+                                      p.x,      curves->before[channel], NULL };
+    }
+    plot.s[plot.series++] = (struct dig_plot_series){ same ? "before and after" : "after",
+                                                      DIG_PLOT_LINE,
+                                                      "#1f5fa8",
+                                                      n,
+                                                      p.x,
+                                                      curves->after[channel],
+                                                      NULL };
+    plot.s[plot.series++] =
+        (struct dig_plot_series){ "measured", DIG_PLOT_LINE, "#c0392b", n, p.x, p.measured, NULL };
+    (void)fputs("<figure>\n", to);
+    const enum dig_status status = dig_plot_svg(&plot, to, error);
+    (void)fputs("</figure>\n", to);
+    return status;
+}
+
 static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *const curves,
                                const struct dig_measured *const dig, const char *const trajectory,
                                struct dig_error *const error)
 {
-    static const char *const use[] = { "identify", "fit", "holdout" };
-
-    double       x[DIG_CURVE_POINTS];
-    double       low[DIG_CURVE_POINTS];
-    double       high[DIG_CURVE_POINTS];
-    double       measured[DIG_CURVE_POINTS];
-    const double gap = (double)NAN;
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-        const double after    = curves->after[DIG_CHANNEL_MY_Nm][k];
-        const double sd       = curves->after_sd[DIG_CHANNEL_MY_Nm][k];
-        x[k]                  = 100.0 * progress;
-        low[k]                = after - sd;
-        high[k]               = after + sd;
-        measured[k]           = progress >= dig->first && progress <= dig->last
-                                    ? dig->value[DIG_CHANNEL_MY_Nm][k]
-                                    : gap;
+    enum dig_status status = DIG_OK;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
+        if (dig->measured[c]) {
+            status = put_channel(to, curves, dig, trajectory, c, error);
+        }
     }
-    char         title[192];
-    const size_t n = DIG_CURVE_POINTS;
-    (void)snprintf(title, sizeof title, "%s: %s, %s%s", dig->name, trajectory, use[dig->use],
-                   dig->pass > 1 ? ", dug before" : "");
-    const struct dig_plot plot = {
-        .title   = title,
-        .x_label = "path of the dig done, %",
-        .y_label = "moment, N·m at rig scale",
-        .width   = 480,
-        .height  = 370,
-        .series  = 4,
-        .s       = { { "1 σ of one dig", DIG_PLOT_BAND, "#1f5fa8", n, x, low, high },
-                     { "before", DIG_PLOT_DASHED, "#c77f00", n, x, curves->before[DIG_CHANNEL_MY_Nm],
-                       NULL },
-                     { "after", DIG_PLOT_LINE, "#1f5fa8", n, x, curves->after[DIG_CHANNEL_MY_Nm], NULL },
-                     { "measured", DIG_PLOT_LINE, "#c0392b", n, x, measured, NULL } },
-    };
-    (void)fputs("<figure>\n", to);
-    const enum dig_status status = dig_plot_svg(&plot, to, error);
-    (void)fputs("</figure>\n", to);
     return status;
 }
 
@@ -232,7 +278,8 @@ static enum dig_status put_digs(FILE *const to, const struct page *const page,
                          subject->set->trajectory[dig->trajectory].name, error);
     }
     (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
-                "with what was found.</p>\n",
+                "with what was found. Bands: 1 σ of one dig about each. Forces are drawn where "
+                "every sensor for them was there.</p>\n",
                 to);
     return status;
 }

@@ -35,6 +35,7 @@ static void fill_digs(struct example *const e)
         m->first                       = 0.05;
         m->last                        = 0.9;
         m->measured[DIG_CHANNEL_MY_Nm] = true;
+        m->measured[DIG_CHANNEL_FZ_N]  = d == 1;
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
             const struct dig_gravel gravel = { { 0.5, 0.5, 2500.0 } };
             const double            p      = (double)k / (DIG_CURVE_POINTS - 1);
@@ -371,9 +372,12 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
         pictures++;
     }
-    // The error, each dig, and the residual over path and depth.
-    assert_int_equal(pictures, 1 + DIGS + 2);
-    assert_contains(page, "<th>dig &lt;1&gt;.csv</th><td>fit</td><td>moment</td><td>2.5</td>");
+    // The error, each dig's moment, one dig's force, and the residual over path and depth.
+    assert_int_equal(pictures, 1 + DIGS + 1 + 2);
+    assert_contains(page, "actual, fit, Fz");
+    assert_contains(
+        page,
+        "<th>dig &lt;1&gt;.csv<br><span class=muted>fit</span></th><td>moment</td><td>2.5</td>");
     assert_contains(page, "it is not white");
     assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
     assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
