@@ -117,6 +117,7 @@ void dig_estimator_adopt(struct dig_estimator *const       estimator,
     assert(estimator != NULL && set != NULL && dig_estimator_is_idle(estimator));
     estimator->set      = set;
     estimator->forecast = NULL;
+    estimator->motion   = (struct dig_motion_state){ .towed = false };
     estimator->lambda   = estimator->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t t = 0; t < set->trajectories; t++) {
         estimator->route[t] = dig_approach_route(set, t);
@@ -446,12 +447,16 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     e->started          = true;
     e->last_ns          = sample->time_ns;
 
+    const double step_s = fmin(dt_s, longest_step_s);
+
     // Without a moment nothing is learnt; the dig goes on from the next one.
     const struct dig_path_point point = rig_point(e, &front);
     if (wrench.moment_valid) {
-        follow_dig(e, sample->time_ns, fmin(dt_s, longest_step_s), &wrench, &point);
+        follow_dig(e, sample->time_ns, step_s, &wrench, &point);
         wrench.My_Nm -= e->phase.bias_Nm;
     }
+    const enum dig_motion motion =
+        dig_motion_step(&e->motion, e->set->tooth_m, step_s, e->phase.phase, &point);
 
     *estimate = (struct dig_estimate){
         .time_ns    = sample->time_ns,
@@ -464,6 +469,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .trajectory = e->choice.told,
         .progress   = e->progress,
         .off_path_m = e->off_path_m,
+        .motion     = motion,
     };
     return DIG_OK;
 }

@@ -40,6 +40,15 @@ struct dig_wrench {
 
 enum dig_dig_phase { DIG_PHASE_AIR, DIG_PHASE_CONTACT, DIG_PHASE_DIG, DIG_PHASE_EXIT };
 
+/// What the bucket does in the soil; NONE: it is not in it, or has not moved yet.
+enum dig_motion {
+    DIG_MOTION_NONE,
+    DIG_MOTION_PENETRATION,
+    DIG_MOTION_DRAG,
+    DIG_MOTION_CURL,
+    DIG_MOTION_LIFT
+};
+
 /// What a tick knows. Poses are of the bucket pin in machine axes; see docs/numerics.md.
 struct dig_estimate {
     int64_t           time_ns;
@@ -50,6 +59,7 @@ struct dig_estimate {
     int                trajectory; // index into the curve set of the dig going on, -1: not known
     double             progress;   // 0 … 1 along it; NaN if not known
     double             off_path_m; // distance of the real path from it, rig scale; NaN if not known
+    enum dig_motion    motion;     // what it does in contact and dig
 };
 
 /// A finished dig on the table's grid, in rig units: what is matched.

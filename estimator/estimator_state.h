@@ -5,6 +5,7 @@
 
 #include "estimator/correction.h"
 #include "estimator/estimator.h"
+#include "estimator/motion.h"
 #include "estimator/phase.h"
 #include "estimator/rates.h"
 #include "estimator/raw.h"
@@ -28,13 +29,14 @@ struct dig_estimator {
     int64_t last_ns;
 
     // of the dig going on
-    struct dig_phase_state phase;
-    struct dig_raw        *raw; // its samples and path
-    struct dig_follower    follower[DIG_TRAJECTORY_MAX];
-    size_t                 next_follower; // the one whose turn it is to be refined
-    struct dig_choice      choice;        // the trajectory
-    double                 progress;
-    double                 off_path_m;
+    struct dig_phase_state  phase;
+    struct dig_motion_state motion;
+    struct dig_raw         *raw; // its samples and path
+    struct dig_follower     follower[DIG_TRAJECTORY_MAX];
+    size_t                  next_follower; // the one whose turn it is to be refined
+    struct dig_choice       choice;        // the trajectory
+    double                  progress;
+    double                  off_path_m;
 
     // of digs before
     uint32_t                   digs;
