@@ -131,6 +131,7 @@ static enum dig_status publish_estimate(struct dig_output *const          output
         .expires_ns      = record->expires_ns,
         .missing         = missing,
         .advice          = advice(),
+        .motion          = (int8_t)e->motion,
     };
     return sent(digsight_estimate_t_publish(output->lcm, "DIGSIGHT_ESTIMATE", &message));
 }

@@ -300,7 +300,8 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
 
 static void show(struct dig_publisher *const p, const int64_t now_ns)
 {
-    static const char *const phases[] = { "air", "contact", "dig", "exit" };
+    static const char *const phases[]  = { "air", "contact", "dig", "exit" };
+    static const char *const motions[] = { "", ", penetration", ", drag", ", curl", ", lift" };
     if (p->voice.show == NULL || now_ns < p->next_show_ns) {
         return;
     }
@@ -318,8 +319,8 @@ static void show(struct dig_publisher *const p, const int64_t now_ns)
                        g->value[DIG_AXIS_DENSITY_kgpm3], m->forces ? "moment and forces" : "moment",
                        p->result.known.valid ? "" : " (no longer)");
     }
-    (void)snprintf(line, sizeof line, "%s | %s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
-                   p->state, phases[e->phase], on ? " " : "",
+    (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
+                   p->state, phases[e->phase], motions[e->motion], on ? " " : "",
                    on ? p->set->trajectory[e->trajectory].name : "", 1e-3 * e->wrench.My_Nm, gravel,
                    p->health.frames);
     p->voice.show(line);

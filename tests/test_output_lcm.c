@@ -142,6 +142,7 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
               .trajectory = 1,
               .progress   = 0.5,
               .off_path_m = 0.01,
+              .motion     = DIG_MOTION_CURL,
     };
     assert_int_equal(dig_output_record(output, set(), &record), DIG_OK);
     record.sample.time_ns = 300;
@@ -169,6 +170,7 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     assert_close(seen.estimate.pin_Z_m, 5.0, 0.0);
     assert_close(seen.estimate.bucket_phi_rad, 6.0, 0.0);
     assert_int_equal(seen.estimate.phase, 2);
+    assert_int_equal(seen.estimate.motion, 3);
     assert_int_equal(seen.estimate.dig_count, 7);
     assert_true(seen.estimate.expires_ns == 250);
     assert_string_equal(seen.text[2], DIG_ADVICE);

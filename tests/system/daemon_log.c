@@ -1,6 +1,6 @@
 // Prints what an LCM log of the daemon holds, a line a message, for system tests to read:
 //   daemon_log LOG.lcm
-//   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING"
+//   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING" MOTION
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
 //   RESTORED DRIFT DEPTH ATTACK_deg MATCHED_DEPTH MATCHED_ATTACK_deg "WANTED" FORCES DIGS
 //   PATH_MEASURED GOING_ON prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH
@@ -27,9 +27,9 @@ static void estimate(void *const context, const int64_t time_us, const digsight_
 {
     (void)context;
     (void)time_us;
-    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d %d \"%s\"\n", (double)m->time_ns * 1e-9,
+    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d %d \"%s\" %d\n", (double)m->time_ns * 1e-9,
                  m->phase, name(m->trajectory), m->progress, m->moment_Nm, m->sigma_moment_Nm,
-                 m->dig_count, m->force_valid, m->missing);
+                 m->dig_count, m->force_valid, m->missing, m->motion);
 }
 
 static void match(void *const context, const int64_t time_us, const digsight_match_t *const m)

@@ -33,6 +33,13 @@ check "the end of the dig ends its prediction" grep -q '^prediction 0 ' "$work/c
 check "in the air each dig is predicted whole" \
     eval 'grep -q "^prediction 1 actual 0\.00000 " "$work/csv.txt" &&
           grep -q "^prediction 1 simpleA 0\.00000 " "$work/csv.txt"'
+# simpleA penetrates, is dragged, lifted; actual penetrates, curls, is dragged, curls, is lifted. The data's soil
+# is hardly felt before the first leg ends.
+motions() { # FILE DIG: what the bucket did in a dig, counted from 0
+    awk -v dig="$2" '$1 == "estimate" && $NF != 0 && $8 == dig && $NF != was { printf "%s", $NF; was = $NF }' "$1"
+}
+check "what the bucket does is told leg by leg" \
+    eval '[[ "$(motions "$work/csv.txt" 0)" =~ ^1?24$ && "$(motions "$work/csv.txt" 1)" =~ ^1?3234$ ]]'
 check "both digs are counted" [ "$(last health "$work/csv.txt" $h_digs)" = 2 ]
 check "health goes from waiting over running to stopping" \
     [ "$(awk '/^health/ && $2 != was { was = $2; print $2 }' "$work/csv.txt" | sort -u | tr '\n' ' ')" = \
