@@ -154,6 +154,14 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(call objs,$(testlib)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(call pkg_libs,cmocka) $(LIBS))
 
+# What these tests count, or answer themselves, is called in its place.
+comma  := ,
+wrap    = $(addprefix -Wl$(comma)--wrap=,$(1))
+$(BUILD)/tests/test_loop_calls: LDFLAGS += $(call wrap,malloc calloc realloc free aligned_alloc posix_memalign \
+    pthread_mutex_lock pthread_mutex_trylock pthread_cond_wait pthread_rwlock_rdlock pthread_rwlock_wrlock sem_wait sem_post \
+    printf fprintf vfprintf puts fputs fputc fwrite write)
+$(BUILD)/tests/test_loop_overrun: LDFLAGS += $(call wrap,clock_gettime clock_nanosleep)
+
 # Programs that only system tests need.
 $(BUILD)/tests/system/%: $(BUILD)/tests/system/%.o $(libs)
 	$(call say,LD,$@)

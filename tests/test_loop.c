@@ -2,137 +2,21 @@
 
 #include "firmware_host/loop.h"
 
-#include "files/machine_yaml.h"
-#include "files/scene_yaml.h"
 #include "tests/count_allocations.h"
-#include "tests/cube_table.h"
-#include "tests/testlib.h"
-#include "tests/wires.h"
+#include "tests/loop_bench.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#define MS        1000000LL
-#define GRAVELS   CUBE_GRAVELS
-#define ESTIMATES 8 // that wait at most
-
-// Everything a loop needs, and the other ends of its handoffs.
-struct bench {
-    struct dig_machine            machine;
-    struct dig_scene              scene;
-    struct cube_table             cube;
-    struct dig_estimator_settings estimator_settings;
-    struct dig_estimator         *estimator;
-    struct wires                  wires;
-    struct dig_raw               *raw[2];
-    struct dig_loop               loop;
-};
-
-static void fill_table(struct bench *const b)
-{
-    struct dig_curve_set *const set = &b->cube.set;
-    set->tooth_m                    = dig_scene_tooth_m(&b->scene);
-    set->bucket_width_m             = b->scene.bucket.width_m;
-    set->young_Pa                   = b->scene.material.young_Pa;
-    set->smooth_half_s              = DIG_SMOOTH_HALF_s;
-    set->trajectories               = b->scene.trajectories;
-    memcpy(set->trajectory, b->scene.trajectory, sizeof set->trajectory);
-    cube_table_init(&b->cube);
-    for (int g = 0; g < GRAVELS; g++) {
-        for (size_t t = 0; t < set->trajectories; t++) {
-            const size_t at      = (size_t)g * set->trajectories + t;
-            b->cube.packings[at] = 3;
-            for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-                b->cube.curve[at].mean[DIG_CHANNEL_MY_Nm][p] = 0.1F * (float)(1 + g);
-                b->cube.curve[at].sd[DIG_CHANNEL_MY_Nm][p]   = 0.01F;
-            }
-        }
-    }
-}
-
-static struct bench *bench_create(void)
-{
-    struct bench *const b = calloc(1, sizeof *b);
-    assert_non_null(b);
-    assert_int_equal(dig_machine_read("config/machines/zx200_trench.yaml", &b->machine, NULL),
-                     DIG_OK);
-    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &b->scene, NULL), DIG_OK);
-    fill_table(b);
-    b->estimator_settings = dig_estimator_settings_default();
-    b->estimator          = calloc(1, dig_estimator_size());
-    assert_non_null(b->estimator);
-    assert_int_equal(
-        dig_estimator_init(b->estimator, &b->machine, &b->cube.set, &b->estimator_settings),
-        DIG_OK);
-    wires_init(&b->wires);
-    dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], ESTIMATES,
-                  b->wires.estimate_memory);
-    for (int i = 0; i < 2; i++) {
-        b->raw[i] = calloc(1, dig_raw_size());
-        assert_non_null(b->raw[i]);
-        (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
-    }
-    const struct dig_loop_settings settings = wires_loop_settings(&b->cube.set);
-    const struct dig_loop_ports    ports    = wires_loop_ports(&b->wires);
-    dig_loop_init(&b->loop, &settings, &ports, b->estimator);
-    return b;
-}
-
-static void bench_destroy(struct bench *const b)
-{
-    free(b->estimator);
-    free(b->raw[0]);
-    free(b->raw[1]);
-    free(b);
-}
-
-// What the matcher says of a gravel of the table.
-static void offer(struct bench *const b, struct dig_latest *const to, const int gravel,
-                  const int64_t generation, const int64_t expires_ns)
-{
-    const struct dig_match  match = { .valid   = true,
-                                      .gravel  = b->cube.gravel[gravel],
-                                      .nearest = gravel };
-    struct dig_offer *const made  = calloc(1, sizeof *made);
-    assert_non_null(made);
-    made->set        = &b->cube.set;
-    made->generation = generation;
-    made->known      = true;
-    made->dig_count  = 7;
-    made->expires_ns = expires_ns;
-    dig_forecast_make(&b->cube.set, 10.0, &match, &made->forecast);
-    dig_latest_put(to, made);
-    free(made);
-}
-
-// The bucket held still in the air.
-static struct dig_reading still(const int64_t time_ns)
-{
-    static const double value[DIG_SIGNALS] = { 0.2852, -1.046, -0.8984, 8.4e6, 1e6, 1e6,
-                                               4.2e6,  1e6,    2e6,     0,     45 };
-    struct dig_reading  r                  = { .time_ns = time_ns };
-    for (int i = 0; i < DIG_SIGNALS; i++) {
-        r.value[i] = value[i];
-        r.state[i] = DIG_READING_OK;
-    }
-    return r;
-}
-
-static struct dig_pulse pulse_of(struct bench *const b)
-{
-    struct dig_pulse pulse = { 0 };
-    assert_true(dig_latest_take(&b->wires.pulse, &pulse));
-    return pulse;
-}
+#define MS 1000000LL
 
 static void a_whole_sample_becomes_an_estimate(void **state)
 {
     (void)state;
     struct bench *const      b = bench_create();
-    const struct dig_reading r = still(1000 * MS);
+    const struct dig_reading r = bench_still(1000 * MS);
     struct dig_record        record;
     assert_true(dig_ring_push(&b->wires.readings, &r));
     dig_loop_tick(&b->loop, 1001 * MS);
@@ -141,7 +25,7 @@ static void a_whole_sample_becomes_an_estimate(void **state)
     assert_true(record.estimate.time_ns == 1000 * MS);
     assert_close(record.sample.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8.4e6, 0.0);
     assert_false(dig_ring_pop(&b->wires.records, &record));
-    const struct dig_pulse pulse = pulse_of(b);
+    const struct dig_pulse pulse = bench_pulse(b);
     assert_true(pulse.fresh);
     assert_int_equal(pulse.ticks, 1);
     assert_int_equal(pulse.missing, 0);
@@ -155,7 +39,7 @@ static void each_estimate_is_shared_and_none_waited_for(void **state)
     struct bench *const b = bench_create();
     struct dig_estimate estimate;
     for (int64_t i = 0; i < 11; i++) {
-        struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        struct dig_reading r = bench_still(1000 * MS + i * 5 * MS);
         if (i == 3) {
             r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
         }
@@ -169,7 +53,7 @@ static void each_estimate_is_shared_and_none_waited_for(void **state)
         }
     }
     assert_false(dig_ring_pop(&b->wires.estimates, &estimate));
-    assert_int_equal(pulse_of(b).lost, 0);
+    assert_int_equal(bench_pulse(b).lost, 0);
     bench_destroy(b);
 }
 
@@ -177,7 +61,7 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
 {
     (void)state;
     struct bench *const b = bench_create();
-    struct dig_reading  r = still(1000 * MS);
+    struct dig_reading  r = bench_still(1000 * MS);
 
     r.state[DIG_SIGNAL_BUCKET_HEAD_Pa] = DIG_READING_NOT_AVAILABLE;
     struct dig_record record;
@@ -185,7 +69,7 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
     dig_loop_tick(&b->loop, 1001 * MS);
     assert_true(dig_ring_pop(&b->wires.records, &record));
     assert_false(record.has_estimate);
-    const struct dig_pulse pulse = pulse_of(b);
+    const struct dig_pulse pulse = bench_pulse(b);
     assert_false(pulse.fresh);
     assert_int_equal(pulse.missing, 1);
     assert_int_equal(pulse.drops.not_available, 1);
@@ -196,7 +80,7 @@ static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void 
 {
     (void)state;
     struct bench *const b           = bench_create();
-    struct dig_reading  r           = still(1000 * MS);
+    struct dig_reading  r           = bench_still(1000 * MS);
     r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_ABSENT;
     struct dig_record record;
     assert_true(dig_ring_push(&b->wires.readings, &r));
@@ -207,7 +91,7 @@ static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void 
     assert_true(record.estimate.wrench.sigma_My_Nm > 0.0);
     assert_false(record.estimate.wrench.force_valid);
     assert_false(record.sample.valid[DIG_SIGNAL_ARM_HEAD_Pa]);
-    assert_true(pulse_of(b).fresh);
+    assert_true(bench_pulse(b).fresh);
     bench_destroy(b);
 }
 
@@ -216,12 +100,12 @@ static void silence_is_missing_after_the_stale_time_only(void **state)
     (void)state;
     struct bench *const b = bench_create();
     dig_loop_tick(&b->loop, 995 * MS);
-    assert_int_equal(pulse_of(b).missing, 1);
-    const struct dig_reading r = still(1000 * MS);
+    assert_int_equal(bench_pulse(b).missing, 1);
+    const struct dig_reading r = bench_still(1000 * MS);
     assert_true(dig_ring_push(&b->wires.readings, &r));
     for (int64_t now = 1000; now <= 1200; now += 5) {
         dig_loop_tick(&b->loop, now * MS);
-        assert_true(pulse_of(b).fresh == (now <= 1100));
+        assert_true(bench_pulse(b).fresh == (now <= 1100));
     }
     assert_int_equal(b->loop.pulse.missing, 1 + 20);
     bench_destroy(b);
@@ -232,11 +116,11 @@ static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **s
     (void)state;
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < 1100; i++) {
-        const struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        const struct dig_reading r = bench_still(1000 * MS + i * 5 * MS);
         assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
     }
-    assert_int_equal(pulse_of(b).lost, 1100 - 1024);
+    assert_int_equal(bench_pulse(b).lost, 1100 - 1024);
     bench_destroy(b);
 }
 
@@ -245,7 +129,7 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     (void)state;
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < DIG_READINGS_PER_TICK + 10; i++) {
-        const struct dig_reading r = still(1000 * MS + i * MS);
+        const struct dig_reading r = bench_still(1000 * MS + i * MS);
         assert_true(dig_ring_push(&b->wires.readings, &r));
     }
     struct dig_record record;
@@ -270,7 +154,7 @@ static int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
     int                outlooks = 0;
     struct dig_outlook outlook;
     for (int64_t i = 0; i < 400; i++) {
-        const struct dig_reading r = still((from_ms + i * 5) * MS);
+        const struct dig_reading r = bench_still((from_ms + i * 5) * MS);
         assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
         if (dig_latest_take(&b->wires.outlook, &outlook)) {
@@ -294,7 +178,7 @@ static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
-    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     for (size_t t = 0; t < b->cube.set.trajectories; t++) {
         assert_true(seen[t]);
@@ -307,7 +191,7 @@ static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    offer(b, &b->wires.offer, 3, 1, 2000 * MS);
+    bench_offer(b, &b->wires.offer, 3, 1, 2000 * MS);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
     assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
     bench_destroy(b);
@@ -330,15 +214,15 @@ static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **sta
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 1);
-    offer(b, &b->wires.table, 5, 2, INT64_MAX);
+    bench_offer(b, &b->wires.table, 5, 2, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 2);
-    assert_int_equal(pulse_of(b).generation, 2);
+    assert_int_equal(bench_pulse(b).generation, 2);
     assert_close(b->loop.outlook.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
-    offer(b, &b->wires.offer, 3, 1, INT64_MAX); // late: of the table before
+    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX); // late: of the table before
     assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
     assert_close(b->loop.outlook.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
     assert_true(fabs(peak_told_of(b, 3) / peak_told_of(b, 5) - 1.0) > 0.1);
@@ -357,7 +241,7 @@ static double moment_of_Nm(const struct bench *const b, const struct dig_correct
                      DIG_OK);
     assert_int_equal(dig_estimator_correct(e, by), DIG_OK);
     for (int64_t i = 0; i < samples; i++) {
-        const struct dig_reading r      = still((1000 + i * 5) * MS);
+        const struct dig_reading r      = bench_still((1000 + i * 5) * MS);
         struct dig_sample        sample = { .time_ns = r.time_ns };
         for (size_t s = 0; s < DIG_SIGNALS; s++) {
             sample.value[s] = r.value[s];
@@ -374,7 +258,7 @@ static double moment_after_Nm(struct bench *const b, int64_t *const at_ms, const
                               const double push_Pa)
 {
     for (int i = 0; i < ticks; i++) {
-        struct dig_reading r = still(*at_ms * MS);
+        struct dig_reading r = bench_still(*at_ms * MS);
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += push_Pa;
         assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, (*at_ms + 1) * MS);
@@ -436,17 +320,17 @@ static void a_tick_allocates_nothing(void **state)
     (void)state;
     skip_unless_allocations_count();
     struct bench *const b = bench_create();
-    offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
     unsigned long in_ticks = 0;
     int           digs     = 0;
     for (int64_t i = 0; i < 2000; i++) {
-        struct dig_reading r = still(1000 * MS + i * 5 * MS);
+        struct dig_reading r = bench_still(1000 * MS + i * 5 * MS);
 
         // Pressures that come and go, so that digs begin and end.
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
         (void)dig_ring_push(&b->wires.readings, &r);
         if (i % 100 == 0) {
-            offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+            bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
         }
         const unsigned long before = allocations;
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
@@ -490,7 +374,7 @@ static void the_loop_runs_beside_its_neighbours(void **state)
     int              estimates = 0;
     for (int i = 0; i < 100; i++) {
         (void)clock_gettime(CLOCK_MONOTONIC, &t);
-        const struct dig_reading r = still((int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+        const struct dig_reading r = bench_still((int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
         assert_true(dig_ring_push(&run.bench->wires.readings, &r));
         const struct timespec pause = { .tv_nsec = 5 * MS };
         (void)nanosleep(&pause, NULL);
