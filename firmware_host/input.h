@@ -38,16 +38,16 @@ struct dig_input {
     struct dig_ring            *readings;
     struct dig_latest          *notes; // out: struct dig_note, the last trouble; "" when it is over
     const atomic_bool          *stop;
-    atomic_llong                frames;     // frames or polls that were received
-    atomic_llong                malformed;  // too short, refused by the other side
-    atomic_llong                checksum;   // frames whose checksum was wrong
-    atomic_llong                errors;     // error frames of a CAN controller
-    atomic_llong                bus_offs;   // of them, those that said bus off
-    atomic_llong                timeouts;   // requests without an answer in time
-    atomic_llong                overflow;   // readings for which the ring had no room
-    atomic_llong                reconnects; // times the source was opened again
-    atomic_bool                 connected;  // open
-    atomic_bool                 ended;      // a replay came to its end
+    atomic_llong                frames;    // frames or polls that were received
+    atomic_llong                malformed; // too short, refused by the other side
+    atomic_llong                checksum;  // frames whose checksum was wrong
+    atomic_llong                errors;    // error frames of a CAN controller
+    atomic_llong                bus_offs;  // of them, those that said bus off
+    atomic_llong                timeouts;  // requests without an answer in time
+    atomic_llong overflow;   // readings for which the ring, frames for which the socket had no room
+    atomic_llong reconnects; // times the source was opened again
+    atomic_bool  connected;  // open
+    atomic_bool  ended;      // a replay came to its end
 };
 
 /// Sources. strings are copied; the map must outlive the input. DIG_ENOMEM, DIG_EINVAL.

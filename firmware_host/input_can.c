@@ -3,6 +3,7 @@
 // Kernel time stamps and struct ifreq are Linux', not POSIX'.
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
 
+#include "firmware_host/can_message.h"
 #include "firmware_host/input.h"
 #include "firmware_host/signal_map.h"
 
@@ -21,14 +22,14 @@
 #include <time.h>
 #include <unistd.h>
 
-#define NS_PER_S 1000000000LL
-#define WAIT_ms  100
+#define WAIT_ms 100
 
 struct can_source {
     char                         interface[IFNAMSIZ];
     const struct dig_signal_map *map;
     int                          fd;
-    bool                         off; // the controller left the bus, and nothing came since
+    uint32_t                     dropped; // frames the socket had no room for, since it was opened
+    bool                         off;     // the controller left the bus, and nothing came since
 };
 
 static enum dig_status refuse(const struct dig_input *const input, const char *const what,
@@ -38,20 +39,13 @@ static enum dig_status refuse(const struct dig_input *const input, const char *c
     return dig_error_set(error, DIG_EIO, "%s: %s: %s", input->name, what, strerror(errno));
 }
 
-// Only the mapped messages, exactly, and the controller's error frames wake us.
 static int set_filters(const int fd, const struct dig_signal_map *const map)
 {
-    struct can_filter filter[DIG_GROUPS_MAX];
-    for (size_t i = 0; i < map->groups; i++) {
-        const bool extended = map->group[i].extended;
-        filter[i]           = (struct can_filter){
-                      .can_id   = map->group[i].id | (extended ? CAN_EFF_FLAG : 0),
-                      .can_mask = CAN_EFF_FLAG | CAN_RTR_FLAG | (extended ? CAN_EFF_MASK : CAN_SFF_MASK),
-        };
-    }
+    struct can_filter    filter[DIG_GROUPS_MAX];
     const can_err_mask_t errors = CAN_ERR_MASK;
     const int            off    = 0;
     const int            on     = 1;
+    dig_can_filters(map, filter);
     if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filter,
                    (socklen_t)(map->groups * sizeof filter[0])) != 0 ||
         setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
@@ -60,6 +54,8 @@ static int set_filters(const int fd, const struct dig_signal_map *const map)
     }
     // A kernel without it says so by time stamps that do not come; the time of reading serves then.
     (void)setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+    // Nor do counts of what it had no room for.
+    (void)setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
     return 0;
 }
 
@@ -92,31 +88,9 @@ static enum dig_status open_can(struct dig_input *const input, struct dig_error 
     }
     // Where the kernel knows how, the socket itself gives up sending.
     (void)shutdown(fd, SHUT_WR);
-    s->fd = fd;
+    s->fd      = fd;
+    s->dropped = 0;
     return DIG_OK;
-}
-
-static int64_t to_ns(const struct timespec *const t)
-{
-    return (int64_t)t->tv_sec * NS_PER_S + t->tv_nsec;
-}
-
-// The kernel stamps in wall time; the daemon lives in monotonic time. A wall clock that was just
-// set gives a stamp from the future or long ago: then the time of reading is better.
-static int64_t stamp_of(struct msghdr *const message)
-{
-    const int64_t now_ns = dig_input_now_ns();
-    for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
-        if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {
-            struct timespec stamp;
-            struct timespec wall;
-            memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
-            (void)clock_gettime(CLOCK_REALTIME, &wall);
-            const int64_t age_ns = to_ns(&wall) - to_ns(&stamp);
-            return age_ns >= 0 && age_ns < NS_PER_S ? now_ns - age_ns : now_ns;
-        }
-    }
-    return now_ns;
 }
 
 static void note(struct dig_input *const input, const char *const text)
@@ -173,9 +147,9 @@ static void take_frame(struct dig_input *const input, const struct can_frame *co
 
 static enum dig_status read_can(struct dig_input *const input, struct dig_error *const error)
 {
-    const struct can_source *const s     = input->source;
-    struct pollfd                  ready = { .fd = s->fd, .events = POLLIN };
-    const int                      any   = poll(&ready, 1, WAIT_ms);
+    struct can_source *const s     = input->source;
+    struct pollfd            ready = { .fd = s->fd, .events = POLLIN };
+    const int                any   = poll(&ready, 1, WAIT_ms);
     if (any == 0 || (any < 0 && errno == EINTR)) {
         return DIG_OK;
     }
@@ -189,11 +163,17 @@ static enum dig_status read_can(struct dig_input *const input, struct dig_error 
     if (got < 0) {
         return errno == EAGAIN || errno == EINTR ? DIG_OK : refuse(input, "cannot be read", error);
     }
+    // The daemon's own delay made the socket overflow: lost, as readings are that find no room.
+    const uint32_t dropped = dig_can_dropped(&message, s->dropped);
+    atomic_fetch_add(&input->overflow, (long long)(uint32_t)(dropped - s->dropped));
+    s->dropped = dropped;
     if (got != (ssize_t)sizeof frame) {
         atomic_fetch_add(&input->malformed, 1);
         return DIG_OK;
     }
-    take_frame(input, &frame, stamp_of(&message));
+    struct timespec wall;
+    (void)clock_gettime(CLOCK_REALTIME, &wall);
+    take_frame(input, &frame, dig_can_stamp_ns(&message, &wall, dig_input_now_ns()));
     return DIG_OK;
 }
 

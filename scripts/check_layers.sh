@@ -22,7 +22,7 @@ owner_of() {
     case $1 in
     nlopt.h)      echo "estimator/fit_nlopt.c closed_loop/refit_nlopt.c" ;;
     modbus*.h | modbus/*) echo "firmware_host/input_modbus.c tools/rig/*" ;;
-    linux/can*)   echo "firmware_host/input_can.c tools/rig/*" ;;
+    linux/can*)   echo "firmware_host/input_can.c firmware_host/can_message.* tools/rig/*" ;;
     lcm/*)        echo "firmware_host/output_lcm.c files/lcm_log.c" ;;
     cyaml/* | yaml.h) echo "files/* firmware_host/config*" ;;
     sqlite3.h)    echo "tables/*" ;;

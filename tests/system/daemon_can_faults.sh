@@ -109,5 +109,5 @@ if [ "$(awk '$1 == "step" { n += ($2 * $2 > 3590 ^ 2) } END { print n }' "$work/
 else
     skip_check "the wall clock is set" "it cannot be set here: $(tr '\n' ' ' <"$work/clock.log")"
 fi
-check "no sample was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
+check_timed "no sample was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 finish
