@@ -60,10 +60,14 @@ liggghts -in "$here/in.cluster_laws" > cluster_laws.log
 } > "$here/cluster_laws.csv"
 
 # Clumps: every sphere, two of a clump one after the other.
-liggghts -in "$here/in.clumps" > clumps.log
-{ echo step,x_m,y_m,z_m
-  for step in 0 1000 2000 4000 6000 8000; do last clumps.dump $step | sed "s/^/$step,/"; done
-} > "$here/clumps.csv"
+clumps() { # NAME ROLLING
+    liggghts -var rolling "$2" -in "$here/in.clumps" > clumps.log
+    { echo step,x_m,y_m,z_m
+      for step in 0 1000 2000 4000 6000 8000; do last clumps.dump $step | sed "s/^/$step,/"; done
+    } > "$here/$1.csv"
+}
+clumps clumps 0
+clumps clumps_rolling 0.5
 
 seed=0
 for prime in 15485867 67867967 86028121; do # LIGGGHTS takes primes only
