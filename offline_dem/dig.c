@@ -238,7 +238,8 @@ enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig
     status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &d.world, error);
     if (status == DIG_OK) {
         place_tool(&d, 0.0);
-        status = dig_refuse_overlap(&d.world, error);
+        status = dig_refuse_outside(&d.world, error);
+        status = status == DIG_OK ? dig_refuse_overlap(&d.world, error) : status;
         status = status == DIG_OK ? dig_refuse_start(&d.world, &d.tool, error) : status;
         if (status == DIG_OK && device != NULL) {
             status = dig_offload(&d.world, device);

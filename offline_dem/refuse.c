@@ -105,6 +105,28 @@ enum dig_status dig_refuse_overlap(const struct dig_world *const world,
     return status;
 }
 
+enum dig_status dig_refuse_outside(const struct dig_world *const world,
+                                   struct dig_error *const       error)
+{
+    const struct dig_grains *const g = &world->grains;
+    for (size_t i = 0; i < g->n; i++) {
+        const double *const x        = g->motion[i].x_m;
+        const double        radius_m = g->kind[g->of[i]].radius_m;
+        for (size_t w = 0; w < world->walls; w++) {
+            const double *const n      = world->wall[w].normal;
+            const double        d_m    = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];
+            const double        deep_m = world->wall[w].offset_m + radius_m - d_m;
+            if (deep_m > OVERLAP_MOST * radius_m) {
+                return dig_error_set(error, DIG_EINVAL,
+                                     "bed: grain %u at (%.4g, %.4g, %.4g) m is %.3g m behind a "
+                                     "wall of box_m, expected at most %g of its radius",
+                                     (unsigned)g->name[i], x[0], x[1], x[2], deep_m, OVERLAP_MOST);
+            }
+        }
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_refuse_start(const struct dig_world *const world,
                                  const struct dig_tool *const tool, struct dig_error *const error)
 {

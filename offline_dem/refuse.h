@@ -19,6 +19,10 @@ DIG_MUST_CHECK enum dig_status dig_refuse_path(const struct dig_scene      *scen
 DIG_MUST_CHECK enum dig_status dig_refuse_overlap(const struct dig_world *world,
                                                   struct dig_error       *error);
 
+/// DIG_EINVAL when a grain is more than 0.3 of its radius behind a wall or the floor.
+DIG_MUST_CHECK enum dig_status dig_refuse_outside(const struct dig_world *world,
+                                                  struct dig_error       *error);
+
 /// DIG_EINVAL when a plate of the tool, where it is, cuts a grain within half its radius, or a
 /// grain lies in the bucket.
 DIG_MUST_CHECK enum dig_status dig_refuse_start(const struct dig_world *world,

@@ -137,7 +137,13 @@ static void what_a_dig_cannot_begin_with_is_refused(void **state)
     double               at[2] = { 0.01, 0.0101 }, radius[2] = { GRAIN_m, GRAIN_m };
     const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
     expect_refusal(&scene, &gravel, &bed, "bed: grains");
+    // Behind a wall by more than three tenths of a radius, and nearly so.
+    at[0] = 0.69 * GRAIN_m;
     at[1] = 0.02;
+    expect_refusal(&scene, &gravel, &bed, "bed: grain 0 at (0.002587, 0.002587, 0.002587) m");
+    at[0] = 5.5;
+    expect_refusal(&scene, &gravel, &bed, "behind a wall of box_m");
+    at[0] = 0.71 * GRAIN_m;
     // Behind the tooth, .036 below the pin at (.03, .053), the second grain is in the bucket's
     // floor.
     scene.trajectory[0].start_z_m       = 0.053;

@@ -112,6 +112,33 @@ static void a_scene_whose_step_heats_is_refused_by_name(void **state)
     dig_bed_finish(&bed);
 }
 
+// A bed from a file: poured at a step it bears, dug at one it does not, or where no grain can be.
+static void a_bed_poured_elsewhere_is_refused_as_one_poured_here(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
+    struct dig_scene        scene  = dem_small_scene();
+    struct dig_error        error  = { "" };
+    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_OK);
+
+    scene.time_step_s = 1.2e-4;
+    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving"));
+    scene.may_tremble = true;
+    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_OK);
+
+    scene            = dem_small_scene();
+    const double x_m = poured.x_m[7];
+    poured.x_m[7]    = 5.5;
+    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "bed: grain 7 at (5.5, "));
+    poured.x_m[7] = x_m;
+    assert_int_equal(
+        dig_bed_watch(&scene, &(struct dig_gravel){ { -1.0, 0.5, DENSITY } }, &poured, &error),
+        DIG_EINVAL);
+    assert_non_null(strstr(error.text, "friction"));
+}
+
 static void what_is_watched_is_poured_as_ever(void **state)
 {
     (void)state;
@@ -131,6 +158,7 @@ int main(void)
         cmocka_unit_test(a_step_that_heats_is_noticed),
         cmocka_unit_test(a_bed_that_comes_to_rest_does_not_count),
         cmocka_unit_test(a_scene_whose_step_heats_is_refused_by_name),
+        cmocka_unit_test(a_bed_poured_elsewhere_is_refused_as_one_poured_here),
         cmocka_unit_test(what_is_watched_is_poured_as_ever),
         cmocka_unit_test(a_step_that_explodes_is_an_error_and_writes_nothing),
     };

@@ -120,6 +120,23 @@ refused "a bed with a text" 'bed.csv:3: column z_m: "zero", expected a finite nu
 refused "a bed that is not there" 'absent.csv: No such file' dig $scene "${dig[@]}" --bed "$work/absent.csv" -o "$out"
 printf 'x_m,y_m,z_m,radius_m,material\n0.5,0,0.03,0.03,0.5\n' >"$work/bed.csv"
 refused "a bed of half a material" 'bed.csv:2: column material: 0.5, expected a whole number' dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+printf 'x_m,y_m,z_m,radius_m\n0.5,0,0.03,0.03\n0.52,0,0.03,0.03\n' >"$work/bed.csv"
+refused "a bed whose grains overlap" 'bed: grains 0 and 1 overlap by 1.3 of the smaller.s radius, expected at most 0.3' \
+    dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+printf 'x_m,y_m,z_m,radius_m\n0.5,0,0.03,0.03\n5.5,0,0.03,0.03\n' >"$work/bed.csv"
+for engine in kernel ode; do
+    refused "a grain beside the box ($engine)" 'bed: grain 1 at .5.5, 0, 0.03. m is 4.53 m behind a wall of box_m' \
+        dig $scene "${dig[@]}" --bed "$work/bed.csv" --engine $engine -o "$out"
+done
+printf 'x_m,y_m,z_m,radius_m\n0.24,0,0.32,0.03\n' >"$work/bed.csv"
+refused "a bucket that starts in the bed" 'start_pin_m: the bucket starts in the bed, at the grain at .0.24, 0, 0.32. m' \
+    dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+digtable dig $scene "${dig[@]}" --seed 3 --save-bed "$work/bed.csv" -o "$work/made.csv"
+check "a bed is kept" is "$code" 0
+changed 's/^time_step_s: .*/time_step_s: 5.0e-4/' $scene s.yaml
+refused "a step that heats" 'time_step_s: 0.0005 keeps a resting bed moving, expected at most' dig "$work/s.yaml" "${dig[@]}" --seed 3 -o "$out"
+refused "a step that heats a kept bed" 'time_step_s: 0.0005 keeps a resting bed moving, expected at most' \
+    dig "$work/s.yaml" "${dig[@]}" --bed "$work/bed.csv" -o "$out"
 ore='materials: [{name: ore, friction: 0.9, rolling: 0.8, density_kgpm3: 4000, restitution: 0.3}]'
 sed "\$a bed: {$ore, layers: [{material: ore, z_m: [0.1, 0.4]}]}" $scene >"$work/s.yaml"
 refused "layers and a bed without materials" 'bed.csv:1: column material: missing, expected one' \

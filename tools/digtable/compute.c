@@ -8,6 +8,7 @@
 #include "offline_dem/engine_ode.h"
 #include "offline_dem/refuse.h"
 #include "offline_dem/sweep.h"
+#include "offline_dem/watched_pour.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/plan.h"
@@ -59,7 +60,15 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
                                struct dig_error *const error)
 {
     if (a->bed != NULL) {
-        return dig_cli_bed_read(a->bed, scene, bed, error);
+        struct dig_bed  read   = { 0 };
+        enum dig_status status = dig_cli_bed_read(a->bed, scene, &read, error);
+        status = status == DIG_OK ? dig_bed_watch(scene, gravel, &read, error) : status;
+        if (status != DIG_OK) {
+            dig_bed_finish(&read);
+            return status;
+        }
+        *bed = read;
+        return DIG_OK;
     }
     struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "bed", a->stop };
     const struct dig_progress progress = { watch_dig, &watch };
