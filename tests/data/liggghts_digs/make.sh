@@ -3,17 +3,21 @@
 #   ./make.sh GRAVEL SEED [TRAJECTORY...]   the rig scene (config/scenes/rig.yaml), some ten minutes of one core a seed:
 #                                           GRAVEL_seedN__TRAJECTORY.csv beside this file
 #   ./make.sh muF_murR_rhoD SEED            the same of a plain gravel, named by its parameters
-#   ./make.sh GRAVEL SEED scratch           the small scene of test_small_digs.c, seconds: phase means
-#                                           on stdout, a line each
+#   ./make.sh GRAVEL SEED scratch           a small scene, seconds: the phases' means and
+#                                           the spheres of the levelled bed on stdout, as small.csv has them
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 gravel=$1
 seed=$2
 shift 2
 trajectories=${*:-simpleA actual}
-primes="15485867 67867967 86028121 32452867 49979693 15485863 67867979 86028157 32452843 49979687"
-prime=$(echo "$primes" | cut -d' ' -f"$seed") # LIGGGHTS takes primes only
-[ "$prime" ] || { echo "seed: $seed, expected 1 to 10" >&2; exit 2; }
+# LIGGGHTS takes primes only, and not one of its seeds twice: seeds 9 and 10 are its other seeds and
+# fail, of poly 5 and 8 too.
+primes="15485867 67867967 86028121 32452867 49979693 15485863 67867979 86028157 32452843 49979687 \
+20000003 21234593 22469173 23703761 24938359 26172929 27407509 28642079 29876657 31111237 \
+32345813 33580397 34814971 36049543 37284119 38518687 39753257 40987841 42222409 43456991"
+prime=$(echo "$primes" | cut -d' ' -f"$seed")
+[ "$prime" ] || { echo "seed: $seed, expected 1 to 30" >&2; exit 2; }
 
 # The scene: bucket (in parts of the rig's), box, height of the poured column, steps of settling.
 scale=1 length=.31 half=.06 height=.085 column=.196747 settle=7200 relax=2400
@@ -21,15 +25,16 @@ if [ "$trajectories" = scratch ]; then
     scale=.4 length=.08 half=.0225 height=.03 column=.0694 settle=4800 relax=1600
 fi
 
-# What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1.
+# What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1 unless said.
 friction=.5 rolling=.5 density=2500
 radii=".00375" shares="1" clump= slope_deg=0 rock=
-normal=hooke roll=epsd2
+normal=hooke roll=epsd2 wall_type=1
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
 case $gravel in
 plain) ;;
 poly) radii=".003 .00375 .005" shares=".3 .4 .3" ;;
-cohesion) pull=1e5 ;;
+cohesion) pull=1e5 ;; # and at the walls, which are of the grains' type
+cohesion_grains) pull=1e5 wall_type=4 ;; # between grains alone
 cohesion_all) pull=1e5 stick=1e5 ;;
 cohesion_2e5) pull=2e5 stick=2e5 ;;
 clump) clump=yes ;;
@@ -81,7 +86,7 @@ awk -v s="$scale" 'function point(k, y) { print "   vertex", s * x[k], s * y, s 
         print "endsolid rock" }' > rock.stl
 
 wall() { # NAME AXISplane OFFSET
-    echo "fix $1 all wall/gran model $law primitive type 1 $2 $3"
+    echo "fix $1 all wall/gran model $law primitive type $wall_type $2 $3"
 }
 pairs() { # GRAIN-GRAIN GRAIN-OTHER: a 4 x 4 matrix of types
     echo "4 $1 $1 $1 $2  $1 $1 $1 $2  $1 $1 $1 $2  $2 $2 $2 $2"
@@ -221,12 +226,14 @@ recording() { # TRAJECTORY
         printf "%.6f,%.6f,%.6f,%.4f,%.5g,%.5g,%.5g,%.5g,%.5g,%.5g\n", t, $8, $9, theta, $2, $3, $4, $5, $6, $7 }' "$1.txt"
 }
 
-# The same, by phase: gravel, seed, phase, My, Fx, Fz.
+# The same, by phase: gravel, seed, phase, My, Fx, Fz, spheres.
 phase_means() {
-    awk -v g="$gravel" -v s="$seed" '!/^#/ {
+    # How many the first line of the last run counts.
+    spheres=$(awk '/^ +0 +[0-9]+ / { n = $2 } END { print n }' scratch.log)
+    awk -v g="$gravel" -v s="$seed" -v n_spheres="$spheres" '!/^#/ {
         p = $1 <= 3200 ? 0 : $1 <= 8000 ? 1 : 2
         n[p]++; my[p] += $6; fx[p] += $2; fz[p] += $4 }
-        END { for (p = 0; p < 3; p++) printf "%s,%d,%d,%.6g,%.6g,%.6g\n", g, s, p, my[p] / n[p], fx[p] / n[p], fz[p] / n[p] }' scratch.txt
+        END { for (p = 0; p < 3; p++) printf "%s,%d,%d,%.6g,%.6g,%.6g,%d\n", g, s, p, my[p] / n[p], fx[p] / n[p], fz[p] / n[p], n_spheres }' scratch.txt
 }
 
 for trajectory in $trajectories; do
