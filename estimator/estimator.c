@@ -20,6 +20,9 @@ static const double tie_share = 0.125;
 // A dig shorter than this share of its trajectory is not worth matching.
 static const double least_progress = 0.2;
 
+// A hand may leave the path a little before its end: from here on the way out is not of the dig.
+static const double ended_progress = 0.95;
+
 // The soil is looked for from so much deeper than the table was dug, to see what is off it.
 static const double probe_deeper = 1.5;
 
@@ -185,10 +188,11 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
     e->off_path_m = place.distance_m;
 }
 
-// The trajectory is done and the bucket has left its end.
+// The trajectory is done, or nearly, and the bucket has left it.
 static bool path_is_over(const struct dig_estimator *const e)
 {
-    return e->choice.told >= 0 && e->progress >= 1.0 && e->off_path_m > e->settings.path_limit_m;
+    return e->choice.told >= 0 && e->progress >= ended_progress &&
+           e->off_path_m > e->settings.path_limit_m;
 }
 
 // A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
