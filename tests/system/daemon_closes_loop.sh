@@ -57,7 +57,7 @@ close_loop() { # NAME MACHINE DIG…: $before and $after, of the estimate and th
 }
 
 smaller() { # AFTER BEFORE SHARE
-    awk -v a="$1" -v b="$2" -v s="$3" 'BEGIN { exit !(a > 0 && a < s * b) }'
+    awk -v a="$1" -v b="$2" -v s="$3" 'BEGIN { exit !(a > 0 && b < 1e8 && a < s * b) }'
 }
 
 # A bucket 600 kg heavier than its file says.
