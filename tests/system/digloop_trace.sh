@@ -88,6 +88,50 @@ check "lost samples hardly change the gravel" within "$(friction "$work/lossy.js
 awk -F, -v OFS=, 'NR > 99 && NR < 140 { $9 = "" } 1' "$A$R" >"$work/lossy/lossy_b.csv"
 check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for more than 0.16 s" -- "$work/lossy"
 
+# The rig at another size: the scene, and digs as they would be recorded there (Froude similarity).
+scaled_scene() { # LAMBDA
+    awk -v l="$1" '
+        function times(line, f,    out) { # every number behind the key
+            out = ""
+            while (match(line, /-?[0-9]+(\.[0-9]+)?(e[-+]?[0-9]+)?/)) {
+                out = out substr(line, 1, RSTART - 1) sprintf("%.17g", f * substr(line, RSTART, RLENGTH))
+                line = substr(line, RSTART + RLENGTH)
+            }
+            return out line
+        }
+        { sub(/#.*/, "") }
+        /^    - \[|^  [xyz]: \[/ || /width_m:|diameter_m:/ { $0 = times($0, l) }
+        /young_Pa:/ { $0 = times($0, l) }
+        /velocity_mps:/ { $0 = times($0, sqrt(l)) }
+        /start_pin_m:/ { $0 = times($0, l) }
+        /- \{name:/ {
+            n = split($0, part, /, */)
+            $0 = part[1]
+            for (i = 2; i <= n; i++) {
+                f = part[i] ~ /omega/ ? 1 / sqrt(l) : sqrt(l)
+                $0 = $0 ", " times(part[i], f)
+            }
+        }
+        1' config/scenes/rig.yaml
+}
+scaled_dig() { # LAMBDA FILE
+    awk -F, -v OFS=, -v CONVFMT=%.12g -v l="$1" \
+        'NR > 1 { $1 *= sqrt(l); $2 *= l; $3 *= l; for (i = 5; i < 8; i++) $i *= l ^ 3; for (i = 8; i < 11; i++) $i *= l ^ 4 } 1' "$2"
+}
+tell() { tr -d ' \n' <"$1" | grep -oE '"(verdict|material)":(\[[^]]*\]|\{("[a-z_0-9]*":\{[^}]*\},?)*\})'; }
+for lambda in 2 4; do
+    campaign "times$lambda" "../scene$lambda.yaml" a.csv simpleA identify b.csv actual fit
+    sed -i "s|scene: .*|scene: $work/scene$lambda.yaml|" "$work/times$lambda/campaign.yaml"
+    scaled_scene $lambda >"$work/scene$lambda.yaml"
+    scaled_dig $lambda "$A$S" >"$work/times$lambda/a.csv"
+    scaled_dig $lambda "$A$R" >"$work/times$lambda/b.csv"
+    "$BIN/digloop" trace "$table" "$work/times$lambda" --json "$work/times$lambda.json" >/dev/null 2>"$work/err" || cat "$work/err"
+    check "digs $lambda times as large say the same of the gravel" \
+        eval '[ -n "$(tell "$work/n.json")" ] && [ "$(tell "$work/times$lambda.json")" = "$(tell "$work/n.json")" ]'
+done
+cp "$A$S" "$work/times2/a.csv"
+check "a dig of one size in a scene of another is refused" refuses "times2/a.csv: the recording's path is none of the table's" -- "$work/times2"
+
 # A scene file that is the rig's with one thing changed, or another that ships.
 scene_is() { # NAME SED-SCRIPT
     sed "$2" config/scenes/rig.yaml >"$work/$1.yaml"
@@ -123,6 +167,24 @@ check "recordings of a rig and of a machine are not mixed" \
 campaign colour rig colour.csv simpleA identify "$A$R" actual fit
 sed 's/^t_s/colour,t_s/; 2,$s/^/0,/' "$A$S" >"$work/colour/colour.csv"
 check "a column that nobody knows is named" refuses 'colour/colour.csv:1: column "colour": unknown' -- "$work/colour"
+# A machine's recordings, and the same with a pressure cut off at half of its peak, as a sensor too small would.
+machine=$PWD/config/machines/zx200_trench.yaml
+clip() { # COLUMN FILE
+    local column
+    column=$(head -n 1 "$2" | tr , '\n' | grep -nx "$1" | cut -d: -f1)
+    awk -F, -v OFS=, -v c="$column" 'NR == FNR { if (FNR > 1 && $c > most) most = $c; next } FNR > 1 && $c > most / 2 { $c = most / 2 } 1' \
+        OFMT=%.9g CONVFMT=%.9g "$2" "$2"
+}
+campaign whole rig a.csv simpleA identify b.csv actual fit
+echo "machine: $machine" >>"$work/whole/campaign.yaml"
+"$BIN/digrig" record "$A$S" --machine "$machine" -o "$work/whole/a.csv" 2>"$work/err" &&
+    "$BIN/digrig" record "$A$R" --machine "$machine" -o "$work/whole/b.csv" 2>"$work/err"
+"$BIN/digloop" trace "$table" "$work/whole" --json "$work/w.json" >/dev/null 2>"$work/err"
+check "recordings of a machine are traced" eval '[ $? = 0 ] && grep -q "\"verdict\": \[\"none\"\]" "$work/w.json"'
+mkdir "$work/clipped" && cp "$work/whole/"* "$work/clipped"
+clip arm_head_Pa "$work/whole/b.csv" >"$work/clipped/b.csv"
+check "a pressure that was cut off is named" refuses "clipped/b.csv: arm_head_Pa stays at its highest value" "clipped, expected" -- "$work/clipped"
+
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit

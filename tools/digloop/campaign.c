@@ -9,6 +9,7 @@
 #include "tools/digloop/scene.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,8 +50,31 @@ static enum dig_status fill_heads(const struct dig_campaign *const  from,
     return DIG_OK;
 }
 
+// A force recording as it would be of a dig in a scene lambda times smaller, by Froude similarity.
+static void shrink(struct dig_recording *const recording, const double lambda)
+{
+    const double time  = sqrt(lambda);
+    const double force = lambda * lambda * lambda;
+    for (size_t i = 0; i < recording->rows; i++) {
+        struct dig_force_row *const row      = &recording->row[i];
+        double *const               length[] = { &row->pin_x_m, &row->pin_z_m };
+        double *const weight[] = { &row->Fx_N, &row->Fy_N, &row->Fz_N, &row->carried_kg };
+        double *const moment[] = { &row->Mx_Nm, &row->My_Nm, &row->Mz_Nm };
+        row->t_s /= time;
+        for (size_t k = 0; k < sizeof length / sizeof length[0]; k++) {
+            *length[k] /= lambda;
+        }
+        for (size_t k = 0; k < sizeof weight / sizeof weight[0]; k++) {
+            *weight[k] /= force;
+        }
+        for (size_t k = 0; k < sizeof moment / sizeof moment[0]; k++) {
+            *moment[k] /= force * lambda;
+        }
+    }
+}
+
 static enum dig_status measure_force(const struct dig_campaign_recording *const r,
-                                     const struct dig_curve_set *const          set,
+                                     const struct dig_curve_set *const set, const double scale,
                                      struct dig_measured *const m, struct dig_error *const error)
 {
     struct dig_recording recording = { 0 };
@@ -58,6 +82,7 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
     struct dig_error     why       = { "" };
     enum dig_status      status    = dig_recording_read(r->file, &recording, error);
     if (status == DIG_OK) {
+        shrink(&recording, scale);
         status = dig_observe_dig(set, &recording, &o, &why);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", r->file, why.text);
@@ -155,7 +180,8 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
     if (campaign->measured == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    enum dig_status status = digloop_check_scene(from->scene, table, set, error);
+    double          scale  = 1.0; // of force recordings; a machine knows its own
+    enum dig_status status = digloop_check_scene(from->scene, table, set, &scale, error);
     if (status == DIG_OK) {
         status = fill_heads(from, set, campaign->measured, error);
     }
@@ -169,7 +195,7 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
         return load_machine(from, table, set, campaign, error);
     }
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
-        status = measure_force(&from->recording[i], set, &campaign->measured[i], error);
+        status = measure_force(&from->recording[i], set, scale, &campaign->measured[i], error);
     }
     return status;
 }

@@ -17,7 +17,8 @@ struct digloop_campaign {
 /// Reads FOLDER/campaign.yaml, its recordings and its machine. Refuses a scene that is not similar
 /// to that of the table, a file, and a machine whose bucket is not of its shape, a dig that is not
 /// along the trajectory named for it, force and machine recordings mixed; *error names file and
-/// reason. Free with digloop_campaign_finish().
+/// reason. Force recordings in a scene that is the table's at another size are taken to the
+/// table's. Free with digloop_campaign_finish().
 DIG_MUST_CHECK enum dig_status digloop_campaign_load(const char *folder, const char *table,
                                                      const struct dig_curve_set *set,
                                                      struct digloop_campaign    *campaign,

@@ -40,24 +40,28 @@ static enum dig_status check_file(const char *const path, const char *const tabl
 }
 
 enum dig_status digloop_check_scene(const char *const path, const char *const table,
-                                    const struct dig_curve_set *const set,
-                                    struct dig_error *const           error)
+                                    const struct dig_curve_set *const set, double *const scale,
+                                    struct dig_error *const error)
 {
-    assert(path != NULL && table != NULL && set != NULL);
+    assert(path != NULL && table != NULL && set != NULL && scale != NULL);
 
     // A scene may be named instead of given: then by the name the table has.
     if (!exists(path)) {
-        return strcmp(last_part(path), set->scene_name) == 0
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL,
-                                   "%s: no such scene file, nor is it the scene \"%s\" of %s", path,
-                                   set->scene_name, table);
+        const bool same = strcmp(last_part(path), set->scene_name) == 0;
+        *scale          = same ? 1.0 : *scale;
+        return same ? DIG_OK
+                    : dig_error_set(error, DIG_EINVAL,
+                                    "%s: no such scene file, nor is it the scene \"%s\" of %s",
+                                    path, set->scene_name, table);
     }
     struct dig_scene *const scene = calloc(2, sizeof *scene); // the file's, the table's
     if (scene == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     const enum dig_status status = check_file(path, table, &scene[0], &scene[1], error);
+    if (status == DIG_OK) {
+        *scale = dig_scene_scale(&scene[0], &scene[1]);
+    }
     free(scene);
     return status;
 }

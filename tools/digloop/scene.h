@@ -9,10 +9,11 @@
 #include "core/machine.h"
 
 /// path is a scene file or, where there is no such file, ends in the name of the table's scene.
-/// DIG_EINVAL for a scene that is not similar (core/similar.h); *error names both and the table.
+/// *scale: its bucket over that of the table's scene. DIG_EINVAL for a scene that is not similar
+/// (core/similar.h); *error names both and the table.
 DIG_MUST_CHECK enum dig_status digloop_check_scene(const char *path, const char *table,
-                                                   const struct dig_curve_set *set,
-                                                   struct dig_error           *error);
+                                                   const struct dig_curve_set *set, double *scale,
+                                                   struct dig_error *error);
 
 /// The machine of this file has a bucket as wide to its length as the scene's, within DIG_SIMILAR;
 /// else DIG_EINVAL, naming both.
