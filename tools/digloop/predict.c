@@ -1,4 +1,3 @@
-#include "closed_loop/score.h"
 #include "core/units.h"
 #include "estimator/match.h"
 #include "estimator/whole.h"
@@ -7,6 +6,7 @@
 #include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
+#include "tools/digloop/wrong.h"
 
 #include <assert.h>
 #include <math.h>
@@ -81,59 +81,12 @@ static void put_array(FILE *const to, const char *const name, const float curve[
     (void)fputs("]", to);
 }
 
-// How wrong the prediction is of one dig, made as it was.
-static enum dig_status score_dig(const struct dig_curve_set *const   set,
-                                 const struct dig_match *const       match,
-                                 const struct dig_observation *const dig,
-                                 struct dig_score *const score, struct dig_error *const error)
-{
-    struct digloop_as_dug table = { .set = NULL };
-    struct dig_curve      curve;
-    size_t                at = 0;
-    enum dig_status       status =
-        digloop_as_dug_at(set, (size_t)dig->trajectory, &dig->approach, &table, &at, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = dig_predict_curve(table.set, match, at, &curve);
-    if (status == DIG_OK) {
-        double predicted_Nm[DIG_CURVE_POINTS];
-        double sigma_Nm[DIG_CURVE_POINTS];
-        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-            predicted_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
-            sigma_Nm[k]     = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
-        }
-        dig_score_add(score, &table.set->trajectory[at], set->tooth_m, dig->first, dig->last,
-                      dig->moment_Nm, predicted_Nm, sigma_Nm);
-    } else {
-        (void)dig_error_set(error, status, "%s", dig_status_str(status));
-    }
-    digloop_as_dug_finish(&table);
-    return status;
-}
-
-// How wrong the prediction is against the digs measured along its trajectory.
-static enum dig_status score_measured(const struct digloop_options *const options,
-                                      const struct dig_curve_set *const   set,
-                                      const struct digloop_machine *const machine, const int t,
-                                      const struct dig_match *const match,
-                                      struct dig_score *const score, struct dig_error *const error)
-{
-    struct dig_observed_digs seen = { .digs = 0 };
-    enum dig_status status = digloop_read_digs(options->measured, machine, set, t, &seen, error);
-    for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
-        status = score_dig(set, match, &seen.dig[i], score, error);
-    }
-    dig_observed_digs_finish(&seen);
-    return status;
-}
-
 // What is predicted, and how wrong it was.
 struct prediction {
     struct dig_trajectory trajectory; // as dug
     struct dig_curve      curve;
     struct dig_whole      whole;
-    struct dig_score      score;
+    struct digloop_wrong  wrong;
 };
 
 static void print(const struct digloop_options *const options, const struct prediction *const p)
@@ -148,8 +101,11 @@ static void print(const struct digloop_options *const options, const struct pred
                      p->trajectory.name, how, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
                      whole->energy_sigma_J);
         if (options->measured != NULL) {
-            (void)printf("  error against %s: %.3f (noise floor %.3f)\n", options->measured,
-                         dig_score_error(&p->score), dig_score_noise_floor(&p->score));
+            (void)printf("  error against %s: %.3f (noise floor %.3f), %.0f %% of the moment in "
+                         "the 90 %% band\n",
+                         options->measured, dig_score_error(&p->wrong.score),
+                         dig_score_noise_floor(&p->wrong.score),
+                         100.0 * dig_coverage_share(&p->wrong.coverage, DIG_CHANNEL_MY_Nm));
         }
         return;
     }
@@ -162,13 +118,14 @@ static void print(const struct digloop_options *const options, const struct pred
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
     }
     if (options->measured != NULL) {
-        (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&p->score),
-                     dig_score_noise_floor(&p->score));
+        digloop_wrong_put(&p->wrong);
     }
     put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
     put_array(stdout, "sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
     put_array(stdout, "force_x_N", curve->mean[DIG_CHANNEL_FX_N]);
     put_array(stdout, "force_z_N", curve->mean[DIG_CHANNEL_FZ_N]);
+    put_array(stdout, "sigma_force_x_N", curve->sd[DIG_CHANNEL_FX_N]);
+    put_array(stdout, "sigma_force_z_N", curve->sd[DIG_CHANNEL_FZ_N]);
     (void)puts("}");
 }
 
@@ -226,13 +183,13 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
         return status;
     }
     const struct dig_match match = match_of(&id);
-    struct prediction      p     = { .score = { 0 } };
+    struct prediction      p     = { .wrong = { .digs = 0 } };
     status                       = predict(options, set, t, &match, &p, error);
     if (status == DIG_OK && options->out != NULL) {
         status = write_curve(options->out, set, &p.trajectory, &p.curve, error);
     }
     if (status == DIG_OK && options->measured != NULL) {
-        status = score_measured(options, set, machine, t, &match, &p.score, error);
+        status = digloop_wrong_measure(options, set, machine, t, &match, &p.wrong, error);
     }
     if (status == DIG_OK) {
         print(options, &p);

@@ -1,0 +1,114 @@
+#include "tools/digloop/wrong.h"
+
+#include "estimator/whole.h"
+#include "tools/digloop/as_dug.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+
+// What a dig measured came to. The energy needs the forces.
+static void tell_whole(const struct dig_trajectory *const t, const double tooth_m,
+                       const struct dig_observation *const dig, struct digloop_wrong *const wrong)
+{
+    struct dig_channels weight;
+    dig_whole_energy_weights(t, tooth_m, &weight);
+    double peak_Nm  = -INFINITY;
+    double energy_J = dig->forces ? 0.0 : (double)NAN;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        if (at >= dig->first && at <= dig->last) {
+            peak_Nm = fmax(peak_Nm, dig->moment_Nm[k]);
+            energy_J += weight.of[0][k] * dig->moment_Nm[k] + weight.of[1][k] * dig->force_N[0][k] +
+                        weight.of[2][k] * dig->force_N[1][k];
+        }
+    }
+    if (wrong->digs < DIGLOOP_WRONG_DIGS) {
+        wrong->peak_Nm[wrong->digs]  = peak_Nm;
+        wrong->energy_J[wrong->digs] = energy_J;
+        wrong->digs++;
+    }
+}
+
+// How wrong the prediction is of one dig, made as it was.
+static enum dig_status score_dig(const struct dig_curve_set *const   set,
+                                 const struct dig_match *const       match,
+                                 const struct dig_observation *const dig,
+                                 struct digloop_wrong *const wrong, struct dig_error *const error)
+{
+    struct digloop_as_dug table = { .set = NULL };
+    struct dig_curve      curve;
+    size_t                at = 0;
+    enum dig_status       status =
+        digloop_as_dug_at(set, (size_t)dig->trajectory, &dig->approach, &table, &at, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_predict_curve(table.set, match, at, &curve);
+    if (status == DIG_OK) {
+        const struct dig_trajectory *const t = &table.set->trajectory[at];
+        double                             predicted_Nm[DIG_CURVE_POINTS];
+        double                             sigma_Nm[DIG_CURVE_POINTS];
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            predicted_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
+            sigma_Nm[k]     = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
+        }
+        dig_score_add(&wrong->score, t, set->tooth_m, dig->first, dig->last, dig->moment_Nm,
+                      predicted_Nm, sigma_Nm);
+        dig_coverage_add(&wrong->coverage, dig, &curve);
+        tell_whole(t, set->tooth_m, dig, wrong);
+    } else {
+        (void)dig_error_set(error, status, "%s", dig_status_str(status));
+    }
+    digloop_as_dug_finish(&table);
+    return status;
+}
+
+enum dig_status digloop_wrong_measure(const struct digloop_options *const options,
+                                      const struct dig_curve_set *const   set,
+                                      const struct digloop_machine *const machine, const int t,
+                                      const struct dig_match *const match,
+                                      struct digloop_wrong *const   wrong,
+                                      struct dig_error *const       error)
+{
+    struct dig_observed_digs seen = { .digs = 0 };
+    enum dig_status status = digloop_read_digs(options->measured, machine, set, t, &seen, error);
+    for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
+        status = score_dig(set, match, &seen.dig[i], wrong, error);
+    }
+    dig_observed_digs_finish(&seen);
+    return status;
+}
+
+// A number, or what JSON has where there is none.
+static void put_number(const double value)
+{
+    if (isfinite(value)) {
+        (void)printf("%.6g", value);
+    } else {
+        (void)printf("null");
+    }
+}
+
+static void put_list(const char *const name, const size_t n, const double value[])
+{
+    (void)printf(", \"%s\": [", name);
+    for (size_t i = 0; i < n; i++) {
+        (void)printf("%s", i == 0 ? "" : ", ");
+        put_number(value[i]);
+    }
+    (void)printf("]");
+}
+
+void digloop_wrong_put(const struct digloop_wrong *const w)
+{
+    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&w->score),
+                 dig_score_noise_floor(&w->score));
+    double inside[DIG_FORCE_CHANNELS];
+    for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        inside[c] = dig_coverage_share(&w->coverage, (enum dig_channel)c);
+    }
+    put_list("inside_90", DIG_FORCE_CHANNELS, inside);
+    put_list("measured_peak_Nm", w->digs, w->peak_Nm);
+    put_list("measured_energy_J", w->digs, w->energy_J);
+}

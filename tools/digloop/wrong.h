@@ -1,0 +1,33 @@
+// How wrong a prediction was of the digs measured along its trajectory.
+
+#ifndef DIG_TOOLS_DIGLOOP_WRONG_H
+#define DIG_TOOLS_DIGLOOP_WRONG_H
+
+#include "closed_loop/coverage.h"
+#include "closed_loop/score.h"
+#include "core/error.h"
+#include "estimator/match.h"
+#include "tools/digloop/commands.h"
+#include "tools/digloop/recording.h"
+
+#define DIGLOOP_WRONG_DIGS 64 // told one by one
+
+/// Zeroed: of no dig. Peaks and energies are those measured; NaN without forces.
+struct digloop_wrong {
+    struct dig_score    score;
+    struct dig_coverage coverage;
+    size_t              digs;
+    double              peak_Nm[DIGLOOP_WRONG_DIGS], energy_J[DIGLOOP_WRONG_DIGS];
+};
+
+/// Of all digs of options->measured along trajectory t, each predicted as it was made. Fails as
+/// reading and predicting do; then *wrong is of the digs before.
+DIG_MUST_CHECK enum dig_status
+digloop_wrong_measure(const struct digloop_options *options, const struct dig_curve_set *set,
+                      const struct digloop_machine *machine, int t, const struct dig_match *match,
+                      struct digloop_wrong *wrong, struct dig_error *error);
+
+/// As members of a JSON object, behind others.
+void digloop_wrong_put(const struct digloop_wrong *wrong);
+
+#endif // DIG_TOOLS_DIGLOOP_WRONG_H
