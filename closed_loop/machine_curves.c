@@ -75,7 +75,8 @@ static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_correction *const correction, const double tooth_m,
                       const size_t from, const size_t to, struct reading reading[])
 {
-    const struct dig_machine corrected = dig_correction_machine(machine, correction);
+    struct dig_machine corrected = dig_correction_machine(machine, correction);
+    corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
     for (size_t i = from; i < to; i++) {
         struct reading    r = { .solved = false };
         struct dig_front  front;

@@ -191,7 +191,28 @@ static enum dig_status check_ground(const struct dig_machine *const machine,
     return DIG_OK;
 }
 
-// Sensors of a machine of either kind, and the bucket's width.
+static enum dig_status check_tolerance(const struct dig_machine *const machine,
+                                       struct dig_error *const         error)
+{
+    static const double               most      = 0.5; // beyond it the file says nothing
+    const struct dig_tolerance *const tolerance = &machine->tolerance;
+    const double                      bucket_m  = machine->link[DIG_JOINT_BUCKET].length_m;
+    if (!(tolerance->pin_m >= 0.0 && tolerance->pin_m < most * bucket_m)) {
+        return refuse(error, "tolerance", "", "pin_m", tolerance->pin_m,
+                      ">= 0 and less than half the bucket's length");
+    }
+    if (!(tolerance->mass_share >= 0.0 && tolerance->mass_share < most)) {
+        return refuse(error, "tolerance", "", "mass_share", tolerance->mass_share,
+                      ">= 0 and less than 0.5");
+    }
+    if (!(tolerance->com_share >= 0.0 && tolerance->com_share < most)) {
+        return refuse(error, "tolerance", "", "com_share", tolerance->com_share,
+                      ">= 0 and less than 0.5");
+    }
+    return DIG_OK;
+}
+
+// Sensors of a machine of either kind, its tolerances and the bucket's width.
 static enum dig_status check_rest(const struct dig_machine *const machine,
                                   struct dig_error *const         error)
 {
@@ -212,7 +233,7 @@ static enum dig_status check_rest(const struct dig_machine *const machine,
         return dig_error_set(error, DIG_EINVAL, "bucket_width_m: %g, expected a number > 0",
                              machine->bucket_width_m);
     }
-    return DIG_OK;
+    return check_tolerance(machine, error);
 }
 
 enum dig_status dig_machine_check(const struct dig_machine *const machine,

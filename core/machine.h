@@ -78,12 +78,21 @@ struct dig_force_sensor {
     double          path_sigma_m;      // 1 sigma of the pin's place along each axis, as it is told
 };
 
+/// By how much the machine may differ from its file, 1 sigma each, independent. The same in every
+/// sample of a run: what it makes wrong does not average down. All 0: not at all.
+struct dig_tolerance {
+    double pin_m; // each coordinate of a base, eye, rocker pin, ear and sensor; rocker and link
+    double mass_share; // of a link's mass
+    double com_share;  // each coordinate of a centre of mass, of the link's length
+};
+
 struct dig_machine {
     char                    name[64];
     struct dig_link         link[DIG_JOINTS];     // with a force sensor: the bucket's alone
     struct dig_cylinder     cylinder[DIG_JOINTS]; // without a force sensor, and so on down …
     struct dig_four_bar     four_bar;             // … to here
     struct dig_force_sensor sensor;
+    struct dig_tolerance    tolerance;
     double                  bucket_width_m;
     double pressure_step_Pa; // quantisation of the pressures as they arrive; 0: none
     double angle_step_rad;   // quantisation of the angles as they arrive; 0: none

@@ -36,6 +36,9 @@ struct dig_wrench {
     // that stands still); included in sigma_My_Nm.
     double slow_sigma_My_Nm;
     double slow_sigma_Fx_N, slow_sigma_Fz_N; // the same of the forces
+    // 1 sigma from the machine's tolerances, apart from the above and not in it: one error for the
+    // whole run, which the digs of one machine share. Of the whole: the root of the sum of squares.
+    double geometry_sigma_Fx_N, geometry_sigma_Fz_N, geometry_sigma_My_Nm;
 };
 
 enum dig_dig_phase { DIG_PHASE_AIR, DIG_PHASE_CONTACT, DIG_PHASE_DIG, DIG_PHASE_EXIT };

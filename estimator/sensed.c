@@ -103,6 +103,37 @@ static enum dig_status take(const struct dig_machine *const       machine,
     return DIG_OK;
 }
 
+// Adds what one length or mass of `near`, off by this much, makes of the parts.
+static void add_off(struct dig_machine *const near, double *const number, const double by,
+                    const struct inputs *const in, const struct dig_vec2 gravity,
+                    const struct parts *const parts, double variance[const PARTS])
+{
+    const double kept = *number;
+    *number += by;
+    const struct parts other = solve(near, in->value, 0.0, gravity);
+    *number                  = kept;
+    for (int p = 0; p < PARTS; p++) {
+        variance[p] += pow(other.of[p] - parts->of[p], 2.0);
+    }
+}
+
+// What the bucket and the sensor's place may differ from their file makes of the parts.
+static void tolerate(const struct dig_machine *const machine, const struct inputs *const in,
+                     const struct dig_vec2 gravity, double variance[const PARTS])
+{
+    const struct dig_tolerance *const tolerance = &machine->tolerance;
+    struct dig_machine                near      = *machine;
+    struct dig_link *const            bucket    = &near.link[DIG_JOINT_BUCKET];
+    const struct parts                parts     = solve(&near, in->value, 0.0, gravity);
+    const double                      com_m     = tolerance->com_share * bucket->length_m;
+    const double                      mass_kg   = tolerance->mass_share * bucket->mass_kg;
+    add_off(&near, &near.sensor.place_m.x, tolerance->pin_m, in, gravity, &parts, variance);
+    add_off(&near, &near.sensor.place_m.y, tolerance->pin_m, in, gravity, &parts, variance);
+    add_off(&near, &bucket->com_m.x, com_m, in, gravity, &parts, variance);
+    add_off(&near, &bucket->com_m.y, com_m, in, gravity, &parts, variance);
+    add_off(&near, &bucket->mass_kg, mass_kg, in, gravity, &parts, variance);
+}
+
 static bool is_within(const double value, const double limit, const double step, const double sigma)
 {
     return fabs(value) < limit - 0.5 * step - 3.0 * sigma;
@@ -136,6 +167,8 @@ static struct dig_wrench make_wrench(const struct dig_machine *const machine,
             slow[p] += by * by * in->slow[i] * in->slow[i];
         }
     }
+    double geometry[PARTS] = { 0.0 };
+    tolerate(machine, in, gravity, geometry);
     return (struct dig_wrench){
         .Fx_N             = parts.of[PART_FX],
         .Fz_N             = parts.of[PART_FZ],
@@ -146,8 +179,13 @@ static struct dig_wrench make_wrench(const struct dig_machine *const machine,
         .slow_sigma_Fx_N  = sqrt(slow[PART_FX]),
         .slow_sigma_Fz_N  = sqrt(slow[PART_FZ]),
         .slow_sigma_My_Nm = sqrt(slow[PART_MY]),
-        .force_valid      = true,
-        .moment_valid     = true,
+
+        .geometry_sigma_Fx_N  = sqrt(geometry[PART_FX]),
+        .geometry_sigma_Fz_N  = sqrt(geometry[PART_FZ]),
+        .geometry_sigma_My_Nm = sqrt(geometry[PART_MY]),
+
+        .force_valid  = true,
+        .moment_valid = true,
     };
 }
 

@@ -2,6 +2,7 @@
 
 #include "estimator/balance.h"
 #include "estimator/dynamics.h"
+#include "estimator/tolerance.h"
 
 #include <assert.h>
 #include <math.h>
@@ -110,7 +111,8 @@ static bool is_trusted(const struct dig_machine *const  machine,
 }
 
 static struct dig_wrench finish(const struct dig_balance *const balance,
-                                const struct variance *const variance, const bool moment_valid,
+                                const struct variance *const    variance,
+                                const double geometry[const DIG_PARTS], const bool moment_valid,
                                 const bool force_valid)
 {
     struct dig_wrench w = { .moment_valid = moment_valid, .force_valid = force_valid };
@@ -118,6 +120,8 @@ static struct dig_wrench finish(const struct dig_balance *const balance,
         w.My_Nm            = balance->part[DIG_PART_MY];
         w.sigma_My_Nm      = sqrt(variance->all[DIG_PART_MY]);
         w.slow_sigma_My_Nm = sqrt(variance->slow[DIG_PART_MY]);
+
+        w.geometry_sigma_My_Nm = sqrt(geometry[DIG_PART_MY]);
     }
     if (force_valid) {
         w.Fx_N       = balance->part[DIG_PART_FX];
@@ -127,6 +131,9 @@ static struct dig_wrench finish(const struct dig_balance *const balance,
 
         w.slow_sigma_Fx_N = sqrt(variance->slow[DIG_PART_FX]);
         w.slow_sigma_Fz_N = sqrt(variance->slow[DIG_PART_FZ]);
+
+        w.geometry_sigma_Fx_N = sqrt(geometry[DIG_PART_FX]);
+        w.geometry_sigma_Fz_N = sqrt(geometry[DIG_PART_FZ]);
     }
     return w;
 }
@@ -154,13 +161,16 @@ static enum dig_status solve(const struct dig_machine *const    machine,
         add_rate_variance(machine, &placed, &readings, &balance, &variance);
     }
 
+    double geometry[DIG_PARTS];
+    dig_tolerance_variance(machine, &readings, &placed, &balance, geometry);
+
     if (correction != NULL && dig_correction_is_geometric(correction)) {
         draw_lengths(machine, correction, &readings, &balance);
     }
     const bool bucket = is_trusted(machine, &readings, &balance, DIG_JOINT_BUCKET);
     const bool others = is_trusted(machine, &readings, &balance, DIG_JOINT_BOOM) &&
                         is_trusted(machine, &readings, &balance, DIG_JOINT_ARM);
-    *wrench = finish(&balance, &variance, balance.moment_ok && bucket,
+    *wrench = finish(&balance, &variance, geometry, balance.moment_ok && bucket,
                      balance.force_ok && bucket && others);
     *front  = placed;
     return DIG_OK;

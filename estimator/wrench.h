@@ -34,7 +34,7 @@
 ///
 /// sigma: pressures through the exact linear dependence, angles through central differences over
 /// one sigma of the angle, all errors independent; near a toggle or a stretched arm it grows as the
-/// partials do.
+/// partials do. geometry_sigma: estimator/tolerance.h.
 DIG_MUST_CHECK enum dig_status dig_wrench_solve(const struct dig_machine *machine,
                                                 const struct dig_sample  *sample,
                                                 struct dig_wrench *wrench, struct dig_front *front);

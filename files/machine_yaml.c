@@ -35,6 +35,10 @@ struct force_sensor_text {
     double path_sigma_m;
 };
 
+struct tolerance_text {
+    double pin_m, mass_share, com_share;
+};
+
 struct ground_text {
     double weight_N, weight_X_m, tip_front_X_m, tip_rear_X_m, boom_foot_Z_m;
 };
@@ -48,6 +52,7 @@ struct machine_text {
     struct cylinders_text    cylinders;
     struct four_bar_text     four_bar;
     struct sensors_text      sensors;
+    struct tolerance_text    tolerance;
     struct ground_text       ground;
     struct force_sensor_text force_sensor;
 };
@@ -118,6 +123,19 @@ static const cyaml_schema_field_t sensors_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t tolerance_fields[] = {
+    CYAML_FIELD_FLOAT("pin_m", REQUIRED, struct tolerance_text, pin_m),
+    CYAML_FIELD_FLOAT("mass_share", REQUIRED, struct tolerance_text, mass_share),
+    CYAML_FIELD_FLOAT("com_share", REQUIRED, struct tolerance_text, com_share),
+    SOURCE,
+    CYAML_FIELD_END,
+};
+
+// Without `tolerance` in the file; ours. A machine measured with a tape, its masses and centres
+// estimated from drawings; a rig that was machined, and weighed.
+static const struct dig_tolerance measured = { 2.0e-3, 0.05, 0.02 };
+static const struct dig_tolerance machined = { 2.0e-4, 0.01, 0.01 };
+
 static const cyaml_schema_field_t ground_fields[] = {
     CYAML_FIELD_FLOAT("weight_N", REQUIRED, struct ground_text, weight_N),
     CYAML_FIELD_FLOAT("weight_X_m", REQUIRED, struct ground_text, weight_X_m),
@@ -158,6 +176,8 @@ static const cyaml_schema_field_t rig_fields[] = {
     CYAML_FIELD_MAPPING("force_sensor", REQUIRED, struct machine_text, force_sensor,
                         force_sensor_fields),
     CYAML_FIELD_MAPPING("sensors", REQUIRED, struct machine_text, sensors, rig_sensors_fields),
+    CYAML_FIELD_MAPPING("tolerance", CYAML_FLAG_OPTIONAL, struct machine_text, tolerance,
+                        tolerance_fields),
     CYAML_FIELD_END,
 };
 
@@ -174,6 +194,8 @@ static const cyaml_schema_field_t machine_fields[] = {
     CYAML_FIELD_MAPPING("cylinders", REQUIRED, struct machine_text, cylinders, cylinders_fields),
     CYAML_FIELD_MAPPING("four_bar", REQUIRED, struct machine_text, four_bar, four_bar_fields),
     CYAML_FIELD_MAPPING("sensors", REQUIRED, struct machine_text, sensors, sensors_fields),
+    CYAML_FIELD_MAPPING("tolerance", CYAML_FLAG_OPTIONAL, struct machine_text, tolerance,
+                        tolerance_fields),
     CYAML_FIELD_MAPPING("ground", REQUIRED, struct machine_text, ground, ground_fields),
     CYAML_FIELD_END,
 };
@@ -249,6 +271,9 @@ static struct dig_machine convert(const struct machine_text *const text, const b
             .link_m       = text->four_bar.link_m,
             .ear_m        = vec2(text->four_bar.ear_m),
         },
+        .tolerance        = { .pin_m      = text->tolerance.pin_m,
+                              .mass_share = text->tolerance.mass_share,
+                              .com_share  = text->tolerance.com_share },
         .bucket_width_m   = text->bucket_width_m,
         .pressure_step_Pa = text->sensors.pressure_step_Pa,
         .angle_step_rad   = text->sensors.angle_step_rad,
@@ -278,7 +303,10 @@ enum dig_status dig_machine_read(const char *const path, struct dig_machine *con
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_machine loaded = convert(data, senses);
+    struct dig_machine loaded = convert(data, senses);
+    if (dig_yaml_line(path, "tolerance") <= 0) {
+        loaded.tolerance = senses ? machined : measured;
+    }
     dig_yaml_free(kind, data);
 
     struct dig_error found = { "" };

@@ -132,6 +132,10 @@ static enum dig_status publish_estimate(struct dig_output *const          output
         .missing         = missing,
         .advice          = advice(),
         .motion          = (int8_t)e->motion,
+
+        .geometry_sigma_moment_Nm = e->wrench.geometry_sigma_My_Nm,
+        .geometry_sigma_force_x_N = e->wrench.geometry_sigma_Fx_N,
+        .geometry_sigma_force_z_N = e->wrench.geometry_sigma_Fz_N,
     };
     return sent(digsight_estimate_t_publish(output->lcm, "DIGSIGHT_ESTIMATE", &message));
 }

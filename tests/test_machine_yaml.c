@@ -29,6 +29,9 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(m.bucket_width_m, 1.2, 0.0);
     assert_close(m.pressure_step_Pa, 2e5, 0.0);
     assert_close(m.angle_sigma_rad, 1e-3, 0.0);
+    assert_close(m.tolerance.pin_m, 1e-3, 0.0);
+    assert_close(m.tolerance.mass_share, 0.03, 0.0);
+    assert_close(m.tolerance.com_share, 0.01, 0.0);
     assert_close(m.weight_X_m, -1.2, 0.0);
     assert_close(m.boom_foot_Z_m, 1.8, 0.0);
 }
@@ -40,6 +43,25 @@ static void loads(const char *const path)
     if (dig_machine_read(path, &machine, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
+}
+
+static void a_machine_that_says_no_tolerance_has_that_of_a_tape(void **state)
+{
+    (void)state;
+    size_t      size = 0;
+    char *const text = scratch_read("tests/data/formats/machine.yaml", &size);
+    char *const other =
+        yaml_with(text, "tolerance:\n  pin_m: 1.0e-3\n  mass_share: 0.03\n  com_share: 0.01\n", "");
+    struct dig_machine m;
+    struct dig_error   error = { "" };
+    if (dig_machine_read(scratch_write("without.yaml", other), &m, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_close(m.tolerance.pin_m, 2e-3, 0.0);
+    assert_close(m.tolerance.mass_share, 0.05, 0.0);
+    assert_close(m.tolerance.com_share, 0.02, 0.0);
+    free(other);
+    free(text);
 }
 
 static void every_machine_that_is_shipped_loads(void **state)
@@ -70,6 +92,11 @@ static void the_example_of_a_rig_loads_as_it_is_written(void **state)
     assert_close(m.link[DIG_JOINT_BUCKET].com_m.y, 0.01, 0.0);
     assert_close(m.angle_sigma_rad, 1e-4, 0.0);
     assert_close(m.bucket_width_m, 0.07, 0.0);
+
+    // It says none: a rig's.
+    assert_close(m.tolerance.pin_m, 2e-4, 0.0);
+    assert_close(m.tolerance.mass_share, 0.01, 0.0);
+    assert_close(m.tolerance.com_share, 0.01, 0.0);
 }
 
 static void expect_refusal(const char *const text, const char *const says)
@@ -99,6 +126,10 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
         { "base_m: [0.4, 0.6]", "base_m: [0.4, 0.6]\n    eye_m: [0, 0]",
           "cylinders.bucket.eye_m: unknown key" },
         { "angle_step_rad: 4.0e-4", "angle_step_rad: -1", "sensors.angle_step_rad: -1" },
+        { "pin_m: 1.0e-3", "pin_m: 1", "bad.yaml:69: tolerance.pin_m: 1, expected" },
+        { "mass_share: 0.03", "mass_share: 3", "bad.yaml:70: tolerance.mass_share: 3" },
+        { "com_share: 0.01", "com_share: -1", "bad.yaml:71: tolerance.com_share: -1" },
+        { "  com_share: 0.01\n", "", "tolerance.com_share: missing, expected a number" },
         // What no part says by itself: core/geometry.h.
         { "max_length_m: 3.0", "max_length_m: 1.74",
           "bad.yaml:34: cylinders.boom.max_length_m: from 1.7 to 1.74, expected to move" },
@@ -148,6 +179,7 @@ int main(void)
         cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(the_example_of_a_rig_loads_as_it_is_written),
         cmocka_unit_test(what_no_rig_can_be_is_refused_with_line_and_key),
+        cmocka_unit_test(a_machine_that_says_no_tolerance_has_that_of_a_tape),
         cmocka_unit_test(every_machine_that_is_shipped_loads),
         cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
         cmocka_unit_test(every_key_is_known_and_needed),

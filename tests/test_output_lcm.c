@@ -133,7 +133,8 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     record.has_estimate   = true;
     record.estimate       = (struct dig_estimate){
               .time_ns    = 200,
-              .wrench     = { 1.0, 2.0, 3.0, 0.1, 0.2, 0.3, false, true },
+              .wrench     = { 1.0, 2.0, 3.0, 0.1, 0.2, 0.3, false, true, .geometry_sigma_Fx_N = 0.4,
+                              .geometry_sigma_Fz_N = 0.5, .geometry_sigma_My_Nm = 0.6 },
               .pin_X_m    = 4.0,
               .pin_Z_m    = 5.0,
               .phi_rad    = 6.0,
@@ -166,6 +167,9 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     assert_close(seen.estimate.moment_Nm, 3.0, 0.0);
     assert_close(seen.estimate.sigma_force_x_N, 0.1, 0.0);
     assert_close(seen.estimate.sigma_moment_Nm, 0.3, 0.0);
+    assert_close(seen.estimate.geometry_sigma_force_x_N, 0.4, 0.0);
+    assert_close(seen.estimate.geometry_sigma_force_z_N, 0.5, 0.0);
+    assert_close(seen.estimate.geometry_sigma_moment_Nm, 0.6, 0.0);
     assert_close(seen.estimate.pin_X_m, 4.0, 0.0);
     assert_close(seen.estimate.pin_Z_m, 5.0, 0.0);
     assert_close(seen.estimate.bucket_phi_rad, 6.0, 0.0);
