@@ -127,6 +127,7 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
     }
     const bool few = ++s->failures[block] < FAILURES_BORNE;
     if (borne && (few || can_be_spared(group))) {
+        (void)modbus_flush(s->bus);
         s->next_ns[block] += few ? 0 : SPARED_ns;
         if (why == ETIMEDOUT) {
             hear_nothing(input, block);
@@ -149,12 +150,15 @@ static size_t due(const struct modbus_source *const s)
     return block;
 }
 
-// What lies on the line before the question cannot be the answer to it.
+// What lies on a serial line before the question cannot be the answer to it. Over TCP an answer says
+// which question it belongs to.
 static int ask(const struct modbus_source *const s, const size_t block,
                uint16_t registers[const DIG_REGISTERS_MAX])
 {
     const struct dig_map_group *const group = &s->map->group[block];
-    (void)modbus_flush(s->bus);
+    if (s->address.host[0] == '\0') {
+        (void)modbus_flush(s->bus);
+    }
     const int first = (int)group->first_register;
     const int count = (int)group->registers;
     return group->function == 3 ? modbus_read_registers(s->bus, first, count, registers)
