@@ -214,6 +214,7 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
                    dig->pass > 1 ? ", dug before" : "", of[channel]);
     // Where nothing was changed before is after, and is drawn once.
     const bool same =
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
         memcmp(curves->before[channel], curves->after[channel], sizeof curves->after[channel]) == 0;
     struct dig_plot plot = {
         .title   = title,

@@ -42,6 +42,7 @@ void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
     }
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one step after another
 enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t,
                                        const struct dig_machine_finding *const air,
                                        struct dig_trace *const                 trace)

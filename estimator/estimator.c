@@ -359,6 +359,7 @@ void dig_estimator_take(struct dig_estimator *const estimator, const struct dig_
     assert(estimator != NULL && taken != NULL && dig_estimator_is_idle(estimator));
     struct dig_taken *const before = &estimator->taken;
     if (taken->corrects == before->corrects &&
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
         memcmp(&taken->correction, &before->correction, sizeof before->correction) == 0) {
         return;
     }

@@ -58,6 +58,7 @@ static struct expected peak_Nm(const struct dig_cell *const cell, const double m
     for (size_t d = 0; d < pairs; d++) {
         double error[DIG_CURVE_POINTS];
         dig_spread_draw(spread, seed, error);
+        // NOLINTNEXTLINE(readability-isolate-declaration)
         double up = -INFINITY, down = -INFINITY, more = -INFINITY, less = -INFINITY;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double one = sd_Nm[k] * error[k];
