@@ -150,8 +150,8 @@ static size_t due(const struct modbus_source *const s)
     return block;
 }
 
-// What lies on a serial line before the question cannot be the answer to it. Over TCP an answer says
-// which question it belongs to.
+// What lies on a serial line before the question cannot be the answer to it. Over TCP an answer
+// says which question it belongs to.
 static int ask(const struct modbus_source *const s, const size_t block,
                uint16_t registers[const DIG_REGISTERS_MAX])
 {
