@@ -5,7 +5,6 @@
 # User Mode Linux has one slow processor, which rig, daemons and loggers share: a try takes minutes, and where the
 # rig is late by a few of its ticks the others were as well.
 export DIG_TRIES=1
-late_excuses_all=1
 . tests/system/daemon_lib.bash
 LATE_LIMIT_ms=30
 
@@ -61,25 +60,25 @@ n=0
 for what in "1 % of its frames lost" "10 % lost" "50 % lost" "20 % doubled" "20 % out of order" "20 % damaged" \
     "frames held back by 0.1 s"; do
     n=$((n + 1))
-    check "a dig with $what identifies the gravel" [ "$(judged dig 6 $n)" = 1 ]
+    check_timed "a dig with $what identifies the gravel" [ "$(judged dig 6 $n)" = 1 ]
 done
 # Digs 8 to 10 have frozen values and identify nothing; whether they count as digs is left open. The
 # three after them - the clock is set, the controller errs, nothing is wrong - identify the gravel.
 digs_told=$(last health "$f" $h_digs)
 for back in 2 1 0; do
-    check "the dig $((13 - back)) after the frozen ones identifies it" [ "$(judged dig 6 $((digs_told - back)))" = 1 ]
+    check_timed "the dig $((13 - back)) after the frozen ones identifies it" [ "$(judged dig 6 $((digs_told - back)))" = 1 ]
 done
-check "what came twice or late is counted" within "$(last health "$f" $h_repeated)" \
+check_timed "what came twice or late is counted" within "$(last health "$f" $h_repeated)" \
     $((($(rig can_doubled) + $(rig can_overtaken)) * 60 / 100)) 1e6
-check "what was damaged is counted" \
+check_timed "what was damaged is counted" \
     within "$(last health "$f" $h_checksum)" $(($(rig can_damaged) * 60 / 100)) "$(rig can_damaged)"
 # What is damaged or comes late counts as missed too, by the counter of the next.
-check "what did not come is counted" within "$(last health "$f" $h_missed)" $(($(rig can_dropped) * 85 / 100)) \
+check_timed "what did not come is counted" within "$(last health "$f" $h_missed)" $(($(rig can_dropped) * 85 / 100)) \
     $((($(rig can_dropped) + $(rig can_damaged) + $(rig can_overtaken)) * 115 / 100 + 20))
-check "frozen frames are counted" within "$(last health "$f" $h_repeated)" 500 1e6
-check "values that stand while the front moves are counted" within "$(last health "$f" $h_stuck)" 100 1e6
+check_timed "frozen frames are counted" within "$(last health "$f" $h_repeated)" 500 1e6
+check_timed "values that stand while the front moves are counted" within "$(last health "$f" $h_stuck)" 100 1e6
 check "error frames are counted" [ "$(last health "$f" $h_error_frames)" = 4 ]
 check "bus off is counted, and said" eval '[ "$(last health "$f" $h_bus_offs)" = 1 ] && grep -q "vcan0: bus off" "$work/can.log"'
 check "and is over when frames come" grep -q '^health running .*"can vcan0" ""' "$f"
-check "no sample was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
+check_timed "no sample was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 finish

@@ -115,9 +115,8 @@ rig_late_ms() {
     sed -nE 's/.*the latest ([0-9]+)\.[0-9]+ ms late.*/\1/p' "$work"/*.err 2>/dev/null | sort -n | tail -n 1
 }
 
-# True when every check that failed is one that the rig's lateness excuses; all are with late_excuses_all.
+# True when every check that failed is one that the rig's lateness excuses.
 is_excused() { # LATE_ms
-    [ -z "${late_excuses_all-}" ] || { [ "$failed" -gt 0 ] && [ "$1" -gt $LATE_LIMIT_ms ]; return; }
     [ "$failed" -gt 0 ] && [ "$failed" = $((late_failed + wrong_failed)) ] && [ "$1" -gt $LATE_LIMIT_ms ] &&
         { [ "$wrong_failed" = 0 ] || [ "$1" -gt $LATE_WRONG_ms ]; }
 }
