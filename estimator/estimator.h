@@ -95,13 +95,15 @@ struct dig_match {
     struct dig_gravel gravel; // between the grid points: of the smallest distance, or, where forces
                               // were measured, the most probable
     double            distance;
-    struct dig_gravel mean, low, high; // posterior mean and 5 %, 95 % of each axis
-    struct dig_gravel mode;            // where the posterior is highest
-    bool              forces;          // the posterior is of moment and forces
-    double            noise_floor;     // expected distance of another packing of the same gravel
-    bool              outside;         // none of the table's gravels, by distance or by forces
-    double            outside_floors;  // distance > this many noise floors is outside
-    size_t            samples;         // 0 until refined
+    struct dig_gravel mean, low, high;  // posterior mean and 5 %, 95 % of each axis
+    struct dig_gravel mode;             // where the posterior is highest
+    bool              forces;           // the posterior is of moment and forces
+    bool              untold[DIG_AXES]; // the digs do not tell where on that axis: any of them, and
+                                        // what was found is a family of gravels (estimator/match.h)
+    double            noise_floor;      // expected distance of another packing of the same gravel
+    bool              outside;          // none of the table's gravels, by distance or by forces
+    double            outside_floors;   // distance > this many noise floors is outside
+    size_t            samples;          // 0 until refined
     struct dig_gravel sample[DIG_MATCH_SAMPLES]; // equally likely, in proportion to the posterior
 };
 
@@ -115,6 +117,7 @@ struct dig_prediction {
     double moment_Nm[DIG_PREDICTION_POINTS];
     double sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
     double Fx_N[DIG_PREDICTION_POINTS], Fz_N[DIG_PREDICTION_POINTS];
+    double sigma_Fx_N[DIG_PREDICTION_POINTS], sigma_Fz_N[DIG_PREDICTION_POINTS];
     double peak_Nm, peak_sigma_Nm;   // of the whole dig: as it is to be expected, and 1 sigma of
     double energy_J, energy_sigma_J; // one dig about that (estimator/whole.h)
 };

@@ -335,6 +335,7 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.low.value[a]  = fmin(refined.low.value[a], refined.gravel.value[a]);
         refined.high.value[a] = fmax(refined.high.value[a], refined.gravel.value[a]);
     }
+    dig_match_tell_family(set, &refined);
     *match = refined;
     return DIG_OK;
 }

@@ -8,6 +8,37 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+
+void dig_match_tell_family(const struct dig_curve_set *const set, struct dig_match *const match)
+{
+    assert(set != NULL && match != NULL);
+    for (int a = 0; a < DIG_AXES; a++) {
+        const enum dig_axis axis  = (enum dig_axis)a;
+        const double        width = dig_axis_position(set, axis, match->high.value[a]) -
+                             dig_axis_position(set, axis, match->low.value[a]);
+        match->untold[a] = match->samples > 0 && width > DIG_MATCH_TOLD;
+    }
+}
+
+bool dig_match_is_family(const struct dig_match *const match)
+{
+    assert(match != NULL);
+    return match->untold[0] || match->untold[1] || match->untold[2];
+}
+
+void dig_match_untold(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
+{
+    assert(match != NULL && text != NULL);
+    int at  = 0;
+    text[0] = '\0';
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (match->untold[a]) {
+            at += snprintf(text + at, (size_t)(DIG_UNTOLD_SIZE - at), "%s%s", at > 0 ? ", " : "",
+                           dig_axis_name((enum dig_axis)a));
+        }
+    }
+}
 
 static bool is_measured(const struct dig_observation *const o, const size_t point)
 {

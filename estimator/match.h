@@ -74,6 +74,24 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest_by(const struct dig_summary *su
                                                     const struct dig_observation dig[],
                                                     double outside_floors, struct dig_match *match);
 
+/// An axis is not told where its 90 % interval is wider than this share of the table's axis (of
+/// density, of its logarithm): the digs do not say which half of it. Where nothing is told at all
+/// the interval is nine tenths of the axis; where two gravels far apart are both likely it spans
+/// the way between them.
+#define DIG_MATCH_TOLD 0.5
+
+/// Sets untold of a match that has low and high; no axis of one point is, nor any of a match that
+/// was not refined.
+void dig_match_tell_family(const struct dig_curve_set *set, struct dig_match *match);
+
+/// True when an axis is not told: the gravels that stand for the match are a family, all of which
+/// resist like the digs, and `gravel` is only one of them.
+bool dig_match_is_family(const struct dig_match *match);
+
+/// The axes that are not told, "rolling, density_kgpm3"; "" when none.
+#define DIG_UNTOLD_SIZE 48
+void dig_match_untold(const struct dig_match *match, char text[DIG_UNTOLD_SIZE]);
+
 /// From a nearest match on between the grid points, and the posterior of the gravel (low and high
 /// widened where needed to hold the gravel told); judges again by the smallest distance whether the
 /// gravel is outside the table. So it is, too, where every dig has forces and they and the moment

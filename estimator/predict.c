@@ -24,10 +24,12 @@ void dig_predict_points(const struct dig_curve *const curve, const double lambda
         const double share = (double)i / (DIG_PREDICTION_POINTS - 1);
         const double at    = prediction->from_progress +
                           share * (prediction->to_progress - prediction->from_progress);
-        prediction->moment_Nm[i] = lambda4 * read_off(curve->mean[DIG_CHANNEL_MY_Nm], at);
-        prediction->sigma_Nm[i]  = lambda4 * read_off(curve->sd[DIG_CHANNEL_MY_Nm], at);
-        prediction->Fx_N[i]      = lambda3 * read_off(curve->mean[DIG_CHANNEL_FX_N], at);
-        prediction->Fz_N[i]      = lambda3 * read_off(curve->mean[DIG_CHANNEL_FZ_N], at);
+        prediction->moment_Nm[i]  = lambda4 * read_off(curve->mean[DIG_CHANNEL_MY_Nm], at);
+        prediction->sigma_Nm[i]   = lambda4 * read_off(curve->sd[DIG_CHANNEL_MY_Nm], at);
+        prediction->Fx_N[i]       = lambda3 * read_off(curve->mean[DIG_CHANNEL_FX_N], at);
+        prediction->Fz_N[i]       = lambda3 * read_off(curve->mean[DIG_CHANNEL_FZ_N], at);
+        prediction->sigma_Fx_N[i] = lambda3 * read_off(curve->sd[DIG_CHANNEL_FX_N], at);
+        prediction->sigma_Fz_N[i] = lambda3 * read_off(curve->sd[DIG_CHANNEL_FZ_N], at);
     }
 }
 

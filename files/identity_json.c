@@ -38,6 +38,7 @@ struct identity_text {
     struct gravel_text gravel, mean, low, high, nearest;
     double             distance, nearest_distance, noise_floor;
     bool               outside;
+    bool               family;
     struct gravel_text samples[DIG_IDENTITY_SAMPLES_MAX];
     uint32_t           samples_count;
 
@@ -106,6 +107,7 @@ static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_FLOAT("nearest_distance", REQUIRED, struct identity_text, nearest_distance),
     CYAML_FIELD_FLOAT("noise_floor", REQUIRED, struct identity_text, noise_floor),
     CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, outside),
+    CYAML_FIELD_BOOL("family", CYAML_FLAG_OPTIONAL, struct identity_text, family),
     CYAML_FIELD_SEQUENCE("samples", REQUIRED, struct identity_text, samples, &sample, 0,
                          DIG_IDENTITY_SAMPLES_MAX),
     CYAML_FIELD_SEQUENCE("recorded", CYAML_FLAG_OPTIONAL, struct identity_text, recorded, &recorded,
@@ -219,6 +221,7 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
                       .nearest_distance = text->nearest_distance,
                       .noise_floor      = text->noise_floor,
                       .outside          = text->outside,
+                      .family           = text->family,
                       .samples          = text->samples_count,
                       .recorded         = text->recorded_count,
     };

@@ -41,6 +41,7 @@ struct dig_identity {
     double              nearest_distance; // to the nearest entry
     double              noise_floor;      // what another packing would be away
     bool                outside;          // none of the table's gravels
+    bool                family;           // an axis is not told: one of a family
     size_t              samples;          // gravels that stand for the posterior
     struct dig_gravel   sample[DIG_IDENTITY_SAMPLES_MAX];
     // The last of the digs, oldest first, for who goes on with them; 0: they are not kept.

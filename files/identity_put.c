@@ -105,9 +105,9 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
     put_named(to, "nearest", &identity->nearest);
     (void)fprintf(to,
                   "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
-                  "\"outside\": %s,\n \"samples\": [",
+                  "\"outside\": %s, \"family\": %s,\n \"samples\": [",
                   identity->distance, identity->nearest_distance, identity->noise_floor,
-                  identity->outside ? "true" : "false");
+                  identity->outside ? "true" : "false", identity->family ? "true" : "false");
     for (size_t i = 0; i < identity->samples; i++) {
         (void)fputs(i == 0 ? "" : ",\n  ", to);
         put_gravel(to, &identity->sample[i]);

@@ -179,6 +179,7 @@ enum dig_status dig_known_write(const char *const path, const struct dig_known *
                   .nearest_distance = m->nearest_distance,
                   .noise_floor      = m->noise_floor,
                   .outside          = m->outside,
+                  .family           = dig_match_is_family(m),
                   .samples          = m->samples,
                   .made             = known->made,
                   .matched          = known->matched,
@@ -238,6 +239,7 @@ bool dig_known_move(struct dig_known *const known, const struct dig_curve_set *c
     }
     known->match.nearest = nearest_entry(set, &known->match.gravel);
     known->nearest       = set->gravel[known->match.nearest];
+    dig_match_tell_family(set, &known->match);
     return true;
 }
 

@@ -92,8 +92,8 @@ DIG_MUST_CHECK enum dig_status dig_known_read(const char *path, const struct dig
                                               struct dig_known *known, struct dig_pool *pool,
                                               struct dig_error *error);
 
-/// The same gravel judged by another table: nearest entry anew. False when that table does not hold
-/// it; *known is untouched then.
+/// The same gravel judged by another table: nearest entry and untold axes anew. False when that
+/// table does not hold it; *known is untouched then.
 bool dig_known_move(struct dig_known *known, const struct dig_curve_set *set);
 
 /// The trajectory that moves a kilogram with the least energy among those that fill the bucket at

@@ -1,5 +1,6 @@
 #include "firmware_host/output.h"
 
+#include "estimator/match.h"
 #include "messages/digsight_estimate_t.h"
 #include "messages/digsight_health_t.h"
 #include "messages/digsight_match_t.h"
@@ -162,10 +163,12 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     char                           table[TEXT_SIZE];
     char                           wanted[TEXT_SIZE];
     char                           hint[TEXT_SIZE];
+    char                           untold[DIG_UNTOLD_SIZE];
     double                         sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
     (void)snprintf(name, sizeof name, "%s", k->trajectory);
     (void)snprintf(table, sizeof table, "%s", k->table);
     (void)snprintf(wanted, sizeof wanted, "%s", k->wanted);
+    dig_match_untold(m, untold);
     (void)snprintf(hint, sizeof hint, "%s", result->hint_trajectory);
     for (size_t s = 0; s < m->samples; s++) {
         for (int a = 0; a < DIG_AXES; a++) {
@@ -215,6 +218,8 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .matched_depth         = matched.depth,
         .matched_attack_rad    = matched.attack_rad,
         .advice                = advice(),
+        .family                = dig_match_is_family(m) ? 1 : 0,
+        .untold                = untold,
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
 }
@@ -232,27 +237,31 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
     (void)snprintf(name, sizeof name, "%s",
                    prediction.valid ? trajectory_name(set, prediction.trajectory) : "");
     const digsight_prediction_t message = {
-        .time_ns       = outlook->time_ns,
-        .utc_us        = utc_us(outlook->time_ns),
-        .valid         = prediction.valid ? 1 : 0,
-        .expires_ns    = outlook->expires_ns,
-        .trajectory    = name,
-        .dig_count     = (int32_t)outlook->dig_count,
-        .progress_now  = prediction.progress_now,
-        .from_progress = prediction.from_progress,
-        .to_progress   = prediction.to_progress,
-        .points        = prediction.valid ? DIG_PREDICTION_POINTS : 0,
-        .moment_Nm     = prediction.moment_Nm,
-        .sigma_Nm      = prediction.sigma_Nm,
-        .force_x_N     = prediction.Fx_N,
-        .force_z_N     = prediction.Fz_N,
-        .peak_Nm       = prediction.peak_Nm,
-        .energy_J      = prediction.energy_J,
-        .outside       = outlook->outside ? 1 : 0,
-        .depth         = prediction.valid ? dug.depth : (double)NAN,
-        .attack_rad    = prediction.valid ? dug.attack_rad : (double)NAN,
-        .reason        = reason,
-        .advice        = advice(),
+        .time_ns         = outlook->time_ns,
+        .utc_us          = utc_us(outlook->time_ns),
+        .valid           = prediction.valid ? 1 : 0,
+        .expires_ns      = outlook->expires_ns,
+        .trajectory      = name,
+        .dig_count       = (int32_t)outlook->dig_count,
+        .progress_now    = prediction.progress_now,
+        .from_progress   = prediction.from_progress,
+        .to_progress     = prediction.to_progress,
+        .points          = prediction.valid ? DIG_PREDICTION_POINTS : 0,
+        .moment_Nm       = prediction.moment_Nm,
+        .sigma_Nm        = prediction.sigma_Nm,
+        .force_x_N       = prediction.Fx_N,
+        .force_z_N       = prediction.Fz_N,
+        .peak_Nm         = prediction.peak_Nm,
+        .energy_J        = prediction.energy_J,
+        .outside         = outlook->outside ? 1 : 0,
+        .depth           = prediction.valid ? dug.depth : (double)NAN,
+        .attack_rad      = prediction.valid ? dug.attack_rad : (double)NAN,
+        .reason          = reason,
+        .advice          = advice(),
+        .peak_sigma_Nm   = prediction.peak_sigma_Nm,
+        .energy_sigma_J  = prediction.energy_sigma_J,
+        .sigma_force_x_N = prediction.sigma_Fx_N,
+        .sigma_force_z_N = prediction.sigma_Fz_N,
     };
     return sent(digsight_prediction_t_publish(output->lcm, "DIGSIGHT_PREDICTION", &message));
 }

@@ -1,6 +1,7 @@
 #include "firmware_host/publish.h"
 
 #include "core/units.h"
+#include "estimator/match.h"
 #include "firmware_host/notify.h"
 
 #include <assert.h>
@@ -143,22 +144,25 @@ static void say_known(const struct dig_publisher *const p)
         return;
     }
     char        how[96];
+    char        untold[DIG_UNTOLD_SIZE];
     char        digs[48] = "";
     const char *forces   = m->forces ? ", by moment and forces" : ", by the moment alone";
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
     }
     approach_text(k, sizeof how, how);
+    dig_match_untold(m, untold);
     say(p,
         "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
-        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s",
+        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s%s%s",
         k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory, how,
         m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
         m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
         m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
         m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
         m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, forces, digs,
-        m->outside ? "; OUTSIDE the table: none of its gravels" : "");
+        m->outside ? "; OUTSIDE the table: none of its gravels" : "",
+        untold[0] != '\0' ? "; a FAMILY of gravels, not told: " : "", untold);
 }
 
 // Of a dig that goes on: told once, and for a while.
@@ -314,9 +318,10 @@ static void show(struct dig_publisher *const p, const int64_t now_ns)
     if (p->any_result) {
         const struct dig_match *const  m = &p->result.known.match;
         const struct dig_gravel *const g = &m->gravel;
-        (void)snprintf(gravel, sizeof gravel, "gravel %.2f / %.2f / %.0f kg/m3 by %s%s",
-                       g->value[DIG_AXIS_FRICTION], g->value[DIG_AXIS_ROLLING],
-                       g->value[DIG_AXIS_DENSITY_kgpm3], m->forces ? "moment and forces" : "moment",
+        (void)snprintf(gravel, sizeof gravel, "gravel %s%.2f / %.2f / %.0f kg/m3 by %s%s",
+                       dig_match_is_family(m) ? "like " : "", g->value[DIG_AXIS_FRICTION],
+                       g->value[DIG_AXIS_ROLLING], g->value[DIG_AXIS_DENSITY_kgpm3],
+                       m->forces ? "moment and forces" : "moment",
                        p->result.known.valid ? "" : " (no longer)");
     }
     (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",

@@ -121,6 +121,30 @@ static void what_cannot_be_told_apart_has_a_wide_interval(void **state)
     assert_true(unsure.high.value[0] - unsure.low.value[0] > 0.45);
     assert_true(unsure.high.value[1] - unsure.low.value[1] > 0.45);
 
+    // And says by itself which it is: any of a family, or, after several digs, a point. (Of one dig
+    // rolling friction is told to within two thirds of its axis: not told.)
+    char                   names[DIG_UNTOLD_SIZE];
+    struct dig_observation digs[8];
+    struct dig_match       point;
+    for (size_t d = 0; d < 8; d++) {
+        digs[d] = a;
+    }
+    assert_int_equal(dig_match_nearest_pool(told, 8, digs, 2.5, &point), DIG_OK);
+    assert_int_equal(dig_fit_refine_pool(told, 8, digs, 300, &point), DIG_OK);
+    print_message(
+        "axis 0, 1: %.2f %.2f of one dig, %.2f %.2f of eight, %.2f %.2f of alike\n",
+        sure.high.value[0] - sure.low.value[0], sure.high.value[1] - sure.low.value[1],
+        point.high.value[0] - point.low.value[0], point.high.value[1] - point.low.value[1],
+        unsure.high.value[0] - unsure.low.value[0], unsure.high.value[1] - unsure.low.value[1]);
+    assert_true(point.high.value[0] - point.low.value[0] < 0.2);
+    assert_true(point.high.value[1] - point.low.value[1] < 0.3);
+    assert_false(dig_match_is_family(&point));
+    dig_match_untold(&point, names);
+    assert_string_equal(names, "");
+    assert_true(dig_match_is_family(&unsure));
+    dig_match_untold(&unsure, names);
+    assert_string_equal(names, "friction, rolling");
+
     // All of them lie along the family, though.
     for (size_t s = 0; s < unsure.samples; s++) {
         assert_close(unsure.sample[s].value[0] + unsure.sample[s].value[1], 1.15, 0.45);

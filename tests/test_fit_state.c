@@ -66,6 +66,34 @@ static void what_is_known_survives_in_its_file(void **state)
     free(again);
 }
 
+// Which axes were not told is no field of the file: the interval says it, and the table's axes.
+static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
+{
+    (void)state;
+    struct bench *const b     = bench_create();
+    struct bench *const again = bench_create();
+    (void)snprintf(again->config.match_state.text, sizeof again->config.match_state.text, "%s",
+                   scratch_path("family.json"));
+    bench_dig(b, 5, 0, 1.0);
+    struct dig_known family = b->fit.known;
+
+    const double *const axis                   = b->cube.set.axis[DIG_AXIS_ROLLING];
+    family.match.low.value[DIG_AXIS_ROLLING]   = axis[0] + 0.2 * (axis[1] - axis[0]);
+    family.match.high.value[DIG_AXIS_ROLLING]  = axis[0] + 0.8 * (axis[1] - axis[0]);
+    family.match.low.value[DIG_AXIS_FRICTION]  = family.match.gravel.value[DIG_AXIS_FRICTION];
+    family.match.high.value[DIG_AXIS_FRICTION] = family.match.gravel.value[DIG_AXIS_FRICTION];
+
+    assert_int_equal(
+        dig_known_write(scratch_path("family.json"), &family, &b->cube.set, &b->fit.pool, NULL),
+        DIG_OK);
+    dig_fit_restore(&again->fit);
+    assert_true(again->fit.known.restored);
+    assert_true(again->fit.known.match.untold[DIG_AXIS_ROLLING]);
+    assert_false(again->fit.known.match.untold[DIG_AXIS_FRICTION]);
+    free(b);
+    free(again);
+}
+
 // After a restart the digs before still count; from a file without them the next begins anew.
 static void the_digs_of_a_ground_survive_too(void **state)
 {
@@ -198,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_known_survives_in_its_file),
+        cmocka_unit_test(what_was_not_told_is_not_told_after_a_restart_either),
         cmocka_unit_test(the_digs_of_a_ground_survive_too),
         cmocka_unit_test(the_forces_of_a_ground_survive_too),
         cmocka_unit_test(a_file_that_cannot_be_written_is_said_and_the_match_stands),

@@ -21,6 +21,7 @@ static struct dig_identity example(void)
         .nearest_distance = 0.12,
         .noise_floor      = 0.2,
         .outside          = true,
+        .family           = true,
         .samples          = 2,
         .sample           = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
     };
@@ -66,7 +67,7 @@ static void what_was_written_is_read_back(void **state)
     assert_string_equal(back.trajectory, "simpleA");
     assert_int_equal(back.digs, 3);
     assert_int_equal(back.samples, 2);
-    assert_true(back.outside);
+    assert_true(back.outside && back.family);
     for (int a = 0; a < DIG_AXES; a++) {
         assert_close(back.gravel.value[a], id.gravel.value[a], 1e-6);
         assert_close(back.low.value[a], id.low.value[a], 1e-6);

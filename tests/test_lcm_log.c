@@ -147,6 +147,7 @@ static void other_messages_are_handed_on_one_by_one(void **state)
         .wanted          = table,
         .hint_trajectory = table,
         .advice          = table,
+        .untold          = table,
     };
     put_sample(log, 1, DIG_SIGNALS);
     log_match(log, "DIGSIGHT_MATCH", &match);
@@ -232,7 +233,12 @@ static void defects_are_refused_and_write_nothing(void **state)
     // Another type's fingerprint under our channel's name: what an older build's log looks like.
     char                   text[] = "";
     const digsight_match_t match  = {
-         .trajectory = text, .table = text, .wanted = text, .hint_trajectory = text, .advice = text
+         .trajectory      = text,
+         .table           = text,
+         .wanted          = text,
+         .hint_trajectory = text,
+         .advice          = text,
+         .untold          = text,
     };
     log = begin("version.lcm");
     log_match(log, "DIGSIGHT_SAMPLE", &match);

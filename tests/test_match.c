@@ -191,9 +191,48 @@ static void an_observation_that_is_none_is_refused_and_writes_nothing(void **sta
     made_table_destroy(set);
 }
 
+// An axis is told while its interval takes no more than half of it: 0.3 to 0.9, 0.1 to 1, and
+// density by its logarithm.
+static void an_axis_is_told_by_the_width_of_its_interval(void **state)
+{
+    (void)state;
+    struct dig_curve_set *const set   = made_table(&(struct made_options){ .packings = 3 });
+    struct dig_match            match = { .valid = true, .samples = 32 };
+    const double                first = set->axis[DIG_AXIS_DENSITY_kgpm3][0];
+    const double                last =
+        set->axis[DIG_AXIS_DENSITY_kgpm3][set->axis_count[DIG_AXIS_DENSITY_kgpm3] - 1];
+    char names[DIG_UNTOLD_SIZE];
+    for (int a = 0; a < DIG_AXES; a++) {
+        match.low.value[a]  = set->axis[a][0];
+        match.high.value[a] = set->axis[a][set->axis_count[a] - 1];
+    }
+    dig_match_tell_family(set, &match);
+    dig_match_untold(&match, names);
+    assert_true(dig_match_is_family(&match));
+    assert_string_equal(names, "friction, rolling, density_kgpm3");
+
+    match.high.value[DIG_AXIS_FRICTION]      = 0.59;
+    match.low.value[DIG_AXIS_ROLLING]        = 0.56;
+    match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 1.01;
+    dig_match_tell_family(set, &match);
+    dig_match_untold(&match, names);
+    assert_string_equal(names, "density_kgpm3");
+    match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 0.99;
+    dig_match_tell_family(set, &match);
+    assert_false(dig_match_is_family(&match));
+
+    // A match that was not refined has no interval, and says nothing of it.
+    match.high.value[DIG_AXIS_FRICTION] = 0.9;
+    match.samples                       = 0;
+    dig_match_tell_family(set, &match);
+    assert_false(dig_match_is_family(&match));
+    made_table_destroy(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_axis_is_told_by_the_width_of_its_interval),
         cmocka_unit_test(nearest_is_what_brute_force_finds),
         cmocka_unit_test(an_entry_without_the_trajectory_is_passed_over),
         cmocka_unit_test(the_noise_floor_is_one_dig_about_a_mean_of_few),

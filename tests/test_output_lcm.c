@@ -37,9 +37,12 @@ struct seen {
     char                  trajectory[4][32];
     int                   points;
     double                moment_Nm[DIG_PREDICTION_POINTS], sigma_Nm[DIG_PREDICTION_POINTS];
+    double                sigma_force_x_N[DIG_PREDICTION_POINTS];
+    double                sigma_force_z_N[DIG_PREDICTION_POINTS];
     digsight_prediction_t prediction;
     char                  text[3][64];
     double                sample[2];
+    char                  untold[32];
     int64_t               late;
 };
 
@@ -70,6 +73,7 @@ static void on_match(void *const context, const int64_t time_us, const digsight_
     keep(seen->trajectory[3], m->table);
     keep(seen->text[0], m->wanted);
     keep(seen->text[1], m->hint_trajectory);
+    keep(seen->untold, m->untold);
     keep(seen->text[2], m->advice);
     seen->sample[0] = m->samples > 0 ? m->sample_friction[0] : 0.0;
     seen->sample[1] = m->samples > 1 ? m->sample_density_kgpm3[1] : 0.0;
@@ -86,8 +90,10 @@ static void on_prediction(void *const context, const int64_t time_us,
     keep(seen->text[0], m->reason);
     keep(seen->text[2], m->advice);
     for (int i = 0; i < m->points; i++) {
-        seen->moment_Nm[i] = m->moment_Nm[i];
-        seen->sigma_Nm[i]  = m->sigma_Nm[i];
+        seen->moment_Nm[i]       = m->moment_Nm[i];
+        seen->sigma_Nm[i]        = m->sigma_Nm[i];
+        seen->sigma_force_x_N[i] = m->sigma_force_x_N[i];
+        seen->sigma_force_z_N[i] = m->sigma_force_z_N[i];
     }
 }
 
@@ -217,6 +223,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
                               .outside          = true,
                               .forces           = true,
                               .samples          = 2,
+                              .untold           = { false, true, true },
                               .sample           = { { { 0.4, 0.1, 1900 } }, { { 0.5, 0.2, 2100 } } } },
     };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
@@ -242,6 +249,8 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_true(seen.match.expires_ns == 77 && seen.match.restored == 1);
     assert_close(seen.match.drift, 1.5, 0.0);
     assert_int_equal(seen.match.samples, 2);
+    assert_int_equal(seen.match.family, 1);
+    assert_string_equal(seen.untold, "rolling, density_kgpm3");
     assert_close(seen.match.hint_J_per_kg, 12.5, 0.0);
     assert_string_equal(seen.text[0], "a simple dig");
     assert_string_equal(seen.text[1], "actual");
@@ -260,6 +269,8 @@ static void a_depth_that_was_not_told_is_not_a_number(void **state)
     dig_output_destroy(output);
     const struct seen seen = read_back("plain.lcm");
     assert_true(isnan(seen.match.depth) && isnan(seen.match.attack_rad));
+    assert_int_equal(seen.match.family, 0);
+    assert_string_equal(seen.untold, "");
     assert_close(seen.match.matched_depth, 1.0, 0.0);
     assert_close(seen.match.matched_attack_rad, 0.0, 0.0);
 }
@@ -274,10 +285,15 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     outlook.prediction.from_progress  = 0.25;
     outlook.prediction.to_progress    = 1.0;
     outlook.prediction.peak_Nm        = 64.0;
+    outlook.prediction.peak_sigma_Nm  = 6.5;
+    outlook.prediction.energy_J       = 32.0;
+    outlook.prediction.energy_sigma_J = 3.25;
     outlook.prediction.approach       = (struct dig_approach){ 1.15, -0.03 };
     for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
-        outlook.prediction.moment_Nm[i] = i;
-        outlook.prediction.sigma_Nm[i]  = -i;
+        outlook.prediction.moment_Nm[i]  = i;
+        outlook.prediction.sigma_Nm[i]   = -i;
+        outlook.prediction.sigma_Fx_N[i] = 100.0 + i;
+        outlook.prediction.sigma_Fz_N[i] = 200.0 + i;
     }
     assert_int_equal(dig_output_outlook(output, set(), &outlook), DIG_OK);
     dig_output_destroy(output);
@@ -290,6 +306,11 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     assert_true(seen.prediction.expires_ns == 9);
     assert_close(seen.prediction.from_progress, 0.25, 0.0);
     assert_close(seen.prediction.peak_Nm, 64.0, 0.0);
+    assert_close(seen.prediction.peak_sigma_Nm, 6.5, 0.0);
+    assert_close(seen.prediction.energy_J, 32.0, 0.0);
+    assert_close(seen.prediction.energy_sigma_J, 3.25, 0.0);
+    assert_close(seen.sigma_force_x_N[63], 163.0, 0.0);
+    assert_close(seen.sigma_force_z_N[63], 263.0, 0.0);
     assert_close(seen.prediction.depth, 1.15, 0.0);
     assert_close(seen.prediction.attack_rad, -0.03, 0.0);
 

@@ -99,6 +99,8 @@ static void points_ahead_are_the_curve_at_machine_scale(void **state)
         curve.mean[DIG_CHANNEL_MY_Nm][k] = (float)k / 255.0f;
         curve.sd[DIG_CHANNEL_MY_Nm][k]   = 0.25f;
         curve.mean[DIG_CHANNEL_FX_N][k]  = 2.0f;
+        curve.sd[DIG_CHANNEL_FX_N][k]    = (float)k / 255.0f;
+        curve.sd[DIG_CHANNEL_FZ_N][k]    = 3.0f;
     }
     struct dig_prediction p = { .from_progress = 0.4, .to_progress = 1.0 };
     dig_predict_points(&curve, 10.0, &p);
@@ -107,6 +109,8 @@ static void points_ahead_are_the_curve_at_machine_scale(void **state)
     assert_close(p.moment_Nm[21], 6000.0, 1e-2);
     assert_close(p.sigma_Nm[9], 2500.0, 1e-2);
     assert_close(p.Fx_N[9], 2000.0, 1e-2);
+    assert_close(p.sigma_Fx_N[21], 600.0, 1e-2);
+    assert_close(p.sigma_Fz_N[9], 3000.0, 1e-2);
 }
 
 int main(void)

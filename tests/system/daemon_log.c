@@ -3,13 +3,16 @@
 //   estimate T_s PHASE TRAJECTORY|- PROGRESS MOMENT SIGMA DIGS FORCE_VALID "MISSING" MOTION
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
 //   RESTORED DRIFT DEPTH ATTACK_deg MATCHED_DEPTH MATCHED_ATTACK_deg "WANTED" FORCES DIGS
-//   PATH_MEASURED GOING_ON prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH
-//   ATTACK_deg "REASON" health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE
-//   FROZEN MISSING RECONNECTS
-//          DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
+//   PATH_MEASURED GOING_ON
+//   family FAMILY "UNTOLD"
+//   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH ATTACK_deg "REASON"
+//   spread POINTS PEAK_SIGMA ENERGY ENERGY_SIGMA LEAST_SIGMA_X LEAST_SIGMA_Z
+//   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
+//          RECONNECTS DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   samples N DURATION_s MAX_GAP_s
+// family is of the match before it, spread of the prediction.
 
 #include "core/units.h"
 #include "files/lcm_log.h"
@@ -44,6 +47,16 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
                  m->restored, m->drift, m->depth, m->attack_rad / DIG_RAD_PER_DEG, m->matched_depth,
                  m->matched_attack_rad / DIG_RAD_PER_DEG, m->wanted, m->forces, m->digs,
                  m->path_measured, m->going_on);
+    (void)printf("family %d \"%s\"\n", m->family, m->untold);
+}
+
+static double least(const int points, const double value[])
+{
+    double found = points > 0 ? value[0] : 0.0;
+    for (int i = 1; i < points; i++) {
+        found = value[i] < found ? value[i] : found;
+    }
+    return found;
 }
 
 static void prediction(void *const context, const int64_t time_us,
@@ -55,6 +68,9 @@ static void prediction(void *const context, const int64_t time_us,
                  name(m->trajectory), m->progress_now, m->points, m->peak_Nm,
                  m->points > 0 ? m->moment_Nm[0] : 0.0, m->depth, m->attack_rad / DIG_RAD_PER_DEG,
                  m->reason);
+    (void)printf("spread %d %.6g %.6g %.6g %.6g %.6g\n", m->points, m->peak_sigma_Nm, m->energy_J,
+                 m->energy_sigma_J, least(m->points, m->sigma_force_x_N),
+                 least(m->points, m->sigma_force_z_N));
 }
 
 static void health(void *const context, const int64_t time_us, const digsight_health_t *const m)

@@ -26,9 +26,13 @@ check "the simple dig is matched while it goes on" \
          END { exit !(n >= 1 && !bad) }' "$work/csv.txt"
 check "and that before most of it is dug" \
     within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.8
+check "what part of a dig does not tell is told: a family, by rolling friction" grep -q '^family 1 ".*rolling' "$work/csv.txt"
+check "and no family once the dig is over" [ "$(awk '$1 == "family" { was = $0 } END { print was }' "$work/csv.txt")" = 'family 0 ""' ]
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
+check "peak, energy and forces of each prediction have their sigma" \
+    awk '$1 == "spread" && $2 > 0 { n++; bad += !($3 > 0 && $4 > 0 && $5 > 0 && $6 > 0 && $7 > 0) } END { exit !(n >= 5 && !bad) }' "$work/csv.txt"
 check "the end of the dig ends its prediction" grep -q '^prediction 0 ' "$work/csv.txt"
 check "in the air each dig is predicted whole" \
     eval 'grep -q "^prediction 1 actual 0\.00000 " "$work/csv.txt" &&

@@ -184,6 +184,17 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
                   id->outside ? "; OUTSIDE: none of the table's gravels" : "");
 }
 
+static void show_family(const struct dig_match *const match, FILE *const to)
+{
+    char untold[DIG_UNTOLD_SIZE];
+    dig_match_untold(match, untold);
+    if (untold[0] != '\0') {
+        (void)fprintf(
+            to, "  a FAMILY of gravels that resist alike, of which this is one: %s not told\n",
+            untold);
+    }
+}
+
 static struct dig_identity identity_of(const struct dig_curve_set *const   set,
                                        const struct dig_observation *const youngest,
                                        const struct dig_match *const       match)
@@ -200,6 +211,7 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
         .nearest_distance = match->nearest_distance,
         .noise_floor      = match->noise_floor,
         .outside          = match->outside,
+        .family           = dig_match_is_family(match),
         .samples          = match->samples,
         .made             = youngest->made,
         .matched          = youngest->approach,
@@ -237,6 +249,7 @@ enum dig_status digloop_identify(const struct digloop_options *const options,
             show_measured(set, &pool, match.forces, stdout);
             show_approaches(&pool, stdout);
             show_identity(&id, stdout);
+            show_family(&match, stdout);
         }
     }
     free(pool.dig);
