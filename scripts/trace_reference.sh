@@ -30,7 +30,7 @@ for first in tests/data/reference/*0__simpleA.csv; do
             role=fit
         done
     } >"$work/campaign.yaml"
-    "$bin/digloop" trace "$table" "$work" --json "$work/trace.json" >"$work/text" 2>"$work/err" || { cat "$work/err"; exit 1; }
+    "$bin/digloop" trace "$table" "$work" --json "$work/trace.json" 2>"$work/err" || { cat "$work/err"; exit 1; }
     printf '%-22s %5d  %-14s %9s %9s %6.3f %6.3f\n' "$gravel" $((2 * ${#beds[@]})) "$(field verdict '\[[^]]*\]')" \
         "$(field p_complete '[0-9.e+-]+')" "$(field soil '[0-9.e+-]+')" \
         "$(field holdout '[0-9.e+-]+' | grep . || echo nan)" "$(field noise_floor '[0-9.e+-]+')"

@@ -28,9 +28,10 @@ static const char help[] =
     "      predicted. --recording: a force recording that was fed to the rig, drawn beside.\n"
     "  digreport --help | --version\n"
     "\n"
-    "The table of results goes to standard output. Exit codes: 0 done, 1 the work failed or the "
-    "log\n"
-    "holds no identified and predicted dig, 2 bad usage or bad input.\n"
+    "The table of results goes to standard output, with --json to standard error. Exit codes: 0 "
+    "done,\n"
+    "1 the work failed or the log holds no identified and predicted dig, 2 bad usage or bad "
+    "input.\n"
     "\n"
     "examples:\n"
     "  digreport --table tables/rig.sqlite --machine config/machines/zx200_trench.yaml \\\n"
@@ -403,7 +404,8 @@ static enum dig_status report(const struct options *const options, struct dig_er
         }
     }
     if (status == DIG_OK) {
-        dig_report_text(all, stdout);
+        // Where a program is to read the result, people read on standard error.
+        dig_report_text(all, options->json != NULL ? stderr : stdout);
     }
 done:
     free(all);

@@ -22,7 +22,7 @@ campaign() { # NAME MACHINE DIG…: machine recordings of these digs; those alon
 }
 
 trace() { # NAME: into $work/NAME.json and the model $work/NAME.model.json
-    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" --add "$work/$1.model.json" >"$work/$1.text" 2>"$work/trace.err" ||
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" --add "$work/$1.model.json" 2>"$work/trace.err" ||
         cat "$work/trace.err"
 }
 

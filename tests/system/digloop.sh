@@ -27,8 +27,24 @@ refuses() { # WORDS… -- COMMAND…
 check "digs of LIGGGHTS are identified" [ $? = 0 ]
 check "as gravel of the table" grep -q '"outside": false' "$work/id.json"
 check "pooled, by moment and forces" grep -q '"digs": 5, "forces": true' "$work/id.json"
-"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv" >"$work/out"
+"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv" >"$work/out" 2>"$work/err"
 check "another dig is predicted" [ $? = 0 ]
+check "people are told of it where no script reads" eval '[ ! -s "$work/out" ] && grep -q "actual: peak" "$work/err"'
+"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o - 2>/dev/null >"$work/stdout.csv"
+check "the curve may go to standard output, alone" cmp -s "$work/next.csv" "$work/stdout.csv"
+check "but not into other results" refuses "two results on standard output" -- \
+    "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o - --json
+# Every result for a program is one JSON value, and there is nothing else where a script reads it.
+is_json=$BIN/../tests/system/is_json
+gives_json() { "$BIN/$1" "${@:2}" --json 2>"$work/err" | "$is_json"; }
+json() { check "$1 $2 --json is JSON" gives_json "$@"; } # TOOL ARGUMENT…
+json digloop identify "$table" "$reference"__simpleA.csv
+json digloop predict "$table" --identified "$work/id.json" --trajectory actual --measured "$reference"__actual.csv
+json digloop predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv"
+json digloop design "$table"
+json digtable list "$table"
+json digtable check "$table"
+json digtable show "$table" 0
 check "as a force recording that can be read again" \
     eval '[ "$(head -n 1 "$work/next.csv")" = "$(grep -v "^#" '"$reference"'__actual.csv | head -n 1)" ]'
 "$BIN/digloop" identify "$table" "$work/next.csv" >"$work/out" 2>&1

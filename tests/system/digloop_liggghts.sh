@@ -21,7 +21,7 @@ trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
             role=fit
         done
     } >"$work/$1/campaign.yaml"
-    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" "${@:2}" >"$work/$1.txt" 2>"$work/err" || cat "$work/err"
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" "${@:2}" 2>"$work/$1.txt" || cat "$work/$1.txt"
 }
 verdict() { tr -d ' \n' <"$work/$1.json" | sed -nE 's/.*"verdict":\[([^]]*)\].*/\1/p'; }
 number() { # GRAVEL KEY FIELD: a field of the first object of that key

@@ -27,8 +27,8 @@ campaign() { # NAME KG OPTION…
 
 trace() { # NAME OPTION…: its $text, $json, $html and $model
     text=$work/$1.txt json=$work/$1.json html=$work/light.html model=$work/$1.model.json
-    "$BIN/digloop" trace "$table" "$work/$1" --json "$json" --add "$model" "${@:2}" >"$text" 2>"$work/$1.err" ||
-        cat "$work/$1.err"
+    "$BIN/digloop" trace "$table" "$work/$1" --json "$json" --add "$model" "${@:2}" >"$work/$1.out" 2>"$text" ||
+        cat "$text"
 }
 
 effects_of_model() { # KEY: the names in that list of the model

@@ -4,6 +4,7 @@ set -u
 . tests/system/check.bash
 BIN=${BIN:-build/bin}
 table=${TABLE:-tables/rig.sqlite}
+is_json=$BIN/../tests/system/is_json
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -39,7 +40,13 @@ campaign plain rig "$A$S" simpleA identify "$A$R" actual fit "${A}_seed2$S" simp
     >"$work/text" 2>"$work/err"
 check "digs of LIGGGHTS in plain gravel are traced" [ $? = 0 ]
 check "nothing is found in them" grep -q '"verdict": \["none"\]' "$work/t.json"
-check "in words too" grep -qi "nothing is missing" "$work/text"
+check "in words too" grep -qi "nothing is missing" "$work/err"
+check "which are not where scripts read" [ ! -s "$work/text" ]
+"$BIN/digloop" trace "$table" "$work/plain" --add "$work/m2.json" >"$work/text" 2>"$work/err"
+check "nor with a model alone" eval '[ ! -s "$work/text" ] && grep -qi "nothing is missing" "$work/err"'
+"$BIN/digloop" trace "$table" "$work/plain" >"$work/text" 2>"$work/err"
+check "asked for nothing else, they are the result" eval 'grep -qi "nothing is missing" "$work/text" && [ ! -s "$work/err" ]'
+check "the file is JSON" "$is_json" <"$work/t.json"
 check "before and after are the same then" \
     eval '[ "$(sed -nE "s/.*error_before\": (\{[^}]*\}).*/\1/p" "$work/t.json")" = "$(sed -nE "s/.*error_after\": (\{[^}]*\}).*/\1/p" "$work/t.json")" ]'
 check "the page needs no network" eval '! grep -qE "(src|href)=\"https?:" "$work/t.html"'
@@ -48,6 +55,12 @@ check "the model names its table" grep -q "\"table\": \"$table\"" "$work/m.json"
 check "the same campaign gives the same answer" cmp -s "$work/t.json" "$work/again.json"
 "$BIN/digloop" trace "$table" "$work/plain" --json - >"$work/stdout.json" 2>/dev/null
 check "JSON may go to standard output, alone" cmp -s "$work/t.json" "$work/stdout.json"
+"$BIN/digloop" trace "$table" "$work/plain" --json - --html /dev/stdout >"$work/stdout.json" 2>"$work/err"
+check "two results may not" eval '[ $? = 2 ] && [ ! -s "$work/stdout.json" ] && grep -q "two results" "$work/err"'
+for text in "" "{} x" "{\"a\": nan}" "[1,]" "{\"a\" 1}" "[\"
+\"]"; do
+    check "what is no JSON is seen: ${text%%$'\n'*}" eval '! printf %s "$text" | "$is_json"'
+done
 
 (program=$(realpath "$BIN/digloop") data=$(realpath "$table") && cd "$work" && "$program" trace "$data" plain --html - >page 2>told)
 check "so may the page" eval 'head -n 1 "$work/page" | grep -q "<!doctype html>" && tail -n 1 "$work/page" | grep -q "</html>" && [ ! -e "$work/-" ] && [ ! -e "$work/-.part" ]'

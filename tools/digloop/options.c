@@ -35,7 +35,9 @@ static const char help[] =
     "are\n"
     "      compared with beds that hold them, by default those of TABLE_effects.sqlite. OUT or "
     "MODEL\n"
-    "      \"-\": standard output\n"
+    "      \"-\": standard output. What people are told goes there without --json and --add, else "
+    "to\n"
+    "      standard error\n"
     "  digloop design TABLE.sqlite [--effects EFFECTS.sqlite] [--json]\n"
     "      which simple dig of the table tells most about the gravel and tells effects apart, and\n"
     "      whether digs simulated with the table's own scatter bear that out\n"
@@ -72,8 +74,23 @@ static bool has_dig_options(const struct digloop_options *const o)
     return o->trajectory != NULL || o->machine != NULL || o->model != NULL;
 }
 
+static int to_stdout(const char *const path)
+{
+    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0) ? 1 : 0;
+}
+
+// Results that would go to standard output, one into the other.
+static int results_on_stdout(const struct digloop_options *const o)
+{
+    return to_stdout(o->out) + to_stdout(o->html) + to_stdout(o->add) +
+           (o->json_out != NULL ? to_stdout(o->json_out) : (int)o->json);
+}
+
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
 {
+    if (results_on_stdout(o) > 1) {
+        return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
+    }
     if (o->moment_alone && strcmp(o->command, "identify") != 0) {
         return dig_error_set(error, DIG_EINVAL, "--moment-alone: expected with identify only");
     }

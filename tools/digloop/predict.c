@@ -89,6 +89,26 @@ struct prediction {
     struct digloop_wrong  wrong;
 };
 
+// For people: the result where none goes to a program.
+static void tell(const struct digloop_options *const options, const struct prediction *const p,
+                 const char *const how)
+{
+    FILE *const to = options->out != NULL ? stderr : stdout;
+    (void)fprintf(to,
+                  "  %s%s: peak %.3f ± %.3f N·m, energy %.3f ± %.3f J at the table's scale "
+                  "(1 sigma of one dig)\n",
+                  p->trajectory.name, how, p->whole.peak_Nm, p->whole.peak_sigma_Nm,
+                  p->whole.energy_J, p->whole.energy_sigma_J);
+    if (options->measured != NULL) {
+        (void)fprintf(to,
+                      "  error against %s: %.3f (noise floor %.3f), %.0f %% of the moment in "
+                      "the 90 %% band\n",
+                      options->measured, dig_score_error(&p->wrong.score),
+                      dig_score_noise_floor(&p->wrong.score),
+                      100.0 * dig_coverage_share(&p->wrong.coverage, DIG_CHANNEL_MY_Nm));
+    }
+}
+
 static void print(const struct digloop_options *const options, const struct prediction *const p)
 {
     const struct dig_whole *const whole = &p->whole;
@@ -96,17 +116,7 @@ static void print(const struct digloop_options *const options, const struct pred
     char                          how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
-        (void)printf("  %s%s: peak %.3f ± %.3f N·m, energy %.3f ± %.3f J at the table's scale "
-                     "(1 sigma of one dig)\n",
-                     p->trajectory.name, how, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
-                     whole->energy_sigma_J);
-        if (options->measured != NULL) {
-            (void)printf("  error against %s: %.3f (noise floor %.3f), %.0f %% of the moment in "
-                         "the 90 %% band\n",
-                         options->measured, dig_score_error(&p->wrong.score),
-                         dig_score_noise_floor(&p->wrong.score),
-                         100.0 * dig_coverage_share(&p->wrong.coverage, DIG_CHANNEL_MY_Nm));
-        }
+        tell(options, p, how);
         return;
     }
     (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"peak_sigma_Nm\": %.6g, "

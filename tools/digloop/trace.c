@@ -59,7 +59,7 @@ static enum dig_status write_json(const char *const path, const struct dig_trace
 
 static bool is_stdout(const char *const path)
 {
-    return path != NULL && strcmp(path, "-") == 0;
+    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
 }
 
 static enum dig_status
@@ -84,9 +84,9 @@ write_results(const struct digloop_options *const options, const struct dig_curv
     if (status == DIG_OK && options->add != NULL) {
         status = digloop_save_model(options, set, effects, trace, error);
     }
-    // People read on standard error when a program reads standard output.
+    // Where programs are to read the result, people read on standard error.
     const bool for_program =
-        is_stdout(options->json_out) || is_stdout(options->html) || is_stdout(options->add);
+        options->json_out != NULL || options->add != NULL || is_stdout(options->html);
     dig_trace_text(trace, for_program ? stderr : stdout);
     return status;
 }
