@@ -37,12 +37,15 @@ static void weigh(const struct dig_curve_set *const set, const struct dig_batch_
     }
 }
 
-// The mean of what the machine adds to a group's digs, and where all of them were measured.
+// What of a dig's moment: what the machine adds to it, or what is left without that.
+enum part { ADDED, DUG };
+
+// The mean of that over a group's digs, and where all of them were measured.
 static void mean_of(const struct dig_batch *const batch, const struct dig_measured measured[],
-                    const size_t g, double added_Nm[POINTS], double *const first,
-                    double *const last)
+                    const size_t g, const enum part part, double mean_Nm[POINTS],
+                    double *const first, double *const last)
 {
-    memset(added_Nm, 0, POINTS * sizeof added_Nm[0]);
+    memset(mean_Nm, 0, POINTS * sizeof mean_Nm[0]);
     *first = 0.0;
     *last  = 1.0;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -53,8 +56,10 @@ static void mean_of(const struct dig_batch *const batch, const struct dig_measur
         *first                               = fmax(*first, dig->first);
         *last                                = fmin(*last, dig->last);
         for (size_t p = 0; p < POINTS; p++) {
-            added_Nm[p] +=
-                dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY] / (double)batch->group[g].digs;
+            const double added_Nm = dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY];
+            const double own_Nm =
+                part == ADDED ? added_Nm : dig->value[DIG_CHANNEL_MY_Nm][p * EVERY] - added_Nm;
+            mean_Nm[p] += own_Nm / (double)batch->group[g].digs;
         }
     }
 }
@@ -102,6 +107,20 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
     return least;
 }
 
+// Weighs a group's rig time and adds what its mean dig is uncertain by to *floor.
+static void begin_group(struct moments *const m, const struct dig_fitted *const fitted,
+                        const size_t g, const double first, const double last, double *const floor)
+{
+    const struct dig_batch_group *const group = &m->batch->group[g];
+    double                              sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    weigh(m->batch->surface->set, group, first, last, m->weight[g]);
+    dig_judge_sd(m->batch->surface, m->batch->scatter, group->trajectory, fitted->number, 0.0, sd);
+    for (size_t p = 0; p < POINTS; p++) {
+        const double one = m->weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
+        *floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
+    }
+}
+
 double dig_consequence_size(const struct dig_batch *const  batch,
                             const struct dig_fitted *const fitted,
                             const struct dig_measured      measured[])
@@ -111,23 +130,33 @@ double dig_consequence_size(const struct dig_batch *const  batch,
     double         floor = 0.0;
     double         added = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_batch_group *const group = &batch->group[g];
-        double                              curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double                              sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double                              first;
-        double                              last;
-        mean_of(batch, measured, g, m.target_Nm[g], &first, &last);
-        weigh(batch->surface->set, group, first, last, m.weight[g]);
-        dig_surface_curve(batch->surface, group->trajectory, fitted->number, curve);
-        dig_judge_sd(batch->surface, batch->scatter, group->trajectory, fitted->number, 0.0, sd);
+        double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double first;
+        double last;
+        mean_of(batch, measured, g, ADDED, m.target_Nm[g], &first, &last);
+        begin_group(&m, fitted, g, first, last, &floor);
+        dig_surface_curve(batch->surface, batch->group[g].trajectory, fitted->number, curve);
         for (size_t p = 0; p < POINTS; p++) {
-            const double one = m.weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
-            floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
             added += pow(m.weight[g][p] * m.target_Nm[g][p], 2.0);
             m.target_Nm[g][p] += curve[DIG_CHANNEL_MY_Nm][p * EVERY];
         }
     }
     return added > 0.0 && floor > 0.0 ? sqrt(least_left(&m, fitted->number) / floor) : 0.0;
+}
+
+double dig_consequence_left(const struct dig_batch *const  batch,
+                            const struct dig_fitted *const fitted)
+{
+    assert(batch != NULL && fitted != NULL);
+    struct moments m     = { .batch = batch };
+    double         floor = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        double first;
+        double last;
+        mean_of(batch, batch->measured, g, DUG, m.target_Nm[g], &first, &last);
+        begin_group(&m, fitted, g, first, last, &floor);
+    }
+    return floor > 0.0 ? sqrt(fmax(least_left(&m, fitted->number) / floor - 1.0, 0.0)) : 0.0;
 }
 
 // The fit without one of its effects, the others as they are.

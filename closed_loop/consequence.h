@@ -22,6 +22,11 @@ DIG_MUST_CHECK enum dig_status dig_consequence_of_soil(const struct dig_batch  *
                                                        const struct dig_fitted *chosen, size_t e,
                                                        const double noise[], double *size);
 
+/// The same of what no gravel explains of the digs' mean moments as they were measured, machine
+/// effects off: what the floor itself would leave is taken off, so that digs of a plain gravel have
+/// none on average. fitted: plain.
+double dig_consequence_left(const struct dig_batch *batch, const struct dig_fitted *fitted);
+
 /// The chance that an effect of this size is no smaller than the floor, which is known to a
 /// quarter.
 double dig_consequence_chance(double size);

@@ -195,6 +195,7 @@ enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_s
 {
     assert(batch != NULL && soil != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);
+    search->unnamed          = 1.0;
     struct dig_search_work c = { .batch       = batch,
                                  .soil        = soil,
                                  .false_alarm = false_alarm,

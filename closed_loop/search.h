@@ -24,6 +24,7 @@ struct dig_search {
     double            p_fit;                 // of chosen
     double            confirmed;             // dig_confirm_gain() of chosen, 0: not asked
     struct dig_unlisted without_name;
+    double              unnamed; // share that its probability keeps: 1 until it is weighed
     bool                is_rock; // unlisted, but for a rock where the table has none
     struct dig_rock     rock;
 

@@ -260,10 +260,13 @@ static void choose_rate(struct dig_trace_work *const w)
 }
 
 // An effect of the soil that another gravel of the table could stand in for: see weigh_in_soil().
+// So with what has no name, of the soil or of the machine.
 static enum dig_status weigh_soil(struct dig_trace_work *const w)
 {
     struct dig_search *const s      = w->search;
     enum dig_status          status = DIG_OK;
+    const double             left   = dig_consequence_left(w->batch, &s->plain);
+    s->unnamed                      = fmax(dig_consequence_chance(left), DIG_TRACE_UNCONFIRMED);
     for (size_t e = 0;
          s->significant && !s->unlisted && e < s->chosen.hypothesis.effects && status == DIG_OK;
          e++) {

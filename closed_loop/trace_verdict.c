@@ -75,13 +75,14 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
                        s->is_rock ? "where the rock lies"
                        : of_soil  ? s->without_name.depends_on
                                   : "the machine's motion in free air");
-        const double in_soil = claimed(air, 1.0 - s->p_complete);
+        const double in_soil = claimed(air, s->unnamed * (1.0 - s->p_complete));
         trace->seen_in[trace->effects] =
             !of_soil ? DIG_PART_AIR : (s->is_rock ? DIG_PART_SOIL : largest_part(trace->residual));
         const struct dig_model_effect unnamed = {
             .effect = DIG_EFFECT_UNLISTED,
             .probability =
-                of_soil ? in_soil : fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
+                of_soil ? in_soil
+                        : s->unnamed * fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
         };
         trace->effect[trace->effects++] = s->is_rock ? dig_trace_rock(&s->rock, in_soil) : unnamed;
     }

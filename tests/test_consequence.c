@@ -119,6 +119,60 @@ static void what_another_gravel_does_is_no_size(void **state)
     assert_true(dig_consequence_size(batch, &at, measured) > 3.0);
 }
 
+// The digs are measured with what the machine adds; whether that is known to be the machine's.
+static void add_to_value(const bool known)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].value[DIG_CHANNEL_MY_Nm][k] += measured[i].machine[DIG_CHANNEL_MY_Nm][k];
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] *= known ? 1.0 : 0.0;
+        }
+    }
+}
+
+// A wave of the digs that no gravel makes leaves the size it has by itself, whatever the digs'
+// scatter does; where it is known to be the machine's it leaves nothing more.
+static void what_no_gravel_explains_is_left(void **state)
+{
+    (void)state;
+    static struct dig_measured as_dug[DIGS];
+    add_wave(0.0);
+    memcpy(as_dug, measured, sizeof as_dug);
+    const double plainly = dig_consequence_left(batch, &plain);
+    add_wave(2.0);
+    const double size = dig_consequence_size(batch, &plain, measured);
+    add_to_value(true);
+    const double known = dig_consequence_left(batch, &plain);
+    memcpy(measured, as_dug, sizeof as_dug);
+    add_wave(2.0);
+    add_to_value(false);
+    const double left = dig_consequence_left(batch, &plain);
+    memcpy(measured, as_dug, sizeof as_dug);
+    assert_true(plainly < 1.0);
+    assert_close(known, plainly, 1e-6);
+    assert_close(left, size, 1.0);
+}
+
+// Digs of a plain gravel leave, over their floor, no more on average than that.
+static void digs_of_a_plain_gravel_leave_nothing(void **state)
+{
+    (void)state;
+    enum { CAMPAIGNS = 30 };
+    static struct dig_measured as_dug[DIGS];
+    memcpy(as_dug, measured, sizeof as_dug);
+    uint64_t seed   = 77;
+    int      beyond = 0;
+    for (int c = 0; c < CAMPAIGNS; c++) {
+        for (size_t i = 0; i < DIGS; i++) {
+            measured[i] =
+                made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        }
+        beyond += dig_consequence_left(batch, &plain) > 1.0 ? 1 : 0;
+    }
+    memcpy(measured, as_dug, sizeof as_dug);
+    assert_true(beyond <= 2);
+}
+
 static double size_of(const double layer, const double cohesion)
 {
     struct dig_fitted chosen = plain;
@@ -158,6 +212,8 @@ int main(void)
         cmocka_unit_test(without_the_machine_there_is_no_size),
         cmocka_unit_test(what_no_gravel_does_counts_in_floors),
         cmocka_unit_test(what_another_gravel_does_is_no_size),
+        cmocka_unit_test(what_no_gravel_explains_is_left),
+        cmocka_unit_test(digs_of_a_plain_gravel_leave_nothing),
         cmocka_unit_test(an_effect_of_the_soil_counts_by_itself),
         cmocka_unit_test(at_the_floor_the_odds_are_even),
     };

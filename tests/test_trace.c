@@ -128,6 +128,33 @@ static void what_has_no_name_is_corrected_all_the_same(void **state)
     dig_trace_finish(&trace);
 }
 
+// Without a name as with one: no more than even odds are claimed for what the moment hardly shows.
+static void what_the_moment_does_not_show_is_not_claimed(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_true(trace.effect[0].probability > 0.95);
+    dig_trace_finish(&trace);
+
+    static struct dig_measured in_forces[DIGS];
+    memcpy(in_forces, measured, sizeof in_forces);
+    dig_campaign(0, DIG_EFFECT_UNLISTED, 0.0, 33);
+    for (size_t i = 0; i < DIGS; i++) {
+        memcpy(in_forces[i].value[DIG_CHANNEL_MY_Nm], measured[i].value[DIG_CHANNEL_MY_Nm],
+               sizeof in_forces[i].value[DIG_CHANNEL_MY_Nm]);
+    }
+    memcpy(measured, in_forces, sizeof in_forces);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_true(trace.significant && trace.p_complete < 0.01);
+    assert_true(trace.effect[0].probability <= 0.5);
+    dig_trace_finish(&trace);
+}
+
 // What the machine adds is taken off the digs and put back on the prediction.
 static void the_machines_share_is_the_machines(void **state)
 {
@@ -208,6 +235,7 @@ int main(void)
         cmocka_unit_test(what_is_left_is_told_dig_by_dig),
         cmocka_unit_test(without_an_effect_before_and_after_are_the_same),
         cmocka_unit_test(what_has_no_name_is_corrected_all_the_same),
+        cmocka_unit_test(what_the_moment_does_not_show_is_not_claimed),
         cmocka_unit_test(the_machines_share_is_the_machines),
         cmocka_unit_test(too_few_digs_are_refused_and_nothing_is_written),
         cmocka_unit_test(another_scenes_effects_are_refused),

@@ -95,6 +95,32 @@ static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
     free(trace.unlisted);
 }
 
+// What the digs do not confirm is claimed as far as they do, wherever it is seen.
+static void what_has_no_name_is_weighed(void **state)
+{
+    (void)state;
+    const struct dig_machine_finding told    = { .p_complete = 1.0 };
+    const struct dig_machine_finding strange = { .significant = true,
+                                                 .unexplained = true,
+                                                 .p_complete  = 1e-5 };
+    struct dig_tracing               t       = search(DIG_EFFECT_UNLISTED, 1.2);
+    struct dig_trace                 trace   = { 0 };
+    assert_close(found.unnamed, 1.0, 0.0);
+    found.unnamed = 0.6;
+    assert_int_equal(dig_trace_fill_verdict(&t, &told, &trace), DIG_OK);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_close(trace.effect[0].probability, 0.6 * (1.0 - found.p_complete), 1e-12);
+    free(trace.unlisted);
+
+    t             = search(DIG_EFFECT_LAYERING, 0.0);
+    trace         = (struct dig_trace){ 0 };
+    found.unnamed = 0.6;
+    assert_int_equal(dig_trace_fill_verdict(&t, &strange, &trace), DIG_OK);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_close(trace.effect[0].probability, 0.6 * (1.0 - 1e-5), 1e-12);
+    free(trace.unlisted);
+}
+
 // Without free air what has a name may be the machine's as well as what has none.
 static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
 {
@@ -209,6 +235,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_unexplained_machine_leaves_the_prediction_alone),
         cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
+        cmocka_unit_test(what_has_no_name_is_weighed),
         cmocka_unit_test(without_free_air_no_more_than_even_odds_are_claimed),
         cmocka_unit_test(what_has_no_name_is_seen_where_the_residual_is_largest),
         cmocka_unit_test(both_sides_are_named_the_machine_first),
