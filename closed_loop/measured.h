@@ -28,6 +28,9 @@ struct dig_measured {
     double sigma[DIG_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
     // What effects of the machine that were found add to value: 0 until any is.
     double machine[DIG_CHANNELS][DIG_CURVE_POINTS];
+
+    bool   pitch_known; // recorded while it was dug
+    double pitch_rad;   // of the machine, mean over the dig
 };
 
 #endif // DIG_CLOSED_LOOP_MEASURED_H

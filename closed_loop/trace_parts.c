@@ -337,8 +337,8 @@ void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const
     } else if (s->unlisted) {
         (void)snprintf(trace->advice, sizeof trace->advice,
                        "no effect of the list explains the digs; what is left depends on %s",
-                       s->without_name.functions > 0 ? s->without_name.depends_on
-                                                     : "nothing that was tried");
+                       s->without_name.depends_on[0] != '\0' ? s->without_name.depends_on
+                                                             : "nothing that was tried");
     } else if (trace->sets > 0 && trace->set[0].effects > 1 &&
                !dig_effect_is_of_machine(trace->set[0].effect[0])) {
         advise_on_set(t, trace);

@@ -1,12 +1,10 @@
 // What is missing where no effect of the list explains it: what the residual depends on, and what
 // to add all the same.
 //
-// The residual of each channel, over the dig's amplitude of that channel, is regressed on functions
-// of the bucket's state that have no dimension: 1, depth / tooth, its square, area swept / tooth^2,
-// path / whole path, speed / mean speed, turning, lifted out. Coefficients are shared by all
-// trajectories, functions chosen one after the other by BIC, the gravel refitted with them to first
-// order. The correction itself is the mean residual of each trajectory, drawn towards none by what
-// is known of its noise.
+// The residual of each channel is regressed on functions of the bucket's state
+// (closed_loop/unlisted_regression.h): on those of the trajectory it decides, and beside them on
+// acceleration, pass and pitch, dig by dig, it tells what the residual depends on. The correction
+// itself is the mean residual of each trajectory, drawn towards none by what is known of its noise.
 
 #ifndef DIG_CLOSED_LOOP_UNLISTED_H
 #define DIG_CLOSED_LOOP_UNLISTED_H
@@ -16,8 +14,8 @@
 
 struct dig_unlisted {
     double log_evidence;    // - BIC / 2 less that of the plain hypothesis
-    size_t functions;       // chosen
-    char   depends_on[128]; // their names, for people
+    size_t functions;       // of the trajectory, chosen
+    char   depends_on[128]; // for people; "": nothing that was tried
 };
 
 /// Regresses what a fitted plain hypothesis leaves. DIG_ENOMEM.

@@ -430,6 +430,32 @@ static void recordings_without_free_air_say_so_and_name_nothing(void **state)
     end(d);
 }
 
+static void how_the_machine_stands_is_told_where_it_was_recorded(void **state)
+{
+    (void)state;
+    const struct fault           none = { .dry_N = 0.0 };
+    struct dig_machine_recording r    = record(0, 0, &none, 1);
+    struct dig_measured *const   m    = calloc(1, sizeof *m);
+    for (int known = 0; known < 2; known++) {
+        struct dig_machine_side *side  = NULL;
+        struct dig_error         error = { "" };
+        for (size_t i = 0; i < r.rows; i++) {
+            // Before the dig and after it the machine stood otherwise.
+            const bool digs = i > r.rows / 20 && i + r.rows / 20 < r.rows;
+
+            r.row[i].valid[DIG_SIGNAL_PITCH_rad] = known > 0;
+            r.row[i].value[DIG_SIGNAL_PITCH_rad] = digs ? 0.04 : 0.2;
+        }
+        m->trajectory = MADE_SIMPLE_A;
+        assert_int_equal(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), DIG_OK);
+        assert_int_equal(m->pitch_known, known > 0);
+        assert_close(m->pitch_rad, known > 0 ? 0.04 : 0.0, 1e-9);
+        dig_machine_side_destroy(side);
+    }
+    dig_machine_recording_finish(&r);
+    free(m);
+}
+
 static void a_recording_without_its_dig_is_refused_by_name(void **state)
 {
     (void)state;
@@ -461,6 +487,7 @@ int main(void)
         cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
         cmocka_unit_test(recordings_without_free_air_say_so_and_name_nothing),
+        cmocka_unit_test(how_the_machine_stands_is_told_where_it_was_recorded),
         cmocka_unit_test(a_recording_without_its_dig_is_refused_by_name),
     };
     return cmocka_run_group_tests_name("machine_side", tests, build, tear_down);

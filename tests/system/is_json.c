@@ -85,6 +85,7 @@ static bool number(int c)
 static bool value(int c);
 
 // What follows the bracket: with names in an object, without in an array.
+// NOLINTNEXTLINE(misc-no-recursion): as deep as the text nests
 static bool members(const char close, const bool named)
 {
     int c = next_char();
