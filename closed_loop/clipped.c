@@ -5,9 +5,10 @@
 
 static const double least_s      = 1.0;
 static const double over_below   = 10.0; // samples at the top over samples just below it
-static const double over_back    = 2.0;
+static const double over_back    = 3.0;
 static const double just_below   = 0.01; // of the highest value
 static const double same_to_this = 1e-6;
+static const double least_pairs  = 50.0; // of readings that tell how often one repeats
 
 static double highest(const struct dig_machine_recording *const recording, const int signal)
 {
@@ -18,6 +19,45 @@ static double highest(const struct dig_machine_recording *const recording, const
         }
     }
     return most;
+}
+
+// Below this chance readings that stay equal are no accident of noise and steps.
+static const double least_log10 = -3.0;
+
+// Where more readings repeat the one before than this, noise does not show through the steps, and a
+// load that stands still reads the same for as long as it stands.
+static const double most_repeated = 0.7;
+
+double dig_clipped_log10_chance(const struct dig_machine_recording *const recording,
+                                const enum dig_signal                     signal)
+{
+    assert(recording != NULL);
+    const double most     = highest(recording, signal);
+    double       readings = 0.0;
+    double       pairs    = 0.0;
+    double       repeated = 0.0;
+    double       run      = 0.0;
+    double       longest  = 0.0;
+    double       before   = most;
+    for (size_t i = 0; i < recording->rows; i++) {
+        const double value = recording->row[i].value[signal];
+        if (!recording->row[i].valid[signal]) {
+            continue;
+        }
+        const bool top = value >= most * (1.0 - same_to_this);
+        run            = top ? run + 1.0 : 0.0;
+        longest        = fmax(longest, run);
+        readings += 1.0;
+        if (!top && before < most * (1.0 - same_to_this)) {
+            pairs += 1.0;
+            repeated += fabs(value - before) <= same_to_this * most ? 1.0 : 0.0;
+        }
+        before = value;
+    }
+    const double share = (repeated + 1.0) / (pairs + 2.0);
+    return most > 0.0 && pairs > least_pairs && share <= most_repeated
+               ? fmin(log10(readings) + (longest - 1.0) * log10(share), 0.0)
+               : 0.0;
 }
 
 static bool is_clipped(const struct dig_machine *const           machine,
@@ -41,8 +81,9 @@ static bool is_clipped(const struct dig_machine *const           machine,
         recording->row[recording->rows - 1].time_ns - recording->row[0].time_ns;
     const double step_s = 1e-9 * (double)whole_ns / (double)(recording->rows - 1);
     *clip               = (struct dig_clip){ (enum dig_signal)signal, most, at_top * step_s };
-    return most > over_back * machine->cylinder[drive].back_Pa && clip->time_s >= least_s &&
-           at_top > over_below * below;
+    const bool piled_up = most > over_back * machine->cylinder[drive].back_Pa &&
+                          clip->time_s >= least_s && at_top > over_below * below;
+    return piled_up || dig_clipped_log10_chance(recording, (enum dig_signal)signal) < least_log10;
 }
 
 bool dig_clipped_find(const struct dig_machine *const           machine,

@@ -15,10 +15,18 @@ struct dig_clip {
     double          time_s;   // how long it stands there, in all
 };
 
-/// True when a chamber's pressure piles up at its own highest value: it stands there for a second
-/// or more, ten times as long as just below (within a step, or 1 %), which no load that comes and
-/// goes does, and above twice the return side's pressure, where a chamber may well be constant.
-/// *clip tells the worst; it is untouched otherwise. O(rows).
+/// log10 of the chance that noise makes a chamber's readings stand at their own highest value as
+/// often in a row as they do: readings * share^(longest run - 1), share being how often a reading
+/// repeats the one before below the highest value. A load that comes and goes is at its highest for
+/// a moment, and noise moves it from reading to reading. 0 where noise does not show through the
+/// sensor's steps (share above .7), and at most 0.
+double dig_clipped_log10_chance(const struct dig_machine_recording *recording,
+                                enum dig_signal                     signal);
+
+/// True when a chamber's pressure was cut off at its own highest value: that chance is below a
+/// thousandth, or it stands there for a second or more, ten times as long as just below (within a
+/// step, or 1 %) and above three times the return side's pressure, where a chamber may well be
+/// constant. *clip tells the worst; it is untouched otherwise. O(rows).
 bool dig_clipped_find(const struct dig_machine           *machine,
                       const struct dig_machine_recording *recording, struct dig_clip *clip);
 

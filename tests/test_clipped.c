@@ -3,6 +3,7 @@
 #include "closed_loop/clipped.h"
 
 #include "files/machine_yaml.h"
+#include "tests/model_front.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>
@@ -90,12 +91,81 @@ static void a_return_side_may_stand_still(void **state)
     dig_machine_recording_finish(&b.recording);
 }
 
+// Where every noisy reading but the cut-off ones moves, a fifth of a second at the limit is enough.
+static void a_sensor_that_ends_for_a_moment_is_named(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct bench    b    = make(2e5, 2e5, 1e9);
+        struct dig_clip clip = { .time_s = -7.0 };
+        assert_false(dig_clipped_find(&b.machine, &b.recording, &clip));
+        for (int i = 800; i < 850; i++) {
+            double *const Pa = &b.recording.row[i].value[DIG_SIGNAL_BUCKET_HEAD_Pa];
+            *Pa              = fmin(*Pa + 5e7, 1.1e7);
+        }
+        if (k == 0) {
+            assert_true(dig_clipped_find(&b.machine, &b.recording, &clip));
+            assert_int_equal(clip.signal, DIG_SIGNAL_BUCKET_HEAD_Pa);
+            assert_close(clip.limit_Pa, 1.1e7, 1.0);
+            assert_close(clip.time_s, 0.25, 0.01);
+        } else {
+            // The same peak, but each reading another: whole.
+            for (int i = 800; i < 850; i++) {
+                b.recording.row[i].value[DIG_SIGNAL_BUCKET_HEAD_Pa] -= i % 2 == 0 ? 0.0 : 2e5;
+            }
+            assert_false(dig_clipped_find(&b.machine, &b.recording, &clip));
+        }
+        dig_machine_recording_finish(&b.recording);
+    }
+}
+
+// A bucket held still, its readings without noise: the same value for seconds, which is no limit.
+static void a_load_that_stands_still_without_noise_is_whole(void **state)
+{
+    (void)state;
+    struct bench    b    = make(2e5, 0.0, 1e9);
+    struct dig_clip clip = { .time_s = -7.0 };
+    for (int i = 0; i < ROWS; i++) {
+        b.recording.row[i].value[DIG_SIGNAL_BUCKET_ROD_Pa] = i > 1000 && i < 3000 ? 2.2e6 : 1e6;
+    }
+    assert_false(dig_clipped_find(&b.machine, &b.recording, &clip));
+    assert_close(dig_clipped_log10_chance(&b.recording, DIG_SIGNAL_BUCKET_ROD_Pa), 0.0, 0.0);
+    dig_machine_recording_finish(&b.recording);
+}
+
+// By drawing: readings of a load that stands still, in steps of twice the noise's sigma, are called
+// as improbable as p in at most a share p of recordings.
+static void the_chance_is_no_smaller_than_it_is(void **state)
+{
+    (void)state;
+    enum { DRAWS = 2000, READINGS = 1000 };
+    struct bench b        = make(2e5, 0.0, 1e9);
+    uint64_t     seed     = 3;
+    double       least[2] = { 0.0, 0.0 };
+    b.recording.rows      = READINGS;
+    for (int d = 0; d < DRAWS; d++) {
+        const double load_Pa = 5e6 + 2e5 * d / DRAWS;
+        for (int i = 0; i < READINGS; i++) {
+            b.recording.row[i].value[DIG_SIGNAL_ARM_HEAD_Pa] =
+                whole(load_Pa + 1e5 * model_normal(&seed), 2e5);
+        }
+        const double chance = dig_clipped_log10_chance(&b.recording, DIG_SIGNAL_ARM_HEAD_Pa);
+        least[0] += chance < -1.0 ? 1.0 / DRAWS : 0.0;
+        least[1] += chance < -2.0 ? 1.0 / DRAWS : 0.0;
+    }
+    assert_true(least[0] <= 0.1 && least[1] <= 0.01);
+    dig_machine_recording_finish(&b.recording);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_load_that_comes_and_goes_is_whole),
         cmocka_unit_test(a_sensor_that_ends_is_named_with_its_limit),
         cmocka_unit_test(a_return_side_may_stand_still),
+        cmocka_unit_test(a_sensor_that_ends_for_a_moment_is_named),
+        cmocka_unit_test(a_load_that_stands_still_without_noise_is_whole),
+        cmocka_unit_test(the_chance_is_no_smaller_than_it_is),
     };
     return cmocka_run_group_tests_name("clipped", tests, NULL, NULL);
 }

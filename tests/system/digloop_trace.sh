@@ -195,8 +195,11 @@ echo "machine: $machine" >>"$work/whole/campaign.yaml"
 "$BIN/digloop" trace "$table" "$work/whole" --json "$work/w.json" >/dev/null 2>"$work/err"
 check "recordings of a machine are traced" eval '[ $? = 0 ] && grep -q "\"verdict\": \[\"none\"\]" "$work/w.json"'
 mkdir "$work/clipped" && cp "$work/whole/"* "$work/clipped"
-clip arm_head_Pa "$work/whole/b.csv" >"$work/clipped/b.csv"
-check "a pressure that was cut off is named" refuses "clipped/b.csv: arm_head_Pa stays at its highest value" "clipped, expected" -- "$work/clipped"
+for chamber in arm_head_Pa bucket_head_Pa; do
+    clip $chamber "$work/whole/b.csv" >"$work/clipped/b.csv"
+    check "a pressure that was cut off is named: $chamber" \
+        refuses "clipped/b.csv: $chamber stays at its highest value" "clipped, expected" -- "$work/clipped"
+done
 
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- "$work/one"
