@@ -6,6 +6,7 @@
 #include "estimator/approach_slots.h"
 #include "estimator/approaches.h"
 #include "estimator/cylinder.h"
+#include "estimator/ending.h"
 #include "estimator/estimator_state.h"
 #include "estimator/sensed.h"
 #include "estimator/wrench.h"
@@ -16,12 +17,6 @@
 
 // Two trajectories whose fits differ by less than this share of path_limit_m cannot be told apart.
 static const double tie_share = 0.125;
-
-// A dig shorter than this share of its trajectory is not worth matching.
-static const double least_progress = 0.2;
-
-// A hand may leave the path a little before its end: from here on the way out is not of the dig.
-static const double ended_progress = 0.95;
 
 // The soil is looked for from so much deeper than the table was dug, to see what is off it.
 static const double probe_deeper = 1.5;
@@ -171,6 +166,7 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         e->progress = (double)NAN;
     }
     if (told < 0) {
+        dig_followed_off(&e->raw->followed);
         e->progress   = (double)NAN;
         e->off_path_m = (double)NAN;
         return;
@@ -186,12 +182,13 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         dig_route_place(&e->route[told], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
+    dig_followed_on(&e->raw->followed, told, e->progress, e->off_path_m, limit_m, &e->raw->path);
 }
 
 // The trajectory is done, or nearly, and the bucket has left it.
 static bool path_is_over(const struct dig_estimator *const e)
 {
-    return e->choice.told >= 0 && e->progress >= ended_progress &&
+    return e->choice.told >= 0 && e->progress >= DIG_ENDING_WHOLE_FROM &&
            e->off_path_m > e->settings.path_limit_m;
 }
 
@@ -258,7 +255,7 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
     if (status != DIG_OK) {
         return status;
     }
-    if (!(out.last - out.first >= least_progress)) {
+    if (!(out.last - out.first >= DIG_ENDING_LEAST)) {
         return DIG_ENOMATCH;
     }
     *observation = out;
@@ -276,6 +273,26 @@ enum dig_status dig_raw_observe(const struct dig_curve_set *const          set,
         route[t] = dig_approach_route(set, t);
     }
     return observe(set, settings->path_limit_m, route, raw, observation);
+}
+
+bool dig_raw_gave_up(const struct dig_curve_set *const          set,
+                     const struct dig_estimator_settings *const settings,
+                     const struct dig_raw *const raw, int *const trajectory, double *const progress)
+{
+    assert(set != NULL && settings != NULL && raw != NULL && trajectory != NULL &&
+           progress != NULL);
+    struct dig_route route[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < set->trajectories; t++) {
+        route[t] = dig_approach_route(set, t);
+    }
+    const double limit_m = settings->path_limit_m;
+    if (!dig_followed_gave_up(&raw->followed, set->trajectories, route, &raw->path, limit_m,
+                              tie_share * limit_m)) {
+        return false;
+    }
+    *trajectory = raw->followed.trajectory;
+    *progress   = raw->followed.progress;
+    return true;
 }
 
 // Hands the dig out raw and goes on in the spare, or observes it here.
@@ -336,6 +353,8 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
     dig_raw_add(e->raw, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
+    dig_followed_sample(&e->raw->followed, e->raw->window.open, time_ns,
+                        sqrt(e->lambda) * dig_window_hole_s(e->set->smooth_half_s));
 
     switch (event) {
     case DIG_EVENT_TOUCHED: lay_out_path(e, point); break;

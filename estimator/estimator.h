@@ -65,6 +65,13 @@ struct dig_estimate {
     enum dig_motion    motion;     // what it does in contact and dig
 };
 
+/// How a dig ended, as far as it can be told (estimator/ending.h).
+enum dig_ending {
+    DIG_ENDING_OPEN,   // not told, or it goes on
+    DIG_ENDING_WHOLE,  // dug to the end of its trajectory
+    DIG_ENDING_ABORTED // the bucket left its trajectory before
+};
+
 /// A finished dig on the table's grid, in rig units: what is matched.
 struct dig_observation {
     uint32_t            dig_count;
@@ -80,6 +87,8 @@ struct dig_observation {
     bool   forces;                      // Fx and Fz were measured, too, as far as the moment
     double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
     double force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+
+    enum dig_ending ending; // of a recording of forces: not told
 };
 
 #define DIG_MATCH_SAMPLES 32 // gravels that stand for the posterior
@@ -224,6 +233,12 @@ DIG_MUST_CHECK enum dig_status dig_raw_observe(const struct dig_curve_set       
                                                const struct dig_estimator_settings *settings,
                                                struct dig_raw                      *raw,
                                                struct dig_observation              *observation);
+
+/// Of a dig of which dig_raw_observe() told nothing: true when it followed a trajectory of the set
+/// and left it before its end, and then which, and where. Its moment is not told: the way out
+/// belongs to its path. About a millisecond.
+bool dig_raw_gave_up(const struct dig_curve_set *set, const struct dig_estimator_settings *settings,
+                     const struct dig_raw *raw, int *trajectory, double *progress);
 
 /// True once after every finished dig that followed a known trajectory, while nothing is lent:
 /// copies it out.

@@ -15,7 +15,8 @@ void dig_raw_forget(struct dig_raw *const raw, const struct dig_curve_set *const
 {
     assert(raw != NULL && set != NULL);
     dig_window_close(&raw->window);
-    raw->path = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
+    raw->followed = (struct dig_followed){ .last_ns = raw->followed.last_ns };
+    raw->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
 }
 
 void dig_raw_touch(struct dig_raw *const raw, const struct dig_path_point *const point)

@@ -6,14 +6,16 @@
 
 #include "core/curve.h"
 #include "estimator/estimator.h"
+#include "estimator/followed.h"
 #include "estimator/path.h"
 #include "estimator/window.h"
 
 /// Zeroed: empty.
 struct dig_raw {
-    uint32_t          dig_count;
-    struct dig_path   path;
-    struct dig_window window;
+    uint32_t            dig_count;
+    struct dig_followed followed;
+    struct dig_path     path;
+    struct dig_window   window;
 };
 
 /// Forgets what was recorded and waits for contact.

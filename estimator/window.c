@@ -1,5 +1,7 @@
 #include "estimator/window.h"
 
+#include "estimator/ending.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -155,10 +157,15 @@ static double samples_within(const struct dig_window *const window, const struct
 }
 
 // Where samples are missing for longer than is smoothed over, no one knows what the moment was.
+double dig_window_hole_s(const double half_s)
+{
+    return fmax(half_s, 0.02);
+}
+
 static bool has_hole(const struct dig_window *const window, const struct range range,
                      const double half_s)
 {
-    const double longest_s = fmax(half_s, 0.02);
+    const double longest_s = dig_window_hole_s(half_s);
     for (size_t i = range.first + 1; i < range.end; i++) {
         const double step_s = window->time_s[i] - window->time_s[i - 1];
         if (step_s > longest_s * (double)window->stride) {
@@ -283,6 +290,10 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     }
     read_moment(window, range, half_s, spot, observation);
     read_forces(window, range, half_s, spot, observation);
+    const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
+
+    observation->ending =
+        window->goes_on ? DIG_ENDING_OPEN : dig_ending_of(route, track, last, left, 0.5 * limit_m);
     observation->first      = first;
     observation->last       = last;
     observation->off_path_m = track->rms_m;

@@ -52,12 +52,16 @@ void dig_window_add(struct dig_window *window, const struct dig_window_sample *s
 void dig_window_open(struct dig_window *window);
 void dig_window_close(struct dig_window *window);
 
+/// Samples missing for longer than this, rig time, are a hole.
+double dig_window_hole_s(double half_s);
+
 /// The observation of the dig along route at the track's shift: samples from the start of the route
 /// to its end (or to where the dig stopped), smoothed over +-half_s of rig time, read off at
 /// DIG_CURVE_POINTS of progress where the furthest progress so far first reached them: a pause or a
 /// step back changes nothing. A sample farther than limit_m from the route moves no progress.
 /// sigma: white noise averages over the smoothing, the slow part does not. Of a dig that goes on,
-/// only what is half_s old is told. Forces are told where all samples of the dig have them.
+/// only what is half_s old is told, and no ending; aborted is what left the route by more than
+/// half of limit_m. Forces are told where all samples of the dig have them.
 ///
 /// DIG_ENOMATCH when fewer than two points of the grid were reached, or samples are missing for
 /// longer than half_s of rig time: what was not measured is not made up. Uses the window's own

@@ -2,6 +2,7 @@
 
 #include "estimator/approach_slots.h"
 #include "estimator/doubt.h"
+#include "estimator/raw.h"
 #include "firmware_host/load.h"
 #include "tables/load.h"
 
@@ -121,8 +122,9 @@ static bool is_too_short(struct dig_fit *const fit, const struct dig_observation
     char text[200];
     (void)snprintf(
         text, sizeof text,
-        "dig %u (%s): no match, %.0f %% of its path was measured, expected at least %.0f %%",
-        dig->dig_count, fit->set->trajectory[dig->trajectory].name, 100.0 * path,
+        "dig %u (%s): %sno match, %.0f %% of its path was measured, expected at least %.0f %%",
+        dig->dig_count, fit->set->trajectory[dig->trajectory].name,
+        dig->ending == DIG_ENDING_ABORTED ? "aborted, " : "", 100.0 * path,
         100.0 * fit->config->match_least_path);
     note(fit, text);
     return true;
@@ -248,12 +250,45 @@ static void end_hunch(struct dig_fit *const fit)
     }
 }
 
+static void tell_aborted(struct dig_fit *const fit, const uint32_t dig_count, const int trajectory,
+                         const double at)
+{
+    char text[200];
+    (void)snprintf(text, sizeof text, "dig %u (%s): aborted at %.0f %% of its path", dig_count,
+                   fit->set->trajectory[trajectory].name, 100.0 * at);
+    note(fit, text);
+    atomic_fetch_add(&fit->aborted, 1);
+}
+
+// What an aborted dig has measured counts like any other's; that it was aborted is said.
+static void tell_ending(struct dig_fit *const fit, const struct dig_observation *const dig)
+{
+    if (dig->ending == DIG_ENDING_WHOLE) {
+        atomic_fetch_add(&fit->whole, 1);
+    } else if (dig->ending == DIG_ENDING_ABORTED) {
+        tell_aborted(fit, dig->dig_count, dig->trajectory, dig->last);
+    }
+}
+
+// A dig along none of the table's trajectories, unless it was along one for as long as it was dug.
+static void tell_unknown(struct dig_fit *const fit, const struct dig_raw *const raw)
+{
+    int    trajectory = -1;
+    double at         = 0.0;
+    if (dig_raw_gave_up(fit->set, &fit->config->estimator, raw, &trajectory, &at)) {
+        tell_aborted(fit, raw->dig_count, trajectory, at);
+    } else {
+        atomic_fetch_add(&fit->unknown, 1);
+    }
+}
+
 void dig_fit_take(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
     assert(fit != NULL && dig != NULL);
     if (dig->trajectory < 0 || (size_t)dig->trajectory >= fit->set->trajectories) {
         return;
     }
+    tell_ending(fit, dig);
     if (dig_config_identifies(fit->config, fit->set->trajectory[dig->trajectory].name)) {
         match_dig(fit, dig);
     } else if (dig_known_watch(&fit->known, dig, expected_of(fit, dig), &fit->known_settings)) {
@@ -381,6 +416,8 @@ bool dig_fit_once(struct dig_fit *const fit)
         if (dig_raw_observe(fit->set, &fit->config->estimator, raw, &dig) == DIG_OK) {
             doubt(fit, &dig);
             dig_fit_take(fit, &dig);
+        } else {
+            tell_unknown(fit, raw);
         }
         (void)dig_ring_push(fit->spares, &raw);
         atomic_fetch_add(&fit->seen, 1);

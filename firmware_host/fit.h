@@ -50,6 +50,8 @@ struct dig_fit {
     atomic_bool               reload;             // asked for; taken by the thread
     atomic_llong              seen;               // digs taken
     atomic_llong              matches;            // digs matched
+    atomic_llong              whole, aborted;     // digs taken, by how they ended
+    atomic_llong              unknown;            // digs along none of the table's trajectories
     atomic_llong              reloads, reloads_refused;
     atomic_bool               busy;
 

@@ -36,6 +36,7 @@ struct dig_known dig_known_of(const struct dig_curve_set *const   set,
         .drift      = (double)NAN,
 
         .path_measured = dig->last - dig->first,
+        .ending        = dig->ending,
         .made          = dig->made,
         .matched       = dig->approach,
     };

@@ -37,6 +37,7 @@ struct dig_known {
     char              wanted[96];          // what is to be done, for people; "" nothing
     double            path_measured;       // share of that dig's path; NaN: not known any more
     bool              going_on;            // that dig is not over
+    enum dig_ending   ending;              // of that dig; not told after a restart
 
     struct dig_approach made, matched; // of that dig: struct dig_observation's made and approach
 };

@@ -37,6 +37,7 @@ struct dig_health {
     int64_t             frames, malformed, reconnects, lost;
     int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
     int32_t             matches;
+    int32_t             whole, aborted, unknown; // digs, by how they ended
     struct dig_latency  latency;
     const char         *table;                          // scene hash
     char                missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name

@@ -220,6 +220,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .advice                = advice(),
         .family                = dig_match_is_family(m) ? 1 : 0,
         .untold                = untold,
+        .ending                = (int8_t)k->ending,
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
 }
@@ -330,6 +331,9 @@ enum dig_status dig_output_health(struct dig_output *const       output,
               .table                 = table,
               .without_force         = pulse->drops.without_force,
               .advice                = advice(),
+              .digs_whole            = health->whole,
+              .digs_aborted          = health->aborted,
+              .digs_unknown          = health->unknown,
     };
     return sent(digsight_health_t_publish(output->lcm, "DIGSIGHT_HEALTH", &message));
 }

@@ -292,6 +292,9 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     p->health.reloads_refused = atomic_load(&p->fit->reloads_refused);
     p->health.table           = p->set->scene_hash;
     p->health.matches         = (int32_t)atomic_load(&p->fit->matches);
+    p->health.whole           = (int32_t)atomic_load(&p->fit->whole);
+    p->health.aborted         = (int32_t)atomic_load(&p->fit->aborted);
+    p->health.unknown         = (int32_t)atomic_load(&p->fit->unknown);
     say_drops(p, now_ns);
     if (now_ns >= p->next_health_ns) {
         name_missing(p);

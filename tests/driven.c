@@ -67,6 +67,7 @@ static bool take(struct driven *const b)
     assert_false(dig_estimator_take_dig(b->estimator, &b->observation));
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     const bool any = dig_raw_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
+    b->gave_up = !any && dig_raw_gave_up(b->set, &settings, raw, &b->gave_up_of, &b->gave_up_at);
     if (!b->keeps) {
         dig_estimator_lend(b->estimator, raw);
     }

@@ -38,6 +38,9 @@ struct driven {
     size_t                 observations, steps_with_allocation;
     struct dig_shadow     *shadow; // NULL: none follows
     struct dig_observation observation;
+    bool                   gave_up;    // of the raw dig taken last, when nothing was told of it:
+    int                    gave_up_of; // the trajectory, and where
+    double                 gave_up_at;
     struct dig_estimate    estimate;
     // of the dig driven last
     struct dig_observation early[DRIVEN_LOOKS]; // what the shadow saw; trajectory -1: nothing

@@ -5,6 +5,8 @@
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 
+#include <stdlib.h>
+
 enum { HESITATIONS_MAX = 8, TICKS_MAX = 20000 };
 
 static const double lambda       = 10.0;
@@ -217,6 +219,9 @@ void dug_dig(const struct dug_soil *const soil, const struct dug_way *const way,
 {
     static struct digging d;
     d = (struct digging){ .driven = driven_create(true), .soil = soil, .way = way, .seed = seed };
+    d.driven->spare = calloc(1, dig_raw_size());
+    assert_non_null(d.driven->spare);
+    dig_estimator_lend(d.driven->estimator, d.driven->spare);
     struct dig_machine *const machine = &d.driven->machine;
     machine->pressure_step_Pa *= way->loud;
     machine->angle_step_rad *= way->loud;
@@ -237,7 +242,13 @@ void dug_dig(const struct dug_soil *const soil, const struct dug_way *const way,
     *end = (struct dug_end){ .digs       = d.driven->observations,
                              .trajectory = d.driven->observations > 0 ? o->trajectory : -1,
                              .first      = o->first,
-                             .last       = o->last };
+                             .last       = o->last,
+                             .ending     = o->ending };
+    if (d.driven->gave_up) {
+        end->trajectory = d.driven->gave_up_of;
+        end->last       = d.driven->gave_up_at;
+        end->ending     = DIG_ENDING_ABORTED;
+    }
     driven_destroy(d.driven);
 }
 

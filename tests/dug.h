@@ -63,8 +63,10 @@ struct dug_soil {
 /// What was told of a dig in the end.
 struct dug_end {
     size_t digs;       // observed
-    int    trajectory; // of the last one; -1: none
+    int    trajectory; // of the last one, or of the one followed until it was given up; -1: none
     double first, last;
+
+    enum dig_ending ending;
 };
 
 /// Digs it with a fresh estimator and adds its samples to the matrix.

@@ -154,12 +154,36 @@ static void the_whole_dig_takes_its_place(void **state)
     struct dig_known    first, last;
     dig_until(b, MADE_SIMPLE_A, 1.0, 2.0);
     (void)results(b, &first, &last);
+
+    // Until it is over no one says how it ended.
+    struct dig_observation going_on;
+    assert_int_equal(
+        dig_shadow_observe(b->set, &b->config.estimator, &b->shadow, b->raw, &going_on), DIG_OK);
+    assert_true(going_on.last > 0.95);
+    assert_int_equal(going_on.ending, DIG_ENDING_OPEN);
+
     end_dig(b, MADE_SIMPLE_A, true);
     assert_int_equal(results(b, &first, &last), 1);
     assert_true(last.valid && !last.going_on);
     assert_true(last.path_measured > 0.99);
     assert_false(b->fit.hunch.any);
     assert_int_equal(atomic_load(&b->fit.matches), 1);
+    assert_int_equal(last.ending, DIG_ENDING_WHOLE);
+    assert_int_equal(atomic_load(&b->fit.whole), 1);
+    bench_destroy(b);
+}
+
+static void a_dig_with_samples_missing_is_counted_as_unknown(void **state)
+{
+    (void)state;
+    struct bench *const b = bench_create();
+    dig_until(b, MADE_SIMPLE_A, 1.0, 0.5);
+    end_dig(b, MADE_SIMPLE_A, true);
+    assert_int_equal(atomic_load(&b->fit.seen), 1);
+    assert_int_equal(atomic_load(&b->fit.matches), 0);
+    assert_int_equal(atomic_load(&b->fit.whole), 0);
+    assert_int_equal(atomic_load(&b->fit.aborted), 0);
+    assert_int_equal(atomic_load(&b->fit.unknown), 1);
     bench_destroy(b);
 }
 
@@ -229,6 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dig_is_matched_while_it_goes_on),
         cmocka_unit_test(the_whole_dig_takes_its_place),
+        cmocka_unit_test(a_dig_with_samples_missing_is_counted_as_unknown),
         cmocka_unit_test(a_dig_broken_off_takes_it_back),
         cmocka_unit_test(what_is_known_is_still_predicted_from),
         cmocka_unit_test(what_cannot_identify_is_not_looked_at),

@@ -32,24 +32,40 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
 {
     (void)state;
     const struct {
-        const char  *name;
-        struct drive drive;
-        double       error;
+        const char     *name;
+        struct drive    drive;
+        double          error;
+        enum dig_ending ending;
     } cases[] = {
-        { "simpleA", calm, 0.03 },
-        { "simpleB", { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .seed = 1 }, 0.03 },
-        { "actual", { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 1 }, 0.03 },
-        { "slow", { .which = MADE_SIMPLE_A, .stretch = 2.5, .until = 1, .seed = 1 }, 0.03 },
-        { "fast", { .which = MADE_ACTUAL, .stretch = 0.6, .until = 1, .seed = 1 }, 0.03 },
+        { "simpleA", calm, 0.03, DIG_ENDING_WHOLE },
+        { "simpleB",
+          { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .seed = 1 },
+          0.03,
+          DIG_ENDING_WHOLE },
+        { "actual",
+          { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 1 },
+          0.03,
+          DIG_ENDING_WHOLE },
+        { "slow",
+          { .which = MADE_SIMPLE_A, .stretch = 2.5, .until = 1, .seed = 1 },
+          0.03,
+          DIG_ENDING_WHOLE },
+        { "fast",
+          { .which = MADE_ACTUAL, .stretch = 0.6, .until = 1, .seed = 1 },
+          0.03,
+          DIG_ENDING_WHOLE },
         { "paused",
           { .which = MADE_SIMPLE_A, .stretch = 1, .pause_s = 8, .until = 1, .seed = 1 },
-          0.03 },
+          0.03,
+          DIG_ENDING_WHOLE },
         { "stepped back",
           { .which = MADE_ACTUAL, .stretch = 1, .back_s = 0.2, .until = 1, .seed = 1 },
-          0.07 }, // what was not felt while it went back is within the smoothing
+          0.07,
+          DIG_ENDING_WHOLE }, // what was not felt while it went back is within the smoothing
         { "sensors",
           { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
-          0.04 },
+          0.04,
+          DIG_ENDING_WHOLE },
         { "all of it",
           { .which   = MADE_ACTUAL,
             .stretch = 1.7,
@@ -58,8 +74,16 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
             .drop    = 0.2,
             .sensors = true,
             .seed    = 3 },
-          0.03 },
-        { "broken off", { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .seed = 1 }, 0.03 },
+          0.03,
+          DIG_ENDING_WHOLE },
+        { "broken off",
+          { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .seed = 1 },
+          0.03,
+          DIG_ENDING_ABORTED },
+        { "aborted",
+          { .which = MADE_ACTUAL, .stretch = 1, .until = 0.6, .seed = 1 },
+          0.03,
+          DIG_ENDING_ABORTED },
     };
     // simpleB and actual are one until the first turns on (40 % of its way is the shared turn) and
     // the other drags.
@@ -82,6 +106,7 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         assert_close(b->observation.first, 0.0, 0.0);
         assert_close(b->observation.last, cases[i].drive.until, 0.03);
         assert_true(b->observation.off_path_m < 0.001);
+        assert_int_equal(b->observation.ending, cases[i].ending);
         assert_int_equal(b->known_at_end, cases[i].drive.which);
         assert_true(b->known_from < known_before[cases[i].drive.which]);
         assert_true(b->worst_progress < 0.03);
@@ -126,6 +151,7 @@ static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
             }
             assert_int_equal(o->trajectory, (int)drive->which);
             assert_int_equal(o->dig_count, 1);
+            assert_int_equal(o->ending, DIG_ENDING_OPEN);
             const struct dig_trajectory t       = made_trajectory(drive->which);
             const double                tooth_m = b->set->tooth_m, at = driven_look_at[s];
             const double                smoothed_s =

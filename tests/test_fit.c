@@ -79,6 +79,54 @@ static void a_dig_broken_off_leaves_what_is_known(void **state)
     free(b);
 }
 
+// Told and counted by how they ended; that a dig was aborted changes nothing of what it tells.
+static void how_digs_ended_is_told_and_changes_no_number(void **state)
+{
+    (void)state;
+    struct bench *const    b    = bench_create();
+    struct bench *const    same = bench_create();
+    struct dig_observation dig  = { .dig_count = 1, .trajectory = 0, .last = 0.7 };
+    struct dig_note        note;
+    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
+        dig.moment_Nm[p] = bench_moment_Nm(5, p);
+        dig.sigma_Nm[p]  = 0.005;
+    }
+    dig_fit_take(&same->fit, &dig);
+    assert_int_equal(same->fit.known.ending, DIG_ENDING_OPEN);
+    assert_false(dig_latest_take(&same->wires.notes, &note));
+
+    dig.ending = DIG_ENDING_ABORTED;
+    dig_fit_take(&b->fit, &dig);
+    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_string_equal(note.text, "dig 1 (simpleA): aborted at 70 % of its path");
+    assert_int_equal(b->fit.known.ending, DIG_ENDING_ABORTED);
+    assert_close(b->fit.known.path_measured, 0.7, 0.0);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(b->fit.known.match.low.value[a], same->fit.known.match.low.value[a], 0.0);
+        assert_close(b->fit.known.match.high.value[a], same->fit.known.match.high.value[a], 0.0);
+    }
+    dig.last       = 0.5;
+    dig.trajectory = 1;
+    dig_fit_take(&b->fit, &dig);
+    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_string_equal(note.text, "dig 1 (actual): aborted at 50 % of its path");
+    dig.trajectory = 0;
+    dig_fit_take(&b->fit, &dig);
+    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_non_null(strstr(note.text, "aborted, no match, 50 % of its path"));
+
+    dig.last   = 1.0;
+    dig.ending = DIG_ENDING_WHOLE;
+    dig_fit_take(&b->fit, &dig);
+    assert_int_equal(b->fit.known.ending, DIG_ENDING_WHOLE);
+    assert_false(dig_latest_take(&b->wires.notes, &note));
+    assert_int_equal(atomic_load(&b->fit.whole), 1);
+    assert_int_equal(atomic_load(&b->fit.aborted), 3);
+    assert_int_equal(atomic_load(&b->fit.unknown), 0);
+    free(same);
+    free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -86,6 +134,7 @@ int main(void)
         cmocka_unit_test(a_dig_that_does_not_identify_is_passed_over),
         cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),
         cmocka_unit_test(a_dig_broken_off_leaves_what_is_known),
+        cmocka_unit_test(how_digs_ended_is_told_and_changes_no_number),
     };
     return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
 }

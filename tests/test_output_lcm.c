@@ -206,6 +206,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
         .known.trajectory = "simpleA",
         .known.table      = "abc123",
         .known.wanted     = "a simple dig",
+        .known.ending     = DIG_ENDING_ABORTED,
         .known.made       = { 1.25, 0.02 },
         .known.matched    = { 1.2, 0.01 },
         .known.nearest    = { { 0.6, 0.2, 2500 } },
@@ -250,6 +251,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_close(seen.match.drift, 1.5, 0.0);
     assert_int_equal(seen.match.samples, 2);
     assert_int_equal(seen.match.family, 1);
+    assert_int_equal(seen.match.ending, 2);
     assert_string_equal(seen.untold, "rolling, density_kgpm3");
     assert_close(seen.match.hint_J_per_kg, 12.5, 0.0);
     assert_string_equal(seen.text[0], "a simple dig");
@@ -359,6 +361,9 @@ static void health_carries_every_counter(void **state)
          .reconnects      = 12,
          .lost            = 13,
          .matches         = 14,
+         .whole           = 27,
+         .aborted         = 28,
+         .unknown         = 29,
          .checksum        = 19,
          .errors          = 20,
          .bus_offs        = 21,
@@ -388,6 +393,7 @@ static void health_carries_every_counter(void **state)
     assert_close(m.worst_tick_us, 4.5, 0.0);
     assert_true(m.dropped_nan == 5 && m.dropped_not_available == 6 && m.dropped_out_of_range == 7);
     assert_true(m.dropped_frozen == 8 && m.dropped_malformed == 11 && m.digs == 9);
+    assert_true(m.digs_whole == 27 && m.digs_aborted == 28 && m.digs_unknown == 29);
     assert_true(m.frames == 10 && m.reconnects == 12 && m.lost == 13 && m.matches == 14);
 }
 

@@ -4,15 +4,16 @@
 //   match VALID OUTSIDE DIG TRAJECTORY FRICTION LOW HIGH ROLLING LOW HIGH DENSITY LOW HIGH DISTANCE
 //   RESTORED DRIFT DEPTH ATTACK_deg MATCHED_DEPTH MATCHED_ATTACK_deg "WANTED" FORCES DIGS
 //   PATH_MEASURED GOING_ON
-//   family FAMILY "UNTOLD"
+//   family FAMILY "UNTOLD" ENDING
 //   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH ATTACK_deg "REASON"
 //   spread POINTS PEAK_SIGMA ENERGY ENERGY_SIGMA LEAST_SIGMA_X LEAST_SIGMA_Z
 //   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
 //          RECONNECTS DIGS MATCHES LOST TICKS OVERRUNS WORST_us CHECKSUM REPEATED JUMP STUCK MISSED
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
+//   endings WHOLE ABORTED UNKNOWN
 //   samples N DURATION_s MAX_GAP_s
-// family is of the match before it, spread of the prediction.
+// family is of the match before it, spread of the prediction, endings of the health.
 
 #include "core/units.h"
 #include "files/lcm_log.h"
@@ -47,7 +48,7 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
                  m->restored, m->drift, m->depth, m->attack_rad / DIG_RAD_PER_DEG, m->matched_depth,
                  m->matched_attack_rad / DIG_RAD_PER_DEG, m->wanted, m->forces, m->digs,
                  m->path_measured, m->going_on);
-    (void)printf("family %d \"%s\"\n", m->family, m->untold);
+    (void)printf("family %d \"%s\" %d\n", m->family, m->untold, m->ending);
 }
 
 static double least(const int points, const double value[])
@@ -97,6 +98,7 @@ static void health(void *const context, const int64_t time_us, const digsight_he
     }
     (void)printf(" %.1f %.1f %" PRId64 " \"%s\" \"%s\" \"%s\"\n", m->worst_tick_cpu_us,
                  m->latency_p99_us, m->without_force, m->input, m->note, m->missing_signals);
+    (void)printf("endings %d %d %d\n", m->digs_whole, m->digs_aborted, m->digs_unknown);
 }
 
 int main(const int argc, char *argv[])

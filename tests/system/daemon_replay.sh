@@ -27,7 +27,7 @@ check "the simple dig is matched while it goes on" \
 check "and that before most of it is dug" \
     within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.8
 check "what part of a dig does not tell is told: a family, by rolling friction" grep -q '^family 1 ".*rolling' "$work/csv.txt"
-check "and no family once the dig is over" [ "$(awk '$1 == "family" { was = $0 } END { print was }' "$work/csv.txt")" = 'family 0 ""' ]
+check "and no family once the dig is over" [ "$(awk '$1 == "family" { was = $0 } END { print was }' "$work/csv.txt")" = 'family 0 "" 1' ]
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
@@ -45,6 +45,11 @@ motions() { # FILE DIG: what the bucket did in a dig, counted from 0
 check "what the bucket does is told leg by leg" \
     eval '[[ "$(motions "$work/csv.txt" 0)" =~ ^1?24$ && "$(motions "$work/csv.txt" 1)" =~ ^1?3234$ ]]'
 check "both digs are counted" [ "$(last health "$work/csv.txt" $h_digs)" = 2 ]
+endings() { # FILE: digs whole, aborted, unknown
+    awk '$1 == "endings" { e = $2 " " $3 " " $4 } END { print e }' "$1"
+}
+# The data's actual is not felt along its last leg: how it ended is not told.
+check "the simple dig is told to be whole" [ "$(endings "$work/csv.txt")" = "1 0 0" ]
 check "health goes from waiting over running to stopping" \
     [ "$(awk '/^health/ && $2 != was { was = $2; print $2 }' "$work/csv.txt" | sort -u | tr '\n' ' ')" = \
       "running stopping waiting_for_bus " ]
@@ -77,6 +82,19 @@ simpleB=$work/simpleB.csv
 check "digloop matches simple digs along several trajectories together" \
     eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" "$simpleB" |
           grep -q "^  2 digs (simpleA, simpleB): moment and forces$"'
+
+# An actual that is given up.
+awk -F, '/^[^0-9]/ { print; next } $1 < 0.7 * end' \
+    end="$(tail -n 1 "$work/actual.csv" | cut -d, -f1)" "$work/actual.csv" >"$work/half.csv"
+"$BIN/digrig" record "$work/simpleA.csv" "$work/half.csv" "$work/actual.csv" --machine "$machine" \
+    -o "$work/aborts.csv" 2>"$work/rig.err"
+config aborts "{kind: replay, replay: {file: aborts.csv, speed: 10}}"
+log aborts
+"$BIN/digsightd" -c "$work/aborts.yaml" 2>"$work/daemon.log"
+read_log aborts
+check "a dig that was aborted is counted as such" [ "$(endings "$work/aborts.txt")" = "1 1 0" ]
+check "and said" grep -Eq 'dig 2 \(actual\): aborted at [67][0-9] % of its path' "$work/daemon.log"
+check "the gravel stays known" identified "$work/aborts.txt"
 
 log again
 "$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"

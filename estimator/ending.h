@@ -1,0 +1,27 @@
+// How a finished dig ended: dug to the end of its trajectory, or given up before.
+//
+//      told WHOLE      ------------->|        0.95 of the path or more was dug
+//      told ABORTED    -----.                 the bucket stands away from all that was left to dig
+//                           |
+//      told OPEN       ------ - - - >         it was on its way when the soil was last felt: light
+//                                             gravel is often not felt along the last leg
+
+#ifndef DIG_ESTIMATOR_ENDING_H
+#define DIG_ESTIMATOR_ENDING_H
+
+#include "estimator/estimator.h"
+#include "estimator/route.h"
+#include "estimator/track.h"
+
+/// From here on a dig is whole: a hand may leave the path a little before its end.
+#define DIG_ENDING_WHOLE_FROM 0.95
+
+/// A dig shorter than this share of its trajectory is not worth matching, nor told as given up.
+#define DIG_ENDING_LEAST 0.2
+
+/// reached: furthest progress. last: where the bucket was when the dig was over. Aborted is what is
+/// farther than limit_m then from every place of the route that was left to dig. O(corners).
+enum dig_ending dig_ending_of(const struct dig_route *route, const struct dig_track *track,
+                              double reached, const struct dig_path_point *last, double limit_m);
+
+#endif // DIG_ESTIMATOR_ENDING_H
