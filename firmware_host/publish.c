@@ -16,16 +16,44 @@
 #define BURST    6        // records, two messages each
 #define TURN_ns  500000LL // between two turns, at most
 
+__attribute__((format(printf, 2, 0))) static void speak(const struct dig_publisher *const p,
+                                                        const char *const format, va_list args)
+{
+    char line[512];
+    (void)vsnprintf(line, sizeof line, format, args);
+    p->voice.say(line);
+}
+
 __attribute__((format(printf, 2, 3))) static void say(const struct dig_publisher *const p,
                                                       const char *const                 format, ...)
 {
-    char    line[512];
     va_list args;
     va_start(args, format);
     // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
-    (void)vsnprintf(line, sizeof line, format, args);
+    speak(p, format, args);
     va_end(args);
-    p->voice.say(line);
+}
+
+static void say_held(const struct dig_publisher *const p, const int64_t held)
+{
+    if (held > 0) {
+        say(p, "lines held back, as too many came at once: %" PRId64, held);
+    }
+}
+
+// What may come again and again: troubles, and states that come and go.
+__attribute__((format(printf, 2, 3))) static void mention(struct dig_publisher *const p,
+                                                          const char *const           format, ...)
+{
+    if (!dig_talk_may(&p->talk, dig_input_now_ns())) {
+        return;
+    }
+    say_held(p, dig_talk_held(&p->talk));
+    va_list args;
+    va_start(args, format);
+    // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
+    speak(p, format, args);
+    va_end(args);
 }
 
 // Joins LCM, or says why not and tries again later.
@@ -39,12 +67,12 @@ static bool is_online(struct dig_publisher *const p, const int64_t now_ns)
     }
     struct dig_error error = { "" };
     if (dig_output_create(p->config->lcm_url, &p->output, &error) == DIG_OK) {
-        say(p, "publishing on %s", p->config->lcm_url);
+        mention(p, "publishing on %s", p->config->lcm_url);
         p->next_health_ns = 0;
         return true;
     }
     if (p->lcm_pause_ns == 0) {
-        say(p, "%s; trying again", error.text);
+        mention(p, "%s; trying again", error.text);
     }
     p->lcm_pause_ns = p->lcm_pause_ns == 0             ? NS_PER_S / 4
                       : p->lcm_pause_ns < 4 * NS_PER_S ? 2 * p->lcm_pause_ns
@@ -58,7 +86,7 @@ static void check_sent(struct dig_publisher *const p, const enum dig_status stat
 {
     p->health.unsent += status == DIG_OK ? 0 : 1;
     if (status != DIG_OK && p->output != NULL) {
-        say(p, "LCM %s: sending failed; joining again", p->config->lcm_url);
+        mention(p, "LCM %s: sending failed; joining again", p->config->lcm_url);
         dig_output_destroy(p->output);
         p->output       = NULL;
         p->lcm_pause_ns = NS_PER_S;
@@ -220,7 +248,7 @@ static void take_notes(struct dig_publisher *const p, bool *const news)
             *news   = true;
             p->note = note;
             if (note.text[0] != '\0') {
-                say(p, "%s", note.text);
+                mention(p, "%s", note.text);
             }
         }
     }
@@ -256,7 +284,7 @@ static void name_missing(struct dig_publisher *const p)
     dig_signal_name_missing(p->seen, sizeof missing, missing);
     if (strcmp(missing, p->health.missing) != 0) {
         memcpy(p->health.missing, missing, sizeof missing);
-        say(p, "without a value: %s", missing[0] != '\0' ? missing : "no signal any more");
+        mention(p, "without a value: %s", missing[0] != '\0' ? missing : "no signal any more");
     }
     memset(p->seen, 0, sizeof p->seen);
     p->any_seen = false;
@@ -271,7 +299,7 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     if (state != p->state) {
         news     = true;
         p->state = state;
-        say(p, "%s (%s)", state, p->input->name);
+        mention(p, "%s (%s)", state, p->input->name);
     }
     p->health.time_ns    = now_ns;
     p->health.state      = state;
@@ -296,6 +324,7 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     p->health.aborted         = (int32_t)atomic_load(&p->fit->aborted);
     p->health.unknown         = (int32_t)atomic_load(&p->fit->unknown);
     say_drops(p, now_ns);
+    say_held(p, dig_talk_held_before(&p->talk, now_ns, stopping));
     if (now_ns >= p->next_health_ns) {
         name_missing(p);
     }

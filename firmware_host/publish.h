@@ -5,13 +5,14 @@
 #define DIG_FIRMWARE_HOST_PUBLISH_H
 
 #include "firmware_host/output.h"
+#include "firmware_host/talk.h"
 
 #define DIG_STATE_STARTING "starting"
 #define DIG_STATE_WAITING  "waiting for bus"
 #define DIG_STATE_RUNNING  "running"
 #define DIG_STATE_STOPPING "stopping"
 
-/// How the daemon speaks to a person. say: every line worth an eye, at most a few a second. show:
+/// How the daemon speaks to a person. say: every line worth an eye, as often as talk.h lets. show:
 /// where things stand, twice a second, each line in place of the one before; NULL: no one looks.
 struct dig_voice {
     void (*say)(const char *line);
@@ -48,6 +49,7 @@ struct dig_publisher {
     struct dig_table_news news; // a table the tick may not use yet
     int64_t               said_drops;
     int64_t               next_show_ns;
+    struct dig_talk       talk; // of what may come as often as a bus comes and goes
     uint64_t              records_seen;
     bool                  seen[DIG_SIGNALS]; // signals that had a value since HEALTH was told last
     bool                  any_seen;
