@@ -3,6 +3,7 @@
 #include "closed_loop/consequence.h"
 #include "closed_loop/judge.h"
 #include "closed_loop/residuals.h"
+#include "closed_loop/tell_apart.h"
 #include "closed_loop/trace_parts.h"
 #include "closed_loop/trace_verdict.h"
 #include "closed_loop/trace_work.h"
@@ -228,6 +229,9 @@ static enum dig_status report(const struct dig_tracing *const      t,
         status = trace->residuals != NULL ? dig_residuals_make(t, machine != NULL ? w->air : NULL,
                                                                trace->curves, trace->residuals)
                                           : DIG_ENOMEM;
+    }
+    if (status == DIG_OK) {
+        status = dig_tell_apart(t, machine, w->air, trace);
     }
     if (status == DIG_OK) {
         dig_trace_advise(t, trace);

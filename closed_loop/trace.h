@@ -18,6 +18,7 @@
 #define DIG_TRACE_CANDIDATES_MAX 64
 #define DIG_TRACE_SETS_MAX       4
 #define DIG_TRACE_PHASES         3
+#define DIG_TRACE_TELLS_MAX      24
 
 /// Where a residual shows: free air before, in the soil, lifted out.
 enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
@@ -39,6 +40,15 @@ struct dig_candidate {
 struct dig_candidate_set {
     size_t             effects;
     enum dig_effect_id effect[DIG_EFFECTS];
+};
+
+/// What would tell two of them apart, of all that was tried.
+struct dig_tell_apart {
+    enum dig_effect_id effect[2];
+    bool               in_air;  // a motion in free air; else a dig
+    char               how[96]; // which, for people; "": nothing tells them apart
+    double             sigmas;  // of the sensors in one such motion, or of one dig's scatter, rms
+    double             repeats; // so many of them make it three sigmas
 };
 
 /// Error with its 90 % bootstrap interval over recordings.
@@ -76,6 +86,8 @@ struct dig_trace {
     struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // best first
     size_t                   sets;
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // indistinguishable
+    size_t                   tells;
+    struct dig_tell_apart    tell[DIG_TRACE_TELLS_MAX]; // of each set every pair, in its order
 
     struct dig_gravel      gravel_before, low_before, high_before; // refitted without the effects
     struct dig_gravel      gravel, low, high;                      // and with them

@@ -285,9 +285,35 @@ static enum dig_status put_digs(FILE *const to, const struct page *const page,
     return status;
 }
 
+static void put_tells(FILE *const to, const struct dig_trace *const trace)
+{
+    if (trace->tells == 0) {
+        return;
+    }
+    (void)fputs("<table><tr><th>to tell apart</th><th style=\"text-align:left\">do</th>"
+                "<th>sigmas</th><th>times</th></tr>\n",
+                to);
+    for (size_t i = 0; i < trace->tells; i++) {
+        const struct dig_tell_apart *const tell = &trace->tell[i];
+        const bool                         told = tell->how[0] != '\0';
+        (void)fprintf(to, "<tr><th>%s<br>%s</th><td style=\"text-align:left;min-width:7em\">",
+                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
+        dig_html_text(to, told ? tell->how : "nothing that was tried");
+        (void)fputs("</td>", to);
+        put_cell(to, 2, told ? tell->sigmas : (double)NAN);
+        put_cell(to, 0, told ? tell->repeats : (double)NAN);
+        (void)fputs("</tr>\n", to);
+    }
+    (void)fputs("</table>\n<p class=muted>What these digs cannot tell apart, as fitted: where they "
+                "differ most, in sigmas of the sensors for a motion in free air, in scatters of "
+                "one dig (rms) for a dig. Times: how many make three.</p>\n",
+                to);
+}
+
 static void put_next(FILE *const to, const struct page *const page)
 {
-    if (page->trace->advice[0] == '\0' && page->trace->command[0] == '\0') {
+    if (page->trace->advice[0] == '\0' && page->trace->command[0] == '\0' &&
+        page->trace->tells == 0) {
         return;
     }
     (void)fputs("<h2>What to do next</h2>\n", to);
@@ -296,6 +322,7 @@ static void put_next(FILE *const to, const struct page *const page)
         dig_html_text(to, page->trace->advice);
         (void)fputs("</p>\n", to);
     }
+    put_tells(to, page->trace);
     if (page->trace->command[0] != '\0') {
         (void)fputs("<p>A table with it in its beds:</p>\n<pre>", to);
         dig_html_text(to, page->trace->command);

@@ -2,6 +2,7 @@
 
 #include "closed_loop/judge.h"
 #include "closed_loop/state.h"
+#include "closed_loop/tell_apart.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -264,61 +265,6 @@ void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_tra
     }
 }
 
-// How far apart two fitted hypotheses are along a trajectory, in scatters of one dig.
-static double apart(const struct dig_tracing *const t, const struct dig_fitted *const a,
-                    const struct dig_fitted *const b, const size_t trajectory)
-{
-    const struct dig_measured dig = { .trajectory = (int)trajectory, .pass = 1, .pace = 1.0 };
-    double                    x[DIG_FEATURES];
-    double                    y[DIG_FEATURES];
-    double                    size[DIG_FORCE_CHANNELS];
-    double                    noise;
-    double                    sum = 0.0;
-    dig_hypothesis_features(t->soil, &a->hypothesis, a->number, &dig, x, &noise);
-    dig_hypothesis_features(t->soil, &b->hypothesis, b->number, &dig, y, &noise);
-    dig_features_amplitude(x, NULL, size);
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        const double off = (x[f] - y[f]) / size[f / DIG_FEATURE_BINS];
-        sum += off * off / t->scatter->covariance[trajectory][f][f];
-    }
-    return sqrt(sum / DIG_FEATURES);
-}
-
-static const struct dig_fitted *rival_of(const struct dig_search *const s,
-                                         const enum dig_effect_id       effect)
-{
-    for (size_t i = 0; i < s->rivals; i++) {
-        if (s->rival[i].hypothesis.effect[0] == effect) {
-            return &s->rival[i];
-        }
-    }
-    return NULL;
-}
-
-static void advise_on_set(const struct dig_tracing *const t, struct dig_trace *const trace)
-{
-    const struct dig_candidate_set *const set  = &trace->set[0];
-    const struct dig_fitted *const        a    = rival_of(t->search, set->effect[0]);
-    const struct dig_fitted *const        b    = rival_of(t->search, set->effect[1]);
-    size_t                                best = t->set->trajectories;
-    double                                most = 0.0;
-    for (size_t k = 0; a != NULL && b != NULL && k < t->set->trajectories; k++) {
-        const bool known = t->surface->known[k] && dig_soil_knows(t->soil, set->effect[0], k) &&
-                           dig_soil_knows(t->soil, set->effect[1], k);
-        const double far = known ? apart(t, a, b, k) : 0.0;
-        best             = far > most ? k : best;
-        most             = fmax(far, most);
-    }
-    if (best < t->set->trajectories) {
-        const double digs = fmax(ceil(pow(3.0 / fmax(most, 0.1), 2.0)), 1.0);
-        (void)snprintf(trace->advice, sizeof trace->advice,
-                       "%s and %s differ most along %s, by %.1f scatters of one dig: %.0f more "
-                       "digs of it would tell them apart",
-                       dig_effect_name(set->effect[0]), dig_effect_name(set->effect[1]),
-                       t->set->trajectory[best].name, most, digs);
-    }
-}
-
 void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const trace)
 {
     const struct dig_search *const s = t->search;
@@ -339,9 +285,8 @@ void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const
                        "no effect of the list explains the digs; what is left depends on %s",
                        s->without_name.depends_on[0] != '\0' ? s->without_name.depends_on
                                                              : "nothing that was tried");
-    } else if (trace->sets > 0 && trace->set[0].effects > 1 &&
-               !dig_effect_is_of_machine(trace->set[0].effect[0])) {
-        advise_on_set(t, trace);
+    } else if (trace->tells > 0 && trace->tell[0].how[0] != '\0') {
+        dig_tell_apart_say(&trace->tell[0], sizeof trace->advice, trace->advice);
     } else if (s->significant && s->chosen.hypothesis.effects > 0) {
         (void)snprintf(trace->advice, sizeof trace->advice,
                        "a table computed with %s in its beds would serve better than a correction",

@@ -2,6 +2,7 @@
 
 #include "closed_loop/json.h"
 #include "closed_loop/residual_report.h"
+#include "closed_loop/tell_apart.h"
 
 #include <assert.h>
 #include <math.h>
@@ -118,6 +119,25 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
     (void)fputs("],\n", to);
 }
 
+// Numbers of a pair that nothing tells apart are null.
+static void put_tells(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(",\n \"tell_apart\": [", to);
+    for (size_t i = 0; i < trace->tells; i++) {
+        const struct dig_tell_apart *const tell = &trace->tell[i];
+        const bool                         told = tell->how[0] != '\0';
+        (void)fprintf(to, "%s\n  {\"effects\": [\"%s\", \"%s\"], \"in\": ", i == 0 ? "" : ",",
+                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
+        (void)fputs(told ? (tell->in_air ? "\"air\"" : "\"soil\"") : "null", to);
+        (void)fputs(", \"how\": ", to);
+        dig_json_string(to, tell->how);
+        dig_json_member(to, ", ", "sigmas", told ? tell->sigmas : (double)NAN);
+        dig_json_member(to, ", ", "repeats", told ? tell->repeats : (double)NAN);
+        (void)fputs("}", to);
+    }
+    (void)fputs("]", to);
+}
+
 void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
@@ -144,6 +164,7 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     dig_residuals_json(trace->residuals, to);
     (void)fputs(" \"advice\": ", to);
     dig_json_string(to, trace->advice);
+    put_tells(to, trace);
     (void)fputs(",\n \"command\": ", to);
     dig_json_string(to, trace->command);
     (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
@@ -258,6 +279,13 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
                   trace->noise_floor, trace->p_complete, trace->false_alarm);
     if (trace->advice[0] != '\0') {
         (void)fprintf(to, "  next: %s\n", trace->advice);
+    }
+    for (size_t i = 0; i < trace->tells; i++) {
+        dig_tell_apart_say(&trace->tell[i], sizeof sentence, sentence);
+        // The first may be the advice itself.
+        if (strcmp(sentence, trace->advice) != 0) {
+            (void)fprintf(to, "  to tell apart: %s\n", sentence);
+        }
     }
     if (trace->command[0] != '\0') {
         (void)fprintf(to, "\nA table with it in its beds:\n\n%s", trace->command);

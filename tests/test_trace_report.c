@@ -125,6 +125,17 @@ static struct example *make(void)
                              .seen_in      = DIG_PART_SOIL } },
         .sets          = 1,
         .set           = { { 2, { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE } } },
+        .tells         = 2,
+        .tell          = { { { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE },
+                             false,
+                             "a dig along <simpleB>",
+                             1.5,
+                             4.0 },
+                           { { DIG_EFFECT_PRESSURE_OFFSET, DIG_EFFECT_BUCKET_WEIGHT },
+                             true,
+                             "",
+                             0.0,
+                             0.0 } },
         .gravel_before = { { 0.41, 0.5, 2300.0 } },
         .gravel        = { { 0.52, 0.47, 2431.0 } },
         .low           = { { 0.44, 0.31, 2100.0 } },
@@ -221,6 +232,9 @@ static void json_holds_the_keys_of_the_contract(void **state)
     assert_contains(text, "\"indistinguishable\": [[\"cohesion\", \"ground_slope\"]]");
     assert_contains(text, "\"seen_in\": \"air\", \"parameters\": {\"coulomb_N\": {\"value\": 812, "
                           "\"low\": 760, \"high\": 861}}");
+    assert_contains(text, "{\"effects\": [\"cohesion\", \"ground_slope\"], \"in\": \"soil\", "
+                          "\"how\": \"a dig along <simpleB>\", \"sigmas\": 1.5, \"repeats\": 4}");
+    assert_contains(text, "\"bucket_weight\"], \"in\": null, \"how\": \"\", \"sigmas\": null");
     expect(text, "whiteness.without.p", "0.005");
     expect(text, "whiteness.with.expected", "9.25");
     assert_contains(text, "{\"file\": \"dig <2>.csv\", \"trajectory\": \"simpleA\", \"role\": "
@@ -309,6 +323,9 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_contains(text, "error after  0.140   one dig: no interval");
     assert_null(strstr(text, "not applied"));
     assert_contains(text, "next: dig \"simpleB\"");
+    assert_contains(text, "to tell apart: cohesion and ground_slope differ most by a dig along "
+                          "<simpleB>: 1.5 scatters of one dig; 4 of them would tell them apart");
+    assert_contains(text, "pressure_offset and bucket_weight: nothing that was tried");
     // To be pasted: each line where a shell wants it.
     assert_contains(text, "\n\ncat >g.yaml <<'END'\npoints: []\nEND\n");
     free(text);
@@ -364,6 +381,10 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     assert_contains(page, "pit &lt;7&gt;");
     assert_contains(page, "Missing: cylinder_friction");
     assert_contains(page, "dig \"simpleB\" &amp; see &lt;again&gt;");
+    assert_contains(page, "<th>cohesion<br>ground_slope</th>");
+    assert_contains(page, ">a dig along &lt;simpleB&gt;</td><td>1.50</td><td>4</td>");
+    assert_contains(page, "bucket_weight</th>");
+    assert_contains(page, ">nothing that was tried</td>");
     assert_contains(page, "cohesion, ground_slope");
     assert_contains(page, "noise floor 0.110");
     assert_contains(page, "On 2 digs that took no part in the fit, with 90 % intervals");
@@ -406,6 +427,7 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     e->trace.effects            = 0;
     e->trace.candidates         = 0;
     e->trace.sets               = 0;
+    e->trace.tells              = 0;
     e->trace.digs               = 0;
     e->trace.residuals          = NULL;
     e->trace.before.value       = (double)NAN;

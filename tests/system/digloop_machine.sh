@@ -54,6 +54,17 @@ check "a bucket 400 kg too heavy is named by free air" grep -q '"verdict": \["bu
 check "and applied" grep -q '"applied": true' "$json"
 check "the model has it" [ "$(effects_of_model effects)/$(effects_of_model not_applied)" = "bucket_weight /" ]
 
+# Two kilograms may be many things: what to do next is said of every two of them.
+campaign faint 2
+trace faint
+check "a bucket 2 kg too heavy may be several things" eval 'tr -d "\n" <"$json" | grep -q "\"indistinguishable\": \[\[.*bucket_weight"'
+check "every two of which are told apart by something, or said not to be" awk '
+    /"indistinguishable"/ { n = split($0, part, ",") - 1; sub(/.*\[\[/, ""); sub(/\]\].*/, ""); n = split($0, part, ",") }
+    /"effects": \["/ { pairs++ } END { exit !(n >= 2 && pairs == n * (n - 1) / 2) }' "$json"
+check "by motions in free air, and what it carries by a clean bucket" eval \
+    'grep -q "\"in\": \"air\", \"how\": \"moving the " "$json" && ! grep "\"bucket_weight\", \"payload\"\], \"in\"" "$json" | grep -qv "the bucket clean, 20 s"'
+check "people are told" grep -q " differ most by moving the .* would tell them apart" "$text"
+
 # The same bucket, recorded in the ground alone: nothing tells it from the soil.
 campaign airless 400 --no-air
 trace airless

@@ -1,0 +1,166 @@
+// Tests for closed_loop/tell_apart.c
+
+#include "closed_loop/tell_apart.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 4 };
+
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+static struct made_world       world;
+static struct dig_soil        *soil;
+static struct dig_search      *search;
+static struct dig_trace       *trace;
+
+static int make(void **state)
+{
+    (void)state;
+    world  = made_world(5);
+    search = calloc(1, sizeof *search);
+    trace  = calloc(1, sizeof *trace);
+    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    free(search);
+    free(trace);
+    made_world_finish(&world);
+    return 0;
+}
+
+static void candidate(const enum dig_effect_id effect, const double u)
+{
+    struct dig_fitted *const f = &search->rival[search->rivals++];
+    *f                         = (struct dig_fitted){ .hypothesis = { 1, { effect }, false } };
+    dig_surface_place(world.surface, &gravel, f->number);
+    f->number[DIG_AXES] = u;
+}
+
+// Of these candidates, all of one set.
+static void tell(const size_t effects, const enum dig_effect_id effect[], const double u[])
+{
+    const struct dig_machine_finding air = { .sets = 0 };
+    const struct dig_tracing         t   = { .set     = world.set,
+                                             .surface = world.surface,
+                                             .scatter = world.scatter,
+                                             .soil    = soil,
+                                             .digs    = DIGS,
+                                             .search  = search };
+    memset(search, 0, sizeof *search);
+    memset(trace, 0, sizeof *trace);
+    trace->sets           = 1;
+    trace->set[0].effects = effects;
+    for (size_t i = 0; i < effects; i++) {
+        trace->set[0].effect[i] = effect[i];
+        candidate(effect[i], u[i]);
+    }
+    assert_int_equal(dig_tell_apart(&t, NULL, &air, trace), DIG_OK);
+}
+
+// Rms over the features of so much of the whole dig, in one dig's scatter.
+static double of_the_whole(const double share, const size_t trajectory)
+{
+    double place[DIG_AXES];
+    double feature[DIG_FEATURES];
+    double size[DIG_FORCE_CHANNELS];
+    double sum = 0.0;
+    dig_surface_place(world.surface, &gravel, place);
+    dig_surface_features(world.surface, trajectory, place, feature, size);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const double sd =
+            size[f / DIG_FEATURE_BINS] * sqrt(world.scatter->covariance[trajectory][f][f]);
+        sum += pow(share * feature[f] / sd, 2.0) / (double)DIG_FEATURES;
+    }
+    return sqrt(sum);
+}
+
+static void what_differs_at_speed_alone_is_told_by_digging_faster(void **state)
+{
+    (void)state;
+    const enum dig_effect_id effect[] = { DIG_EFFECT_RATE_DEPENDENCE, DIG_EFFECT_COHESION };
+    const double             u[]      = { 0.3, 0.0 };
+    soil->along                       = 0.0;
+    tell(2, effect, u);
+    assert_int_equal(trace->tells, 1);
+    assert_false(trace->tell[0].in_air);
+    assert_non_null(strstr(trace->tell[0].how, "at twice the pace"));
+    double most = 0.0;
+    for (size_t k = 0; k < MADE_TRAJECTORIES; k++) {
+        most = fmax(most, of_the_whole(exp2(0.3) - 1.0, k));
+    }
+    // Over the size with the effect in it.
+    assert_close(trace->tell[0].sigmas * exp2(0.3) / most, 1.0, 0.1);
+    assert_close(trace->tell[0].repeats, fmax(ceil(9.0 / pow(trace->tell[0].sigmas, 2.0)), 1.0),
+                 0.0);
+}
+
+static void what_grows_with_the_digs_is_told_by_later_ones(void **state)
+{
+    (void)state;
+    const enum dig_effect_id effect[] = { DIG_EFFECT_WEAR, DIG_EFFECT_COHESION };
+    const double             u[]      = { 0.02, 0.0 };
+    tell(2, effect, u);
+    assert_non_null(strstr(trace->tell[0].how, "after ten more digs"));
+}
+
+// In the made world the slope is felt along the real dig by 0.6 of what it is along the others.
+static void what_differs_in_one_dig_is_told_by_that(void **state)
+{
+    (void)state;
+    const enum dig_effect_id effect[] = { DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_COHESION,
+                                          DIG_EFFECT_ADHESION };
+    const double             u[]      = { 0.8, 0.0, 0.0 };
+    tell(3, effect, u);
+    assert_int_equal(trace->tells, 3);
+    assert_int_equal(trace->tell[1].effect[0], DIG_EFFECT_GROUND_SLOPE);
+    assert_int_equal(trace->tell[1].effect[1], DIG_EFFECT_ADHESION);
+    for (size_t i = 0; i < 2; i++) {
+        assert_non_null(strstr(trace->tell[i].how, "a dig along simple"));
+        assert_null(strstr(trace->tell[i].how, "pace"));
+    }
+    // Neither of the others is there: nothing tells them apart, and that is said.
+    char text[256];
+    assert_string_equal(trace->tell[2].how, "");
+    dig_tell_apart_say(&trace->tell[2], sizeof text, text);
+    assert_string_equal(text, "cohesion and adhesion: nothing that was tried tells them apart");
+    dig_tell_apart_say(&trace->tell[0], sizeof text, text);
+    assert_non_null(strstr(text, "ground_slope and cohesion differ most by a dig along simple"));
+    dig_tell_apart_say(&trace->tell[0], 8, text);
+    assert_string_equal(text, "ground_");
+}
+
+static void there_is_room_for_so_many_pairs(void **state)
+{
+    (void)state;
+    const struct dig_machine_finding air = { .sets = 0 };
+    const struct dig_tracing         t   = { .set = world.set, .search = search, .digs = DIGS };
+    memset(search, 0, sizeof *search);
+    memset(trace, 0, sizeof *trace);
+    trace->sets = 2;
+    for (size_t s = 0; s < 2; s++) {
+        for (int e = 0; e <= DIG_EFFECT_SENSOR_DELAY; e++) {
+            trace->set[s].effect[trace->set[s].effects++] = (enum dig_effect_id)e;
+        }
+    }
+    assert_int_equal(dig_tell_apart(&t, NULL, &air, trace), DIG_OK);
+    assert_int_equal(trace->tells, DIG_TRACE_TELLS_MAX);
+    assert_string_equal(trace->tell[0].how, "");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_differs_at_speed_alone_is_told_by_digging_faster),
+        cmocka_unit_test(what_grows_with_the_digs_is_told_by_later_ones),
+        cmocka_unit_test(what_differs_in_one_dig_is_told_by_that),
+        cmocka_unit_test(there_is_room_for_so_many_pairs),
+    };
+    return cmocka_run_group_tests_name("tell_apart", tests, make, clean);
+}
