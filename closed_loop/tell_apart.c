@@ -37,17 +37,32 @@ static void offer(struct dig_tell_apart *const tell, const bool in_air, const do
     (void)snprintf(tell->how, sizeof tell->how, "%s%s%s", how, which, more);
 }
 
-// Root mean square over the features, each over its scatter in one dig.
+// What the next dig will be measured by: what those before were.
+static bool is_measured(const struct dig_tracing *const t, const size_t channel)
+{
+    bool any = false;
+    for (size_t i = 0; i < t->digs; i++) {
+        any = any || t->measured[i].measured[channel];
+    }
+    return any;
+}
+
+// Root mean square over the features that are measured, each over its scatter in one dig.
 static double in_scatters(const struct dig_tracing *const t, const size_t trajectory,
                           const double difference[DIG_FEATURES],
                           const double size[DIG_FORCE_CHANNELS])
 {
-    double sum = 0.0;
+    double sum   = 0.0;
+    double count = 0.0;
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        const double off = difference[f] / size[f / DIG_FEATURE_BINS];
-        sum += off * off / t->scatter->covariance[trajectory][f][f];
+        const size_t channel = f / DIG_FEATURE_BINS;
+        const double off     = difference[f] / size[channel];
+        if (is_measured(t, channel)) {
+            sum += off * off / t->scatter->covariance[trajectory][f][f];
+            count += 1.0;
+        }
     }
-    return sqrt(sum / DIG_FEATURES);
+    return count > 0.0 ? sqrt(sum / count) : 0.0;
 }
 
 // How far apart two fitted hypotheses are in one dig.

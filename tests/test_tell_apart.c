@@ -15,6 +15,7 @@ static struct made_world       world;
 static struct dig_soil        *soil;
 static struct dig_search      *search;
 static struct dig_trace       *trace;
+static struct dig_measured     measured[DIGS];
 
 static int make(void **state)
 {
@@ -43,18 +44,26 @@ static void candidate(const enum dig_effect_id effect, const double u)
     f->number[DIG_AXES] = u;
 }
 
-// Of these candidates, all of one set.
-static void tell(const size_t effects, const enum dig_effect_id effect[], const double u[])
+// Of these candidates, all of one set; the digs measure the moment and forces, or the first so
+// many.
+static void tell(const size_t channels, const size_t effects, const enum dig_effect_id effect[],
+                 const double u[])
 {
     const struct dig_machine_finding air = { .sets = 0 };
-    const struct dig_tracing         t   = { .set     = world.set,
-                                             .surface = world.surface,
-                                             .scatter = world.scatter,
-                                             .soil    = soil,
-                                             .digs    = DIGS,
-                                             .search  = search };
+    const struct dig_tracing         t   = { .set      = world.set,
+                                             .surface  = world.surface,
+                                             .scatter  = world.scatter,
+                                             .soil     = soil,
+                                             .digs     = DIGS,
+                                             .measured = measured,
+                                             .search   = search };
     memset(search, 0, sizeof *search);
     memset(trace, 0, sizeof *trace);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            measured[i].measured[c] = c < channels;
+        }
+    }
     trace->sets           = 1;
     trace->set[0].effects = effects;
     for (size_t i = 0; i < effects; i++) {
@@ -87,7 +96,7 @@ static void what_differs_at_speed_alone_is_told_by_digging_faster(void **state)
     const enum dig_effect_id effect[] = { DIG_EFFECT_RATE_DEPENDENCE, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.3, 0.0 };
     soil->along                       = 0.0;
-    tell(2, effect, u);
+    tell(3, 2, effect, u);
     assert_int_equal(trace->tells, 1);
     assert_false(trace->tell[0].in_air);
     assert_non_null(strstr(trace->tell[0].how, "at twice the pace"));
@@ -106,8 +115,21 @@ static void what_grows_with_the_digs_is_told_by_later_ones(void **state)
     (void)state;
     const enum dig_effect_id effect[] = { DIG_EFFECT_WEAR, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.02, 0.0 };
-    tell(2, effect, u);
+    tell(3, 2, effect, u);
     assert_non_null(strstr(trace->tell[0].how, "after ten more digs"));
+}
+
+// Adhesion of the made world shows in Fz alone.
+static void what_is_not_measured_tells_nothing(void **state)
+{
+    (void)state;
+    const enum dig_effect_id effect[] = { DIG_EFFECT_ADHESION, DIG_EFFECT_COHESION };
+    const double             u[]      = { 0.8, 0.0 };
+    tell(3, 2, effect, u);
+    const double with_forces = trace->tell[0].sigmas;
+    assert_true(with_forces > 0.5);
+    tell(1, 2, effect, u);
+    assert_true(trace->tell[0].sigmas < 0.5 * with_forces);
 }
 
 // In the made world the slope is felt along the real dig by 0.6 of what it is along the others.
@@ -117,7 +139,7 @@ static void what_differs_in_one_dig_is_told_by_that(void **state)
     const enum dig_effect_id effect[] = { DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_COHESION,
                                           DIG_EFFECT_ADHESION };
     const double             u[]      = { 0.8, 0.0, 0.0 };
-    tell(3, effect, u);
+    tell(3, 3, effect, u);
     assert_int_equal(trace->tells, 3);
     assert_int_equal(trace->tell[1].effect[0], DIG_EFFECT_GROUND_SLOPE);
     assert_int_equal(trace->tell[1].effect[1], DIG_EFFECT_ADHESION);
@@ -159,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_differs_at_speed_alone_is_told_by_digging_faster),
         cmocka_unit_test(what_grows_with_the_digs_is_told_by_later_ones),
+        cmocka_unit_test(what_is_not_measured_tells_nothing),
         cmocka_unit_test(what_differs_in_one_dig_is_told_by_that),
         cmocka_unit_test(there_is_room_for_so_many_pairs),
     };
