@@ -37,6 +37,7 @@ struct dig_machine_finding {
     struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
     size_t                   sets;
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
+    bool                     by_digs;     // effect[0] is of free air and the digs together
     bool                     unexplained; // significant, and no effect of the machine explains it
 };
 

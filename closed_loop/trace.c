@@ -199,9 +199,10 @@ static void advise_on_size(const struct dig_trace_work *const w, struct dig_trac
     for (size_t e = 0; e < w->air->effects && trace->advice[0] == '\0'; e++) {
         if (w->size[e] < 1.0) {
             (void)snprintf(trace->advice, sizeof trace->advice,
-                           "%s shows in free air; in the soil a gravel of the table leaves %.1f of "
+                           "%s shows in %s; in the soil a gravel of the table leaves %.1f of "
                            "the noise floor of it, so the digs themselves do not confirm it",
-                           dig_effect_name(w->air->effect[e].effect), w->size[e]);
+                           dig_effect_name(w->air->effect[e].effect),
+                           w->air->by_digs ? "the forces of the digs" : "free air", w->size[e]);
         }
     }
 }
@@ -263,7 +264,8 @@ static void choose_rate(struct dig_trace_work *const w)
     w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;
 }
 
-// An effect of the soil that another gravel of the table could stand in for: see weigh_in_soil().
+// An effect of the soil that another gravel of the table could stand in for: see
+// dig_trace_weigh_air().
 // So with what has no name, of the soil or of the machine.
 static enum dig_status weigh_soil(struct dig_trace_work *const w)
 {
@@ -305,7 +307,13 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
     }
-    if (status == DIG_OK && w->air->effects > 0 && w->search->significant && w->search->unlisted) {
+    bool blamed = false;
+    if (status == DIG_OK && machine != NULL && !w->air->no_air && !w->air->unexplained &&
+        w->search->significant && w->search->unlisted) {
+        status = dig_trace_blame_machine(machine, settings, digs, measured, w, &blamed, error);
+    }
+    if (status == DIG_OK && !blamed && w->air->effects > 0 && w->search->significant &&
+        w->search->unlisted) {
         status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
     }
     if (status == DIG_OK) {

@@ -86,10 +86,10 @@ static enum dig_status choose_in_soil(struct dig_machine_side *const machine, co
 
 // Free air may show what the soil hides: an effect of the machine that a gravel of the table could
 // stand in for is named, but the digs do not confirm it, and no more than even odds are claimed.
-static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, const size_t digs,
-                                     const struct dig_measured      measured[],
-                                     struct dig_trace_work *const   w,
-                                     const struct dig_fitted *const plain)
+enum dig_status dig_trace_weigh_air(struct dig_machine_side *const machine, const size_t digs,
+                                    const struct dig_measured      measured[],
+                                    struct dig_trace_work *const   w,
+                                    const struct dig_fitted *const plain)
 {
     struct dig_measured *const alone = malloc(digs * sizeof *alone);
     if (alone == NULL) {
@@ -156,5 +156,5 @@ enum dig_status dig_trace_air(struct dig_machine_side *const         machine,
     if (status == DIG_OK && w->air->effects > 0) {
         status = choose_in_soil(machine, digs, measured, w, plain, error);
     }
-    return status == DIG_OK ? weigh_in_soil(machine, digs, measured, w, plain) : status;
+    return status == DIG_OK ? dig_trace_weigh_air(machine, digs, measured, w, plain) : status;
 }

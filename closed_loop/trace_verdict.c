@@ -51,7 +51,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
     const struct dig_search *const s = t->search;
     fill_sets(s, air, trace);
     for (size_t e = 0; e < air->effects; e++) {
-        trace->seen_in[trace->effects]  = DIG_PART_AIR;
+        trace->seen_in[trace->effects]  = air->by_digs ? DIG_PART_SOIL : DIG_PART_AIR;
         trace->effect[trace->effects++] = air->effect[e];
     }
     for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects &&

@@ -45,6 +45,22 @@ DIG_MUST_CHECK enum dig_status dig_trace_doubt_air(struct dig_machine_side      
                                                    struct dig_trace_work *w,
                                                    struct dig_error      *error);
 
+/// Multiplies the probability of each effect of the machine by the chance that the digs confirm its
+/// size, which it leaves in size[]; plain: the gravel without any. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_trace_weigh_air(struct dig_machine_side *machine, size_t digs,
+                                                   const struct dig_measured measured[],
+                                                   struct dig_trace_work    *w,
+                                                   const struct dig_fitted  *plain);
+
+/// After a search that found nothing with a name: names the effect of the machine that free air and
+/// the digs together ask for, where it leads all others and the digs without it are like the
+/// table's. *blamed: whether; then air, measured[].machine, the batch and the search are of it.
+DIG_MUST_CHECK enum dig_status dig_trace_blame_machine(struct dig_machine_side         *machine,
+                                                       const struct dig_trace_settings *settings,
+                                                       size_t digs, struct dig_measured measured[],
+                                                       struct dig_trace_work *w, bool *blamed,
+                                                       struct dig_error *error);
+
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
 /// better. DIG_ENOMEM.

@@ -187,6 +187,24 @@ static void both_sides_are_named_the_machine_first(void **state)
     assert_null(trace.unlisted);
 }
 
+// What free air shows with the digs' help only is not seen in it.
+static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
+{
+    (void)state;
+    const struct dig_tracing         t   = search(DIG_EFFECT_LAYERING, 0.0);
+    const struct dig_machine_finding air = {
+        .significant = true,
+        .effects     = 1,
+        .effect      = { { .effect = DIG_EFFECT_LINKAGE_GEOMETRY, .probability = 0.5 } },
+        .by_digs     = true,
+    };
+    struct dig_trace trace = { 0 };
+    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LINKAGE_GEOMETRY);
+    assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
+}
+
 static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
 {
     (void)state;
@@ -239,6 +257,7 @@ int main(void)
         cmocka_unit_test(without_free_air_no_more_than_even_odds_are_claimed),
         cmocka_unit_test(what_has_no_name_is_seen_where_the_residual_is_largest),
         cmocka_unit_test(both_sides_are_named_the_machine_first),
+        cmocka_unit_test(a_machine_that_the_digs_show_is_seen_in_the_soil),
         cmocka_unit_test(a_strange_machine_leaves_the_soil_without_a_name),
         cmocka_unit_test(a_rock_elsewhere_is_an_obstacle_without_a_template),
     };

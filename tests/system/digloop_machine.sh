@@ -11,12 +11,17 @@ trap 'rm -rf "$work"' EXIT
 
 # Seven digs, two of them held out, by a bucket that weighs so much more; options go to digrig record.
 campaign() { # NAME KG OPTION…
-    local folder=$work/$1 n=0 dig role
-    mkdir "$folder"
+    mkdir "$work/$1"
     awk -v more="$2" '/^[a-z]/ { part = $1 }
-        part == "bucket:" && $1 == "mass_kg:" { $0 = "  mass_kg: " $2 + more } { print }' "$machine" >"$folder/true.yaml"
+        part == "bucket:" && $1 == "mass_kg:" { $0 = "  mass_kg: " $2 + more } { print }' "$machine" >"$work/$1/true.yaml"
+    record "$1" "${@:3}"
+}
+
+# The same by the machine of its folder's true.yaml, and of the force recordings that start so.
+record() { # NAME OPTION…
+    local folder=$work/$1 digs=${digs_of:-$digs} n=0 dig role
     printf 'scene: %s\nmachine: %s\nrecordings:\n' "$PWD/config/scenes/rig.yaml" "$machine" >"$folder/campaign.yaml"
-    shift 2
+    shift
     for dig in __simpleA:identify __actual:fit _seed2__simpleA:fit _seed2__actual:fit _seed3__simpleA:fit \
         _seed3__actual:holdout _seed4__actual:holdout; do
         role=${dig#*:} dig=${dig%:*} n=$((n + 1))
@@ -65,7 +70,28 @@ check "by motions in free air, and what it carries by a clean bucket" eval \
     'grep -q "\"in\": \"air\", \"how\": \"moving the " "$json" && ! grep "\"bucket_weight\", \"payload\"\], \"in\"" "$json" | grep -qv "the bucket clean, 20 s"'
 check "people are told" grep -q " differ most by moving the .* would tell them apart" "$text"
 
-# The same bucket, recorded in the ground alone: nothing tells it from the soil.
+# A bucket ear a tenth nearer to its pin: free air, where the drives push little, hardly shows it, the digs' forces do.
+mkdir "$work/ear"
+sed 's/ear_m: .*/ear_m: [-0.072, 0.522]/' "$machine" >"$work/ear/true.yaml"
+record ear
+trace ear
+check "a linkage of another shape is named by free air and the digs together" grep -q '"verdict": \["linkage_geometry"\]' "$json"
+check "where the digs show it" grep -q '"seen_in": "soil"' "$json"
+check "with no more than even odds, of so little of the moment" within "$(sed -nE 's/.*"probability": ([0-9.e-]+), "seen_in.*/\1/p' "$json")" 0 0.5
+check "and people are told where it shows" grep -q "next: linkage_geometry shows in the forces of the digs" "$text"
+
+# Ground that no effect of the list explains, by the machine as its file says: not the machine's fault.
+mkdir "$work/ripple" "$work/rippled"
+cp "$machine" "$work/ripple/true.yaml"
+for dig in "$digs"*.csv; do
+    awk -F, -v OFS=, 'NR > 1 { by = 1 + 0.8 * sin(5 * $1); $5 *= by; $7 *= by; $9 *= by } { print }' "$dig" >"$work/rippled/${dig##*/}"
+done
+digs_of=$work/rippled/${digs##*/} record ripple
+trace ripple
+check "what ripples in the ground has no name, and is not blamed on the machine" grep -q '"verdict": \["unlisted"\]' "$json"
+check "and is claimed, for the moment shows it" within "$(sed -nE 's/.*"probability": ([0-9.e-]+), "seen_in.*/\1/p' "$json")" 0.9 1
+
+# The heavy bucket, recorded in the ground alone: nothing tells it from the soil.
 campaign airless 400 --no-air
 trace airless
 check "without free air the machine is not named" eval '! grep -q "\"verdict\": .*bucket_weight" "$json"'
