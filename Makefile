@@ -77,7 +77,7 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
-# With ENGINE=cuda on a graphics card; what it cannot dig (obstacles, clumps) then fails, and is left to the kernel.
+# With ENGINE=cuda on a graphics card.
 ENGINE ?= kernel
 tables: all ## Compute what the tables rig, rig_effects and product lack of their grids (many hours of all cores; ENGINE=cuda)
 	$(Q)for table in rig rig_effects product; do \

@@ -95,56 +95,16 @@ enum dig_status dig_bodies_pick(struct dig_world *const world)
                : dig_obstacles_pick(&world->bodies->obstacles, world);
 }
 
-// Force and torque about the centre of mass, of the spheres' loads.
-static void gather(const struct dig_grains *const grains, const struct dig_clump_shape *const shape,
-                   const struct dig_clump_body *const clump, const double arm_m[][3],
-                   double force_N[3], double torque_Nm[3])
-{
-    for (int a = 0; a < 3; a++) {
-        force_N[a]   = 0.0;
-        torque_Nm[a] = 0.0;
-    }
-    for (size_t k = 0; k < shape->spheres; k++) {
-        const struct dig_load *const load = &grains->load[clump->member[k]];
-        for (int a = 0; a < 3; a++) {
-            force_N[a] += load->f_N[a];
-            torque_Nm[a] += load->t_Nm[a] + arm_m[k][(a + 1) % 3] * load->f_N[(a + 2) % 3] -
-                            arm_m[k][(a + 2) % 3] * load->f_N[(a + 1) % 3];
-        }
-    }
-}
-
-static void find_arms(const struct dig_clump_shape *const shape,
-                      const struct dig_clump_body *const clump, double arm_m[][3])
-{
-    for (size_t k = 0; k < shape->spheres; k++) {
-        dig_rigid_turn(clump->body.q, shape->at[k], arm_m[k]);
-        for (int a = 0; a < 3; a++) {
-            arm_m[k][a] *= clump->unit_m;
-        }
-    }
-}
-
 static void step_clump(struct dig_world *const world, const struct dig_clump_shape *const shape,
                        struct dig_clump_body *const clump)
 {
-    const double kick_s = world->started ? world->dt_s : 0.5 * world->dt_s;
-    double       before_m[DIG_CLUMP_MAX][3];
-    double       after_m[DIG_CLUMP_MAX][3];
-    double       force_N[3];
-    double       torque_Nm[3];
-    find_arms(shape, clump, before_m);
-    gather(&world->grains, shape, clump, (const double(*)[3])before_m, force_N, torque_Nm);
-    dig_rigid_step(&clump->body, force_N, torque_Nm, world->gravity_mps2, kick_s, world->dt_s);
-    find_arms(shape, clump, after_m);
+    struct dig_load load[DIG_CLUMP_MAX];
     for (size_t k = 0; k < shape->spheres; k++) {
-        struct dig_motion *const motion = &world->grains.motion[clump->member[k]];
-        for (int a = 0; a < 3; a++) {
-            motion->v_mps[a] =
-                clump->body.v_mps[a] + (after_m[k][a] - before_m[k][a]) / world->dt_s;
-            motion->w_radps[a] = clump->body.w_radps[a];
-        }
+        load[k] = world->grains.load[clump->member[k]];
     }
+    dig_clump_step(shape, load, world->gravity_mps2,
+                   world->started ? world->dt_s : 0.5 * world->dt_s, world->dt_s, clump,
+                   world->grains.motion);
 }
 
 void dig_bodies_push(struct dig_world *const world)

@@ -7,21 +7,12 @@
 #include "core/scene.h"
 #include "core/status.h"
 #include "offline_dem/bed.h"
-#include "offline_dem/clump.h"
+#include "offline_dem/clump_body.h"
 #include "offline_dem/obstacles.h"
 #include "offline_dem/ode_rocks.h"
-#include "offline_dem/rigid.h"
 #include "offline_dem/world.h"
 
 #include <stdint.h>
-
-/// A clump of the bed and where in memory its spheres are.
-struct dig_clump_body {
-    struct dig_rigid body;
-    double           unit_m; // diameter of the sphere of equal volume
-    uint32_t         member[DIG_CLUMP_MAX];
-    bool             gone; // dropped with all its spheres
-};
 
 struct dig_bodies {
     struct dig_clump_shape shape;

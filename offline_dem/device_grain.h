@@ -1,5 +1,5 @@
-// What a device's thread does with one grain in one step, after its pairs and what is outside have
-// been done: the sum of the pushes, and its motion.
+// What a device's thread does with one grain or one clump in one step, after its pairs and what is
+// outside have been done: the sum of the pushes, and its motion.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_GRAIN_H
 #define DIG_OFFLINE_DEM_DEVICE_GRAIN_H
@@ -27,12 +27,13 @@ DIG_BOTH static inline void dig_device_advance(const struct dig_device_view *con
 {
     const struct dig_kind *const kind     = &view->kind[view->of[i]];
     struct dig_motion            m        = view->motion[i];
-    const double                 per_kg   = 1.0 / kind->mass_kg;
-    const double                 per_kgm2 = 1.0 / kind->inertia_kgm2;
+    const double                 per_kg   = kind->driven ? 0.0 : 1.0 / kind->mass_kg;
+    const double                 per_kgm2 = kind->driven ? 0.0 : 1.0 / kind->inertia_kgm2;
+    const double                 falls    = kind->driven ? 0.0 : 1.0;
     double                       moved_m2 = 0.0;
     double                       v2       = 0.0;
     for (int k = 0; k < 3; k++) {
-        m.v_mps[k] += step->kick_s * (load->f_N[k] * per_kg + step->gravity_mps2[k]);
+        m.v_mps[k] += step->kick_s * (load->f_N[k] * per_kg + falls * step->gravity_mps2[k]);
         m.w_radps[k] += step->kick_s * (load->t_Nm[k] * per_kgm2);
         m.x_m[k] += step->dt_s * m.v_mps[k];
         const double d = m.x_m[k] - view->at_m[i][k];
@@ -51,9 +52,8 @@ DIG_BOTH static inline void dig_device_advance(const struct dig_device_view *con
     }
 }
 
-DIG_BOTH static inline void dig_device_grain(const struct dig_device_view *const view,
-                                             const struct dig_device_step *const step,
-                                             const uint32_t                      i)
+DIG_BOTH static inline struct dig_load dig_device_load(const struct dig_device_view *const view,
+                                                       const uint32_t                      i)
 {
     struct dig_load load = { { 0 }, { 0 } };
     if (view->surfaces[i] != 0) {
@@ -63,6 +63,33 @@ DIG_BOTH static inline void dig_device_grain(const struct dig_device_view *const
         if (view->touching[k] != 0) {
             dig_device_add_load(&view->push[k], &load);
         }
+    }
+    return load;
+}
+
+/// Before its spheres, which are driven, are moved.
+DIG_BOTH static inline void dig_device_clump(const struct dig_device_view *const view,
+                                             const struct dig_device_step *const step,
+                                             const uint32_t                      b)
+{
+    struct dig_load load[DIG_CLUMP_MAX];
+    if (view->clump[b].gone) {
+        return;
+    }
+    for (size_t k = 0; k < view->shape->spheres; k++) {
+        load[k] = dig_device_load(view, view->clump[b].member[k]);
+    }
+    dig_clump_step(view->shape, load, step->gravity_mps2, step->kick_s, step->dt_s, &view->clump[b],
+                   view->motion);
+}
+
+DIG_BOTH static inline void dig_device_grain(const struct dig_device_view *const view,
+                                             const struct dig_device_step *const step,
+                                             const uint32_t                      i)
+{
+    struct dig_load load = { { 0 }, { 0 } };
+    if (!view->kind[view->of[i]].driven) {
+        load = dig_device_load(view, i);
     }
     dig_device_advance(view, step, i, &load);
 }

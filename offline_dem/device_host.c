@@ -32,6 +32,9 @@ static enum dig_status step(struct dig_device *const device, const struct dig_de
     for (uint32_t i = 0; i < view->n; i++) {
         dig_device_surfaces(view, s, i);
     }
+    for (uint32_t b = 0; b < view->clumps; b++) {
+        dig_device_clump(view, s, b);
+    }
     for (uint32_t i = 0; i < view->n; i++) {
         dig_device_grain(view, s, i);
     }

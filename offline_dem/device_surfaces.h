@@ -1,5 +1,5 @@
-// What a device's thread does with walls and tool at one grain in one step. What touches the tool
-// where is as in surfaces.h.
+// What a device's thread does with walls, tool and rocks at one grain in one step. What touches the
+// tool where is as in surfaces.h.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_SURFACES_H
 #define DIG_OFFLINE_DEM_DEVICE_SURFACES_H
@@ -19,7 +19,7 @@ struct dig_device_grain {
     uint32_t                      i;
     struct dig_motion             m;
     struct dig_load               load;
-    uint32_t                      surfaces;
+    uint64_t                      surfaces;
 };
 
 /// The plates near a grain, those it touches marked.
@@ -46,7 +46,7 @@ DIG_BOTH static inline void dig_device_forget(struct dig_device_grain *const gra
 {
     if ((grain->surfaces >> surface & 1) != 0) {
         const struct dig_memory none = { 0 };
-        grain->surfaces &= ~(1U << surface);
+        grain->surfaces &= ~((uint64_t)1 << surface);
         *dig_device_surface(grain, surface) = none;
     }
 }
@@ -85,7 +85,7 @@ DIG_BOTH static inline struct dig_push dig_device_push_surface(struct dig_device
     };
     const struct dig_push push =
         dig_device_law(law, grain->step->dt_s, &touch, dig_device_surface(grain, surface));
-    grain->surfaces |= 1U << surface;
+    grain->surfaces |= (uint64_t)1 << surface;
     dig_device_add(&push, &grain->load);
     return push;
 }
@@ -130,7 +130,7 @@ DIG_BOTH static inline void dig_device_hand_over(struct dig_device_grain *const 
     if (!dig_device_remembers(grain, to)) {
         *dig_device_surface(grain, DIG_WALLS_MAX + to) =
             *dig_device_surface(grain, DIG_WALLS_MAX + from);
-        grain->surfaces |= 1U << (DIG_WALLS_MAX + to);
+        grain->surfaces |= (uint64_t)1 << (DIG_WALLS_MAX + to);
         dig_device_forget(grain, DIG_WALLS_MAX + from);
     }
 }
@@ -229,8 +229,33 @@ DIG_BOTH static inline void dig_device_push_tool(struct dig_device_grain *const 
 
 DIG_BOTH static inline void dig_device_forget_tool(struct dig_device_grain *const grain)
 {
-    for (uint32_t p = DIG_WALLS_MAX; p < DIG_DEVICE_SURFACES; p++) {
+    for (uint32_t p = DIG_WALLS_MAX; p < DIG_DEVICE_ROCKS; p++) {
         dig_device_forget(grain, p);
+    }
+}
+
+/// Rocks that stand still, in their image along y that is nearest.
+DIG_BOTH static inline void dig_device_push_rocks(struct dig_device_grain *const grain)
+{
+    const struct dig_device_step *const step = grain->step;
+    const struct dig_law *const         law  = &grain->view->wall_law[grain->view->of[grain->i]];
+    const double                        still[3] = { 0.0, 0.0, 0.0 };
+    for (uint32_t r = 0; r < step->rocks; r++) {
+        const struct dig_rock_place *const rock = &step->rock[r];
+        double seen[3] = { grain->m.x_m[0], grain->m.x_m[1], grain->m.x_m[2] };
+        double closest[3];
+        double d[3];
+        if (step->period_y_m > 0.0) {
+            seen[1] = rock->x_m[1] +
+                      dig_period_fold(seen[1] - rock->x_m[1], step->period_y_m, step->per_m);
+        }
+        dig_rock_apart(rock, seen, law->reach_m, closest, d);
+        const struct dig_touch touch = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
+        if (dig_device_touches(law, &touch)) {
+            (void)dig_device_push_surface(grain, law, DIG_DEVICE_ROCKS + r, d, still);
+        } else {
+            dig_device_forget(grain, DIG_DEVICE_ROCKS + r);
+        }
     }
 }
 
@@ -241,13 +266,14 @@ DIG_BOTH static inline void dig_device_surfaces(const struct dig_device_view *co
     struct dig_device_grain grain = {
         view, step, i, view->motion[i], { { 0 }, { 0 } }, view->surfaces[i]
     };
-    const uint32_t before = grain.surfaces;
+    const uint64_t before = grain.surfaces;
     dig_device_push_walls(&grain);
     if (step->digs) {
         dig_device_push_tool(&grain);
     } else if (grain.surfaces >> DIG_WALLS_MAX != 0) {
         dig_device_forget_tool(&grain);
     }
+    dig_device_push_rocks(&grain);
     if ((before | grain.surfaces) != 0) {
         view->outside[i]  = grain.load;
         view->surfaces[i] = grain.surfaces;

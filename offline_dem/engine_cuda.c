@@ -5,13 +5,13 @@
 
 static enum dig_status check(const struct dig_scene *const scene, struct dig_error *const error)
 {
-    const struct dig_bed_plan *const bed = &scene->bed;
-    const char *const                key = bed->clump.spheres > 0 ? "clump"
-                                           : bed->obstacles > 0   ? "obstacles"
-                                                                  : NULL;
-    return key == NULL
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "%s: expected none with the cuda engine", key);
+    for (size_t i = 0; i < scene->bed.obstacles; i++) {
+        if (scene->bed.obstacle[i].movable) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "obstacles[%zu].movable: expected false with the cuda engine", i);
+        }
+    }
+    return DIG_OK;
 }
 
 static enum dig_status pour(const struct dig_scene *const  scene,

@@ -57,47 +57,19 @@ void dig_obstacles_tell(const struct dig_obstacles *const obstacles, struct dig_
     }
 }
 
-// The face of a box that a point inside it is closest to.
-static double nearest_face(const double half_m[3], const double p[3], double closest_m[3])
+struct dig_rock_place dig_rock_place(const struct dig_rock *const rock)
 {
-    int    axis    = 0;
-    double least_m = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        if (half_m[k] - fabs(p[k]) < least_m) {
-            least_m = half_m[k] - fabs(p[k]);
-            axis    = k;
-        }
-    }
-    memcpy(closest_m, p, 3 * sizeof *closest_m);
-    closest_m[axis] = copysign(half_m[axis], p[axis]);
-    return -least_m;
+    struct dig_rock_place place = { .shape = rock->shape };
+    memcpy(place.half_m, rock->half_m, sizeof place.half_m);
+    memcpy(place.x_m, rock->body.x_m, sizeof place.x_m);
+    memcpy(place.q, rock->body.q, sizeof place.q);
+    return place;
 }
 
 double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], double closest_m[3])
 {
-    const double *const x     = rock->body.x_m;
-    const double        d[3]  = { p_m[0] - x[0], p_m[1] - x[1], p_m[2] - x[2] };
-    double              apart = 0.0;
-    if (rock->shape == DIG_OBSTACLE_SPHERE) {
-        const double d_m = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + 1e-300;
-        for (int k = 0; k < 3; k++) {
-            closest_m[k] = x[k] + d[k] / d_m * rock->half_m[0];
-        }
-        return d_m - rock->half_m[0];
-    }
-    double p[3];
-    double c[3];
-    dig_rigid_turn_back(rock->body.q, d, p);
-    for (int k = 0; k < 3; k++) {
-        c[k] = fmin(fmax(p[k], -rock->half_m[k]), rock->half_m[k]);
-        apart += (p[k] - c[k]) * (p[k] - c[k]);
-    }
-    apart = apart > 0.0 ? sqrt(apart) : nearest_face(rock->half_m, p, c);
-    dig_rigid_turn(rock->body.q, c, closest_m);
-    for (int k = 0; k < 3; k++) {
-        closest_m[k] += x[k];
-    }
-    return apart;
+    const struct dig_rock_place place = dig_rock_place(rock);
+    return dig_rock_near(&place, p_m, closest_m);
 }
 
 // Where a grain is, as the rock sees it: in its image that is nearest along y.
@@ -154,29 +126,24 @@ enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
     return status;
 }
 
-// A grain pressed into a rock still stands on the outside of it.
 static void fill(const struct dig_world *const world, const struct dig_rock *const rock,
                  const struct dig_motion *const m, const double radius_m, const size_t c,
                  struct dig_block *const block, double arm_m[3])
 {
-    double closest_m[3];
-    double seen_m[3];
+    double                      closest_m[3];
+    double                      seen_m[3];
+    double                      d_m[3];
+    const struct dig_rock_place place = dig_rock_place(rock);
     look_at(world, rock, m->x_m, seen_m);
-    const double        apart_m = dig_rock_closest(rock, seen_m, closest_m);
-    const double        safe_m  = fmax(apart_m, 1e-3 * radius_m);
-    double              n[3];
-    double              length_m = 0.0;
-    const double *const w        = rock->body.w_radps;
+    dig_rock_apart(&place, seen_m, radius_m, closest_m, d_m);
+    const double *const w = rock->body.w_radps;
     for (int k = 0; k < 3; k++) {
-        n[k] = (seen_m[k] - closest_m[k]) * (apart_m < 0.0 ? -1.0 : 1.0);
-        length_m += n[k] * n[k];
         arm_m[k] = closest_m[k] - rock->body.x_m[k];
     }
-    length_m = sqrt(length_m) + 1e-300;
     for (int k = 0; k < 3; k++) {
         const double v = rock->body.v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
                          w[(k + 2) % 3] * arm_m[(k + 1) % 3];
-        block->in[k][c]     = safe_m * n[k] / length_m;
+        block->in[k][c]     = d_m[k];
         block->in[3 + k][c] = m->v_mps[k] - v;
         block->in[6 + k][c] = m->w_radps[k];
         block->in[9 + k][c] = w[k];

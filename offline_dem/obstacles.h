@@ -6,6 +6,7 @@
 #include "core/scene.h"
 #include "offline_dem/bed.h"
 #include "offline_dem/rigid.h"
+#include "offline_dem/rock_near.h"
 #include "offline_dem/world.h"
 
 /// One rock: its shape, where it is, and what the grains did to it in the last step.
@@ -29,6 +30,8 @@ struct dig_obstacles dig_obstacles_make(const struct dig_scene *scene);
 /// Puts them where the bed has them, and writes into the bed where they are.
 void dig_obstacles_place(struct dig_obstacles *obstacles, const struct dig_bed *bed);
 void dig_obstacles_tell(const struct dig_obstacles *obstacles, struct dig_bed *bed);
+
+struct dig_rock_place dig_rock_place(const struct dig_rock *rock);
 
 /// The point of the rock's surface that is closest to p_m, and the distance to it: negative inside.
 double dig_rock_closest(const struct dig_rock *rock, const double p_m[3], double closest_m[3]);

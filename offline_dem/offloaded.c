@@ -1,5 +1,6 @@
 #include "offline_dem/offloaded.h"
 
+#include "offline_dem/bodies.h"
 #include "offline_dem/lists.h"
 #include "offline_dem/period.h"
 
@@ -11,7 +12,8 @@
 // Wider than the kernel's: a pair costs a device little, a list as much as hundreds of steps.
 static const struct dig_skin wide_skin = { 0.5, 500.0, 1.5 };
 #define LINE         ((size_t)64) // bytes of a cache line
-#define ATTEND_STEPS 16           // between two looks at what the grains call for
+#define ATTEND_STEPS 16           // between two looks at what the grains call for, and
+#define ROCKS_STEPS  2            // where a grain may be squeezed out between bucket and rock
 #define AHEAD        2.0          // what a grain may speed up by meanwhile
 
 struct dig_offloaded {
@@ -27,7 +29,8 @@ struct dig_offloaded {
 
 enum dig_status dig_offload(struct dig_world *const w, struct dig_device *const device)
 {
-    assert(w != NULL && device != NULL && w->bodies == NULL && w->offloaded == NULL);
+    assert(w != NULL && device != NULL && w->offloaded == NULL);
+    assert(w->bodies == NULL || w->bodies->ode == NULL);
     struct dig_offloaded *const o = calloc(1, sizeof *o);
     if (o == NULL) {
         return DIG_ENOMEM;
@@ -194,15 +197,22 @@ static enum dig_status fetch_surfaces(struct dig_world *const w)
     const struct dig_device_view *const v      = &w->offloaded->view;
     enum dig_status                     status = DIG_OK;
     for (uint32_t i = 0; i < v->n; i++) {
-        for (uint32_t s = 0;
-             s < DIG_DEVICE_SURFACES && v->surfaces[i] >> s != 0 && status == DIG_OK; s++) {
+        for (uint32_t s = 0; s < v->surfaces_used && v->surfaces[i] >> s != 0 && status == DIG_OK;
+             s++) {
             if ((v->surfaces[i] >> s & 1) == 0) {
                 continue;
             }
-            const bool     is_wall = s < DIG_WALLS_MAX;
-            const uint32_t j       = is_wall ? s : (uint32_t)w->walls + s - DIG_WALLS_MAX;
-            status = remember(&w->surface[(is_wall ? 0 : DIG_KINDS_MAX) + v->of[i]], i, j,
-                              &v->surface[(size_t)s * v->n + i], 1.0);
+            const struct dig_memory *const memory = &v->surface[(size_t)s * v->n + i];
+            const size_t                   kind   = v->of[i];
+            if (s < DIG_WALLS_MAX) {
+                status = remember(&w->surface[kind], i, s, memory, 1.0);
+            } else if (s < DIG_DEVICE_ROCKS) {
+                status = remember(&w->surface[DIG_KINDS_MAX + kind], i,
+                                  (uint32_t)w->walls + s - DIG_WALLS_MAX, memory, 1.0);
+            } else {
+                status = remember(&w->bodies->obstacles.contact[kind], i, s - DIG_DEVICE_ROCKS,
+                                  memory, 1.0);
+            }
         }
     }
     return status;
@@ -215,6 +225,9 @@ static void clear_lists(struct dig_world *const w)
     }
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         w->surface[l].n = 0;
+    }
+    for (size_t k = 0; k < DIG_KINDS_MAX && w->bodies != NULL; k++) {
+        w->bodies->obstacles.contact[k].n = 0;
     }
 }
 
@@ -283,19 +296,28 @@ static void send_pairs(const struct dig_world *const w)
     }
 }
 
+// One list of surface contacts, those of surface j of the list at number first + j.
+static void send_list(const struct dig_contacts *const list, const uint32_t first,
+                      const struct dig_device_view *const v)
+{
+    for (size_t c = 0; c < list->n; c++) {
+        const uint32_t i                 = list->i[c];
+        const uint32_t s                 = first + list->j[c];
+        v->surface[(size_t)s * v->n + i] = recall(list, c, 1.0);
+        v->surfaces[i] |= (uint64_t)1 << s;
+    }
+}
+
 static void send_surfaces(const struct dig_world *const w)
 {
-    struct dig_device_view *const v = &w->offloaded->view;
-    memset(v->surface, 0, DIG_DEVICE_SURFACES * (size_t)v->n * sizeof *v->surface);
+    const struct dig_device_view *const v = &w->offloaded->view;
+    memset(v->surface, 0, v->surfaces_used * (size_t)v->n * sizeof *v->surface);
     memset(v->surfaces, 0, v->n * sizeof *v->surfaces);
-    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
-        const struct dig_contacts *const list = &w->surface[l];
-        for (size_t c = 0; c < list->n; c++) {
-            const uint32_t i = list->i[c];
-            const uint32_t s =
-                l < DIG_KINDS_MAX ? list->j[c] : list->j[c] - (uint32_t)w->walls + DIG_WALLS_MAX;
-            v->surface[(size_t)s * v->n + i] = recall(list, c, 1.0);
-            v->surfaces[i] |= 1U << s;
+    for (size_t k = 0; k < DIG_KINDS_MAX; k++) {
+        send_list(&w->surface[k], 0, v);
+        send_list(&w->surface[DIG_KINDS_MAX + k], DIG_WALLS_MAX - (uint32_t)w->walls, v);
+        if (w->bodies != NULL) {
+            send_list(&w->bodies->obstacles.contact[k], DIG_DEVICE_ROCKS, v);
         }
     }
 }
@@ -338,6 +360,13 @@ static enum dig_status send(struct dig_world *const w)
     v->tool_law                     = w->tool_law;
     v->kind                         = w->grains.kind;
     v->motion                       = w->grains.motion;
+    v->surfaces_used                = DIG_DEVICE_ROCKS;
+    if (w->bodies != NULL) {
+        v->clumps = (uint32_t)w->bodies->clumps;
+        v->clump  = w->bodies->clump;
+        v->shape  = &w->bodies->shape;
+        v->surfaces_used += (uint32_t)w->bodies->obstacles.rocks;
+    }
     place_pushes(&w->near_list, v);
     send_laws(w);
     send_pairs(w);
@@ -348,12 +377,17 @@ static enum dig_status send(struct dig_world *const w)
     return o->device->upload(o->device, v);
 }
 
+static size_t attend_steps(const struct dig_world *const w)
+{
+    return w->bodies != NULL && w->bodies->obstacles.rocks > 0 ? ROCKS_STEPS : ATTEND_STEPS;
+}
+
 static struct dig_device_step step_of(const struct dig_world *const w)
 {
     struct dig_device_step step = {
         .kick_s       = w->started ? w->dt_s : 0.5 * w->dt_s,
         .dt_s         = w->dt_s,
-        .ahead_s      = AHEAD * ATTEND_STEPS * w->dt_s,
+        .ahead_s      = AHEAD * (double)attend_steps(w) * w->dt_s,
         .gravity_mps2 = { w->gravity_mps2[0], w->gravity_mps2[1], w->gravity_mps2[2] },
         .period_y_m   = w->period_y_m,
         .per_m        = dig_period_inverse(w->period_y_m),
@@ -364,6 +398,10 @@ static struct dig_device_step step_of(const struct dig_world *const w)
     if (w->tool != NULL) {
         step.tool = *w->tool;
     }
+    step.rocks = w->bodies == NULL ? 0 : (uint32_t)w->bodies->obstacles.rocks;
+    for (uint32_t r = 0; r < step.rocks; r++) {
+        step.rock[r] = dig_rock_place(&w->bodies->obstacles.rock[r]);
+    }
     return step;
 }
 
@@ -371,7 +409,7 @@ static struct dig_device_step step_of(const struct dig_world *const w)
 static enum dig_status attend(struct dig_world *const w)
 {
     struct dig_offloaded *const o = w->offloaded;
-    if (++o->unattended < ATTEND_STEPS) {
+    if (++o->unattended < attend_steps(w)) {
         return DIG_OK;
     }
     uint32_t attention[DIG_ATTENTIONS] = { 0 };
@@ -387,7 +425,6 @@ static enum dig_status attend(struct dig_world *const w)
 enum dig_status dig_offloaded_step(struct dig_world *const w)
 {
     struct dig_offloaded *const o = w->offloaded;
-    assert(w->bodies == NULL);
     if (w->stale) {
         enum dig_status status = dig_offloaded_fetch(w);
         if (status == DIG_OK && !dig_world_is_sound(w)) {

@@ -6,6 +6,8 @@
 #ifndef DIG_OFFLINE_DEM_RIGID_H
 #define DIG_OFFLINE_DEM_RIGID_H
 
+#include "offline_dem/both.h"
+
 #include <math.h>
 
 struct dig_rigid {
@@ -18,7 +20,7 @@ struct dig_rigid {
     double inverse_pkgm2[3][3]; // of the inertia, body axes
 };
 
-static inline void dig_rigid_turn(const double q[4], const double body[3], double world[3])
+DIG_BOTH static inline void dig_rigid_turn(const double q[4], const double body[3], double world[3])
 {
     const double u  = q[0];
     const double x  = q[1];
@@ -36,14 +38,15 @@ static inline void dig_rigid_turn(const double q[4], const double body[3], doubl
 }
 
 /// World to body.
-static inline void dig_rigid_turn_back(const double q[4], const double world[3], double body[3])
+DIG_BOTH static inline void dig_rigid_turn_back(const double q[4], const double world[3],
+                                                double body[3])
 {
     const double back[4] = { q[0], -q[1], -q[2], -q[3] };
     dig_rigid_turn(back, world, body);
 }
 
 /// The rotation matrix as a unit quaternion.
-static inline void dig_rigid_quaternion(const double r[3][3], double q[4])
+DIG_BOTH static inline void dig_rigid_quaternion(const double r[3][3], double q[4])
 {
     const double t[4] = { 1.0 + r[0][0] + r[1][1] + r[2][2], 1.0 + r[0][0] - r[1][1] - r[2][2],
                           1.0 - r[0][0] + r[1][1] - r[2][2], 1.0 - r[0][0] - r[1][1] + r[2][2] };
@@ -68,8 +71,8 @@ static inline void dig_rigid_quaternion(const double r[3][3], double q[4])
 }
 
 /// The angular velocity that belongs to the angular momentum in this orientation.
-static inline void dig_rigid_spin(const struct dig_rigid *const body, const double q[4],
-                                  double w_radps[3])
+DIG_BOTH static inline void dig_rigid_spin(const struct dig_rigid *const body, const double q[4],
+                                           double w_radps[3])
 {
     double l[3];
     double w[3];
@@ -82,8 +85,8 @@ static inline void dig_rigid_spin(const struct dig_rigid *const body, const doub
 }
 
 /// q turned by w over dt.
-static inline void dig_rigid_rotate(const double q[4], const double w_radps[3], const double dt_s,
-                                    double turned[4])
+DIG_BOTH static inline void dig_rigid_rotate(const double q[4], const double w_radps[3],
+                                             const double dt_s, double turned[4])
 {
     const double speed =
         sqrt(w_radps[0] * w_radps[0] + w_radps[1] * w_radps[1] + w_radps[2] * w_radps[2]);
@@ -102,9 +105,9 @@ static inline void dig_rigid_rotate(const double q[4], const double w_radps[3], 
 }
 
 /// Kicks over kick_s, moves over dt_s. The torque is about the centre of mass.
-static inline void dig_rigid_step(struct dig_rigid *const body, const double force_N[3],
-                                  const double torque_Nm[3], const double gravity_mps2[3],
-                                  const double kick_s, const double dt_s)
+DIG_BOTH static inline void dig_rigid_step(struct dig_rigid *const body, const double force_N[3],
+                                           const double torque_Nm[3], const double gravity_mps2[3],
+                                           const double kick_s, const double dt_s)
 {
     for (int k = 0; k < 3; k++) {
         body->v_mps[k] += kick_s * (force_N[k] / body->mass_kg + gravity_mps2[k]);

@@ -97,6 +97,44 @@ static void so_does_one_between_sides_that_are_one_and_over_a_layer(void **state
     digs_agree(&scene);
 }
 
+// Clumps of two spheres between two rocks, the one turned; a device does not move rocks.
+static struct dig_scene clumps_and_rocks(void)
+{
+    struct dig_scene scene    = dem_short_dig_scene(0.03);
+    scene.bed.clump.spheres   = 2;
+    scene.bed.clump.x[0]      = -0.5;
+    scene.bed.clump.x[1]      = 0.5;
+    scene.bed.clump.radius[0] = 1.0;
+    scene.bed.clump.radius[1] = 1.0;
+    scene.bed.obstacles       = 2;
+    scene.bed.obstacle[0]     = (struct dig_obstacle){
+            DIG_OBSTACLE_SPHERE, { 0.055, 0.0, 0.02 }, { 0.016 }, false, 2500.0
+    };
+    scene.bed.obstacle[1] = (struct dig_obstacle){
+        DIG_OBSTACLE_BOX, { 0.015, 0.005, 0.01 }, { 0.012, 0.02, 0.01 }, false, 2500.0
+    };
+    return scene;
+}
+
+static void so_does_one_in_clumps_between_rocks(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = clumps_and_rocks();
+    digs_agree(&scene);
+}
+
+static void so_does_one_in_clumps_between_sides_that_are_one(void **state)
+{
+    (void)state;
+    struct dig_scene scene = clumps_and_rocks();
+    scene.box.y_min_m      = -0.04;
+    scene.box.y_max_m      = 0.04;
+    scene.bed.periodic_y   = true;
+    // Half of it across the side.
+    scene.bed.obstacle[1].centre_m[1] = 0.036;
+    digs_agree(&scene);
+}
+
 // The bucket goes in and comes out, grains are raked and taken away: what the processor does to a
 // world in between.
 static void a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was(void **state)
@@ -191,6 +229,28 @@ static void a_grain_that_got_away_is_refused(void **state)
     host->destroy(host);
 }
 
+// Its sines are its own, so clumps part from the processor's by rounding: slowly, in a short dig.
+static void a_card_digs_clumps_between_rocks(void **state)
+{
+    (void)state;
+    struct dig_error         error = { "" };
+    struct dig_device *const card  = dig_device_cuda_create(&error);
+    if (card == NULL) {
+        print_message("SKIP: %s\n", error.text);
+        skip();
+    }
+    const struct dig_scene scene = clumps_and_rocks();
+    struct dig_bed         bed;
+    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_OK);
+    struct dig_recording ours   = dig_on(NULL, &scene, &bed);
+    struct dig_recording theirs = dig_on(card, &scene, &bed);
+    rows_agree(&ours, &theirs);
+    dig_recording_finish(&ours);
+    dig_recording_finish(&theirs);
+    dig_bed_finish(&bed);
+    card->destroy(card);
+}
+
 // Without a card, and where scenes hold what a card does not know.
 static void the_engine_says_what_is_missing(void **state)
 {
@@ -207,9 +267,9 @@ static void the_engine_says_what_is_missing(void **state)
     assert_non_null(strstr(error.text, "libm.so.6 is not of this build"));
     scene.bed.obstacles = 1;
     scene.bed.obstacle[0] =
-        (struct dig_obstacle){ DIG_OBSTACLE_SPHERE, { 0.03, 0.0, 0.01 }, { 0.01 }, false, 2500.0 };
+        (struct dig_obstacle){ DIG_OBSTACLE_SPHERE, { 0.03, 0.0, 0.01 }, { 0.01 }, true, 2500.0 };
     assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, "obstacles"));
+    assert_non_null(strstr(error.text, "obstacles[0].movable"));
 }
 
 // The card rounds as the processor does and adds in the same order: not a bit may differ.
@@ -253,10 +313,13 @@ int main(void)
         cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
         cmocka_unit_test(so_does_one_in_mixed_sticky_grains),
         cmocka_unit_test(so_does_one_between_sides_that_are_one_and_over_a_layer),
+        cmocka_unit_test(so_does_one_in_clumps_between_rocks),
+        cmocka_unit_test(so_does_one_in_clumps_between_sides_that_are_one),
         cmocka_unit_test(a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was),
         cmocka_unit_test(a_contact_goes_on_across_an_edge),
         cmocka_unit_test(a_grain_that_got_away_is_refused),
         cmocka_unit_test(a_card_gives_the_bits_of_the_processor),
+        cmocka_unit_test(a_card_digs_clumps_between_rocks),
         cmocka_unit_test(the_engine_says_what_is_missing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

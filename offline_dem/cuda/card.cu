@@ -1,7 +1,7 @@
 // The device interface (offline_dem/device.h) on a graphics card. A step is two kernels: a thread a
-// pair and a thread a grain for what is outside, then a thread a grain that moves it. No sum is
-// shared between threads, so the same steps give the same bits, and with -fmad=false those of
-// offline_dem/device_host.c.
+// pair and a thread a grain for what is outside, then a thread a grain that moves it; with clumps a
+// third between them. No sum is shared between threads, so the same steps give the same bits, and
+// with -fmad=false those of offline_dem/device_host.c, but for clumps.
 
 #include "offline_dem/device_grain.h"
 #include "offline_dem/device_surfaces.h"
@@ -31,7 +31,8 @@ enum {
     PAIR_LAW,
     WALL_LAW,
     TOOL_LAW,
-    KIND, // fixed
+    KIND,
+    SHAPE, // fixed
     MOTION,
     MEMORY,
     TOUCHING,
@@ -40,6 +41,7 @@ enum {
     SURFACES,
     OUTSIDE,
     ON_TOOL,
+    CLUMP,
     ATTENTION, // state
     ARRAYS
 };
@@ -73,6 +75,15 @@ __global__ void __launch_bounds__(THREADS)
         if (i < view.n) {
             dig_device_surfaces(&view, &step, i);
         }
+    }
+}
+
+__global__ void __launch_bounds__(THREADS)
+    carry(const dig_device_view view, const __grid_constant__ dig_device_step step)
+{
+    const uint32_t b = blockIdx.x * THREADS + threadIdx.x;
+    if (b < view.clumps) {
+        dig_device_clump(&view, &step, b);
     }
 }
 
@@ -140,6 +151,8 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
     c->theirs                   = *v;
     w->n                        = v->n;
     w->pairs                    = v->pairs;
+    w->clumps                   = v->clumps;
+    w->surfaces_used            = v->surfaces_used;
     const double     *at        = nullptr;
     const cudaError_t e[ARRAYS] = {
         place_const(c, OF, n, v->of, &w->of),
@@ -152,14 +165,16 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
         place_const(c, WALL_LAW, DIG_KINDS_MAX, v->wall_law, &w->wall_law),
         place_const(c, TOOL_LAW, DIG_KINDS_MAX, v->tool_law, &w->tool_law),
         place_const(c, KIND, DIG_KINDS_MAX, v->kind, &w->kind),
+        place_const(c, SHAPE, v->shape == nullptr ? 0 : 1, v->shape, &w->shape),
         place(c, MOTION, n, v->motion, &w->motion),
         place(c, MEMORY, p, v->memory, &w->memory),
         place(c, TOUCHING, 2 * p, v->touching, &w->touching),
         place(c, PUSH, 2 * p, static_cast<const dig_load *>(nullptr), &w->push),
-        place(c, SURFACE, DIG_DEVICE_SURFACES * n, v->surface, &w->surface),
+        place(c, SURFACE, v->surfaces_used * n, v->surface, &w->surface),
         place(c, SURFACES, n, v->surfaces, &w->surfaces),
         place(c, OUTSIDE, n, static_cast<const dig_load *>(nullptr), &w->outside),
         place(c, ON_TOOL, n, v->on_tool, &w->on_tool),
+        place(c, CLUMP, v->clumps, v->clump, &w->clump),
         place(c, ATTENTION, DIG_ATTENTIONS, v->attention, &w->attention),
     };
     w->at_m = reinterpret_cast<const double(*)[4]>(at);
@@ -178,6 +193,9 @@ dig_status step(dig_device *const device, const dig_device_step *const s)
         return DIG_OK;
     }
     push<<<blocks(c->view.pairs) + blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
+    if (c->view.clumps > 0) {
+        carry<<<blocks(c->view.clumps), THREADS, 0, c->stream>>>(c->view, *s);
+    }
     move<<<blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
     return status_of(cudaPeekAtLastError());
 }
@@ -209,11 +227,12 @@ dig_status download(dig_device *const device, const bool all)
     const size_t                 n = v->n;
     cudaError_t                  e = bring(c, t->motion, v->motion, n);
     e                              = e == cudaSuccess ? bring(c, t->on_tool, v->on_tool, n) : e;
+    e                              = e == cudaSuccess ? bring(c, t->clump, v->clump, v->clumps) : e;
     e = e == cudaSuccess ? cudaMemsetAsync(v->on_tool, 0, n * sizeof *v->on_tool, c->stream) : e;
     if (all) {
         e = e == cudaSuccess ? bring(c, t->memory, v->memory, v->pairs) : e;
         e = e == cudaSuccess ? bring(c, t->touching, v->touching, 2 * v->pairs) : e;
-        e = e == cudaSuccess ? bring(c, t->surface, v->surface, DIG_DEVICE_SURFACES * n) : e;
+        e = e == cudaSuccess ? bring(c, t->surface, v->surface, v->surfaces_used * n) : e;
         e = e == cudaSuccess ? bring(c, t->surfaces, v->surfaces, n) : e;
     }
     e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;
