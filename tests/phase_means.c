@@ -51,6 +51,19 @@ void phase_means_add_run(struct phase_means *const          means,
     add_bed(means, &sums, trajectory->phases);
 }
 
+void phase_means_add_recording(struct phase_means *const          means,
+                               const struct dig_trajectory *const trajectory,
+                               const struct dig_recording *const  recording)
+{
+    struct dig_sums sums = { 0 };
+    for (size_t i = 0; i < recording->rows; i++) {
+        const struct dig_force_row *const row = &recording->row[i];
+        add_window(&sums, trajectory, row->t_s,
+                   (const double[]){ row->My_Nm, row->Fx_N, row->Fz_N });
+    }
+    add_bed(means, &sums, trajectory->phases);
+}
+
 bool phase_means_add_file(struct phase_means *const          means,
                           const struct dig_trajectory *const trajectory, const char *const path)
 {
@@ -62,13 +75,7 @@ bool phase_means_add_file(struct phase_means *const          means,
     if (dig_recording_read(path, &r, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    struct dig_sums sums = { 0 };
-    for (size_t i = 0; i < r.rows; i++) {
-        const struct dig_force_row *const row = &r.row[i];
-        add_window(&sums, trajectory, row->t_s,
-                   (const double[]){ row->My_Nm, row->Fx_N, row->Fz_N });
-    }
-    add_bed(means, &sums, trajectory->phases);
+    phase_means_add_recording(means, trajectory, &r);
     dig_recording_finish(&r);
     return true;
 }

@@ -25,6 +25,10 @@ struct phase_means {
 void phase_means_add_run(struct phase_means *means, const struct dig_trajectory *trajectory,
                          const struct dig_run *run);
 
+/// Adds a dig of this trajectory.
+void phase_means_add_recording(struct phase_means *means, const struct dig_trajectory *trajectory,
+                               const struct dig_recording *recording);
+
 /// Adds a force recording; false when there is no such file. Fails the test on a bad one.
 bool phase_means_add_file(struct phase_means *means, const struct dig_trajectory *trajectory,
                           const char *path);

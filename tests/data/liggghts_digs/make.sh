@@ -20,7 +20,7 @@ prime=$(echo "$primes" | cut -d' ' -f"$seed")
 [ "$prime" ] || { echo "seed: $seed, expected 1 to 30" >&2; exit 2; }
 
 # The scene: bucket (in parts of the rig's), box, height of the poured column, steps of settling.
-scale=1 length=.31 half=.06 height=.085 column=.196747 settle=7200 relax=2400
+scale=1 length=.31 half=.06 height=.085 column=.196747 settle=7200 relax=2400 finer=1
 if [ "$trajectories" = scratch ]; then
     scale=.4 length=.08 half=.0225 height=.03 column=.0694 settle=4800 relax=1600
 fi
@@ -38,6 +38,7 @@ cohesion_grains) pull=1e5 wall_type=4 ;; # between grains alone
 cohesion_all) pull=1e5 stick=1e5 ;;
 cohesion_2e5) pull=2e5 stick=2e5 ;;
 clump) clump=yes ;;
+clump_fine) clump=yes finer=2 ;; # the same, at half the time step
 obstacle) rock=.015 ;; # radius of a fixed sphere, where offline_dem/variant.h has it
 other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
@@ -113,7 +114,7 @@ fix m6 all property/global coefficientRollingFriction peratomtypepair $(pairs $r
 fix m7 all property/global cohesionEnergyDensity peratomtypepair $(pairs $pull $stick)
 pair_style gran model $law
 pair_coeff * *
-timestep 6.25e-5
+timestep $(awk -v n="$finer" 'BEGIN { print 6.25e-5 / n }')
 fix gravi all gravity 9.81 vector 0 0 -1
 EOF
     wall x1 xplane 0
@@ -153,7 +154,7 @@ thermo 3200
 thermo_modify lost ignore norm no
 run 1
 unfix ins
-run $settle
+run $((settle * finer))
 EOF
     # A slope turns the surface about the place where the bucket enters.
     type=0
@@ -173,7 +174,7 @@ delete_atoms region hole compress no
 fix rock all mesh/surface file rock.stl type 1
 fix rw all wall/gran model $law mesh n_meshes 1 meshes rock
 EOF
-    echo "run $relax"
+    echo "run $((relax * finer))"
 }
 
 # The trajectories of config/scenes/rig.yaml.
@@ -200,7 +201,7 @@ fix bw all wall/gran model $law mesh $([ "$rock" ] && echo n_meshes 2 meshes buc
 thermo 16000
 run 0
 reset_timestep 0
-fix out all ave/time 1 80 80 f_bucket[1] f_bucket[2] f_bucket[3] f_bucket[4] f_bucket[5] f_bucket[6] f_bucket[7] f_bucket[9] file $1.txt
+fix out all ave/time 1 $((80 * finer)) $((80 * finer)) f_bucket[1] f_bucket[2] f_bucket[3] f_bucket[4] f_bucket[5] f_bucket[6] f_bucket[7] f_bucket[9] file $1.txt
 EOF
     echo "$phases" | while read -r kind steps a b c; do
         if [ "$kind" = L ]; then
@@ -208,7 +209,7 @@ EOF
         else
             echo "fix mv all move/mesh mesh bucket rotate origin $b 0 $c axis 0 -1 0 period $(awk -v w="$a" 'BEGIN { printf "%.10g", 360 / w }')"
         fi
-        echo "run $steps"
+        echo "run $((steps * finer))"
         echo "unfix mv"
     done
 }
@@ -217,8 +218,8 @@ EOF
 recording() { # TRAJECTORY
     echo "# LIGGGHTS-PUBLIC 3.8, gravel $gravel, seed $seed: tests/data/liggghts_digs/make.sh"
     echo "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm"
-    awk -v name="$1" '!/^#/ {
-        t = ($1 - 39.5) * 6.25e-5
+    awk -v name="$1" -v finer="$finer" '!/^#/ {
+        t = ($1 - (80 * finer - 1) / 2) * 6.25e-5 / finer
         theta = -15
         if (name == "actual") {
             theta = -30 + 17.93 * (t < .8 ? 0 : t < 1.9 ? t - .8 : 1.1) + 20.05 * (t < 4.1 ? 0 : t < 6.1 ? t - 4.1 : 2)
@@ -230,8 +231,8 @@ recording() { # TRAJECTORY
 phase_means() {
     # How many the first line of the last run counts.
     spheres=$(awk '/^ +0 +[0-9]+ / { n = $2 } END { print n }' scratch.log)
-    awk -v g="$gravel" -v s="$seed" -v n_spheres="$spheres" '!/^#/ {
-        p = $1 <= 3200 ? 0 : $1 <= 8000 ? 1 : 2
+    awk -v g="$gravel" -v s="$seed" -v n_spheres="$spheres" -v finer="$finer" '!/^#/ {
+        p = $1 <= 3200 * finer ? 0 : $1 <= 8000 * finer ? 1 : 2
         n[p]++; my[p] += $6; fx[p] += $2; fz[p] += $4 }
         END { for (p = 0; p < 3; p++) printf "%s,%d,%d,%.6g,%.6g,%.6g,%d\n", g, s, p, my[p] / n[p], fx[p] / n[p], fz[p] / n[p], n_spheres }' scratch.txt
 }
