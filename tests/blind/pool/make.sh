@@ -1,6 +1,5 @@
 #!/bin/sh
 # Computes the digs of tests/data/blind: a minute and a half of one core a bed and three digs, 170 beds. Goes on where it was stopped.
-# What ships has no simpleB of clumps and rocks, which no card digs.
 # usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/blind/pool/make.sh [judge]
 #   judge: what the judging split alone draws from, which a graphics card can dig whole (ENGINE=cuda)
 set -eu
@@ -38,7 +37,7 @@ if [ "${1:-}" != judge ]; then
         make_table "$work/$name.yaml" "$here/outside.yaml" "$out/$name.sqlite"
     done
 fi
-for grid in plain:plain effects:effects effects_2:effects; do
+for grid in plain:plain effects:effects effects_2:effects effects_3:effects; do
     make_table config/scenes/rig.yaml "$here/judge/${grid%:*}.yaml" "$out/judge/${grid#*:}.sqlite"
 done
 for name in firm weak stony silty; do
