@@ -20,7 +20,9 @@ enum {
 static const double discrepancy = 0.05;
 
 // A template is a likeness of what lies in the ground: this share of what it adds is its error.
-static const double unlikeness = 0.2;
+// Rocks have all shapes: what one of triangles in another code adds to Fz differs by a third from
+// what a sphere does (tests/test_ensemble.c).
+static const double unlikeness = 0.2, unlikeness_of_rocks = 0.3;
 
 static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
 static const size_t least_order = 4;    // digs that can show a trend: two that differ are none
@@ -226,6 +228,15 @@ static double size2_of_plain(const struct problem *const p, const size_t g, cons
     return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
 }
 
+static double unlikeness_of(const struct dig_hypothesis *const hypothesis)
+{
+    double most = unlikeness;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        most = hypothesis->effect[e] == DIG_EFFECT_OBSTACLE ? unlikeness_of_rocks : most;
+    }
+    return most;
+}
+
 // What the effects bring along for one dig of a group: of templates, and what they may be unlike.
 static double noise_of_dig(const struct problem *const p, const size_t g,
                            const struct dig_measured *const dig, const double x[],
@@ -234,8 +245,9 @@ static double noise_of_dig(const struct problem *const p, const size_t g,
     double feature[DIG_FEATURES];
     double of_templates;
     dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &of_templates);
-    return size2 * of_templates + unlikeness * unlikeness * effect_squares(p, g, dig, x) /
-                                      (double)p->batch->group[g].features;
+    const double unlike = unlikeness_of(p->hypothesis);
+    return size2 * of_templates +
+           unlike * unlike * effect_squares(p, g, dig, x) / (double)p->batch->group[g].features;
 }
 
 // v of each group at x. Digs that an effect makes differ share what it brings along on average.
