@@ -70,7 +70,7 @@ double dig_approach_depth_m(const struct dig_scene *const      scene,
     assert(scene != NULL && trajectory != NULL && trajectory->phases >= 1);
     const double          tooth_m = dig_scene_tooth_m(scene);
     const struct dig_pose end = dig_trajectory_pose(trajectory, trajectory->phase[0].duration_s);
-    return dig_scene_ground_m(scene, tooth_x_m(&end, tooth_m)) - tooth_z_m(&end, tooth_m);
+    return dig_scene_ground_m(scene, tooth_x_m(&end, tooth_m), 0.0) - tooth_z_m(&end, tooth_m);
 }
 
 static enum dig_status check_range(const struct dig_approach *const   approach,
@@ -137,7 +137,16 @@ static double start_in_ground_m(const struct dig_scene *const      scene,
     for (size_t k = 0; k < scene->bucket.points; k++) {
         const double x_m = pose.x_m + c * scene->bucket.x_m[k] - s * scene->bucket.z_m[k];
         const double z_m = pose.z_m + s * scene->bucket.x_m[k] + c * scene->bucket.z_m[k];
-        in_m             = fmax(in_m, dig_scene_ground_m(scene, x_m) - z_m);
+        // The ground is highest across the bucket at an end or at a profile.
+        const double half_m = 0.5 * scene->bucket.width_m;
+        in_m                = fmax(in_m, dig_scene_ground_m(scene, x_m, -half_m) - z_m);
+        in_m                = fmax(in_m, dig_scene_ground_m(scene, x_m, half_m) - z_m);
+        for (size_t p = 0; p < scene->bed.profiles; p++) {
+            const double y_m = scene->bed.profile[p].y_m;
+            if (fabs(y_m) < half_m) {
+                in_m = fmax(in_m, dig_scene_ground_m(scene, x_m, y_m) - z_m);
+            }
+        }
     }
     return in_m;
 }

@@ -47,6 +47,13 @@ static void write_shapes(const struct dig_bed_plan *const bed, struct dig_canoni
         dig_canonical_add(text, "surface_m=%.17g %.17g\n", bed->surface_x_m[i],
                           bed->surface_z_m[i]);
     }
+    for (size_t k = 0; k < bed->profiles; k++) {
+        const struct dig_ground_profile *const p = &bed->profile[k];
+        dig_canonical_add(text, "ground_y_m=%.17g\n", p->y_m);
+        for (size_t i = 0; i < p->points; i++) {
+            dig_canonical_add(text, "ground_m=%zu %.17g %.17g\n", k, p->x_m[i], p->z_m[i]);
+        }
+    }
     for (size_t i = 0; i < bed->clump.spheres; i++) {
         const struct dig_clump *const c = &bed->clump;
         dig_canonical_add(text, "clump=%.17g %.17g %.17g %.17g\n", c->x[i], c->y[i], c->z[i],

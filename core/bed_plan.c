@@ -47,6 +47,7 @@ static enum dig_status check_counts(const struct dig_bed_plan *const bed,
         { "bed.pairs", bed->pairs, DIG_PAIRS_MAX },
         { "bed.layers", bed->layers, DIG_LAYERS_MAX },
         { "bed.surface_m", bed->surface, DIG_SURFACE_MAX },
+        { "bed.surfaces", bed->profiles, DIG_PROFILES_MAX },
         { "bed.clump", bed->clump.spheres, DIG_CLUMP_MAX },
         { "bed.obstacles", bed->obstacles, DIG_OBSTACLES_MAX },
         { "bed.earlier_digs", bed->earlier_digs, DIG_EARLIER_MAX },
@@ -154,27 +155,54 @@ static enum dig_status check_layers(const struct dig_bed_plan *const bed,
     return DIG_OK;
 }
 
-static enum dig_status check_surface(const struct dig_scene *const scene,
-                                     struct dig_error *const       error)
+// Points of one profile, which `key` names.
+static enum dig_status check_profile(const struct dig_scene *const scene, const char *const key,
+                                     const size_t points, const double x[], const double z[],
+                                     struct dig_error *const error)
 {
-    const struct dig_bed_plan *const bed = &scene->bed;
-    if (bed->surface == 1) {
-        return dig_error_set(error, DIG_EINVAL, "bed.surface_m: 1 point, expected none or 2 to %d",
-                             DIG_SURFACE_MAX);
+    if (points < 2 || points > DIG_SURFACE_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%s: %zu points, expected none or 2 to %d", key,
+                             points, DIG_SURFACE_MAX);
     }
-    for (size_t i = 0; i < bed->surface; i++) {
-        const double x_m = bed->surface_x_m[i];
-        const double z_m = bed->surface_z_m[i];
-        if (!(isfinite(x_m) && z_m > scene->box.z_min_m &&
-              z_m <= scene->box.z_min_m + 5.0 * (scene->box.z_max_m - scene->box.z_min_m)) ||
-            (i > 0 && !(x_m > bed->surface_x_m[i - 1]))) {
+    for (size_t i = 0; i < points; i++) {
+        if (!(isfinite(x[i]) && z[i] > scene->box.z_min_m &&
+              z[i] <= scene->box.z_min_m + 5.0 * (scene->box.z_max_m - scene->box.z_min_m)) ||
+            (i > 0 && !(x[i] > x[i - 1]))) {
             return dig_error_set(error, DIG_EINVAL,
-                                 "bed.surface_m[%zu]: [%g, %g], expected x ascending and z above "
+                                 "%s[%zu]: [%g, %g], expected x ascending and z above "
                                  "the floor, at most five times the box's height",
-                                 i, x_m, z_m);
+                                 key, i, x[i], z[i]);
         }
     }
     return DIG_OK;
+}
+
+static enum dig_status check_surface(const struct dig_scene *const scene,
+                                     struct dig_error *const       error)
+{
+    const struct dig_bed_plan *const bed    = &scene->bed;
+    enum dig_status                  status = bed->surface == 0
+                                                  ? DIG_OK
+                                                  : check_profile(scene, "bed.surface_m", bed->surface,
+                                                                  bed->surface_x_m, bed->surface_z_m, error);
+    if (status == DIG_OK && bed->profiles > 0 && bed->surface > 0) {
+        return dig_error_set(error, DIG_EINVAL, "bed.surfaces: expected none beside surface_m");
+    }
+    if (status == DIG_OK && bed->profiles > 0 && bed->periodic_y) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bed.surfaces: expected none where sides are one (periodic_y)");
+    }
+    for (size_t k = 0; k < bed->profiles && status == DIG_OK; k++) {
+        const struct dig_ground_profile *const p = &bed->profile[k];
+        char                                   key[48];
+        (void)snprintf(key, sizeof key, "bed.surfaces[%zu].surface_m", k);
+        if (!isfinite(p->y_m) || (k > 0 && !(p->y_m > p[-1].y_m))) {
+            return dig_error_set(error, DIG_EINVAL, "bed.surfaces[%zu].y_m: %g, expected ascending",
+                                 k, p->y_m);
+        }
+        status = check_profile(scene, key, p->points, p->x_m, p->z_m, error);
+    }
+    return status;
 }
 
 static enum dig_status check_clump(const struct dig_clump *const clump,

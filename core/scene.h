@@ -17,6 +17,7 @@
 #define DIG_PAIRS_MAX     16 // two of DIG_MATERIALS_MAX, in either order
 #define DIG_LAYERS_MAX    4
 #define DIG_SURFACE_MAX   16 // points of the ground's profile
+#define DIG_PROFILES_MAX  8  // of them across the bed
 #define DIG_CLUMP_MAX     8  // spheres of a clump
 #define DIG_OBSTACLES_MAX 8
 #define DIG_EARLIER_MAX   20
@@ -112,6 +113,13 @@ struct dig_obstacle {
     double                  density_kgpm3;
 };
 
+/// The ground along x at one y, of a ground that is not the same across the bed.
+struct dig_ground_profile {
+    double y_m;
+    size_t points;
+    double x_m[DIG_SURFACE_MAX], z_m[DIG_SURFACE_MAX];
+};
+
 /// What makes a scene more than one kind of equal spheres in a flat bed. All zero: plain.
 struct dig_bed_plan {
     size_t                    sizes;
@@ -124,6 +132,8 @@ struct dig_bed_plan {
     struct dig_layer          layer[DIG_LAYERS_MAX]; // none: all gravel
     size_t                    surface;               // the ground's profile, 0: flat at box.z_max_m
     double                    surface_x_m[DIG_SURFACE_MAX], surface_z_m[DIG_SURFACE_MAX];
+    size_t                    profiles; // in place of surface where the ground differs across y
+    struct dig_ground_profile profile[DIG_PROFILES_MAX]; // y ascending
     struct dig_clump          clump;
     size_t                    obstacles;
     struct dig_obstacle       obstacle[DIG_OBSTACLES_MAX];

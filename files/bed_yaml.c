@@ -84,6 +84,15 @@ static const cyaml_schema_field_t layer_fields[] = {
 static const cyaml_schema_value_t layer = { CYAML_VALUE_MAPPING(REQUIRED, struct layer_text,
                                                                 layer_fields) };
 
+static const cyaml_schema_field_t profile_fields[] = {
+    CYAML_FIELD_FLOAT("y_m", REQUIRED, struct profile_text, y_m),
+    CYAML_FIELD_SEQUENCE("surface_m", REQUIRED, struct profile_text, surface_m, &point, 2,
+                         DIG_SURFACE_MAX),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t profile = { CYAML_VALUE_MAPPING(REQUIRED, struct profile_text,
+                                                                  profile_fields) };
+
 static const cyaml_schema_field_t sphere_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("centre", REQUIRED, struct sphere_text, centre, &number, 3),
     CYAML_FIELD_FLOAT("radius", REQUIRED, struct sphere_text, radius),
@@ -114,6 +123,8 @@ const cyaml_schema_field_t dig_bed_fields[] = {
     CYAML_FIELD_SEQUENCE("layers", OPTIONAL, struct bed_text, layers, &layer, 1, DIG_LAYERS_MAX),
     CYAML_FIELD_SEQUENCE("surface_m", OPTIONAL, struct bed_text, surface_m, &point, 2,
                          DIG_SURFACE_MAX),
+    CYAML_FIELD_SEQUENCE("surfaces", OPTIONAL, struct bed_text, surfaces, &profile, 2,
+                         DIG_PROFILES_MAX),
     CYAML_FIELD_SEQUENCE("clump", OPTIONAL, struct bed_text, clump, &sphere, 2, DIG_CLUMP_MAX),
     CYAML_FIELD_SEQUENCE("obstacles", OPTIONAL, struct bed_text, obstacles, &obstacle, 1,
                          DIG_OBSTACLES_MAX),
@@ -221,6 +232,20 @@ static enum dig_status convert_obstacles(const struct bed_text *const text,
     return DIG_OK;
 }
 
+static void convert_profiles(const struct bed_text *const text, struct dig_bed_plan *const bed)
+{
+    bed->profiles = text->surfaces_count;
+    for (size_t k = 0; k < bed->profiles; k++) {
+        const struct profile_text *const p = &text->surfaces[k];
+        bed->profile[k] =
+            (struct dig_ground_profile){ .y_m = p->y_m, .points = p->surface_m_count };
+        for (size_t i = 0; i < p->surface_m_count; i++) {
+            bed->profile[k].x_m[i] = p->surface_m[i].xz_m[0];
+            bed->profile[k].z_m[i] = p->surface_m[i].xz_m[1];
+        }
+    }
+}
+
 enum dig_status dig_bed_convert(const struct laws_text *const laws,
                                 const struct bed_text *const text, struct dig_scene *const scene,
                                 struct dig_error *const error)
@@ -241,6 +266,7 @@ enum dig_status dig_bed_convert(const struct laws_text *const laws,
         bed->surface_x_m[i] = text->surface_m[i].xz_m[0];
         bed->surface_z_m[i] = text->surface_m[i].xz_m[1];
     }
+    convert_profiles(text, bed);
     for (size_t i = 0; i < bed->clump.spheres; i++) {
         bed->clump.x[i]      = text->clump[i].centre[0];
         bed->clump.y[i]      = text->clump[i].centre[1];

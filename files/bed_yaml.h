@@ -47,6 +47,12 @@ struct surface_text {
     double xz_m[2];
 };
 
+struct profile_text {
+    double              y_m;
+    struct surface_text surface_m[DIG_SURFACE_MAX];
+    uint32_t            surface_m_count;
+};
+
 struct sphere_text {
     double centre[3];
     double radius;
@@ -73,6 +79,8 @@ struct bed_text {
     uint32_t               layers_count;
     struct surface_text    surface_m[DIG_SURFACE_MAX];
     uint32_t               surface_m_count;
+    struct profile_text    surfaces[DIG_PROFILES_MAX];
+    uint32_t               surfaces_count;
     struct sphere_text     clump[DIG_CLUMP_MAX];
     uint32_t               clump_count;
     struct obstacle_text   obstacles[DIG_OBSTACLES_MAX];

@@ -34,7 +34,7 @@ static unsigned char *find_loose(const struct dig_scene *const scene,
     }
     for (size_t i = 0; i < g->n; i++) {
         const double *const x = g->motion[i].x_m;
-        loose[i]              = x[2] > dig_scene_ground_m(scene, x[0]) - radius(world, i);
+        loose[i]              = x[2] > dig_scene_ground_m(scene, x[0], x[1]) - radius(world, i);
         if (loose[i] && g->clump != NULL) {
             body[g->clump[i]] = 1;
         }
@@ -141,7 +141,7 @@ static void set_down(const struct dig_scene *const scene, struct map *const map,
     for (size_t c = 0; c < map->count[0] * map->count[1]; c++) {
         double x_m[2];
         centre_of(map, c, x_m);
-        const double missing_m = dig_scene_ground_m(scene, x_m[0]) - map->top_m[c];
+        const double missing_m = dig_scene_ground_m(scene, x_m[0], x_m[1]) - map->top_m[c];
         if (missing_m > most_m) {
             most_m = missing_m;
             lowest = c;

@@ -59,6 +59,29 @@ static size_t read_pairs(const char *const canonical, const char *const key, con
     return n;
 }
 
+// Rows of a profile's number, x and z, under the y of each profile.
+static void read_profiles(const char *const canonical, struct dig_bed_plan *const bed)
+{
+    const char *from = canonical;
+    for (const char *at;
+         bed->profiles < DIG_PROFILES_MAX && (at = find_value(&from, "ground_y_m")) != NULL;) {
+        read_numbers(at, 1, &bed->profile[bed->profiles++].y_m);
+    }
+    from = canonical;
+    for (const char *at; (at = find_value(&from, "ground_m")) != NULL;) {
+        double row[3];
+        read_numbers(at, 3, row);
+        if (!(row[0] >= 0.0 && row[0] < (double)bed->profiles)) {
+            continue;
+        }
+        struct dig_ground_profile *const p = &bed->profile[(size_t)row[0]];
+        if (p->points < DIG_SURFACE_MAX) {
+            p->x_m[p->points]   = row[1];
+            p->z_m[p->points++] = row[2];
+        }
+    }
+}
+
 void dig_scene_from_canonical(const char *const canonical, struct dig_scene *const scene)
 {
     assert(canonical != NULL && scene != NULL);
@@ -78,6 +101,7 @@ void dig_scene_from_canonical(const char *const canonical, struct dig_scene *con
     // What is not plain stands in the text only where it is so.
     bed->surface =
         read_pairs(canonical, "surface_m", DIG_SURFACE_MAX, bed->surface_x_m, bed->surface_z_m);
+    read_profiles(canonical, bed);
     bed->periodic_y = strstr(canonical, "\nperiodic_y\n") != NULL;
     scene->laws.normal =
         strstr(canonical, "\nnormal=hertz\n") != NULL ? DIG_NORMAL_HERTZ : DIG_NORMAL_HOOKE;

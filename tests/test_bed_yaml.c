@@ -165,9 +165,9 @@ static void the_ground_is_straight_between_its_points(void **state)
 {
     (void)state;
     struct dig_scene s = yaml_scene(EXAMPLE);
-    assert_close(dig_scene_ground_m(&s, 0.25), 0.29, 1e-15);
-    assert_close(dig_scene_ground_m(&s, -1.0), 0.28, 1e-15);
-    assert_close(dig_scene_ground_m(&s, 2.0), 0.29, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 0.25, 0.0), 0.29, 1e-15);
+    assert_close(dig_scene_ground_m(&s, -1.0, 0.0), 0.28, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 2.0, 0.0), 0.29, 1e-15);
     assert_close(dig_scene_ground_max_m(&s), 0.3, 1e-15);
     // Beyond the walls there is no ground.
     s.bed.surface_x_m[1] = -0.5;
@@ -175,6 +175,57 @@ static void the_ground_is_straight_between_its_points(void **state)
     assert_close(dig_scene_ground_max_m(&s), 0.3 - 0.01 / 3.0, 1e-15);
     s.bed.surface = 0;
     assert_close(dig_scene_ground_max_m(&s), s.box.z_max_m, 0.0);
+}
+
+#define UNEVEN "tests/data/formats/scene_uneven.yaml"
+
+// Two profiles, heights by hand.
+static void the_ground_is_straight_from_profile_to_profile(void **state)
+{
+    (void)state;
+    struct dig_scene s = yaml_scene(UNEVEN);
+    assert_int_equal(s.bed.profiles, 2);
+    assert_close(dig_scene_ground_m(&s, 0.5, -0.2), 0.29, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 0.5, 0.2), 0.30, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 0.5, 0.1), 0.2975, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 0.25, -0.1), 0.75 * 0.285 + 0.25 * 0.28, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 0.0, 7.0), 0.26, 1e-15);
+    assert_close(dig_scene_ground_m(&s, 7.0, -7.0), 0.30, 1e-15);
+    assert_close(dig_scene_ground_max_m(&s), 0.30, 1e-15);
+    // A peak between the walls of the first profile alone.
+    s.bed.profile[0].z_m[1] = 0.2;
+    s.bed.profile[1].z_m[1] = 0.35;
+    assert_close(dig_scene_ground_max_m(&s), 0.35, 1e-15);
+}
+
+static void every_key_of_profiles_is_checked(void **state)
+{
+    (void)state;
+    static const char *const bad[][3] = {
+        { "y_m: 0.2", "y_m: -0.2", "bed.surfaces[1].y_m: -0.2" },
+        { "- [0.5, 0.3]", "- [0, 0.3]", "bed.surfaces[1].surface_m[1]: [0, 0.3]" },
+        { "- [0.5, 0.3]", "- [0.5, -1]", "bed.surfaces[1].surface_m[1]: [0.5, -1]" },
+        { "  surfaces:", "  surface_m: [[0, 0.3], [1, 0.3]]\n  surfaces:",
+          "bed.surfaces: expected none beside surface_m" },
+    };
+    yaml_refuses_each(UNEVEN, sizeof bad / sizeof bad[0], bad, yaml_scene_refused);
+    yaml_knows_every_key(UNEVEN, yaml_scene_refused);
+}
+
+static void every_height_is_of_the_scenes_identity(void **state)
+{
+    (void)state;
+    struct dig_scene s = yaml_scene(UNEVEN);
+    char             hex[65];
+    char             other[65];
+    dig_scene_hash(&s, hex);
+    s.bed.profile[1].z_m[2] = 0.27;
+    dig_scene_hash(&s, other);
+    assert_string_not_equal(hex, other);
+    s.bed.profile[1].z_m[2] = 0.26;
+    s.bed.profile[0].y_m    = -0.19;
+    dig_scene_hash(&s, other);
+    assert_string_not_equal(hex, other);
 }
 
 int main(void)
@@ -187,6 +238,9 @@ int main(void)
         cmocka_unit_test(no_key_is_overlooked),
         cmocka_unit_test(a_log_normal_bed_is_cut_into_classes_of_equal_mass),
         cmocka_unit_test(the_ground_is_straight_between_its_points),
+        cmocka_unit_test(the_ground_is_straight_from_profile_to_profile),
+        cmocka_unit_test(every_key_of_profiles_is_checked),
+        cmocka_unit_test(every_height_is_of_the_scenes_identity),
     };
     return cmocka_run_group_tests_name("bed_yaml", tests, scratch_setup, scratch_teardown);
 }

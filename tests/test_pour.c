@@ -201,7 +201,7 @@ static void the_ground_has_the_profile_it_is_given(void **state)
     double         top_m[2]  = { 0.0, 0.0 };
     for (size_t i = 0; i < bed.grains; i++) {
         assert_true(bed.z_m[i] + bed.radius_m[i] <
-                    dig_scene_ground_m(&scene, bed.x_m[i]) + 0.3 * GRAIN_m);
+                    dig_scene_ground_m(&scene, bed.x_m[i], bed.y_m[i]) + 0.3 * GRAIN_m);
         double *const t = &top_m[bed.x_m[i] > 0.03];
         *t              = fmax(*t, bed.z_m[i]);
     }
@@ -278,6 +278,28 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
     assert_int_equal(bed.grains, 77);
 }
 
+static void the_ground_may_differ_across_the_bed(void **state)
+{
+    (void)state;
+    struct dig_scene scene = small_scene();
+    scene.bed.profiles     = 2;
+    scene.bed.profile[0] = (struct dig_ground_profile){ -0.02, 2, { 0.0, 0.06 }, { 0.036, 0.028 } };
+    scene.bed.profile[1] = (struct dig_ground_profile){ 0.02, 2, { 0.0, 0.06 }, { 0.02, 0.028 } };
+    struct dig_bed bed   = pour(&scene);
+    double         top_m[2] = { 0.0, 0.0 };
+    for (size_t i = 0; i < bed.grains; i++) {
+        assert_true(bed.z_m[i] + bed.radius_m[i] <
+                    dig_scene_ground_m(&scene, bed.x_m[i], bed.y_m[i]) + 0.3 * GRAIN_m);
+        if (bed.x_m[i] < 0.02) {
+            double *const t = &top_m[bed.y_m[i] > 0.0];
+            *t              = fmax(*t, bed.z_m[i]);
+        }
+    }
+    assert_true(top_m[0] > top_m[1] + GRAIN_m);
+    assert_true(top_m[0] > 0.028);
+    dig_bed_finish(&bed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -286,6 +308,7 @@ int main(void)
         cmocka_unit_test(no_grain_is_poured_into_a_rock_or_through_it),
         cmocka_unit_test(layers_lie_where_they_are_wanted_and_weigh_what_they_should),
         cmocka_unit_test(the_ground_has_the_profile_it_is_given),
+        cmocka_unit_test(the_ground_may_differ_across_the_bed),
         cmocka_unit_test(a_pressed_bed_is_denser),
         cmocka_unit_test(a_bed_that_was_dug_before_digs_differently_and_repeats),
         cmocka_unit_test(what_cannot_fit_is_refused_and_nothing_written),

@@ -19,6 +19,18 @@ static struct dig_scene uneven(void)
     return s;
 }
 
+static struct dig_scene uneven_across(void)
+{
+    struct dig_scene s = fixture_scene();
+    s.bed.profiles     = 3;
+    for (size_t k = 0; k < s.bed.profiles; k++) {
+        s.bed.profile[k] = (struct dig_ground_profile){
+            0.1 * (double)k - 0.1, 2, { 0.0, 0.3 }, { 0.08, 0.07 + 0.001 * (double)k }
+        };
+    }
+    return s;
+}
+
 static void make_table(const char *const name, const struct dig_scene *const scene)
 {
     struct dig_store *store = NULL;
@@ -32,8 +44,8 @@ static void make_table(const char *const name, const struct dig_scene *const sce
 static void a_table_tells_the_scene_it_was_made_in_to_the_last_bit(void **state)
 {
     (void)state;
-    const struct dig_scene made[] = { fixture_scene(), uneven() };
-    for (size_t i = 0; i < 2; i++) {
+    const struct dig_scene made[] = { fixture_scene(), uneven(), uneven_across() };
+    for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         const struct dig_scene *const a = &made[i];
         struct dig_scene              b;
         struct dig_error              error = { "" };
@@ -49,6 +61,8 @@ static void a_table_tells_the_scene_it_was_made_in_to_the_last_bit(void **state)
         assert_int_equal(b.bed.surface, a->bed.surface);
         assert_memory_equal(b.bed.surface_x_m, a->bed.surface_x_m, sizeof b.bed.surface_x_m);
         assert_memory_equal(b.bed.surface_z_m, a->bed.surface_z_m, sizeof b.bed.surface_z_m);
+        assert_int_equal(b.bed.profiles, a->bed.profiles);
+        assert_memory_equal(b.bed.profile, a->bed.profile, sizeof b.bed.profile);
         assert_int_equal(b.trajectories, a->trajectories);
         assert_int_equal(dig_scene_similar(a, &b, &error), DIG_OK);
         assert_int_equal(remove(scratch_path("scene.sqlite")), 0);
