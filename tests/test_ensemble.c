@@ -1,8 +1,16 @@
 // The DEM against another code, by ensembles: phase means of moment and force over beds of ours and
 // of LIGGGHTS. A single dig is chaotic, so means are compared with their standard errors.
 //
-// Ours are the shipped table of the rig, LIGGGHTS' those of tests/data/reference but for .5/.0,
-// whose rolling friction lies outside the table's grid.
+//                 ours                                  LIGGGHTS'
+//   on the grid   tables/rig.sqlite                     tests/data/reference, but for .5/.0, whose
+//                                                       rolling friction lies outside the grid
+//   off the grid  tests/data/liggghts_more/ours         tests/data/liggghts_more
+//   with an       the same                              the same, and tests/data/liggghts_digs
+//   effect
+//
+// Cohesion acts at LIGGGHTS' walls, too: of 2e5 J/m3, above what a wall's springs bear, it is
+// another bed there and left out. Its rock has edges. Small beds of clumps, and many of them:
+// test_small_digs.
 //
 // For every case, trajectory, phase and channel
 //   |ours - LIGGGHTS| <= max(10 % of the case's largest phase mean, 2 standard errors of the
@@ -26,21 +34,39 @@ static const char *const trajectory_name[TRAJECTORIES] = { "simpleA", "actual" }
 
 #define REFERENCE "tests/data/reference/"
 
-/// A gravel. Files: "[_seedN]__trajectory.csv" behind the name; the first bed has no number.
+/// A gravel, or one with an effect of a table of effects. Files: "[_seedN]__trajectory.csv" behind
+/// the name; the first bed has no number.
 struct pair {
     double      friction, rolling, density_kgpm3;
-    const char *file;
+    const char *table, *file;
     int         ours_least, theirs_least; // beds
+    const char *effect;                   // NULL: none
+    double      magnitude;
 };
 
+#define RIG  "tables/rig.sqlite"
+#define MORE "tests/data/liggghts_more/"
+#define OURS "tests/data/liggghts_more/ours/"
+#define DIGS "tests/data/liggghts_digs/"
+
 static const struct pair pair[] = {
-    { 0.3, 0.3, 2500.0, REFERENCE "mu0.3_mur0.3_rho2500", 10, 4 },
-    { 0.5, 0.5, 2500.0, REFERENCE "mu0.5_mur0.5_rho2500", 10, 5 },
-    { 0.9, 0.9, 2500.0, REFERENCE "mu0.9_mur0.9_rho2500", 10, 4 },
-    { 0.3, 0.9, 2500.0, REFERENCE "mu0.3_mur0.9_rho2500", 2, 1 },
-    { 0.5, 0.9, 2500.0, REFERENCE "mu0.5_mur0.9_rho2500", 2, 1 },
-    { 0.9, 0.3, 2500.0, REFERENCE "mu0.9_mur0.3_rho2500", 2, 1 },
-    { 0.5, 0.5, 4000.0, REFERENCE "mu0.5_mur0.5_rho4000", 2, 1 },
+    { 0.3, 0.3, 2500.0, RIG, REFERENCE "mu0.3_mur0.3_rho2500", 10, 4, NULL, 0.0 },
+    { 0.5, 0.5, 2500.0, RIG, REFERENCE "mu0.5_mur0.5_rho2500", 10, 5, NULL, 0.0 },
+    { 0.9, 0.9, 2500.0, RIG, REFERENCE "mu0.9_mur0.9_rho2500", 10, 4, NULL, 0.0 },
+    { 0.3, 0.9, 2500.0, RIG, REFERENCE "mu0.3_mur0.9_rho2500", 2, 1, NULL, 0.0 },
+    { 0.5, 0.9, 2500.0, RIG, REFERENCE "mu0.5_mur0.9_rho2500", 2, 1, NULL, 0.0 },
+    { 0.9, 0.3, 2500.0, RIG, REFERENCE "mu0.9_mur0.3_rho2500", 2, 1, NULL, 0.0 },
+    { 0.5, 0.5, 4000.0, RIG, REFERENCE "mu0.5_mur0.5_rho4000", 2, 1, NULL, 0.0 },
+    { 0.35, 0.6, 3500.0, OURS "gravels.sqlite", MORE "mu0.35_mur0.6_rho3500", 6, 2, NULL, 0.0 },
+    { 0.4, 0.4, 2000.0, OURS "gravels.sqlite", MORE "mu0.4_mur0.4_rho2000", 6, 2, NULL, 0.0 },
+    { 0.4, 0.6, 2000.0, OURS "gravels.sqlite", MORE "mu0.4_mur0.6_rho2000", 6, 1, NULL, 0.0 },
+    { 0.6, 0.6, 2200.0, OURS "gravels.sqlite", MORE "mu0.6_mur0.6_rho2200", 6, 1, NULL, 0.0 },
+    { 0.6, 0.8, 3000.0, OURS "gravels.sqlite", MORE "mu0.6_mur0.8_rho3000", 6, 2, NULL, 0.0 },
+    { 0.8, 0.4, 1700.0, OURS "gravels.sqlite", MORE "mu0.8_mur0.4_rho1700", 6, 2, NULL, 0.0 },
+    { 0.5, 0.5, 2500.0, OURS "slope.sqlite", MORE "slope_up", 6, 1, NULL, 0.0 },
+    { 0.5, 0.5, 2500.0, OURS "rock.sqlite", MORE "obstacle", 6, 1, NULL, 0.0 },
+    { 0.5, 0.5, 2500.0, OURS "effects.sqlite", DIGS "poly", 6, 1, "polydispersity", 1.6666667 },
+    { 0.5, 0.5, 2500.0, OURS "effects.sqlite", MORE "cohesion_all", 6, 2, "cohesion", 1e5 },
 };
 #define PAIRS (sizeof pair / sizeof pair[0])
 
@@ -56,19 +82,26 @@ static bool is_pair(const struct pair *const p, const struct dig_run_origin *con
     return fabs(o->gravel.value[DIG_AXIS_FRICTION] - p->friction) < 1e-9 &&
            fabs(o->gravel.value[DIG_AXIS_ROLLING] - p->rolling) < 1e-9 &&
            fabs(o->gravel.value[DIG_AXIS_DENSITY_kgpm3] - p->density_kgpm3) < 1e-6 &&
-           o->effect[0] == '\0';
+           strcmp(o->effect, p->effect == NULL ? "" : p->effect) == 0 &&
+           fabs(o->magnitude - p->magnitude) <= 1e-9 * p->magnitude;
 }
 
-// context: the store's trajectories.
+/// The table that is read, and its trajectories.
+struct reading {
+    const char           *table;
+    struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
+};
+
 static enum dig_status visit_run(void *const context, const struct dig_run *const run,
                                  struct dig_error *const error)
 {
     (void)error;
-    const struct dig_trajectory *const all = context;
+    const struct reading *const reading = context;
+    const char *const           name    = reading->trajectory[run->origin.trajectory].name;
     for (size_t g = 0; g < PAIRS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
-            if (is_pair(&pair[g], &run->origin) &&
-                strcmp(all[run->origin.trajectory].name, trajectory_name[k]) == 0) {
+            if (strcmp(pair[g].table, reading->table) == 0 && is_pair(&pair[g], &run->origin) &&
+                strcmp(name, trajectory_name[k]) == 0) {
                 phase_means_add_run(&both[g][k].ours, &trajectory[k], run);
             }
         }
@@ -83,29 +116,34 @@ static void read_table(const char *const path)
     if (dig_store_open(path, &store, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    size_t                             count = 0;
-    const struct dig_trajectory *const t     = dig_store_trajectories(store, &count);
-    struct dig_trajectory              all[DIG_TRAJECTORY_MAX];
-    memcpy(all, t, count * sizeof *t);
+    size_t                             count   = 0;
+    const struct dig_trajectory *const t       = dig_store_trajectories(store, &count);
+    struct reading                     reading = { .table = path };
+    memcpy(reading.trajectory, t, count * sizeof *t);
     for (size_t i = 0; i < count; i++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
-            if (strcmp(all[i].name, trajectory_name[k]) == 0) {
-                trajectory[k] = all[i];
+            if (strcmp(t[i].name, trajectory_name[k]) == 0) {
+                trajectory[k] = t[i];
             }
         }
     }
-    const struct dig_run_visitor visitor = { visit_run, all };
+    const struct dig_run_visitor visitor = { visit_run, &reading };
     assert_int_equal(dig_store_walk(store, &visitor, &error), DIG_OK);
     dig_store_close(store);
 }
 
+// beds/ holds further ones, along simpleA alone.
 static void read_files(const struct pair *const p, const int k, struct phase_means *const theirs)
 {
-    char path[256];
+    char              path[256];
+    const char *const name = strrchr(p->file, '/') + 1;
     (void)snprintf(path, sizeof path, "%s__%s.csv", p->file, trajectory_name[k]);
     (void)phase_means_add_file(theirs, &trajectory[k], path);
     for (int bed = 1; bed <= BEDS_MAX; bed++) {
         (void)snprintf(path, sizeof path, "%s_seed%d__%s.csv", p->file, bed, trajectory_name[k]);
+        (void)phase_means_add_file(theirs, &trajectory[k], path);
+        (void)snprintf(path, sizeof path, "%.*sbeds/%s_seed%d__%s.csv", (int)(name - p->file),
+                       p->file, name, bed, trajectory_name[k]);
         (void)phase_means_add_file(theirs, &trajectory[k], path);
     }
 }
@@ -113,7 +151,11 @@ static void read_files(const struct pair *const p, const int k, struct phase_mea
 static int read_all(void **state)
 {
     (void)state;
-    read_table("tables/rig.sqlite");
+    static const char *const table[] = { RIG, OURS "gravels.sqlite", OURS "slope.sqlite",
+                                         OURS "effects.sqlite", OURS "rock.sqlite" };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        read_table(table[i]);
+    }
     for (size_t g = 0; g < PAIRS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
             read_files(&pair[g], k, &both[g][k].theirs);
@@ -179,11 +221,9 @@ static void compare(const struct pair *const p, const struct both *const b, cons
         const double allowed = fmax(0.10 * scale, 2.0 * hypot(se, ref_se));
         const bool   ok      = fabs(ours - theirs) <= allowed;
         const bool   never   = fabs(ours - theirs) > fmax(0.10 * scale, 3.5 * hypot(se, ref_se));
-        print_message(
-            "%.1f/%.1f/%.0f %-8s %-12s %-3s %9.4f +- %6.4f %9.4f +- %6.4f %8.4f %8.4f%s\n",
-            p->friction, p->rolling, p->density_kgpm3, t->name, t->phase[i].name,
-            phase_channel_name[c], ours, se, theirs, ref_se, ours - theirs, allowed,
-            ok ? "" : "  <-- too far");
+        print_message("%-21s %-8s %-12s %-3s %9.4f +- %6.4f %9.4f +- %6.4f %8.4f %8.4f%s\n",
+                      strrchr(p->file, '/') + 1, t->name, t->phase[i].name, phase_channel_name[c],
+                      ours, se, theirs, ref_se, ours - theirs, allowed, ok ? "" : "  <-- too far");
         tally->bias += (ours - theirs) * (theirs < 0.0 ? -1.0 : 1.0) / scale;
         tally->compared++;
         tally->few += few;
@@ -196,7 +236,7 @@ static void phase_means_agree_with_liggghts(void **state)
 {
     (void)state;
     struct tally tally = { 0 };
-    print_message("%-12s %-8s %-12s %-3s %19s %19s %8s %8s\n", "gravel", "dig", "phase", "",
+    print_message("%-21s %-8s %-12s %-3s %19s %19s %8s %8s\n", "gravel", "dig", "phase", "",
                   "ours +- s.e.", "LIGGGHTS +- s.e.", "diff", "allowed");
     for (size_t g = 0; g < PAIRS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
