@@ -89,7 +89,7 @@ static void a_slope_passes_below_every_tooth_and_touches_one(void **state)
             continue;
         }
         const struct dig_scene s = make(DIG_EFFECT_GROUND_SLOPE, slope);
-        assert_close((dig_scene_ground_m(&s, 0.2) - dig_scene_ground_m(&s, 0.1)) / 0.1,
+        assert_close((dig_scene_ground_m(&s, 0.2, 0.0) - dig_scene_ground_m(&s, 0.1, 0.0)) / 0.1,
                      tan(slope * DIG_RAD_PER_DEG), 1e-9);
         // The tooth is below the pin by its length, turned by theta.
         double least_m = 1.0;
@@ -97,13 +97,13 @@ static void a_slope_passes_below_every_tooth_and_touches_one(void **state)
             const struct dig_trajectory *const t   = &s.trajectory[i];
             const double                       x_m = t->start_x_m + 0.09 * sin(t->theta0_rad);
             const double                       z_m = t->start_z_m - 0.09 * cos(t->theta0_rad);
-            least_m = fmin(least_m, z_m - dig_scene_ground_m(&s, x_m));
+            least_m = fmin(least_m, z_m - dig_scene_ground_m(&s, x_m, 0.0));
         }
         assert_close(least_m, 0.0, 1e-9);
     }
     // Steep enough to reach the floor: it stays covered.
     const struct dig_scene steep = make(DIG_EFFECT_GROUND_SLOPE, -30.0);
-    assert_close(dig_scene_ground_m(&steep, 0.31), 0.015, 1e-12);
+    assert_close(dig_scene_ground_m(&steep, 0.31, 0.0), 0.015, 1e-12);
 }
 
 static void a_layer_is_hard_or_loose_by_its_sign(void **state)
