@@ -24,8 +24,8 @@ static double highest(const struct dig_machine_recording *const recording, const
 // Below this chance readings that stay equal are no accident of noise and steps.
 static const double least_log10 = -3.0;
 
-// Where more readings repeat the one before than this, noise does not show through the steps, and a
-// load that stands still reads the same for as long as it stands.
+// Where more readings repeat the one before than this, or some repeat as long elsewhere, noise does
+// not show through the steps, and a load that stands still reads the same for as long as it stands.
 static const double most_repeated = 0.7;
 
 double dig_clipped_log10_chance(const struct dig_machine_recording *const recording,
@@ -38,6 +38,8 @@ double dig_clipped_log10_chance(const struct dig_machine_recording *const record
     double       repeated = 0.0;
     double       run      = 0.0;
     double       longest  = 0.0;
+    double       same     = 1.0;
+    double       below    = 1.0; // longest run of equal readings that are not the highest
     double       before   = most;
     for (size_t i = 0; i < recording->rows; i++) {
         const double value = recording->row[i].value[signal];
@@ -49,15 +51,18 @@ double dig_clipped_log10_chance(const struct dig_machine_recording *const record
         longest        = fmax(longest, run);
         readings += 1.0;
         if (!top && before < most * (1.0 - same_to_this)) {
+            const bool again = fabs(value - before) <= same_to_this * most;
+
+            same  = again ? same + 1.0 : 1.0;
+            below = fmax(below, same);
             pairs += 1.0;
-            repeated += fabs(value - before) <= same_to_this * most ? 1.0 : 0.0;
+            repeated += again ? 1.0 : 0.0;
         }
         before = value;
     }
     const double share = (repeated + 1.0) / (pairs + 2.0);
-    return most > 0.0 && pairs > least_pairs && share <= most_repeated
-               ? fmin(log10(readings) + (longest - 1.0) * log10(share), 0.0)
-               : 0.0;
+    const bool   noisy = pairs > least_pairs && share <= most_repeated && longest > below;
+    return most > 0.0 && noisy ? fmin(log10(readings) + (longest - 1.0) * log10(share), 0.0) : 0.0;
 }
 
 static bool is_clipped(const struct dig_machine *const           machine,

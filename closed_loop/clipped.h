@@ -19,7 +19,7 @@ struct dig_clip {
 /// often in a row as they do: readings * share^(longest run - 1), share being how often a reading
 /// repeats the one before below the highest value. A load that comes and goes is at its highest for
 /// a moment, and noise moves it from reading to reading. 0 where noise does not show through the
-/// sensor's steps (share above .7), and at most 0.
+/// sensor's steps (share above .7, or as long a run elsewhere), and at most 0.
 double dig_clipped_log10_chance(const struct dig_machine_recording *recording,
                                 enum dig_signal                     signal);
 

@@ -133,6 +133,24 @@ static void a_load_that_stands_still_without_noise_is_whole(void **state)
     dig_machine_recording_finish(&b.recording);
 }
 
+// Fine steps without noise: the load moves from reading to reading, but is held at two places.
+static void a_load_that_is_held_elsewhere_as_long_is_whole(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct bench    b    = make(1e3, 0.0, 1e9);
+        struct dig_clip clip = { .time_s = -7.0 };
+        for (int i = 0; i < ROWS; i++) {
+            const bool held = (i > 500 && i < 600) || (k == 0 && i > 2000 && i < 2101);
+
+            b.recording.row[i].value[DIG_SIGNAL_BUCKET_ROD_Pa] =
+                held ? (i < 1000 ? 2.2e6 : 1.5e6) : 1e6 + 1e3 * (i % 7);
+        }
+        assert_int_equal(dig_clipped_find(&b.machine, &b.recording, &clip), k == 1);
+        dig_machine_recording_finish(&b.recording);
+    }
+}
+
 // By drawing: readings of a load that stands still, in steps of twice the noise's sigma, are called
 // as improbable as p in at most a share p of recordings.
 static void the_chance_is_no_smaller_than_it_is(void **state)
@@ -165,6 +183,7 @@ int main(void)
         cmocka_unit_test(a_return_side_may_stand_still),
         cmocka_unit_test(a_sensor_that_ends_for_a_moment_is_named),
         cmocka_unit_test(a_load_that_stands_still_without_noise_is_whole),
+        cmocka_unit_test(a_load_that_is_held_elsewhere_as_long_is_whole),
         cmocka_unit_test(the_chance_is_no_smaller_than_it_is),
     };
     return cmocka_run_group_tests_name("clipped", tests, NULL, NULL);
