@@ -69,27 +69,21 @@ struct obstacle_text {
 
 struct bed_text {
     struct size_text       sizes[DIG_SIZES_MAX];
-    uint32_t               sizes_count;
     struct log_normal_text log_normal;
     struct material_text   materials[DIG_MATERIALS_MAX];
-    uint32_t               materials_count;
     struct pair_text       pairs[DIG_PAIRS_MAX];
-    uint32_t               pairs_count;
     struct layer_text      layers[DIG_LAYERS_MAX];
-    uint32_t               layers_count;
     struct surface_text    surface_m[DIG_SURFACE_MAX];
-    uint32_t               surface_m_count;
     struct profile_text    surfaces[DIG_PROFILES_MAX];
-    uint32_t               surfaces_count;
     struct sphere_text     clump[DIG_CLUMP_MAX];
-    uint32_t               clump_count;
     struct obstacle_text   obstacles[DIG_OBSTACLES_MAX];
-    uint32_t               obstacles_count;
-    bool                   periodic_y;
     double                 preload_Pa;
-    uint32_t               earlier_digs;
     char                   earlier[DIG_NAME_SIZE];
-    bool                   earlier_as_dug;
+    // How many of the lists above, in their order.
+    uint32_t sizes_count, materials_count, pairs_count, layers_count, surface_m_count,
+        surfaces_count, clump_count, obstacles_count;
+    uint32_t earlier_digs;
+    bool     periodic_y, earlier_as_dug;
 };
 
 extern const cyaml_schema_field_t dig_laws_fields[];
