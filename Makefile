@@ -177,7 +177,7 @@ check-unit: $(test_bins) ## The unit tests alone
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 # Tests that repeat, for statistics, what smaller ones do once: minutes under a sanitizer, for nothing new.
-statistics := tests/test_small_digs.c tests/test_round_trip.c tests/test_rig_track.c tests/test_slump.c
+statistics := $(addprefix tests/test_,$(addsuffix .c,coverage rig_track round_trip slump small_digs))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
