@@ -138,19 +138,26 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
         dig_soil_template_at(soil, effect, trajectory, u * share);
     double term[DIG_SOIL_TERMS];
     terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
-    double shape[DIG_FEATURES] = { 0.0 };
+    // Most hats are nothing at any one magnitude.
+    size_t some[DIG_SOIL_TERMS];
+    size_t n = 0;
     for (size_t i = 0; i < template->terms; i++) {
-        const double *const of = template->feature[i];
-        if (fabs(term[i]) <= 0.0) { // most hats, at any one magnitude
-            continue;
-        }
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            shape[f] += term[i] * of[f];
-        }
-        for (size_t j = 0; j < template->terms; j++) {
-            *noise += term[i] * template->inverse[i][j] * term[j];
+        if (fabs(term[i]) > 0.0) {
+            some[n++] = i;
         }
     }
+    double shape[DIG_FEATURES] = { 0.0 };
+    double sum                 = *noise;
+    for (size_t i = 0; i < n; i++) {
+        const double *const of = template->feature[some[i]];
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            shape[f] += term[some[i]] * of[f];
+        }
+        for (size_t j = 0; j < n; j++) {
+            sum += term[some[i]] * template->inverse[some[i]][some[j]] * term[some[j]];
+        }
+    }
+    *noise = sum;
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         feature[f] += shape[f] * amplitude[f / DIG_FEATURE_BINS];
     }
