@@ -63,7 +63,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint layers \
+.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint lint-compiler lint-tidy layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -176,8 +176,8 @@ check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
-# Tests that repeat, for statistics, what smaller ones do once: minutes under a sanitizer, for nothing new.
-statistics := $(addprefix tests/test_,$(addsuffix .c,coverage rig_track round_trip slump small_digs))
+# Tests that repeat, for statistics or in larger beds, what smaller ones do once: minutes under a sanitizer, for nothing new.
+statistics := $(addprefix tests/test_,$(addsuffix .c,coverage pour rig_track round_trip search slump small_digs))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
@@ -249,11 +249,13 @@ coverage: ## Line and branch coverage per source file
 	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
 
 # The analyzer reads what ships; tests are run under sanitizers instead.
-lint: layers $(BUILD)/messages/.made ## Layering, the compiler's analyzer, clang-tidy
+lint: lint-compiler lint-tidy ## Layering, the compiler's analyzer, clang-tidy
+lint-compiler: layers $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(filter-out tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
 	$(Q)printf '%s\n' $(filter tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror $(lint_flags) -fsyntax-only {}
+lint-tidy: $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
 	    clang-tidy --quiet {} -- $(STD) $(lint_flags) 2>/dev/null
 
