@@ -39,6 +39,7 @@ struct dig_machine_finding {
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
     bool                     by_digs;     // effect[0] is of free air and the digs together
     bool                     unexplained; // significant, and no effect of the machine explains it
+    const char *follows; // what pressures that drift then follow, for people; NULL: not told
 };
 
 /// Traces in the air of the fit and identify digs only, at this false-alarm rate. Seconds.

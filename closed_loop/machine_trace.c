@@ -1,6 +1,7 @@
 // The search for what is missing of the machine: effects join one after the other, and after each
 // the equations are made linear again where it has led.
 
+#include "closed_loop/machine_drift.h"
 #include "closed_loop/machine_fit.h"
 #include "closed_loop/machine_noise.h"
 #include "closed_loop/machine_side.h"
@@ -31,17 +32,18 @@ static const double tie = 5.0;
 static const double ninety = 1.645;
 
 struct search {
-    struct dig_air   air;
-    struct dig_lines lines;
-    struct dig_fit   fit;
-    double          *at, *sigma;
-    unsigned         set;
-    double           noise2;     // variance that rows may have without being unclear
-    double           least;      // log evidence that an effect must bring
-    double           rest2_none; // without any effect, not linear
-    double           rest2;      // with the set, not linear, rows as far as they are trusted
-    double           slow;       // of it, in the means of segments: chi-squared
-    double           none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
+    struct dig_air           air;
+    struct dig_lines         lines;
+    struct dig_fit           fit;
+    double                  *at, *sigma;
+    unsigned                 set;
+    double                   noise2;     // variance that rows may have without being unclear
+    double                   least;      // log evidence that an effect must bring
+    double                   rest2_none; // without any effect, not linear
+    double                   rest2; // with the set, not linear, rows as far as they are trusted
+    double                   slow;  // of it, in the means of segments: chi-squared
+    double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
+    struct dig_machine_drift drift;                     // that explains as much as the set, or none
 };
 
 static void search_finish(struct search *const s)
@@ -353,6 +355,17 @@ static bool is_makeshift(const struct search *const s)
     return effects > MOST_AT_ONCE || payload < 0.0;
 }
 
+// Where pressures that drift explain no less than the effects found, these have no claim to it.
+static enum dig_status doubt_names(struct search *const s)
+{
+    const enum dig_status status = dig_machine_drift_ask(&s->lines, s->fit.s2, &s->drift);
+    if (s->set == 0 || !(s->drift.log_lead > tie) ||
+        s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
+        s->drift.follows = NULL;
+    }
+    return status;
+}
+
 enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side,
                                        const double false_alarm, const uint64_t seed,
                                        struct dig_machine_finding *const finding)
@@ -374,13 +387,18 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
         status = select_effects(&s);
     }
     if (status == DIG_OK) {
+        status = doubt_names(&s);
+    }
+    if (status == DIG_OK) {
         const double rows    = (double)s.air.rows;
         const double means   = (double)(DIG_JOINTS * s.air.segments);
         const bool   unclear = s.rest2 > s.noise2 * unclear_rest2 * rows || is_makeshift(&s) ||
+                             s.drift.follows != NULL ||
                              s.slow > s.noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
         double inclusion[DIG_MACHINE_EFFECTS];
 
-        *finding              = (struct dig_machine_finding){ .unexplained = unclear };
+        *finding =
+            (struct dig_machine_finding){ .unexplained = unclear, .follows = s.drift.follows };
         finding->residual_air = sqrt(s.rest2_none / rows);
         memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
         finding->significant = s.set != 0 || unclear;

@@ -72,9 +72,10 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
             dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
         }
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
-                       s->is_rock ? "where the rock lies"
-                       : of_soil  ? s->without_name.depends_on
-                                  : "the machine's motion in free air");
+                       s->is_rock             ? "where the rock lies"
+                       : of_soil              ? s->without_name.depends_on
+                       : air->follows != NULL ? air->follows
+                                              : "the machine's motion in free air");
         const double in_soil = claimed(air, s->unnamed * (1.0 - s->p_complete));
         trace->seen_in[trace->effects] =
             !of_soil ? DIG_PART_AIR : (s->is_rock ? DIG_PART_SOIL : largest_part(trace->residual));

@@ -66,10 +66,12 @@ struct fault {
     double late_s;      // pressures are so old
     double payload_kg;  // in the middle of the bucket, from the second dig on
     double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
-    double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
-    double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
-    bool   bare;        // no pressures but the bucket's
-    bool   airless;     // recorded from the first touch of the ground to the last
+    double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
+    double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
+    double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    bool   warms;      // the oil's temperature is recorded, and rises
+    bool   bare;       // no pressures but the bucket's
+    bool   airless;    // recorded from the first touch of the ground to the last
 };
 
 static double push_N(const int j, const double head_Pa, const double rod_Pa)
@@ -173,9 +175,17 @@ static struct dig_machine_recording record(const int kind, const size_t order,
             row.pressures.head_Pa[p / 2] += p % 2 == 0 ? hunts_Pa[p] : 0.0;
             row.pressures.rod_Pa[p / 2] += p % 2 == 1 ? hunts_Pa[p] : 0.0;
         }
+        const double above_degC =
+            fault->warms ? 6.0 * (double)order + 0.1 * t->step_s * (double)i : 0.0;
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            row.pressures.head_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
+            row.pressures.rod_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
+        }
         row.joints = t->row[i].joints;
         r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
         dig_rig_quantise(&machine, &r.row[i]);
+        r.row[i].value[DIG_SIGNAL_TEMPERATURE_degC] = 45.0 + above_degC;
+        r.row[i].valid[DIG_SIGNAL_TEMPERATURE_degC] = fault->warms;
         lose_readings(fault, &state, &r.row[i]);
     }
     if (fault->airless) {
@@ -359,6 +369,29 @@ static void what_the_catalogue_lacks_gets_no_name(void **state)
     end(c);
 }
 
+// A payload of its own for every dig, say, would do for a gain that grows with the oil's
+// temperature.
+static void pressures_that_drift_get_no_name_and_say_what_they_follow(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 7; seed < 10; seed++) {
+        const struct fault     drifts = { .warm_perK = 1.2e-3, .warms = true };
+        struct campaign *const c      = trace(&drifts, seed);
+        assert_true(c->finding.significant && c->finding.unexplained);
+        assert_int_equal(c->finding.effects, 0);
+        assert_non_null(c->finding.follows);
+        assert_string_equal(c->finding.follows, "the oil's temperature");
+        end(c);
+
+        // Oil that warms hides no effect that has a name.
+        const struct fault     carries = { .payload_kg = 60.0, .warms = true };
+        struct campaign *const d       = trace(&carries, seed);
+        assert_null(d->finding.follows);
+        expect_found(d, DIG_EFFECT_PAYLOAD, "payload_kg", 60.0);
+        end(d);
+    }
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 static void valves_that_hunt_raise_no_alarm_and_hide_no_seal(void **state)
 {
@@ -483,6 +516,7 @@ int main(void)
         cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
         cmocka_unit_test(a_weak_effect_is_reported_among_what_it_may_be),
         cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
+        cmocka_unit_test(pressures_that_drift_get_no_name_and_say_what_they_follow),
         cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
