@@ -148,6 +148,7 @@ void dig_bodies_advance(struct dig_world *const world)
     if (bodies->ode != NULL) {
         dig_ode_rocks_step(bodies->ode, world->tool, bodies->touch, world->dt_s,
                            bodies->obstacles.rock, &world->on_tool);
+        world->stale = world->stale || dig_obstacles_have_left(&bodies->obstacles);
     }
 }
 

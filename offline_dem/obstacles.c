@@ -4,8 +4,13 @@
 #include "offline_dem/contacts.h"
 #include "offline_dem/period.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+// A rock's margin: a share of its smallest half edge, and so many steps of its speed.
+#define MARGIN_SHARE 0.008
+#define MARGIN_STEPS 20
 
 static struct dig_rock make_rock(const struct dig_obstacle *const o)
 {
@@ -84,9 +89,54 @@ static void look_at(const struct dig_world *const world, const struct dig_rock *
     }
 }
 
+static double length(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// How far from the centre turning moves the surface.
+static double arm_of(const struct dig_rock *const rock)
+{
+    return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
+}
+
+static void set_margins(struct dig_obstacles *const o, const double dt_s)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        const struct dig_rock *const rock = &o->rock[r];
+        const double *const          h    = rock->half_m;
+        const double                 least_m =
+            rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
+        const double speed_mps =
+            length(rock->body.v_mps) + arm_of(rock) * length(rock->body.w_radps);
+        o->was[r] = dig_rock_place(rock);
+        o->margin_m[r] =
+            rock->movable ? MARGIN_SHARE * least_m + MARGIN_STEPS * dt_s * speed_mps : 0.0;
+    }
+}
+
+bool dig_obstacles_have_left(const struct dig_obstacles *const o)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        const struct dig_rigid *const body = &o->rock[r].body;
+        const double *const           x    = o->was[r].x_m;
+        const double *const           q    = o->was[r].q;
+        const double d[3]   = { body->x_m[0] - x[0], body->x_m[1] - x[1], body->x_m[2] - x[2] };
+        const double cosine = body->q[0] * q[0] + body->q[1] * q[1] + body->q[2] * q[2] +
+                              body->q[3] * q[3]; // of half the angle it has turned
+        const double chord = 2.0 * sqrt(fmax(0.0, 1.0 - cosine * cosine));
+        // Negated, so that a place that is not a number counts as having left.
+        if (o->rock[r].movable && !(length(d) + chord * arm_of(&o->rock[r]) <= o->margin_m[r])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
                                    const struct dig_world *const world)
 {
+    set_margins(o, world->dt_s);
     const struct dig_grains *const g   = &world->grains;
     uint32_t *const                was = malloc((g->n * o->rocks + 1) * sizeof *was);
     if (was == NULL) {
@@ -107,7 +157,7 @@ enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
             double closest_m[3];
             double seen_m[3];
             look_at(world, &o->rock[r], g->motion[i].x_m, seen_m);
-            if (dig_rock_closest(&o->rock[r], seen_m, closest_m) < reach_m) {
+            if (dig_rock_closest(&o->rock[r], seen_m, closest_m) < reach_m + o->margin_m[r]) {
                 const uint32_t at = was[i * o->rocks + r];
                 status            = dig_contacts_add(&fresh[kind], i, r, r,
                                           at == UINT32_MAX ? NULL : &o->contact[kind], at);

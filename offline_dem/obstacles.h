@@ -22,6 +22,11 @@ struct dig_obstacles {
     size_t              rocks;
     struct dig_rock     rock[DIG_OBSTACLES_MAX];
     struct dig_contacts contact[DIG_KINDS_MAX]; // of each kind of grain; j is the rock
+
+    // Where each rock was when these were picked, and how far its surface may go until they are
+    // picked anew.
+    struct dig_rock_place was[DIG_OBSTACLES_MAX];
+    double                margin_m[DIG_OBSTACLES_MAX];
 };
 
 /// The scene's obstacles where the scene has them. Owns nothing yet.
@@ -39,6 +44,8 @@ double dig_rock_closest(const struct dig_rock *rock, const double p_m[3], double
 /// As the calls of offline_dem/bodies.h.
 DIG_MUST_CHECK enum dig_status dig_obstacles_pick(struct dig_obstacles   *obstacles,
                                                   const struct dig_world *world);
+/// Whether a rock has left its margin: a grain it has come to may not be among the contacts.
+bool dig_obstacles_have_left(const struct dig_obstacles *obstacles);
 void dig_obstacles_push(struct dig_obstacles *obstacles, struct dig_world *world);
 void dig_obstacles_move(struct dig_obstacles *obstacles, const uint32_t place[]);
 

@@ -340,6 +340,43 @@ static void a_rock_takes_what_momentum_the_grains_lose(void **state)
 }
 
 // The tool drives a rock ahead of it through empty space: what the rock gains the tool has felt.
+// Contacts are picked long before: a grain that lies still leaves no margin, the rock does.
+static void a_rock_that_comes_is_felt_in_the_step_it_arrives(void **state)
+{
+    (void)state;
+    static const enum dig_obstacle_shape shape[] = { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
+    for (size_t i = 0; i < 2; i++) {
+        struct dig_scene scene  = clump_scene(2e-5);
+        scene.gravity_mps2      = 1e-300;
+        scene.bed.clump.spheres = 0;
+        scene.bed.obstacles     = 1;
+        scene.bed.obstacle[0]   = (struct dig_obstacle){ .shape         = shape[i],
+                                                         .centre_m      = { 0.0, 0.0, 0.5 },
+                                                         .size_m        = { 0.02, 0.06, 0.02 },
+                                                         .movable       = true,
+                                                         .density_kgpm3 = 2600.0 };
+        // The ball flies at the grain, the box turns a face on it.
+        const double     at[1][3] = { { 0.0, i == 0 ? 0.0 : 0.025, i == 0 ? 0.516 : 0.5152 } };
+        const double     no[1][3] = { { 0.0 } };
+        struct dig_world world    = make_world(&scene, 1, at, no);
+        struct dig_rock *rock     = &world.bodies->obstacles.rock[0];
+        rock->body.v_mps[2]       = i == 0 ? 0.4 : 0.0;
+        rock->body.w_radps[0]     = i == 0 ? 0.0 : 20.0;
+        dig_ode_rocks_put(world.bodies->ode, 1, rock);
+        double apart_m = INFINITY;
+        for (int s = 0; s < 2000 && apart_m >= GRAIN_m; s++) {
+            double closest_m[3];
+            dem_run(&world, 1);
+            apart_m = dig_rock_closest(rock, world.grains.motion[0].x_m, closest_m);
+        }
+        assert_true(apart_m < GRAIN_m);
+        assert_close(world.grains.motion[0].v_mps[2], 0.0, 1e-200);
+        dem_run(&world, 1);
+        assert_true(world.grains.motion[0].v_mps[2] > 1e-6);
+        finish(&world);
+    }
+}
+
 static void the_bucket_feels_the_rock_it_pushes(void **state)
 {
     (void)state;
@@ -383,6 +420,7 @@ int main(void)
         cmocka_unit_test(a_grain_rests_on_a_rock_and_the_rock_bears_it),
         cmocka_unit_test(the_closest_point_of_a_rock_is_the_closest),
         cmocka_unit_test(a_rock_takes_what_momentum_the_grains_lose),
+        cmocka_unit_test(a_rock_that_comes_is_felt_in_the_step_it_arrives),
         cmocka_unit_test(the_bucket_feels_the_rock_it_pushes),
     };
     return cmocka_run_group_tests_name("bodies", tests, NULL, NULL);
