@@ -29,9 +29,6 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
     if (bed->clump.spheres > 0) {
         return refuse(error, "clump");
     }
-    if (bed->obstacles > 0) {
-        return refuse(error, "obstacles");
-    }
     if (bed->periodic_y) {
         return refuse(error, "periodic_y");
     }

@@ -1,5 +1,6 @@
 #include "offline_dem/ode_bed.h"
 
+#include "offline_dem/bodies.h"
 #include "offline_dem/ode_meet.h"
 
 #include <math.h>
@@ -26,6 +27,19 @@ static void place_box(const struct dig_ode_bed *const bed)
                      tool->pose.z_m + 0.5 * (low[2] + high[2]));
 }
 
+// Where the rocks are by now, and nothing pushing them yet.
+static void place_rocks(struct dig_ode_bed *const bed)
+{
+    for (size_t r = 0; r < bed->rocks; r++) {
+        struct dig_rock *const rock = &bed->rock[r];
+        const double *const    x    = rock->body.x_m;
+        memset(rock->f_N, 0, sizeof rock->f_N);
+        memset(rock->t_Nm, 0, sizeof rock->t_Nm);
+        dGeomSetPosition(bed->stone[r], x[0], x[1], x[2]);
+        dGeomSetQuaternion(bed->stone[r], rock->body.q);
+    }
+}
+
 enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig_tool *const tool,
                                  struct dig_wrench *const on_tool)
 {
@@ -34,6 +48,8 @@ enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig
     bed->share   = bed->started ? 1.0 : 0.5;
     dSpaceCollide(bed->grains_space, bed, dig_ode_meet_grain);
     dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->walls_space, bed, dig_ode_meet_wall);
+    place_rocks(bed);
+    dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->rocks_space, bed, dig_ode_meet_rock);
     if (tool != NULL) {
         place_box(bed);
         dSpaceCollide2((dGeomID)bed->grains_space, bed->tool_box, bed, dig_ode_meet_tool);
@@ -46,6 +62,9 @@ enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig
     dWorldSetGravity(bed->world, bed->share * g[0], bed->share * g[1], bed->share * g[2]);
     if (!dWorldQuickStep(bed->world, bed->dt_s)) {
         return DIG_ENOMEM;
+    }
+    if (bed->scene != NULL) {
+        dig_ode_rocks_step(bed->scene, tool, bed->touch, bed->dt_s, bed->rock, &bed->on_tool);
     }
     bed->started = true;
     *on_tool     = bed->on_tool;
@@ -96,12 +115,28 @@ static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *c
     bed->grains_space = dHashSpaceCreate(NULL);
     dHashSpaceSetLevels(bed->grains_space, (int)floor(log2(least_m)), (int)ceil(log2(most_m)));
     bed->walls_space = dSimpleSpaceCreate(NULL);
+    bed->rocks_space = dSimpleSpaceCreate(NULL);
     bed->tool_box    = dCreateBox(NULL, 1.0, 1.0, 1.0);
+}
+
+static void add_rocks(struct dig_ode_bed *const bed, const struct dig_bodies *const bodies)
+{
+    bed->rocks = bodies->obstacles.rocks;
+    bed->scene = bodies->ode;
+    memcpy(bed->rock, bodies->obstacles.rock, sizeof bed->rock);
+    memcpy(bed->touch, bodies->touch, sizeof bed->touch);
+    for (size_t r = 0; r < bed->rocks; r++) {
+        const double *const h = bed->rock[r].half_m;
+        bed->stone[r]         = bed->rock[r].shape == DIG_OBSTACLE_BOX
+                                    ? dCreateBox(bed->rocks_space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
+                                    : dCreateSphere(bed->rocks_space, h[0]);
+        dGeomSetData(bed->stone[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)
+    }
 }
 
 struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *const world)
 {
-    if (world->bodies != NULL) {
+    if (world->bodies != NULL && world->bodies->clumps > 0) {
         return NULL;
     }
     const struct dig_grains *const grains = &world->grains;
@@ -136,6 +171,9 @@ struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *const world)
                                      wall->normal[2], wall->offset_m);
         dGeomSetData(plane, (void *)(uintptr_t)k); // NOLINT(performance-no-int-to-ptr)
     }
+    if (world->bodies != NULL) {
+        add_rocks(bed, world->bodies);
+    }
     return bed;
 }
 
@@ -147,6 +185,7 @@ void dig_ode_bed_destroy(struct dig_ode_bed *const bed)
     dGeomDestroy(bed->tool_box);
     dSpaceDestroy(bed->grains_space);
     dSpaceDestroy(bed->walls_space);
+    dSpaceDestroy(bed->rocks_space);
     dWorldDestroy(bed->world);
     dCloseODE();
     dig_ode_memory_finish(&bed->memory);

@@ -17,8 +17,10 @@
 
 struct dig_ode_bed; // one ODE world; not to be shared between threads
 
-/// The grains, laws, walls and time step of a world that has not been stepped, as ODE bodies. The
-/// world is read only, here. NULL when memory is short, or the world has bodies.
+/// The grains, laws, walls, rocks and time step of a world that has not been stepped, as ODE
+/// bodies. The world is read only, here; but rocks that are not fixed stand in one ODE scene, so
+/// that only one of the two may be stepped. NULL when memory is short, or the world has clumps: ODE
+/// turns bodies by another scheme, which agrees with rigid.h's to the order of the step only.
 struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *world);
 
 /// NULL is allowed.

@@ -3,8 +3,9 @@
 #include "offline_dem/law_general.h"
 #include "offline_dem/ode_touch.h"
 
-// Numbers of walls in contact memory, beyond any grain's.
+// Numbers of walls and rocks in contact memory, beyond any grain's.
 #define WALL_NUMBER 0xFFFF0000U
+#define ROCK_NUMBER 0xFFFF4000U
 
 static size_t number_of(dGeomID geom)
 {
@@ -125,6 +126,60 @@ void dig_ode_meet_wall(void *const data, dGeomID a, dGeomID b)
     load_first(bed, bed->body[i], &push);
 }
 
+// What a push does to the body that gets the other end of it, about the point the arm starts from.
+static void react(const struct dig_push *const p, const double arm_m[3], double f_N[3],
+                  double t_Nm[3])
+{
+    const double f[3] = { p->fx_N, p->fy_N, p->fz_N };
+    const double t[3] = { p->jx_Nm, p->jy_Nm, p->jz_Nm };
+    for (int k = 0; k < 3; k++) {
+        const int next  = (k + 1) % 3;
+        const int other = (k + 2) % 3;
+        f_N[k] -= f[k];
+        t_Nm[k] += t[k] - (arm_m[next] * f[other] - arm_m[other] * f[next]);
+    }
+}
+
+// A grain and a rock whose boxes overlap.
+void dig_ode_meet_rock(void *const data, dGeomID a, dGeomID b)
+{
+    struct dig_ode_bed *const bed   = data;
+    const bool                swap  = dGeomGetSpace(a) == bed->rocks_space;
+    dGeomID                   ball  = swap ? b : a;
+    dGeomID                   stone = swap ? a : b;
+    dContactGeom              contact;
+    if (dCollide(ball, stone, 1, &contact, sizeof contact) == 0) {
+        return;
+    }
+    const size_t                i    = number_of(ball);
+    struct dig_rock *const      rock = &bed->rock[number_of(stone)];
+    const struct dig_law *const law  = &bed->wall_law[bed->of[i]];
+    struct dig_memory *const    memory =
+        dig_ode_memory_of(&bed->memory, (uint32_t)i, ROCK_NUMBER + (uint32_t)number_of(stone));
+    if (memory == NULL) {
+        bed->short_of_memory = true;
+        return;
+    }
+    struct dig_touch touch = { 0 };
+    set_distance(&touch, &contact, law->reach_m);
+    relative(bed->body[i], NULL, &touch);
+    const dReal *const  x        = dBodyGetPosition(bed->body[i]);
+    const double *const w        = rock->body.w_radps;
+    const double *const v        = rock->body.v_mps;
+    const double        arm_m[3] = { x[0] - touch.dx_m - rock->body.x_m[0],
+                                     x[1] - touch.dy_m - rock->body.x_m[1],
+                                     x[2] - touch.dz_m - rock->body.x_m[2] };
+    touch.vx_mps -= v[0] + w[1] * arm_m[2] - w[2] * arm_m[1];
+    touch.vy_mps -= v[1] + w[2] * arm_m[0] - w[0] * arm_m[2];
+    touch.vz_mps -= v[2] + w[0] * arm_m[1] - w[1] * arm_m[0];
+    touch.jx_radps             = w[0];
+    touch.jy_radps             = w[1];
+    touch.jz_radps             = w[2];
+    const struct dig_push push = law_of(law, bed->dt_s, touch, memory);
+    load_first(bed, bed->body[i], &push);
+    react(&push, arm_m, rock->f_N, rock->t_Nm);
+}
+
 // One contact of a grain with the tool: point and memory are given.
 static void push_tool(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
                       struct dig_ode_touch *const at)
@@ -142,16 +197,7 @@ static void push_tool(struct dig_ode_bed *const bed, const size_t i, const doubl
     touch.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
     const struct dig_push p = law_of(&bed->tool_law[bed->of[i]], bed->dt_s, touch, &at->memory);
     load_first(bed, bed->body[i], &p);
-
-    const double             f[3]    = { p.fx_N, p.fy_N, p.fz_N };
-    const double             t[3]    = { p.jx_Nm, p.jy_Nm, p.jz_Nm };
-    struct dig_wrench *const on_tool = &bed->on_tool;
-    for (int k = 0; k < 3; k++) {
-        const int next  = (k + 1) % 3;
-        const int other = (k + 2) % 3;
-        on_tool->f_N[k] -= f[k];
-        on_tool->t_Nm[k] += t[k] - (arm[next] * f[other] - arm[other] * f[next]);
-    }
+    react(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
 }
 
 // A grain in the box about the tool.

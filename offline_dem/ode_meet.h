@@ -5,13 +5,14 @@
 #define DIG_OFFLINE_DEM_ODE_MEET_H
 
 #include "offline_dem/ode_memory.h"
+#include "offline_dem/ode_rocks.h"
 #include "offline_dem/world.h"
 
 #include <ode/ode.h>
 
 struct dig_ode_bed {
     dWorldID world;
-    dSpaceID grains_space, walls_space;
+    dSpaceID grains_space, walls_space, rocks_space;
     dGeomID  tool_box;
     size_t   n;
     dBodyID *body; // [n]
@@ -24,6 +25,13 @@ struct dig_ode_bed {
     struct dig_law  pair_law[DIG_KINDS_MAX * DIG_KINDS_MAX], wall_law[DIG_KINDS_MAX],
         tool_law[DIG_KINDS_MAX];
 
+    // Rocks: copies, which this bed moves.
+    size_t                rocks;
+    struct dig_rock       rock[DIG_OBSTACLES_MAX];
+    dGeomID               stone[DIG_OBSTACLES_MAX];
+    struct dig_rock_touch touch[DIG_OBSTACLES_MAX];
+    struct dig_ode_scene *scene; // moves them; NULL: all are fixed
+
     struct dig_ode_memory memory;
     bool                  started;
 
@@ -34,10 +42,11 @@ struct dig_ode_bed {
     bool                   short_of_memory;
 };
 
-/// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and the
-/// box about the tool. Loads are added to the bodies, contacts remembered.
+/// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and a
+/// rock, a grain and the box about the tool. Loads are added to the bodies, contacts remembered.
 void dig_ode_meet_grain(void *data, dGeomID a, dGeomID b);
 void dig_ode_meet_wall(void *data, dGeomID a, dGeomID b);
+void dig_ode_meet_rock(void *data, dGeomID a, dGeomID b);
 void dig_ode_meet_tool(void *data, dGeomID a, dGeomID b);
 
 #endif // DIG_OFFLINE_DEM_ODE_MEET_H

@@ -69,6 +69,37 @@ static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **st
     digs_agree(&scene);
 }
 
+// A box that stands fast under the grains, and below the tooth a ball that the bucket
+// pushes through the grains.
+static void a_short_dig_between_rocks_gives_the_kernels_curve(void **state)
+{
+    (void)state;
+    struct dig_scene scene = dem_short_dig_scene(0.02);
+    scene.bed.obstacles    = 2;
+    scene.bed.obstacle[0]  = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
+                                                    .centre_m = { 0.015, 0.005, 0.01 },
+                                                    .size_m   = { 0.012, 0.02, 0.01 } };
+    scene.bed.obstacle[1]  = (struct dig_obstacle){ .shape         = DIG_OBSTACLE_SPHERE,
+                                                    .centre_m      = { 0.036, 0.0, 0.02 },
+                                                    .size_m        = { 0.02 },
+                                                    .movable       = true,
+                                                    .density_kgpm3 = 2500.0 };
+    digs_agree(&scene);
+}
+
+static void a_short_dig_that_moves_a_box_gives_the_kernels_curve(void **state)
+{
+    (void)state;
+    struct dig_scene scene = dem_short_dig_scene(0.02);
+    scene.bed.obstacles    = 1;
+    scene.bed.obstacle[0]  = (struct dig_obstacle){ .shape         = DIG_OBSTACLE_BOX,
+                                                    .centre_m      = { 0.036, 0.002, 0.021 },
+                                                    .size_m        = { 0.016, 0.02, 0.016 },
+                                                    .movable       = true,
+                                                    .density_kgpm3 = 2500.0 };
+    digs_agree(&scene);
+}
+
 static void refuses(const struct dig_scene *const scene, const char *const vtk_dir,
                     const char *const key)
 {
@@ -91,11 +122,14 @@ static void what_it_does_not_know_is_refused_by_name(void **state)
     refuses(&scene, "pictures-go-here", "pictures");
     scene.bed.earlier_digs = 1;
     refuses(&scene, NULL, "earlier_digs");
-    scene               = dem_short_dig_scene(0.02);
-    scene.bed.obstacles = 1;
-    scene.bed.obstacle[0] =
-        (struct dig_obstacle){ .centre_m = { 0.04, 0.0, 0.01 }, .size_m = { 0.01, 0.0, 0.0 } };
-    refuses(&scene, NULL, "obstacles");
+    scene           = dem_short_dig_scene(0.02);
+    scene.bed.clump = (struct dig_clump){ .spheres = 1, .radius = { 1.0 } };
+    refuses(&scene, NULL, "clump");
+    scene                = dem_short_dig_scene(0.02);
+    scene.bed.periodic_y = true;
+    scene.box.y_min_m    = -0.05;
+    scene.box.y_max_m    = 0.05;
+    refuses(&scene, NULL, "periodic_y");
     scene                      = dem_short_dig_scene(0.02);
     scene.trajectory[0].phases = 0;
     refuses(&scene, NULL, "phases");
@@ -113,6 +147,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
         cmocka_unit_test(a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve),
+        cmocka_unit_test(a_short_dig_between_rocks_gives_the_kernels_curve),
+        cmocka_unit_test(a_short_dig_that_moves_a_box_gives_the_kernels_curve),
         cmocka_unit_test(what_it_does_not_know_is_refused_by_name),
         cmocka_unit_test(it_says_which_engine_it_is),
     };

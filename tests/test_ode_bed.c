@@ -1,5 +1,6 @@
 // The all-ODE reference against the grain kernel: the same motion before rounding has grown.
 
+#include "offline_dem/bodies.h"
 #include "offline_dem/ode_bed.h"
 #include "offline_dem/ode_memory.h"
 #include "offline_dem/random.h"
@@ -192,12 +193,13 @@ static void contacts_remember_until_they_end(void **state)
     dig_ode_memory_finish(&map);
 }
 
-static void a_world_with_bodies_is_refused(void **state)
+static void a_world_with_clumps_is_refused(void **state)
 {
     (void)state;
-    const struct dig_law_material m     = dem_material(0.5, 0.5);
-    struct dig_world              world = heap(&m);
-    world.bodies                        = (struct dig_bodies *)&world; // never looked into
+    const struct dig_law_material m      = dem_material(0.5, 0.5);
+    struct dig_world              world  = heap(&m);
+    struct dig_bodies             bodies = { .clumps = 1 };
+    world.bodies                         = &bodies;
     assert_null(dig_ode_bed_create(&world));
     world.bodies = NULL;
     dig_world_finish(&world);
@@ -210,7 +212,7 @@ int main(void)
         cmocka_unit_test(a_sticky_heap_under_hertz_falls_as_in_the_kernel),
         cmocka_unit_test(a_bucket_feels_what_it_feels_in_the_kernel),
         cmocka_unit_test(contacts_remember_until_they_end),
-        cmocka_unit_test(a_world_with_bodies_is_refused),
+        cmocka_unit_test(a_world_with_clumps_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
