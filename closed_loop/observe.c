@@ -1,5 +1,6 @@
 #include "closed_loop/observe.h"
 
+#include "closed_loop/way.h"
 #include "core/units.h"
 #include "estimator/approach_fit.h"
 #include "estimator/approach_slots.h"
@@ -8,115 +9,35 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+// A recording that ends sooner than its trajectory by less of the smoothing's half width than this
+// goes on as it ended: one of 50 Hz lacks up to 20 ms.
+static const double held_share = 0.25;
 
 // The recording's columns that matter, as plain arrays over its rows.
 struct columns {
     size_t  rows;
     double *t_s;
-    double *progress; // path travelled as a fraction of the whole
-    // Of one channel, over the rows that have it.
+    double *progress; // path travelled as a fraction of the trajectory's
+    // Of one channel, over the rows that have it, and one more at either end.
     double *held_t_s;
     double *held_progress;
     double *raw;
     double *smooth;
 };
 
-static double step_m(const struct dig_force_row *const a, const struct dig_force_row *const b,
-                     const double tooth_m)
-{
-    return hypot(b->pin_x_m - a->pin_x_m, b->pin_z_m - a->pin_z_m) +
-           tooth_m * fabs(b->theta_deg - a->theta_deg) * DIG_RAD_PER_DEG;
-}
-
-static double fill_columns(const struct dig_recording *const recording, const double tooth_m,
-                           const struct columns *const c)
-{
-    double path_m = 0.0;
-    for (size_t i = 0; i < c->rows; i++) {
-        const struct dig_force_row *const row = &recording->row[i];
-        path_m += i == 0 ? 0.0 : step_m(row - 1, row, tooth_m);
-        c->t_s[i]      = row->t_s;
-        c->progress[i] = path_m;
-    }
-    for (size_t i = 0; i < c->rows && path_m > 0.0; i++) {
-        c->progress[i] /= path_m;
-    }
-    return path_m;
-}
-
-// Index of the last of n at or before this progress; calls with ascending progress walk on.
-static size_t index_at(const size_t n, const double of[const], const double progress, size_t i)
-{
-    while (i + 2 < n && of[i + 1] <= progress) {
-        i++;
-    }
-    return i;
-}
-
-static double fraction_of(const double of[const], const size_t i, const double progress)
-{
-    const double span = of[i + 1] - of[i];
-    return span > 0.0 ? fmin(fmax((progress - of[i]) / span, 0.0), 1.0) : 0.0;
-}
-
-static size_t row_at(const struct columns *const c, const double progress, const size_t i)
-{
-    return index_at(c->rows, c->progress, progress, i);
-}
-
-static double fraction_at(const struct columns *const c, const size_t i, const double progress)
-{
-    return fraction_of(c->progress, i, progress);
-}
-
-// RMS distance between recorded and prescribed poses at equal progress, the mean offset of the pin
-// taken away (the ground may lie anywhere), in bucket lengths.
-static double path_distance(const struct dig_recording *const recording,
-                            const struct columns *const c, const struct dig_trajectory *const t,
-                            const double tooth_m)
-{
-    enum { POINTS = 64 };
-    double x_m[POINTS];
-    double z_m[POINTS];
-    double mean_x_m = 0.0;
-    double mean_z_m = 0.0;
-    double turn2_m2 = 0.0;
-    size_t i        = 0;
-    for (int k = 0; k < POINTS; k++) {
-        const double progress = (double)k / (POINTS - 1);
-        i                     = row_at(c, progress, i);
-        const double f        = fraction_at(c, i, progress);
-
-        const struct dig_force_row *const a = &recording->row[i];
-        const struct dig_force_row *const b = a + 1;
-        const double                      theta_rad =
-            (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
-        const struct dig_pose pose =
-            dig_trajectory_pose(t, dig_trajectory_time_s(t, tooth_m, progress));
-        x_m[k] = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
-        z_m[k] = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
-        mean_x_m += x_m[k] / POINTS;
-        mean_z_m += z_m[k] / POINTS;
-        turn2_m2 += pow(tooth_m * (theta_rad - pose.theta_rad), 2.0);
-    }
-    double sum_m2 = turn2_m2;
-    for (int k = 0; k < POINTS; k++) {
-        sum_m2 += pow(x_m[k] - mean_x_m, 2.0) + pow(z_m[k] - mean_z_m, 2.0);
-    }
-    return sqrt(sum_m2 / POINTS) / tooth_m;
-}
-
 // The way at equal steps of progress.
 static void lay_out(const struct dig_recording *const recording, const struct columns *const c,
                     const double tooth_m, struct dig_path_point way[const DIG_APPROACH_FIT_POINTS])
 {
-    size_t i = 0;
+    struct dig_way_place at = { .row = 0 };
     for (int k = 0; k < DIG_APPROACH_FIT_POINTS; k++) {
         const double progress = (double)k / (DIG_APPROACH_FIT_POINTS - 1);
-        i                     = row_at(c, progress, i);
-        const double f        = fraction_at(c, i, progress);
+        at                    = dig_way_place(c->rows, c->progress, progress, at.row);
 
-        const struct dig_force_row *const a = &recording->row[i];
+        const double                      f = at.fraction;
+        const struct dig_force_row *const a = &recording->row[at.row];
         const struct dig_force_row *const b = a + 1;
         way[k]                              = (struct dig_path_point){
                                          .x_m = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m),
@@ -127,8 +48,8 @@ static void lay_out(const struct dig_recording *const recording, const struct co
     }
 }
 
-// The same as path_distance() from the trajectory dug as the way was, with what of that the table
-// does not reach in quadrature.
+// The rms distance from the trajectory dug as the way was, with what of that the table does not
+// reach in quadrature.
 static double fit_distance(const struct dig_recording *const recording,
                            const struct columns *const c, const struct dig_curve_set *const set,
                            const size_t trajectory, struct dig_approach *const made,
@@ -175,26 +96,55 @@ static double longest_gap_s(const struct columns *const c, const size_t held)
     return gap_s;
 }
 
+// What the recording lacks of the trajectory: seconds of its own pace before and after it, and the
+// progress between which smoothed values are those of a whole dig.
+struct ends {
+    double before_s, after_s;
+    double first, last;
+};
+
+// A value that stays as it was before the first row and after the last, for as long as is missing.
+static size_t extend(const struct ends *const ends, const struct columns *const c, size_t held)
+{
+    if (ends->after_s > 0.0 && ends->last >= 1.0) {
+        c->held_t_s[held]      = c->held_t_s[held - 1] + ends->after_s;
+        c->held_progress[held] = 1.0;
+        c->raw[held]           = c->raw[held - 1];
+        held++;
+    }
+    if (ends->before_s > 0.0 && ends->first <= 0.0) {
+        memmove(c->held_t_s + 1, c->held_t_s, held * sizeof(double));
+        memmove(c->held_progress + 1, c->held_progress, held * sizeof(double));
+        memmove(c->raw + 1, c->raw, held * sizeof(double));
+        c->held_t_s[0] -= ends->before_s;
+        c->held_progress[0] = 0.0;
+        held++;
+    }
+    return held;
+}
+
 // Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
 // lack it for longer than the smoothing reaches to one side.
 static bool read_channel(const struct dig_curve_set *const set,
                          const struct dig_recording *const recording, const struct columns *const c,
-                         const enum dig_channel channel, double value[DIG_CURVE_POINTS])
+                         const struct ends *const ends, const enum dig_channel channel,
+                         double value[DIG_CURVE_POINTS])
 {
-    const size_t held = hold_channel(recording, c, channel);
-    const bool   told =
+    size_t     held = hold_channel(recording, c, channel);
+    const bool told =
         held == c->rows || (held >= 2 && longest_gap_s(c, held) <= set->smooth_half_s);
     if (told) {
+        held = extend(ends, c, held);
         dig_curve_smooth(held, c->held_t_s, c->raw, set->smooth_half_s, c->smooth);
     }
-    size_t i = 0;
+    struct dig_way_place at = { .row = 0 };
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        value[k] = 0.0;
-        if (told) {
-            const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-            i                     = index_at(held, c->held_progress, progress, i);
-            const double f        = fraction_of(c->held_progress, i, progress);
-            value[k]              = c->smooth[i] + f * (c->smooth[i + 1] - c->smooth[i]);
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        value[k]              = 0.0;
+        if (told && progress >= ends->first && progress <= ends->last) {
+            at                  = dig_way_place(held, c->held_progress, progress, at.row);
+            const double before = c->smooth[at.row];
+            value[k]            = before + at.fraction * (c->smooth[at.row + 1] - before);
         }
     }
     return told;
@@ -204,33 +154,99 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        const struct dig_recording *const recording,
                                        const struct columns *const c, const bool as_dug,
                                        struct dig_observed *const observed,
+                                       struct dig_way_part *const best_part,
                                        struct dig_error *const    error)
 {
-    int    best          = -1;
-    double best_distance = INFINITY;
+    int best   = -1;
+    *best_part = (struct dig_way_part){ .to = 1.0, .off = (double)INFINITY };
     for (size_t t = 0; t < set->trajectories; t++) {
         struct dig_approach made     = dig_approach_plain();
         struct dig_approach approach = dig_approach_plain();
-        const double        away     = as_dug && dig_approach_varies(set, t)
-                                           ? fit_distance(recording, c, set, t, &made, &approach)
-                                           : path_distance(recording, c, &set->trajectory[t], set->tooth_m);
-        if (away < best_distance) {
+        struct dig_way_part part     = { .to = 1.0 };
+        if (as_dug && dig_approach_varies(set, t)) {
+            part.off = fit_distance(recording, c, set, t, &made, &approach);
+        } else {
+            part = dig_way_align(recording, c->progress, &set->trajectory[t], set->tooth_m);
+        }
+        if (part.off < best_part->off) {
             best               = (int)t;
-            best_distance      = away;
+            *best_part         = part;
             observed->made     = made;
             observed->approach = approach;
         }
     }
-    if (best < 0 || !(best_distance <= DIG_OBSERVE_PATH_LIMIT)) {
+    if (best < 0 || !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
         return dig_error_set(error, DIG_ENOMATCH,
                              "the recording's path is none of the table's: nearest is \"%s\", "
                              "%.3f bucket lengths away, expected at most %.2f",
-                             best < 0 ? "" : set->trajectory[best].name, best_distance,
+                             best < 0 ? "" : set->trajectory[best].name, best_part->off,
                              DIG_OBSERVE_PATH_LIMIT);
     }
     observed->trajectory = best;
-    observed->off_path_m = best_distance * set->tooth_m;
+    observed->off_path_m = best_part->off * set->tooth_m;
     return DIG_OK;
+}
+
+// The rows from where the trajectory begins to where it ends: the bucket may have waited or gone on
+// beyond, and the table's curves are smoothed over the trajectory alone.
+static struct columns along_trajectory(const struct columns *const all)
+{
+    struct columns along = *all;
+    while (along.rows > 2 && along.progress[1] <= 0.0) {
+        along.progress++;
+        along.t_s++;
+        along.rows--;
+    }
+    while (along.rows > 2 && along.progress[along.rows - 2] >= 1.0) {
+        along.rows--;
+    }
+    return along;
+}
+
+// The time of this progress, the recording's.
+static double time_at_s(const struct columns *const c, const double progress)
+{
+    const struct dig_way_place at = dig_way_place(c->rows, c->progress, progress, 0);
+    return c->t_s[at.row] + at.fraction * (c->t_s[at.row + 1] - c->t_s[at.row]);
+}
+
+// The progress at this time.
+static double progress_at(const struct columns *const c, const double t_s)
+{
+    const struct dig_way_place at = dig_way_place(c->rows, c->t_s, t_s, 0);
+    return c->progress[at.row] + at.fraction * (c->progress[at.row + 1] - c->progress[at.row]);
+}
+
+// How fast the dig was: without its first and last hundredth, about which it may have rested.
+static double pace_of(const struct dig_curve_set *const set, const size_t trajectory,
+                      const struct columns *const c, const struct dig_way_part *const part)
+{
+    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
+    const double                       rim  = 0.01 * (part->to - part->from);
+    const double                       from = fmax(part->from, 0.0) + rim;
+    const double                       to   = fmin(part->to, 1.0) - rim;
+    return (dig_trajectory_time_s(t, set->tooth_m, to) -
+            dig_trajectory_time_s(t, set->tooth_m, from)) /
+           (time_at_s(c, to) - time_at_s(c, from));
+}
+
+static struct ends ends_of(const struct dig_curve_set *const set, const size_t trajectory,
+                           const struct columns *const c, const struct dig_way_part *const part,
+                           const double pace)
+{
+    const struct dig_trajectory *const t      = &set->trajectory[trajectory];
+    const double                       half_s = set->smooth_half_s;
+    struct ends                        ends   = { .last = 1.0 };
+    ends.before_s = dig_trajectory_time_s(t, set->tooth_m, part->from) / pace;
+    ends.after_s =
+        (dig_trajectory_duration_s(t) - dig_trajectory_time_s(t, set->tooth_m, part->to)) / pace;
+    if (ends.before_s > held_share * half_s) {
+        ends.first = progress_at(c, c->t_s[0] + half_s);
+    }
+    if (ends.after_s > held_share * half_s) {
+        ends.last = progress_at(c, c->t_s[c->rows - 1] - half_s);
+    }
+    return ends;
 }
 
 static enum dig_status observe(const struct dig_curve_set *const set,
@@ -238,20 +254,31 @@ static enum dig_status observe(const struct dig_curve_set *const set,
                                const struct columns *const c, const bool as_dug,
                                struct dig_observed *const observed, struct dig_error *const error)
 {
-    if (!(fill_columns(recording, set->tooth_m, c) > 0.1 * set->tooth_m)) {
+    for (size_t i = 0; i < c->rows; i++) {
+        c->t_s[i] = recording->row[i].t_s;
+    }
+    if (!(dig_way_progress(recording, set->tooth_m, c->progress) > 0.1 * set->tooth_m)) {
         return dig_error_set(error, DIG_EINVAL,
                              "the recording's bucket hardly moves, expected a dig");
     }
+    struct dig_way_part   part;
     struct dig_observed   o      = { .trajectory = 0 };
-    const enum dig_status status = find_trajectory(set, recording, c, as_dug, &o, error);
+    const enum dig_status status = find_trajectory(set, recording, c, as_dug, &o, &part, error);
     if (status != DIG_OK) {
         return status;
     }
-    o.pace = dig_trajectory_duration_s(&set->trajectory[o.trajectory]) /
-             (c->t_s[c->rows - 1] - c->t_s[0]);
+    for (size_t i = 0; i < c->rows; i++) {
+        c->progress[i] = part.from + (part.to - part.from) * c->progress[i];
+    }
+    const struct columns       along = along_trajectory(c);
+    const struct dig_recording rows  = { along.rows, recording->row + (along.t_s - c->t_s) };
+    o.pace                           = pace_of(set, (size_t)o.trajectory, &along, &part);
+    const struct ends ends           = ends_of(set, (size_t)o.trajectory, &along, &part, o.pace);
+    o.first                          = ends.first;
+    o.last                           = ends.last;
     for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
         o.measured[channel] =
-            read_channel(set, recording, c, (enum dig_channel)channel, o.value[channel]);
+            read_channel(set, &rows, &along, &ends, (enum dig_channel)channel, o.value[channel]);
     }
     if (!o.measured[DIG_CHANNEL_MY_Nm]) {
         return dig_error_set(error, DIG_EINVAL,
@@ -273,14 +300,13 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
         return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
                              recording->rows);
     }
-    const size_t  n      = recording->rows;
+    const size_t  n      = recording->rows + 2;
     double *const memory = calloc(6 * n, sizeof *memory);
     if (memory == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    const struct columns columns = {
-        n, memory, memory + n, memory + 2 * n, memory + 3 * n, memory + 4 * n, memory + 5 * n
-    };
+    const struct columns columns = { recording->rows, memory,         memory + n,    memory + 2 * n,
+                                     memory + 3 * n,  memory + 4 * n, memory + 5 * n };
     const enum dig_status status = observe(set, recording, &columns, as_dug, observed, error);
     free(memory);
     return status;
@@ -315,8 +341,8 @@ enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
     struct dig_observation seen = { .dig_count  = 1,
                                     .trajectory = o.trajectory,
                                     .off_path_m = o.off_path_m,
-                                    .first      = 0.0,
-                                    .last       = 1.0 };
+                                    .first      = o.first,
+                                    .last       = o.last };
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         seen.moment_Nm[k] = o.value[DIG_CHANNEL_MY_Nm][k];
     }

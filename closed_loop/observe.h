@@ -22,8 +22,11 @@ struct dig_observed {
     struct dig_approach made; // of dig_observe_as_dug(), as the way tells it; else the plain one
     struct dig_approach approach; // the nearest to that the table holds
     double              pace;     // duration of the table's trajectory / of this dig
-    bool                measured[DIG_FORCE_CHANNELS];
-    double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // smoothed; 0 where not measured
+    double              first,
+        last; // progress range that was recorded: 0 and 1 but for a few hundredths of a second
+    bool   measured[DIG_FORCE_CHANNELS];
+    double value[DIG_FORCE_CHANNELS]
+                [DIG_CURVE_POINTS]; // smoothed; 0 where not measured, and outside that range
 };
 
 /// As dig_observe_recording(), all channels. A force that a row lacks is not measured at all;
@@ -42,9 +45,10 @@ DIG_MUST_CHECK enum dig_status dig_observe_as_dug(const struct dig_curve_set *se
                                                   struct dig_observed        *observed,
                                                   struct dig_error           *error);
 
-/// Finds the trajectory the recording followed, whole and at its own pace, and samples the smoothed
-/// moment (+-set->smooth_half_s of the recording's time) at DIG_CURVE_POINTS of its path progress.
-/// The recording must be of the table's size (rig scale); where it stands in space does not matter.
+/// Finds the trajectory the recording followed, at its own pace and at least six tenths of it, and
+/// samples the smoothed moment (+-set->smooth_half_s of the recording's time) at DIG_CURVE_POINTS
+/// of its path progress. The recording must be of the table's size (rig scale); where it stands in
+/// space does not matter.
 ///
 /// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
 /// and its distance. DIG_EINVAL: a recording that does not move. DIG_ENOMEM. O(rows).

@@ -246,6 +246,86 @@ static void a_long_gap_is_not_measured_and_of_the_moment_refused(void **state)
     }
 }
 
+// Of 50 Hz a recording may lack 20 ms; of one that lacks more what the smoothing reaches beyond is
+// not told.
+static void a_recording_cut_short_tells_what_it_has(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set = two_digs();
+    struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
+    struct dig_observed        whole, cut;
+    assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
+    assert_close(whole.first, 0.0, 0.0);
+    assert_close(whole.last, 1.0, 0.0);
+    assert_close(whole.pace, 1.0, 1e-3);
+    r.rows -= 4;
+    assert_int_equal(dig_observe_dig(&set, &r, &cut, NULL), DIG_OK);
+    assert_close(cut.last, 1.0, 0.0);
+    assert_close(cut.pace, 1.0, 5e-3);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close(cut.value[0][k], whole.value[0][k], 0.008);
+    }
+    r.rows -= 16;
+    assert_int_equal(dig_observe_dig(&set, &r, &cut, NULL), DIG_OK);
+    // 0.1 s and 0.16 s of 0.0463 m/s, of 0.03016 m and 0.0926 m.
+    assert_close(cut.last, 1.0 - 0.26 * 0.0463 / 0.12276, 0.01);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const bool told = k / (DIG_CURVE_POINTS - 1.0) <= cut.last;
+        assert_close(cut.value[0][k], told ? whole.value[0][k] : 0.0, told ? 0.008 : 0.0);
+    }
+    dig_recording_finish(&r);
+}
+
+// A bucket that waits before and after its dig was not slower for it.
+static void rest_before_and_after_is_no_pace(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set  = two_digs();
+    struct dig_recording       r    = drive(&set.trajectory[1], 0.8, slow_wave);
+    struct dig_recording       rest = { r.rows + 400, calloc(r.rows + 400, sizeof *rest.row) };
+    struct dig_observed        whole, rested;
+    for (size_t i = 0; i < rest.rows; i++) {
+        const size_t of = i < 200 ? 0 : (i < r.rows + 200 ? i - 200 : r.rows - 1);
+        rest.row[i]     = r.row[of];
+        rest.row[i].t_s = 0.005 * (double)i;
+        rest.row[i].pin_x_m += i % 2 == 0 ? 2e-5 : 0.0;
+    }
+    assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
+    assert_int_equal(dig_observe_dig(&set, &rest, &rested, NULL), DIG_OK);
+    assert_close(whole.pace, 1.25, 5e-3);
+    assert_close(rested.pace, whole.pace, 5e-3);
+    dig_recording_finish(&r);
+    dig_recording_finish(&rest);
+}
+
+// The bucket came down along its first phase, or went on along its last, for longer than the
+// trajectory says.
+static void what_lies_beyond_the_trajectory_is_left_out(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set    = two_digs();
+    struct dig_trajectory      longer = set.trajectory[0];
+    longer.phase[0].duration_s += 0.1;
+    longer.phase[1].duration_s += 0.15;
+    struct dig_recording r = drive(&set.trajectory[0], 1.0, slow_wave);
+    struct dig_recording l = drive(&longer, 1.0, slow_wave);
+    struct dig_observed  whole, more;
+    for (size_t i = 0; i < l.rows; i++) {
+        l.row[i].My_Nm = slow_wave(l.row[i].t_s - 5.0 - 0.1);
+    }
+    assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
+    assert_int_equal(dig_observe_dig(&set, &l, &more, NULL), DIG_OK);
+    assert_close(more.pace, 1.0, 5e-3);
+    assert_true(more.off_path_m < 1e-4);
+    assert_close(more.first, 0.0, 0.0);
+    assert_close(more.last, 1.0, 0.0);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close(more.value[0][k], whole.value[0][k], 0.01);
+    }
+    dig_recording_finish(&r);
+    dig_recording_finish(&l);
+}
+
 static void the_mean_is_over_digs_of_one_trajectory_only(void **state)
 {
     (void)state;
@@ -285,6 +365,9 @@ int main(void)
         cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
         cmocka_unit_test(short_gaps_are_bridged_by_what_lies_about_them),
         cmocka_unit_test(a_long_gap_is_not_measured_and_of_the_moment_refused),
+        cmocka_unit_test(a_recording_cut_short_tells_what_it_has),
+        cmocka_unit_test(rest_before_and_after_is_no_pace),
+        cmocka_unit_test(what_lies_beyond_the_trajectory_is_left_out),
         cmocka_unit_test(the_mean_is_over_digs_of_one_trajectory_only),
     };
     return cmocka_run_group_tests_name("observe", tests, NULL, NULL);

@@ -97,8 +97,8 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
                              r->file, set->trajectory[o.trajectory].name, r->trajectory);
     }
     m->pace  = o.pace;
-    m->first = 0.0;
-    m->last  = 1.0;
+    m->first = o.first;
+    m->last  = o.last;
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         m->measured[c] = o.measured[c];
         memcpy(m->value[c], o.value[c], sizeof m->value[c]);

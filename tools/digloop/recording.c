@@ -124,8 +124,8 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
         .off_path_m = seen.off_path_m,
         .approach   = seen.approach,
         .made       = dig_approach_varies(set, (size_t)seen.trajectory) ? seen.made : none,
-        .first      = 0.0,
-        .last       = 1.0,
+        .first      = seen.first,
+        .last       = seen.last,
         .forces     = seen.measured[DIG_CHANNEL_FX_N] && seen.measured[DIG_CHANNEL_FZ_N],
     };
     memcpy(dig->moment_Nm, seen.value[DIG_CHANNEL_MY_Nm], sizeof dig->moment_Nm);
