@@ -15,26 +15,40 @@ static const double half_s = 0.12;
 static const double step_s = 0.025;
 enum { POINTS_IN_BLOCK = 8, POINTS_BESIDE = 20, KERNEL = 4 };
 
-// Kernel means of the readings around one time.
-static void average(const struct dig_machine_dig *const dig, const double time_s,
-                    size_t *const from, struct dig_sample *const out)
+// Readings that are averaged: what a balance needs, and pitch and temperature.
+enum { AVERAGED = DIG_SIGNAL_TEMPERATURE_degC + 1 };
+
+// Kernel means of the readings around one time; the time that these are of, which is another where
+// readings are missing. What a balance needs is told where every reading of it is.
+static double average(const struct dig_machine_dig *const dig, const double time_s,
+                      size_t *const from, struct dig_sample *const out)
 {
     while (*from + 1 < dig->samples && dig->time_s[*from] < time_s - half_s) {
         ++*from;
     }
-    double sum[DIG_SIGNALS_NEEDED] = { 0.0 };
-    double weight                  = 0.0;
+    double sum[AVERAGED]    = { 0.0 };
+    double weight[AVERAGED] = { 0.0 };
+    double all              = 0.0;
+    double later_s          = 0.0;
     for (size_t i = *from; i < dig->samples && dig->time_s[i] < time_s + half_s; i++) {
+        const struct dig_sample *const sample = &dig->sample[i];
+
         const double u = (dig->time_s[i] - time_s) / half_s;
         const double w = (1.0 - u * u) * (1.0 - u * u);
-        weight += w;
-        for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
-            sum[s] += w * dig->sample[i].value[s];
+        all += w;
+        later_s += w * (dig->time_s[i] - time_s);
+        for (int s = 0; s < AVERAGED; s++) {
+            sum[s] += sample->valid[s] ? w * sample->value[s] : 0.0;
+            weight[s] += sample->valid[s] ? w : 0.0;
         }
     }
-    for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
-        out->value[s] = sum[s] / weight;
+    for (int s = 0; s < AVERAGED; s++) {
+        const double least = s < DIG_SIGNALS_NEEDED ? (1.0 - 1e-9) * all : 0.0;
+
+        out->valid[s] = weight[s] > 0.0 && weight[s] >= least;
+        out->value[s] = out->valid[s] ? sum[s] / weight[s] : 0.0;
     }
+    return all > 0.0 ? time_s + later_s / all : time_s;
 }
 
 // What one reading of a chamber scatters by, from how samples differ from the mean of both beside
@@ -137,24 +151,39 @@ static void add_rows(struct dig_air *const air, const size_t first, const size_t
     }
 }
 
-// The rates of the sample nearest to a time.
-static const struct dig_rates *rates_at(const struct dig_machine_dig *const dig,
-                                        const double time_s, const size_t from)
+// The rates so far of the way from a to b.
+static struct dig_rates rates_between(const struct dig_rates *const a,
+                                      const struct dig_rates *const b, const double f)
 {
-    size_t i = from;
-    while (i + 1 < dig->samples && dig->time_s[i + 1] <= time_s) {
+    struct dig_rates out = *a;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        out.velocity_radps[j] += f * (b->velocity_radps[j] - a->velocity_radps[j]);
+        out.acceleration_radps2[j] += f * (b->acceleration_radps2[j] - a->acceleration_radps2[j]);
+    }
+    return out;
+}
+
+// The rates at a time, straight between the samples beside it: those of the sample before would be
+// half a sample old on average, which at 50 Hz looks like a delay of 10 ms.
+static struct dig_rates rates_at(const struct dig_machine_dig *const dig, const double time_s,
+                                 const size_t from)
+{
+    size_t i = from + 1 < dig->samples ? from : dig->samples - 2;
+    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
         i++;
     }
-    return &dig->rates[i];
+    const double f = (time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]);
+    return rates_between(&dig->rates[i], &dig->rates[i + 1], fmin(fmax(f, 0.0), 1.0));
 }
 
 static void add_point(struct dig_air *const air, const struct dig_machine_dig *const dig,
                       const double time_s, size_t *const near)
 {
     struct dig_air_point *const point = &air->point[air->points++];
-    *point                            = (struct dig_air_point){ .sample = dig->sample[*near] };
-    average(dig, time_s, near, &point->sample);
-    point->rates = *rates_at(dig, time_s, *near);
+    *point                            = (struct dig_air_point){ .sample = { .time_ns = 0 } };
+    const double mean_s               = average(dig, time_s, near, &point->sample);
+    point->sample.time_ns             = llround(1e9 * mean_s);
+    point->rates                      = rates_at(dig, mean_s, *near);
 }
 
 static void add_segment(struct dig_air *const air, const struct dig_machine_dig *const dig,
@@ -257,11 +286,8 @@ static struct dig_air_point delayed(const struct dig_air_point point[], const si
         const size_t q = (size_t)DIG_SIGNAL_BOOM_rad + j;
 
         out.sample.value[q] = (1.0 - f) * a->sample.value[q] + f * b->sample.value[q];
-        out.rates.velocity_radps[j] =
-            (1.0 - f) * a->rates.velocity_radps[j] + f * b->rates.velocity_radps[j];
-        out.rates.acceleration_radps2[j] =
-            (1.0 - f) * a->rates.acceleration_radps2[j] + f * b->rates.acceleration_radps2[j];
     }
+    out.rates = rates_between(&a->rates, &b->rates, f);
     return out;
 }
 

@@ -69,6 +69,7 @@ struct fault {
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
     double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
     double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    size_t every;      // one sample in so many is recorded; 0: all are
     bool   warms;      // the oil's temperature is recorded, and rises
     bool   bare;       // no pressures but the bucket's
     bool   airless;    // recorded from the first touch of the ground to the last
@@ -148,6 +149,15 @@ static void cut_air(const struct dig_rig_track *const t, struct dig_machine_reco
     memmove(r->row, r->row + first, r->rows * sizeof *r->row);
 }
 
+static void thin(const size_t every, struct dig_machine_recording *const r)
+{
+    size_t kept = 0;
+    for (size_t i = 0; every > 0 && i < r->rows; i += every) {
+        r->row[kept++] = r->row[i];
+    }
+    r->rows = every > 0 ? kept : r->rows;
+}
+
 static struct dig_machine_recording record(const int kind, const size_t order,
                                            const struct fault *const fault, const uint64_t seed)
 {
@@ -191,6 +201,7 @@ static struct dig_machine_recording record(const int kind, const size_t order,
     if (fault->airless) {
         cut_air(t, &r);
     }
+    thin(fault->every, &r);
     return r;
 }
 
@@ -425,6 +436,33 @@ static void readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal(void **s
     end(d);
 }
 
+// Points of the air lie between the samples of a slow recorder: rates of the sample before them
+// would look like a delay. Sensors are quiet enough to show it.
+static void a_slow_recorder_is_no_delay(void **state)
+{
+    (void)state;
+    static const double      quiet    = 0.05;
+    const struct dig_machine as_filed = machine;
+    machine.pressure_step_Pa *= quiet;
+    machine.angle_step_rad *= quiet;
+    machine.angle_sigma_rad *= quiet;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        machine.cylinder[j].pressure_sigma_Pa *= quiet;
+    }
+    for (uint64_t seed = 81; seed <= 83; seed++) {
+        const struct fault     slow = { .every = 4 }; // 50 Hz
+        struct campaign *const c    = trace(&slow, seed);
+        assert_false(c->finding.significant);
+        for (size_t i = 0; i < c->finding.candidates; i++) {
+            if (c->finding.candidate[i].effect == DIG_EFFECT_SENSOR_DELAY) {
+                assert_close(c->finding.candidate[i].parameter[0].value, 0.0, 0.001);
+            }
+        }
+        end(c);
+    }
+    machine = as_filed;
+}
+
 static void pressures_at_the_bucket_alone_tell_the_moment_and_its_seal(void **state)
 {
     (void)state;
@@ -519,6 +557,7 @@ int main(void)
         cmocka_unit_test(pressures_that_drift_get_no_name_and_say_what_they_follow),
         cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
         cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
+        cmocka_unit_test(a_slow_recorder_is_no_delay),
         cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
         cmocka_unit_test(recordings_without_free_air_say_so_and_name_nothing),
         cmocka_unit_test(how_the_machine_stands_is_told_where_it_was_recorded),
