@@ -38,6 +38,9 @@ check "at half the speed, with longer limits" \
 check "what was late in both tries is skipped, aloud" \
     eval 'is "$(run "900 900 900" 0 3 0)" "0 2 2 passed, 0 failed, 1 skipped" && grep -q "^SKIP: 1 checks failed" "$work/out"'
 check "where a bus may not be skipped, too" is "$(run "900 900 900" 0 3 0 DIG_NO_SKIP=1)" "0 2 2 passed, 0 failed, 1 skipped"
+check "but fails where nothing may be" \
+    is "$(run "900 900 900" 0 3 0 DIG_NO_SKIP=all)" "1 2 2 passed, 1 failed: the rig was late in each try, and nothing may be skipped"
+check "and where nothing was late passes there" is "$(run "20 20 20" 0 0 0 DIG_NO_SKIP=all)" "0 1 3 passed, 0 failed"
 check "what does not depend on time is not excused" is "$(run "900 900 900" 3 0 0)" "1 1 2 passed, 1 failed"
 check "nor is it beside what is" is "$(run "900 900 900" 3 3 0)" "1 1 1 passed, 2 failed"
 check "a wrong number is not excused by what excuses a late one" is "$(run "900 900 900" 0 0 3)" "1 1 2 passed, 1 failed"
