@@ -91,6 +91,17 @@ struct dig_curve {
     float sd[DIG_CHANNELS][DIG_CURVE_POINTS];
 };
 
+#define DIG_COVARIANCE_BLOCKS  8 // of a path, equally long
+#define DIG_COVARIANCE_NUMBERS (DIG_FORCE_CHANNELS * DIG_COVARIANCE_BLOCKS)
+
+/// How digs of one gravel along one trajectory differ from their mean: covariance of the means over
+/// the blocks of a curve, moment first, then the forces, each relative to the size of its channel's
+/// curve, the root mean square of the gravel's own block means. Pooled over all gravels.
+struct dig_covariance {
+    double freedom; // degrees of freedom it was pooled from; 0: nothing is known
+    double of[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
+};
+
 struct dig_approach_set; // core/approach_set.h
 
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
@@ -113,6 +124,8 @@ struct dig_curve_set {
     size_t  axis_count[DIG_AXES];
     double *axis[DIG_AXES];
     int    *cell;
+    // Of each trajectory, [trajectories]; NULL: not known of these curves.
+    struct dig_covariance *covariance;
     // The same digs deeper or with the bucket turned; NULL: the table holds none.
     struct dig_approach_set *approaches;
 };

@@ -128,6 +128,7 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
     struct dig_curve_set *const made = memory;
     *made                            = *set;
     made->approaches                 = NULL;
+    made->covariance                 = NULL;
     made->trajectories               = slots;
     made->packings                   = (int *)(void *)((uint8_t *)memory + l.packings);
     made->curve                      = (struct dig_curve *)(void *)((uint8_t *)memory + l.curve);

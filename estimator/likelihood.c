@@ -202,6 +202,10 @@ static void miss_by(const struct dig_likelihood *const l, const struct dig_cell 
 double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
 {
     assert(l != NULL && cell != NULL);
+    if (l->is_gaussian) {
+        const struct dig_misses all = dig_gaussian_misses(&l->gaussian, cell);
+        return -0.5 * DIG_POSTERIOR_TRUST * (all.square + all.log_det);
+    }
     struct misses misses;
     miss_by(l, cell, &misses);
     const double sum = sum_up(l->count, misses.miss2, misses.d);
@@ -225,9 +229,10 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
                          const struct dig_pooled *const group, struct dig_likelihood *const l)
 {
     assert(set != NULL && group != NULL && l != NULL);
-    *l = (struct dig_likelihood){ .trajectory = group->trajectory,
-                                  .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
-                                  .count      = DIG_CURVE_POINTS };
+    *l             = (struct dig_likelihood){ .trajectory = group->trajectory,
+                                              .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
+                                              .count      = DIG_CURVE_POINTS };
+    l->is_gaussian = dig_gaussian_make(set, summary, group, &l->gaussian);
     for (size_t c = 0; c < l->channels; c++) {
         l->relative2[c] = summary != NULL
                               ? summary->relative2[group->trajectory][c]

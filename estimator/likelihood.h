@@ -5,12 +5,16 @@
 #define DIG_ESTIMATOR_LIKELIHOOD_H
 
 #include "core/curve.h"
+#include "estimator/gaussian.h"
 #include "estimator/interpolate.h"
 #include "estimator/pool.h"
 #include "estimator/summary.h"
 
-/// What does not depend on the gravel; 16 kB.
+/// What does not depend on the gravel; 22 kB.
 struct dig_likelihood {
+    bool                is_gaussian; // the logarithm is of block means, by the packings' covariance
+    struct dig_gaussian gaussian;
+
     const struct dig_summary *rough; // NULL: point by point
     size_t                    trajectory;
     size_t                    channels;                      // the moment alone, or the forces too

@@ -185,10 +185,13 @@ static void look_roughly(const struct dig_curve_set *const set,
                          struct dig_likelihood l[], double weight[])
 {
     bool rough = summary != NULL;
+    bool dear  = false; // more than the rough look
     for (size_t g = 0; rough && g < sums->groups; g++) {
         dig_likelihood_make(set, summary, &sums->group[g], &l[g]);
-        rough = dig_likelihood_outline(summary, &l[g]);
+        dear  = dear || !l[g].is_gaussian;
+        rough = l[g].is_gaussian || dig_likelihood_outline(summary, &l[g]);
     }
+    rough       = rough && dear;
     double most = -INFINITY;
     for (size_t i = 0; i < fine->all; i++) {
         weight[i] = rough ? log_likelihood_at(set, fine, i, sums->groups, l) : 0.0;

@@ -42,6 +42,10 @@
 #define DIG_POSTERIOR_MY_FZ 0.63
 #define DIG_POSTERIOR_FX_FZ (-0.49)
 
+/// What the logarithm of a likelihood by the packings' covariance (gaussian.h) counts: neither that
+/// covariance nor the curves between a table's points are known as well as it takes them to be.
+#define DIG_POSTERIOR_TRUST 0.7
+
 /// Digs of moment and forces farther than this from the most probable gravel are of none of the
 /// table's. Of 255 digs along simpleA, left out of their own gravel's entry, none is called so
 /// (tables/rig.sqlite; tests/bench/outside.c).

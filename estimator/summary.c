@@ -31,8 +31,9 @@ double dig_summary_relative2(const struct dig_curve_set *const set, const size_t
     return entries > 0.0 ? sum / entries : 0.0;
 }
 
-static void draw(const float of[DIG_CURVE_POINTS], struct dig_outline *const outline)
+void dig_outline_draw(const float of[const DIG_CURVE_POINTS], struct dig_outline *const outline)
 {
+    assert(of != NULL && outline != NULL);
     for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
         double sum = 0.0;
         for (size_t i = 0; i < DIG_OUTLINE_POINTS; i++) {
@@ -65,7 +66,8 @@ void dig_summary_make(const struct dig_curve_set *const set, struct dig_outline 
             struct dig_outline *const     to    = &outline[dig_outline_place(set, layer, slot)];
             const struct dig_curve *const curve = &set->curve[slot];
             if (set->packings[slot] > 0) {
-                draw(layer % 2 == 0 ? curve->mean[layer / 2] : curve->sd[layer / 2], to);
+                dig_outline_draw(layer % 2 == 0 ? curve->mean[layer / 2] : curve->sd[layer / 2],
+                                 to);
             } else {
                 draw_none(to);
             }

@@ -30,6 +30,9 @@ struct dig_summary {
     double                    relative2[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
 };
 
+/// Means over the blocks of one layer of a curve.
+void dig_outline_draw(const float of[DIG_CURVE_POINTS], struct dig_outline *outline);
+
 /// Outlines that a summary of the set needs: the caller brings the memory, 384 bytes a curve.
 size_t dig_summary_outlines(const struct dig_curve_set *set);
 

@@ -10,6 +10,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -107,6 +108,12 @@ static enum dig_status change_curves(const char *const model_path, const char *c
             dig_yaml_refuse(model_path, "effects", error,
                             "an effect of the soil that no table at hand tells, or a parameter "
                             "it does not have; expected those of the table of effects");
+    }
+    if (status == DIG_OK) {
+        // Curves with effects are off by more than digs scatter: what they are off by is in their
+        // sd.
+        free(set->covariance);
+        set->covariance = NULL;
     }
     if (status == DIG_OK && plain != NULL) {
         change_approaches(plain, set);

@@ -2,6 +2,7 @@
 
 #include "tables/grounds.h"
 #include "tables/load_approaches.h"
+#include "tables/load_covariance.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
@@ -165,6 +166,9 @@ enum dig_status dig_table_list(const char *const path, struct dig_curve_set **co
         status = dig_sql_load(db, path, &head, &set, error);
     }
     if (status == DIG_OK && set != NULL) {
+        status = dig_sql_load_covariance(db, path, &head, set, error);
+    }
+    if (status == DIG_OK && set != NULL) {
         status = dig_sql_load_approaches(db, path, &head, &set->approaches, error);
     }
     if (status == DIG_OK && effects != NULL) {
@@ -213,6 +217,7 @@ void dig_curve_set_destroy(struct dig_curve_set *const set)
             free(set->axis[a]);
         }
         free(set->cell);
+        free(set->covariance);
         dig_approach_set_destroy(set->approaches);
         free(set);
     }

@@ -64,6 +64,38 @@ static void mean_and_spread_are_those_of_the_packings(void **state)
     dig_curve_set_destroy(set);
 }
 
+// Digs that differ by a factor alone go together in all numbers: what they are off by, relative to
+// their mean, is worked out by hand. A gravel dug once teaches nothing.
+static void the_covariance_is_that_of_the_packings_of_all_gravels(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("covariance.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    fixture_put(store, .3, .3, 2, 0, 6.0);
+    fixture_put(store, .3, .6, 0, 0, 10.0);
+    fixture_put(store, .3, .6, 1, 0, 12.0);
+    fixture_put(store, .6, .6, 0, 0, 5.0);
+    fixture_put(store, .3, .3, 0, 1, 1.0);
+    dig_store_close(store);
+    struct dig_curve_set *const        set = fixture_load("covariance.sqlite");
+    const struct dig_covariance *const c   = set->covariance;
+    const double                       one = ((4.0 + 1.0 + 9.0) / 9.0 + 2.0 / 121.0) / 3.0;
+    assert_non_null(c);
+    assert_close(c[0].freedom, 3.0, 0.0);
+    assert_close(c[1].freedom, 0.0, 0.0);
+    for (size_t i = 0; i < DIG_COVARIANCE_NUMBERS; i++) {
+        for (size_t j = 0; j < DIG_COVARIANCE_NUMBERS; j++) {
+            // Fz is below 0 and the others above: what makes these larger makes it less.
+            const bool other = (i / DIG_COVARIANCE_BLOCKS == DIG_CHANNEL_FZ_N) !=
+                               (j / DIG_COVARIANCE_BLOCKS == DIG_CHANNEL_FZ_N);
+            assert_close(c[0].of[i][j], other ? -one : one, 1e-6);
+            assert_close(c[1].of[i][j], 0.0, 0.0);
+        }
+    }
+    dig_curve_set_destroy(set);
+}
+
 // A straight line is its own moving average, so away from the ends the curve is the line at the
 // time at which that part of the path is done, which is worked out by hand here.
 static void a_curve_runs_along_the_path_not_along_time(void **state)
@@ -196,6 +228,11 @@ static void damage_is_refused_and_named(void **state)
           DIG_EINVAL, "finite" },
         { "UPDATE entry SET trajectory = 1; UPDATE entry SET trajectory = 9", DIG_EINVAL,
           "refers to nothing" },
+        { "UPDATE run SET curve = x'00'", DIG_EINVAL, "run: expected a trajectory" },
+        { "UPDATE run SET windows = windows + 1", DIG_EINVAL, "run: expected a trajectory" },
+        { "UPDATE run SET curve = CAST(substr(curve, 1, 400) || x'0000c07f' || "
+          "substr(curve, 405) AS BLOB)",
+          DIG_EINVAL, "run.curve: a number that is not finite" },
         { "UPDATE ground SET rolling = -0.5", DIG_EINVAL, "ground.rolling: -0.5, expected >= 0" },
         { "DELETE FROM entry; DELETE FROM run; DELETE FROM ground", DIG_EINVAL, "ground: no rows" },
         { "DROP TABLE entry", DIG_EIO, "no such table: entry" },
@@ -306,6 +343,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_head_is_that_of_the_scene),
         cmocka_unit_test(mean_and_spread_are_those_of_the_packings),
+        cmocka_unit_test(the_covariance_is_that_of_the_packings_of_all_gravels),
         cmocka_unit_test(a_curve_runs_along_the_path_not_along_time),
         cmocka_unit_test(a_step_becomes_a_ramp_as_long_as_the_moving_average),
         cmocka_unit_test(a_single_packing_takes_the_pooled_relative_spread),

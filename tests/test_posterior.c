@@ -423,8 +423,11 @@ static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
     static const struct {
         double both;
         int    packings;
-    } gravels[]             = { { 0.3, 4 }, { 0.5, 5 }, { 0.9, 4 } };
-    double off[2][DIG_AXES] = { { 0.0 } };
+    } gravels[] = { { 0.3, 4 }, { 0.5, 5 }, { 0.9, 4 } };
+    // Half of what the moment alone is off by, without what the packings tell of errors along a
+    // dig.
+    static const double most[DIG_AXES]   = { 0.041, 0.108, 0.079 };
+    double              off[2][DIG_AXES] = { { 0.0 } };
     for (int forces = 0; forces < 2; forces++) {
         for (int g = 0; g < 3; g++) {
             add_reference(set, "simpleA", gravels[g].both, gravels[g].packings, forces == 1,
@@ -436,7 +439,7 @@ static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
     for (int a = 0; a < DIG_AXES; a++) {
         print_message("axis %d: off by %.3f of it with the moment, %.3f with forces\n", a,
                       off[0][a] / 6.0, off[1][a] / 6.0);
-        assert_true(off[1][a] < 0.5 * off[0][a]);
+        assert_true(off[1][a] < off[0][a] && off[1][a] / 6.0 < most[a]);
     }
     dig_curve_set_destroy(set);
 }

@@ -1,0 +1,237 @@
+// Tests for estimator/gaussian.c: what is asked of a table's covariance, the formula in what digs
+// made by it show, and the posterior that follows. That D is built as written is tested by
+// test_weighted.c.
+
+#include "estimator/gaussian.h"
+
+#include "estimator/likelihood.h"
+#include "estimator/match.h"
+#include "estimator/posterior.h"
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = DIG_COVARIANCE_NUMBERS, BLOCKS = DIG_COVARIANCE_BLOCKS, POINTS = DIG_CURVE_POINTS };
+enum { WIDE = POINTS / BLOCKS, PACKINGS = 4 };
+
+static const struct made_options options = { .relative_sd = 0.15, .packings = PACKINGS };
+
+// Errors of the block means of one dig, relative to the size of the curve: what all blocks share,
+// of other sign in Fx, and what neighbours share; or each by itself.
+static void draw(const bool together, uint64_t *const seed, double error[N])
+{
+    const double shared = together ? 0.08 * model_normal(seed) : 0.0;
+    double       last   = 0.0;
+    for (int i = 0; i < N; i++) {
+        last     = (together && i % BLOCKS > 0 ? 0.6 * last : 0.0) + 0.06 * model_normal(seed);
+        error[i] = last + (i / BLOCKS == 1 ? -shared : shared);
+    }
+}
+
+static struct dig_curve_set *taught(const double freedom, const bool together, uint64_t *const seed)
+{
+    enum { DIGS = 4000 };
+    struct dig_curve_set *const set = made_table(&options);
+    set->covariance                 = calloc(MADE_TRAJECTORIES, sizeof *set->covariance);
+    for (int dig = 0; dig < DIGS; dig++) {
+        double error[N];
+        draw(together, seed, error);
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                set->covariance[MADE_SIMPLE_A].of[i][j] += error[i] * error[j] / DIGS;
+            }
+        }
+    }
+    set->covariance[MADE_SIMPLE_A].freedom = freedom;
+    return set;
+}
+
+static void forget(struct dig_curve_set *const set)
+{
+    free(set->covariance);
+    set->covariance = NULL;
+    made_table_destroy(set);
+}
+
+// A dig of a gravel whose table's mean is off, too: as by that many packings.
+static struct dig_observation dig_there(const struct dig_gravel *const gravel, const bool forces,
+                                        const bool together, uint64_t *const seed)
+{
+    static const double    by[] = { 1.0, -8.0, 5.0 };
+    struct dig_observation o    = made_observation(gravel, MADE_SIMPLE_A, 0.0);
+    double                 own[N], size = 0.0;
+    draw(together, seed, own);
+    for (int p = 0; p < PACKINGS; p++) {
+        double table[N];
+        draw(together, seed, table);
+        for (int i = 0; i < N; i++) {
+            own[i] -= table[i] / PACKINGS;
+        }
+    }
+    for (int b = 0; b < BLOCKS; b++) {
+        double sum = 0.0;
+        for (int k = b * WIDE; k < (b + 1) * WIDE; k++) {
+            sum += o.moment_Nm[k] / WIDE;
+        }
+        size += sum * sum / BLOCKS;
+    }
+    o.forces = forces;
+    for (int k = 0; k < POINTS; k++) {
+        const double mean = o.moment_Nm[k];
+        o.moment_Nm[k] += sqrt(size) * own[k / WIDE];
+        for (int f = 1; f < 3; f++) {
+            o.force_N[f - 1][k] =
+                by[f] * mean + fabs(by[f]) * sqrt(size) * own[f * BLOCKS + k / WIDE];
+        }
+    }
+    return o;
+}
+
+// Where numbers are independent q is as large as there are numbers: chi-square, four standard
+// errors of its mean. Where they go together it is somewhat less, as each is given a share of its
+// own and correlations are drawn towards even ones, and never more.
+static void misses_are_as_large_as_digs_make_them(void **state)
+{
+    (void)state;
+    enum { TRIALS = 300 };
+    for (int way = 0; way < 4; way++) {
+        const bool                  forces = way % 2 == 1, together = way / 2 == 1;
+        uint64_t                    seed = 5;
+        double                      sum  = 0.0;
+        struct dig_curve_set *const set  = taught(DIG_GAUSSIAN_FREEDOM, together, &seed);
+        for (int trial = 0; trial < TRIALS; trial++) {
+            const struct dig_gravel *const gravel = &set->gravel[trial % 48];
+            const struct dig_observation   dig    = dig_there(gravel, forces, together, &seed);
+            struct dig_pool_sums           sums;
+            struct dig_gaussian            g;
+            struct dig_cell                cell;
+            dig_pool_sum(1, &dig, &sums);
+            assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+            assert_int_equal(g.numbers, forces ? N : BLOCKS);
+            assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
+            sum += dig_gaussian_misses(&g, &cell).square / (double)g.numbers / TRIALS;
+        }
+        const double error = sqrt(2.0 / (TRIALS * (forces ? N : BLOCKS)));
+        print_message("%s, %s: mean q over numbers %.3f\n", forces ? "moment and forces" : "moment",
+                      together ? "together" : "each by itself", sum);
+        assert_true(sum < 1.0 + 4.0 * error && sum > (together ? 0.7 : 1.0 - 4.0 * error));
+        forget(set);
+    }
+}
+
+// The posterior's interval holds the gravel of nine digs in ten, or a little more: the logarithm
+// counts by less than it would.
+static void the_interval_holds_the_gravel(void **state)
+{
+    (void)state;
+    const int                   trials       = getenv("DIG_TEST_QUICK") != NULL ? 60 : 200;
+    uint64_t                    seed         = 11;
+    struct dig_curve_set *const set          = taught(DIG_GAUSSIAN_FREEDOM, true, &seed);
+    int                         in[DIG_AXES] = { 0 };
+    for (int trial = 0; trial < trials; trial++) {
+        const struct dig_gravel      gravel = { { 0.3 + 0.6 * model_uniform(&seed),
+                                                  0.1 + 0.9 * model_uniform(&seed),
+                                                  1500 * pow(4000.0 / 1500.0, model_uniform(&seed)) } };
+        const struct dig_observation dig    = dig_there(&gravel, true, true, &seed);
+        struct dig_match             match;
+        assert_int_equal(dig_match_nearest(set, &dig, 3.0, &match), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, &dig, 100, &match), DIG_OK);
+        for (int a = 0; a < DIG_AXES; a++) {
+            in[a] +=
+                gravel.value[a] >= match.low.value[a] && gravel.value[a] <= match.high.value[a];
+        }
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        print_message("axis %d: %d of %d in the interval\n", a, in[a], trials);
+        assert_true(in[a] > trials * (0.9 - 3.0 * sqrt(0.9 * 0.1 / trials)));
+    }
+    forget(set);
+}
+
+// What is too little to be believed is not used: the likelihood is the one without it.
+static void a_covariance_of_too_few_packings_is_not_believed(void **state)
+{
+    (void)state;
+    uint64_t                     seed = 3;
+    struct dig_curve_set *const  set  = taught(DIG_GAUSSIAN_FREEDOM - 1.0, true, &seed);
+    const struct dig_observation dig  = dig_there(&set->gravel[7], true, true, &seed);
+    struct dig_pool_sums         sums;
+    struct dig_gaussian          g;
+    struct dig_cell              cell;
+    struct dig_likelihood        few, enough, none;
+    dig_pool_sum(1, &dig, &sums);
+    assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
+    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+    assert_true(dig_gaussian_assume(set, NULL, &sums.group[0], &g));
+    dig_likelihood_make(set, NULL, &sums.group[0], &few);
+    set->covariance[MADE_SIMPLE_A].freedom += 1.0;
+    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+    dig_likelihood_make(set, NULL, &sums.group[0], &enough);
+    struct dig_covariance *const covariance = set->covariance;
+    set->covariance                         = NULL;
+    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+    dig_likelihood_make(set, NULL, &sums.group[0], &none);
+    set->covariance = covariance;
+    assert_close(dig_likelihood_log(&few, &cell), dig_likelihood_log(&none, &cell), 0.0);
+
+    const struct dig_misses misses = dig_gaussian_misses(&enough.gaussian, &cell);
+    assert_close(dig_likelihood_log(&enough, &cell), -0.35 * (misses.square + misses.log_det),
+                 1e-9);
+    // What is asked of being outside the table is not changed by it.
+    assert_close(dig_likelihood_miss2(&enough, &cell), dig_likelihood_miss2(&none, &cell), 0.0);
+    forget(set);
+}
+
+// Halves of blocks that were not measured whole are left out, and the rest is compared.
+static void what_was_not_measured_is_not_compared(void **state)
+{
+    (void)state;
+    uint64_t                    seed = 8;
+    struct dig_curve_set *const set  = taught(DIG_GAUSSIAN_FREEDOM, true, &seed);
+    static const struct {
+        double first, last;
+        size_t numbers;
+    } cases[] = { { 0.0, 1.0, 8 },  { 0.0, 0.499, 4 }, { 0.0, 0.57, 5 }, { 0.06, 1.0, 8 },
+                  { 0.13, 1.0, 7 }, { 0.5, 0.52, 0 },  { 0.4, 0.42, 0 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct dig_observation dig = dig_there(&set->gravel[7], false, true, &seed);
+        struct dig_pool_sums   sums;
+        struct dig_gaussian    g;
+        struct dig_cell        cell;
+        dig.first = cases[i].first;
+        dig.last  = cases[i].last;
+        dig_pool_sum(1, &dig, &sums);
+        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g) == (cases[i].numbers > 0));
+        assert_int_equal(g.numbers, cases[i].numbers);
+        if (cases[i].numbers == 0) {
+            continue;
+        }
+        // What lies where nothing was measured makes no difference.
+        assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
+        const struct dig_misses before = dig_gaussian_misses(&g, &cell);
+        for (int k = 0; k < POINTS; k++) {
+            if (k / 255.0 < dig.first || k / 255.0 > dig.last) {
+                dig.moment_Nm[k] = 1e3;
+            }
+        }
+        dig_pool_sum(1, &dig, &sums);
+        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+        assert_close(dig_gaussian_misses(&g, &cell).square, before.square, 0.0);
+        assert_close(dig_gaussian_misses(&g, &cell).log_det, before.log_det, 0.0);
+    }
+    forget(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(misses_are_as_large_as_digs_make_them),
+        cmocka_unit_test(the_interval_holds_the_gravel),
+        cmocka_unit_test(a_covariance_of_too_few_packings_is_not_believed),
+        cmocka_unit_test(what_was_not_measured_is_not_compared),
+    };
+    return cmocka_run_group_tests_name("gaussian", tests, NULL, NULL);
+}
