@@ -96,11 +96,13 @@ struct dig_observation {
 /// Which gravel. Distances are ||measured - table|| / ||measured|| over the points measured, of all
 /// digs that were pooled.
 struct dig_match {
-    bool              valid;
-    uint32_t          dig_count; // of the observation it came from, the youngest of several
-    size_t            digs;      // pooled
-    int               nearest;   // entry of the table
-    double            nearest_distance;
+    bool     valid;
+    uint32_t dig_count; // of the observation it came from, the youngest of several
+    size_t   digs;      // pooled
+    int      nearest;   // entry of the table
+    double   nearest_distance;
+    int      weighted; // entry nearest by the noise-weighted distance (estimator/weighted.h)
+    double   weighted_distance; // 1 is expected of digs of its gravel; -1 and NaN: not looked for
     struct dig_gravel gravel; // between the grid points: of the smallest distance, or, where forces
                               // were measured, the most probable
     double            distance;

@@ -3,6 +3,7 @@
 #include "estimator/interpolate.h"
 #include "estimator/nearest.h"
 #include "estimator/pool.h"
+#include "estimator/weighted.h"
 
 #include <assert.h>
 #include <math.h>
@@ -183,17 +184,32 @@ static enum dig_status find(const struct dig_curve_set *const set,
         .digs             = digs,
         .nearest          = nearest,
         .nearest_distance = best.distance,
-        .gravel           = set->gravel[nearest],
-        .distance         = best.distance,
-        .mean             = set->gravel[nearest],
-        .mode             = set->gravel[nearest],
-        .low              = set->gravel[nearest],
-        .high             = set->gravel[nearest],
-        .noise_floor      = best.noise_floor,
-        .outside          = best.distance > outside_floors * best.noise_floor,
-        .outside_floors   = outside_floors,
+        .weighted         = -1,
+
+        .weighted_distance = (double)NAN,
+        .gravel            = set->gravel[nearest],
+        .distance          = best.distance,
+        .mean              = set->gravel[nearest],
+        .mode              = set->gravel[nearest],
+        .low               = set->gravel[nearest],
+        .high              = set->gravel[nearest],
+        .noise_floor       = best.noise_floor,
+        .outside           = best.distance > outside_floors * best.noise_floor,
+        .outside_floors    = outside_floors,
     };
     return DIG_OK;
+}
+
+void dig_match_weigh(const struct dig_curve_set *const set, const struct dig_summary *const summary,
+                     const size_t digs, const struct dig_observation dig[],
+                     struct dig_match *const match)
+{
+    assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+    const struct dig_weighted best = dig_weighted_find(set, summary, &sums, (size_t)match->nearest);
+    match->weighted                = best.entry;
+    match->weighted_distance       = best.entry >= 0 ? best.distance : (double)NAN;
 }
 
 enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,

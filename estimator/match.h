@@ -74,6 +74,12 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest_by(const struct dig_summary *su
                                                     const struct dig_observation dig[],
                                                     double outside_floors, struct dig_match *match);
 
+/// Sets weighted and weighted_distance of a valid match of these digs: the entry that is nearest by
+/// the noise-weighted distance, over every channel that all of them measured. By a summary of the
+/// set the same sooner; NULL is allowed. 200 kB of stack. O(entries).
+void dig_match_weigh(const struct dig_curve_set *set, const struct dig_summary *summary,
+                     size_t digs, const struct dig_observation dig[], struct dig_match *match);
+
 /// An axis is not told where its 90 % interval is wider than this share of the table's axis (of
 /// density, of its logarithm): the digs do not say which half of it. Where nothing is told at all
 /// the interval is nine tenths of the axis; where two gravels far apart are both likely it spans

@@ -29,18 +29,20 @@ struct dig_text {
 };
 
 struct identity_text {
-    char               scene_hash[65];
-    char               trajectory[DIG_NAME_SIZE];
-    uint32_t           digs;
-    bool               forces;
-    double             depth, attack_deg;                 // depth 0: not given
-    double             matched_depth, matched_attack_deg; // the same
-    struct gravel_text gravel, mean, low, high, nearest;
-    double             distance, nearest_distance, noise_floor;
-    bool               outside;
-    bool               family;
-    struct gravel_text samples[DIG_IDENTITY_SAMPLES_MAX];
-    uint32_t           samples_count;
+    char                scene_hash[65];
+    char                trajectory[DIG_NAME_SIZE];
+    uint32_t            digs;
+    bool                forces;
+    double              depth, attack_deg;                 // depth 0: not given
+    double              matched_depth, matched_attack_deg; // the same
+    struct gravel_text  gravel, mean, low, high, nearest;
+    struct gravel_text *weighted_nearest; // NULL: from before there was one
+    double              weighted_distance;
+    double              distance, nearest_distance, noise_floor;
+    bool                outside;
+    bool                family;
+    struct gravel_text  samples[DIG_IDENTITY_SAMPLES_MAX];
+    uint32_t            samples_count;
 
     struct dig_text recorded[DIG_IDENTITY_DIGS_MAX];
     uint32_t        recorded_count;
@@ -103,6 +105,9 @@ static const cyaml_schema_field_t fields[] = {
     GRAVEL(low),
     GRAVEL(high),
     GRAVEL(nearest),
+    CYAML_FIELD_MAPPING_PTR("weighted_nearest", CYAML_FLAG_OPTIONAL, struct identity_text,
+                            weighted_nearest, gravel_fields),
+    NUMBER_PERHAPS(weighted_distance),
     CYAML_FIELD_FLOAT("distance", REQUIRED, struct identity_text, distance),
     CYAML_FIELD_FLOAT("nearest_distance", REQUIRED, struct identity_text, nearest_distance),
     CYAML_FIELD_FLOAT("noise_floor", REQUIRED, struct identity_text, noise_floor),
@@ -227,7 +232,18 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     };
     memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
     memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
+    if (text->weighted_nearest != NULL) {
+        read.weighted          = true;
+        read.weighted_nearest  = gravel_of(text->weighted_nearest);
+        read.weighted_distance = text->weighted_distance;
+    }
     status = take_made(path, text, &read, error);
+    if (status == DIG_OK && read.weighted &&
+        !(is_gravel(&read.weighted_nearest) && read.weighted_distance >= 0.0)) {
+        status = dig_yaml_refuse(path, "weighted_nearest", error,
+                                 "no gravel, expected friction and rolling >= 0, density > 0, with "
+                                 "a weighted_distance >= 0");
+    }
     for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
         read.sample[i] = gravel_of(&text->samples[i]);
         if (!is_gravel(&read.sample[i])) {

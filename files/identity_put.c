@@ -103,6 +103,10 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
     put_named(to, "low", &identity->low);
     put_named(to, "high", &identity->high);
     put_named(to, "nearest", &identity->nearest);
+    if (identity->weighted) {
+        put_named(to, "weighted_nearest", &identity->weighted_nearest);
+        (void)fprintf(to, "\"weighted_distance\": %.9g, ", identity->weighted_distance);
+    }
     (void)fprintf(to,
                   "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
                   "\"outside\": %s, \"family\": %s,\n \"samples\": [",

@@ -128,7 +128,7 @@ static enum dig_status refuse_message(const struct reading *const r,
 // The fields of messages/*.lcm, in their order; files/lcm_layout.h says what the letters mean.
 static const char sample_layout[]     = "884DB";
 static const char estimate_layout[]   = "881188888888814s888ss1888";
-static const char match_layout[]      = "88114ss4888888888888888818s4DDDs848118888s1s1";
+static const char match_layout[]      = "88114ss4888888888888888818s4DDDs848118888s1s148888";
 static const char prediction_layout[] = "8818s48884DDDD88188ss88DD";
 static const char health_layout[]     = "88sss1188888888888844888888888888884DDss8s444";
 

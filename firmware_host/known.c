@@ -40,6 +40,9 @@ struct dig_known dig_known_of(const struct dig_curve_set *const   set,
         .made          = dig->made,
         .matched       = dig->approach,
     };
+    if (match->weighted >= 0) {
+        known.weighted = set->gravel[match->weighted];
+    }
     (void)snprintf(known.trajectory, sizeof known.trajectory, "%s",
                    set->trajectory[dig->trajectory].name);
     (void)snprintf(known.table, sizeof known.table, "%s", set->scene_hash);
@@ -178,12 +181,16 @@ enum dig_status dig_known_write(const char *const path, const struct dig_known *
                   .nearest          = known->nearest,
                   .distance         = m->distance,
                   .nearest_distance = m->nearest_distance,
-                  .noise_floor      = m->noise_floor,
-                  .outside          = m->outside,
-                  .family           = dig_match_is_family(m),
-                  .samples          = m->samples,
-                  .made             = known->made,
-                  .matched          = known->matched,
+                  .weighted         = m->weighted >= 0,
+                  .weighted_nearest = known->weighted,
+
+                  .weighted_distance = m->weighted_distance,
+                  .noise_floor       = m->noise_floor,
+                  .outside           = m->outside,
+                  .family            = dig_match_is_family(m),
+                  .samples           = m->samples,
+                  .made              = known->made,
+                  .matched           = known->matched,
     };
     memcpy(identity.scene_hash, known->table, sizeof identity.scene_hash);
     memcpy(identity.trajectory, known->trajectory, sizeof identity.trajectory);
@@ -240,6 +247,10 @@ bool dig_known_move(struct dig_known *const known, const struct dig_curve_set *c
     }
     known->match.nearest = nearest_entry(set, &known->match.gravel);
     known->nearest       = set->gravel[known->match.nearest];
+    if (known->match.weighted >= 0) {
+        known->match.weighted = nearest_entry(set, &known->weighted);
+        known->weighted       = set->gravel[known->match.weighted];
+    }
     dig_match_tell_family(set, &known->match);
     return true;
 }
@@ -333,6 +344,9 @@ enum dig_status dig_known_read(const char *const path, const struct dig_curve_se
     m->high                   = i.high;
     m->distance               = i.distance;
     m->nearest_distance       = i.nearest_distance;
+    m->weighted               = i.weighted ? 0 : -1; // which, the table says below
+    m->weighted_distance      = i.weighted ? i.weighted_distance : (double)NAN;
+    read.weighted             = i.weighted_nearest;
     m->noise_floor            = i.noise_floor;
     m->outside                = i.outside;
     m->samples                = i.samples < DIG_MATCH_SAMPLES ? i.samples : DIG_MATCH_SAMPLES;

@@ -31,6 +31,7 @@ struct dig_known {
     char              trajectory[DIG_NAME_SIZE]; // of the dig it came from
     char              table[65];                 // scene hash
     struct dig_gravel nearest;
+    struct dig_gravel weighted; // the entry of the least noise-weighted distance, if there is one
     int64_t           time_ns, expires_ns; // CLOCK_MONOTONIC
     double            drift;               // of the last dig compared, in noise floors; NaN: none
     int               differed;            // digs in a row that did

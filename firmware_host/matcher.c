@@ -62,12 +62,24 @@ enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
     assert(matcher != NULL && (matcher->outline == NULL || matcher->summary.set == set));
     if (matcher->varies) {
         const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
-        return dug != NULL ? dig_match_nearest_pool(dug, digs, matcher->dig, outside_floors, match)
-                           : DIG_ENOMEM;
+        if (dug == NULL) {
+            return DIG_ENOMEM;
+        }
+        const enum dig_status status =
+            dig_match_nearest_pool(dug, digs, matcher->dig, outside_floors, match);
+        if (status == DIG_OK) {
+            dig_match_weigh(dug, NULL, digs, matcher->dig, match);
+        }
+        return status;
     }
-    return matcher->outline != NULL
-               ? dig_match_nearest_by(&matcher->summary, digs, dig, outside_floors, match)
-               : dig_match_nearest_pool(set, digs, dig, outside_floors, match);
+    const struct dig_summary *const summary = matcher->outline != NULL ? &matcher->summary : NULL;
+    const enum dig_status           status =
+        summary != NULL ? dig_match_nearest_by(summary, digs, dig, outside_floors, match)
+                                  : dig_match_nearest_pool(set, digs, dig, outside_floors, match);
+    if (status == DIG_OK) {
+        dig_match_weigh(set, summary, digs, dig, match);
+    }
+    return status;
 }
 
 enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,

@@ -158,13 +158,16 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     const struct dig_known *const  k       = &result->known;
     const struct dig_match *const  m       = &k->match;
     const struct dig_gravel *const nearest = &k->nearest;
-    const struct dig_approach      matched = dig_approach_told(&k->matched);
-    char                           name[TEXT_SIZE];
-    char                           table[TEXT_SIZE];
-    char                           wanted[TEXT_SIZE];
-    char                           hint[TEXT_SIZE];
-    char                           untold[DIG_UNTOLD_SIZE];
-    double                         sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
+    const struct dig_gravel        weighted =
+        m->weighted >= 0 ? k->weighted
+                                : (struct dig_gravel){ { (double)NAN, (double)NAN, (double)NAN } };
+    const struct dig_approach matched = dig_approach_told(&k->matched);
+    char                      name[TEXT_SIZE];
+    char                      table[TEXT_SIZE];
+    char                      wanted[TEXT_SIZE];
+    char                      hint[TEXT_SIZE];
+    char                      untold[DIG_UNTOLD_SIZE];
+    double                    sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
     (void)snprintf(name, sizeof name, "%s", k->trajectory);
     (void)snprintf(table, sizeof table, "%s", k->table);
     (void)snprintf(wanted, sizeof wanted, "%s", k->wanted);
@@ -221,6 +224,12 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .family                = dig_match_is_family(m) ? 1 : 0,
         .untold                = untold,
         .ending                = (int8_t)k->ending,
+
+        .weighted_entry         = m->weighted,
+        .weighted_friction      = weighted.value[DIG_AXIS_FRICTION],
+        .weighted_rolling       = weighted.value[DIG_AXIS_ROLLING],
+        .weighted_density_kgpm3 = weighted.value[DIG_AXIS_DENSITY_kgpm3],
+        .weighted_distance      = m->weighted >= 0 ? m->weighted_distance : (double)NAN,
     };
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
 }

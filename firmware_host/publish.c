@@ -173,22 +173,29 @@ static void say_known(const struct dig_publisher *const p)
     }
     char        how[96];
     char        untold[DIG_UNTOLD_SIZE];
-    char        digs[48] = "";
-    const char *forces   = m->forces ? ", by moment and forces" : ", by the moment alone";
+    char        digs[48]     = "";
+    char        weighted[96] = "";
+    const char *forces       = m->forces ? ", by moment and forces" : ", by the moment alone";
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
+    }
+    if (m->weighted >= 0) {
+        (void)snprintf(weighted, sizeof weighted,
+                       ", noise-weighted entry %.2f / %.2f / %.0f at %.2f",
+                       k->weighted.value[DIG_AXIS_FRICTION], k->weighted.value[DIG_AXIS_ROLLING],
+                       k->weighted.value[DIG_AXIS_DENSITY_kgpm3], m->weighted_distance);
     }
     approach_text(k, sizeof how, how);
     dig_match_untold(m, untold);
     say(p,
         "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
-        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s%s%s",
+        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s%s%s%s",
         k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory, how,
         m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
         m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
         m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
         m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
-        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, forces, digs,
+        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, weighted, forces, digs,
         m->outside ? "; OUTSIDE the table: none of its gravels" : "",
         untold[0] != '\0' ? "; a FAMILY of gravels, not told: " : "", untold);
 }

@@ -25,6 +25,10 @@ static void what_is_known_survives_in_its_file(void **state)
     const struct dig_known *const k = &again->fit.known;
     assert_true(k->valid && k->restored);
     assert_int_equal(k->match.nearest, 6);
+    assert_int_equal(before.match.weighted, 6);
+    assert_int_equal(k->match.weighted, 6);
+    assert_close(k->match.weighted_distance, before.match.weighted_distance, 1e-8);
+    assert_memory_equal(&k->weighted, &b->cube.set.gravel[6], sizeof k->weighted);
     assert_int_equal(k->match.samples, before.match.samples);
     for (int a = 0; a < DIG_AXES; a++) {
         assert_close(k->match.gravel.value[a], before.match.gravel.value[a],
@@ -90,6 +94,15 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
     assert_true(again->fit.known.restored);
     assert_true(again->fit.known.match.untold[DIG_AXIS_ROLLING]);
     assert_false(again->fit.known.match.untold[DIG_AXIS_FRICTION]);
+
+    // A file from before there was a noise-weighted entry tells none.
+    family.match.weighted = -1;
+    assert_int_equal(
+        dig_known_write(scratch_path("family.json"), &family, &b->cube.set, &b->fit.pool, NULL),
+        DIG_OK);
+    dig_fit_restore(&again->fit);
+    assert_int_equal(again->fit.known.match.weighted, -1);
+    assert_true(isnan(again->fit.known.match.weighted_distance));
     free(b);
     free(again);
 }

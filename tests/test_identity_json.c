@@ -19,11 +19,15 @@ static struct dig_identity example(void)
         .nearest          = { { 0.5, 0.5, 2500.0 } },
         .distance         = 0.11,
         .nearest_distance = 0.12,
-        .noise_floor      = 0.2,
-        .outside          = true,
-        .family           = true,
-        .samples          = 2,
-        .sample           = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
+        .weighted         = true,
+        .weighted_nearest = { { 0.3, 0.6, 1500.0 } },
+
+        .weighted_distance = 1.25,
+        .noise_floor       = 0.2,
+        .outside           = true,
+        .family            = true,
+        .samples           = 2,
+        .sample            = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
     };
     memset(id.scene_hash, 'a', 64);
     id.recorded = 2;
@@ -74,7 +78,10 @@ static void what_was_written_is_read_back(void **state)
         assert_close(back.high.value[a], id.high.value[a], 1e-6);
         assert_close(back.nearest.value[a], id.nearest.value[a], 1e-6);
         assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
+        assert_close(back.weighted_nearest.value[a], id.weighted_nearest.value[a], 1e-6);
     }
+    assert_true(back.weighted);
+    assert_close(back.weighted_distance, 1.25, 1e-9);
     assert_close(back.noise_floor, 0.2, 1e-9);
     assert_close(back.made.depth, 1.25, 1e-9);
     assert_close(back.made.attack_rad, 0.02, 1e-9);
@@ -144,7 +151,7 @@ static void what_was_written_before_forces_is_read(void **state)
     if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_true(read.digs > 0 && !read.forces && !(read.made.depth > 0.0));
+    assert_true(read.digs > 0 && !read.forces && !read.weighted && !(read.made.depth > 0.0));
 }
 
 // Each defect names the file and the key, and leaves what was there.
@@ -166,6 +173,8 @@ static void defects_are_refused_by_name(void **state)
         { "\"digs\": 3", "\"digs\": -3", "digs" },
         { "\"distance\": 0.11,", "", "distance" },
         { "\"friction\": 0.55,", "\"friction\": -0.55,", "samples" },
+        { "\"rolling\": 0.6,", "\"rolling\": -0.6,", "weighted_nearest" },
+        { "\"weighted_distance\": 1.25", "\"weighted_distance\": -1", "weighted_nearest" },
         { "2345.6", "nan", "density_kgpm3" },
         { "\"simpleA\"", "\"a name that is far too long for any trajectory\"", "trajectory" },
         { "{\"scene_hash\"", "{\"scene\"", "scene" },

@@ -210,6 +210,7 @@ static void a_match_names_gravel_interval_and_table(void **state)
         .known.made       = { 1.25, 0.02 },
         .known.matched    = { 1.2, 0.01 },
         .known.nearest    = { { 0.6, 0.2, 2500 } },
+        .known.weighted   = { { 0.7, 0.3, 2600 } },
         .hint_trajectory  = "actual",
         .hint_J_per_kg    = 12.5,
         .known.match      = { .valid            = true,
@@ -225,7 +226,10 @@ static void a_match_names_gravel_interval_and_table(void **state)
                               .forces           = true,
                               .samples          = 2,
                               .untold           = { false, true, true },
-                              .sample           = { { { 0.4, 0.1, 1900 } }, { { 0.5, 0.2, 2100 } } } },
+                              .weighted         = 4,
+
+                              .weighted_distance = 1.25,
+                              .sample            = { { { 0.4, 0.1, 1900 } }, { { 0.5, 0.2, 2100 } } } },
     };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
     dig_output_destroy(output);
@@ -241,6 +245,11 @@ static void a_match_names_gravel_interval_and_table(void **state)
     assert_int_equal(seen.match.forces, 1);
     assert_close(seen.match.nearest_friction, 0.6, 0.0);
     assert_close(seen.match.nearest_density_kgpm3, 2500, 0.0);
+    assert_int_equal(seen.match.weighted_entry, 4);
+    assert_close(seen.match.weighted_friction, 0.7, 0.0);
+    assert_close(seen.match.weighted_rolling, 0.3, 0.0);
+    assert_close(seen.match.weighted_density_kgpm3, 2600, 0.0);
+    assert_close(seen.match.weighted_distance, 1.25, 0.0);
     assert_close(seen.match.friction, 0.5, 0.0);
     assert_close(seen.match.friction_low, 0.4, 0.0);
     assert_close(seen.match.rolling_high, 0.2, 0.0);

@@ -9,9 +9,10 @@
 // do in a computed table. Digs are of gravels between the points, with the error of one dig; every
 // second one measured the forces too. Prints
 //   KIND ENTRIES DIGS MEDIAN_ms WORST_ms PLAIN_ms
-// for "nearest", "moment" and "forces" (refined), PLAIN without a summary, then
+// for "nearest", "weighed_moment" and "weighed_forces" (the entry of the least noise-weighted
+// distance), "moment" and "forces" (refined), PLAIN without a summary, then
 //   off SHARE    by what share of an axis an interval's end is off without it, at most
-// Fails when an entry or its distance is not the same to the last bit.
+// Fails when an entry or its distance (of either kind) is not the same to the last bit.
 
 #include "estimator/match.h"
 #include "estimator/interpolate.h"
@@ -193,6 +194,22 @@ static double interval_off(const struct dig_curve_set *const set, const struct d
     return off;
 }
 
+static void weigh_once(const struct dig_summary *const     summary,
+                       const struct dig_observation *const o, struct times *const weighed)
+{
+    struct dig_match match = { .valid = true }, plain = { .valid = true };
+    const double     from = cpu_ms();
+    dig_match_weigh(summary->set, summary, 1, o, &match);
+    const double found = cpu_ms();
+    dig_match_weigh(summary->set, NULL, 1, o, &plain);
+    note(weighed, found - from, cpu_ms() - found);
+    if (match.weighted != plain.weighted ||
+        memcmp(&match.weighted_distance, &plain.weighted_distance,
+               sizeof match.weighted_distance) != 0) {
+        die("another entry is nearer by the noise-weighted distance than the one found");
+    }
+}
+
 // One dig, with and without the summary. Returns by how much the intervals differ.
 static double match_once(const struct dig_summary *const     summary,
                          const struct dig_observation *const o, struct times *const nearest,
@@ -258,14 +275,17 @@ int main(const int argc, char **const argv)
     struct dig_summary                summary;
     dig_summary_make(set, outline, &summary);
 
-    static struct times nearest, moment, forces;
+    static struct times nearest, moment, forces, weighed[2];
     double              off  = 0.0;
     uint64_t            seed = 7;
     for (int d = 0; d < digs; d++) {
         const struct dig_observation o = dig_somewhere(from, d % 2 == 1, &seed);
         off = fmax(off, match_once(&summary, &o, &nearest, d % 2 == 1 ? &forces : &moment));
+        weigh_once(&summary, &o, &weighed[d % 2]);
     }
     print("nearest", set->entries, &nearest);
+    print("weighed_moment", set->entries, &weighed[0]);
+    print("weighed_forces", set->entries, &weighed[1]);
     print("moment", set->entries, &moment);
     print("forces", set->entries, &forces);
     (void)printf("off %.1e\n", off);

@@ -15,6 +15,12 @@ make --no-print-directory -s BUILD="$BUILD" "$BUILD/tests/bench/match" >&2
         printf "match-nearest %.0f x-a-look-at-all median %s ms, a look at all %s; the same entry and distance in %d of %d digs, %d curves\n",
             plain["nearest"] / ms["nearest"], ms["nearest"], plain["nearest"], n["nearest"], n["nearest"], entries
         printf "match-nearest-limit %.2f x-of-10ms median %s ms, worst %s\n", ms["nearest"] / 10, ms["nearest"], worst["nearest"]
+        for (k = 1; k <= split("weighed_moment weighed_forces", kinds); k++) {
+            kind = kinds[k]
+            sub("_", "-", kind)
+            printf "match-%s %.2f x-of-10ms median %s ms, worst %s, without a summary %s; the same entry and distance in %d digs\n",
+                kind, ms[kinds[k]] / 10, ms[kinds[k]], worst[kinds[k]], plain[kinds[k]], n[kinds[k]]
+        }
         split("moment forces", kinds)
         for (k = 1; k <= 2; k++) {
             kind = kinds[k]

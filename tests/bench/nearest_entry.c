@@ -1,6 +1,7 @@
 // Which distance finds the entry that a dig is of: each dig of a gravel that was dug more than
 // once, against the table without that dig. The Euclidean norm of the moment (by which MATCH's
-// nearest entry is), the noise-weighted distance of the moment, and of moment and forces. Of each:
+// nearest entry is), the posterior's likelihood of the moment, and of moment and forces, and the
+// noise-weighted distance of both (by which MATCH's weighted entry is). Of each:
 // how often the entry is the dig's own, and by how much its moment along the other trajectory is
 // off that of the dig's own entry. Last what is predicted, which is of no entry: the posterior's
 // mean.
@@ -19,8 +20,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RUNS_MAX = 400, WAYS = 3 };
-static const char *const way_names[WAYS] = { "Euclidean, moment", "noise-weighted, moment",
+enum { RUNS_MAX = 400, WAYS = 5 };
+static const char *const way_names[WAYS] = { "Euclidean, moment", "likelihood, moment",
+                                             "likelihood, moment and forces",
+                                             "noise-weighted, moment",
                                              "noise-weighted, moment and forces" };
 
 struct run {
@@ -84,6 +87,16 @@ static size_t likeliest(const struct bench *const b, const struct dig_observatio
     return best;
 }
 
+static size_t weighted(const struct bench *const b, const struct dig_observation *const dig)
+{
+    struct dig_match match;
+    if (dig_match_nearest(b->set, dig, 2.5, &match) != DIG_OK) {
+        return 0;
+    }
+    dig_match_weigh(b->set, NULL, 1, dig, &match);
+    return (size_t)match.weighted;
+}
+
 // Relative, of a moment along the other trajectory against that of an entry.
 static double off_by(const struct bench *const b, const struct dig_curve *const is,
                      const size_t truth)
@@ -108,9 +121,10 @@ static void judge(struct bench *const b, const struct run *const run)
     if (dig_match_nearest(b->set, &dig, 2.5, &match) != DIG_OK) {
         return;
     }
-    size_t found[WAYS] = { (size_t)match.nearest, likeliest(b, &dig) };
+    size_t found[WAYS] = { (size_t)match.nearest, likeliest(b, &dig), 0, weighted(b, &dig) };
     dig.forces         = true;
     found[2]           = likeliest(b, &dig);
+    found[4]           = weighted(b, &dig);
     b->digs++;
     for (int w = 0; w < WAYS; w++) {
         b->own[w] += found[w] == run->entry ? 1 : 0;

@@ -5,6 +5,7 @@
 //   RESTORED DRIFT DEPTH ATTACK_deg MATCHED_DEPTH MATCHED_ATTACK_deg "WANTED" FORCES DIGS
 //   PATH_MEASURED GOING_ON
 //   family FAMILY "UNTOLD" ENDING
+//   weighted ENTRY FRICTION ROLLING DENSITY DISTANCE
 //   prediction VALID TRAJECTORY|- PROGRESS POINTS PEAK FIRST_MOMENT DEPTH ATTACK_deg "REASON"
 //   spread POINTS PEAK_SIGMA ENERGY ENERGY_SIGMA LEAST_SIGMA_X LEAST_SIGMA_Z
 //   health STATE_ REALTIME FRAMES MALFORMED NAN NOT_AVAILABLE OUT_OF_RANGE FROZEN MISSING
@@ -13,7 +14,8 @@
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   endings WHOLE ABORTED UNKNOWN
 //   samples N DURATION_s MAX_GAP_s
-// family is of the match before it, spread of the prediction, endings of the health.
+// family and weighted are of the match before them, spread of the prediction, endings of the
+// health.
 
 #include "core/units.h"
 #include "files/lcm_log.h"
@@ -49,6 +51,8 @@ static void match(void *const context, const int64_t time_us, const digsight_mat
                  m->matched_attack_rad / DIG_RAD_PER_DEG, m->wanted, m->forces, m->digs,
                  m->path_measured, m->going_on);
     (void)printf("family %d \"%s\" %d\n", m->family, m->untold, m->ending);
+    (void)printf("weighted %d %.4f %.4f %.1f %.3f\n", m->weighted_entry, m->weighted_friction,
+                 m->weighted_rolling, m->weighted_density_kgpm3, m->weighted_distance);
 }
 
 static double least(const int points, const double value[])

@@ -28,6 +28,10 @@ check "and that before most of it is dug" \
     within "$(awk '$1 == "match" { print $(NF - 1); exit }' "$work/csv.txt")" 0.3 0.8
 check "what part of a dig does not tell is told: a family, by rolling friction" grep -q '^family 1 ".*rolling' "$work/csv.txt"
 check "and no family once the dig is over" [ "$(awk '$1 == "family" { was = $0 } END { print was }' "$work/csv.txt")" = 'family 0 "" 1' ]
+# What resists is density times friction and density times rolling friction: 1100 and 880, which .9, .6, 1500 comes nearest to.
+check "the entry nearest by the noise-weighted distance is told" \
+    [ "$(awk '$1 == "weighted" { e = ($2 >= 0) " " $3 " " $4 " " $5 " " ($6 > 1 && $6 < 10) } END { print e }' "$work/csv.txt")" = "1 0.9000 0.6000 1500.0 1" ]
+check "and the log says it" grep -q 'noise-weighted entry 0\.90 / 0\.60 / 1500 at ' "$work/daemon.log"
 check "the actual dig does not identify" [ "$(last match "$work/csv.txt" 5)" = simpleA ]
 check "the actual dig is predicted while it goes on" \
     [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
@@ -79,6 +83,9 @@ check "a daemon started anew goes on with them, forces and all" \
 simpleB=$work/simpleB.csv
 "$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" --json >"$work/A.json" 2>"$work/A.err"
 "$BIN/digloop" predict "$work/table.sqlite" --identified "$work/A.json" --trajectory simpleB -o "$simpleB" >"$work/B.txt" 2>&1
+check "digloop identify tells that entry, too" \
+    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" | grep -q "^  noise-weighted: entry 0.9 / 0.6 / 1500, [1-9]" &&
+          grep -q "\"weighted_nearest\": {\"friction\": 0.9, \"rolling\": 0.6, \"density_kgpm3\": 1500}" "$work/A.json"'
 check "digloop matches simple digs along several trajectories together" \
     eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" "$simpleB" |
           grep -q "^  2 digs (simpleA, simpleB): moment and forces$"'

@@ -115,6 +115,7 @@ static enum dig_status match_all(const struct digloop_options *const options,
                              pool->digs > 1 ? " and all else that was dug" : "");
     }
     if (status == DIG_OK) {
+        dig_match_weigh(set, NULL, pool->digs, pool->dig, match);
         status = dig_fit_refine_pool(set, pool->digs, pool->dig, EVALUATIONS, match);
     }
     return status == DIG_OK
@@ -182,6 +183,12 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
     (void)fprintf(to, "  distance %.3f, nearest entry %.3f, noise floor %.3f%s\n", id->distance,
                   id->nearest_distance, id->noise_floor,
                   id->outside ? "; OUTSIDE: none of the table's gravels" : "");
+    if (id->weighted) {
+        const double *const g = id->weighted_nearest.value;
+        (void)fprintf(to, "  noise-weighted: entry %.4g / %.4g / %.4g, %.2f of what is expected\n",
+                      g[DIG_AXIS_FRICTION], g[DIG_AXIS_ROLLING], g[DIG_AXIS_DENSITY_kgpm3],
+                      id->weighted_distance);
+    }
 }
 
 static void show_family(const struct dig_match *const match, FILE *const to)
@@ -209,6 +216,7 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
         .nearest          = set->gravel[match->nearest],
         .distance         = match->distance,
         .nearest_distance = match->nearest_distance,
+        .weighted         = match->weighted >= 0,
         .noise_floor      = match->noise_floor,
         .outside          = match->outside,
         .family           = dig_match_is_family(match),
@@ -216,6 +224,10 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
         .made             = youngest->made,
         .matched          = youngest->approach,
     };
+    if (id.weighted) {
+        id.weighted_nearest  = set->gravel[match->weighted];
+        id.weighted_distance = match->weighted_distance;
+    }
     _Static_assert(DIG_MATCH_SAMPLES <= DIG_IDENTITY_SAMPLES_MAX, "the posterior must fit");
     memcpy(id.sample, match->sample, match->samples * sizeof match->sample[0]);
     (void)snprintf(id.scene_hash, sizeof id.scene_hash, "%s", set->scene_hash);
