@@ -42,7 +42,7 @@ dig_dig_run(const struct dig_scene *scene, const struct dig_gravel *gravel,
 struct dig_device;
 
 /// The same two with the grains stepped by a device (offline_dem/device.h); NULL: by the kernel.
-/// The scene has no clumps and no obstacles. DIG_EIO when the device fails.
+/// No rock of the scene may be moved. DIG_EIO when the device fails.
 DIG_MUST_CHECK enum dig_status dig_bed_pour_on(struct dig_device       *device,
                                                const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel, uint64_t seed,
@@ -53,7 +53,7 @@ DIG_MUST_CHECK enum dig_status dig_dig_run_on(
     const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
     const struct dig_progress *progress, struct dig_recording *recording, struct dig_error *error);
 
-/// The step a dig is computed with, s: the scene's, or derived (docs/numerics_dem.md).
+/// The step a dig is computed with, s: the scene's, or derived (docs/numerics/dem.md).
 double dig_time_step_s(const struct dig_scene *scene, double density_kgpm3);
 
 #endif // DIG_OFFLINE_DEM_DIG_H

@@ -18,7 +18,7 @@
 // Sources: Di Renzo & Di Maio, Chem. Eng. Sci. 59 (2004) 525; Ai, Chen, Rotter & Ooi, Powder
 // Technol. 206 (2011) 269 (EPSD, here with viscous damping 0); Iwata et al. for the values; the
 // k_n with a characteristic velocity is the linear spring that stores at that velocity as much as
-// Hertz's. Constants and the domain: docs/numerics.md.
+// Hertz's. Constants and the domain: docs/numerics/dem.md.
 
 #ifndef DIG_OFFLINE_DEM_LAW_H
 #define DIG_OFFLINE_DEM_LAW_H
