@@ -41,7 +41,7 @@ messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
 # Those that wait for a bus most of the time: one after the other, beside those that compute; CAN in User
 # Mode Linux wants a core of its own and comes last.
-can_tests := tests/system/daemon_can.sh tests/system/daemon_can_faults.sh tests/system/rig.sh
+can_tests := $(addprefix tests/system/,daemon_can.sh daemon_can_faults.sh daemon_can_link.sh rig.sh)
 bus_tests := $(filter-out $(can_tests),$(wildcard tests/system/daemon_*.sh)) $(can_tests)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
