@@ -15,6 +15,9 @@ static const double half_s = 0.12;
 static const double step_s = 0.025;
 enum { POINTS_IN_BLOCK = 8, POINTS_BESIDE = 20, KERNEL = 4 };
 
+// A rod this fast moves: friction is all there, against it.
+static const double moves_mps = 5.0 * DIG_FRICTION_STILL_mps;
+
 // Readings that are averaged: what a balance needs, and pitch and temperature.
 enum { AVERAGED = DIG_SIGNAL_TEMPERATURE_degC + 1 };
 
@@ -241,7 +244,7 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         .point   = malloc(points * sizeof *made.point),
         .row     = malloc(DIG_JOINTS * points * sizeof *made.row),
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
-        .scratch = malloc((size_t)(2 * DIG_JOINTS) * points * sizeof *made.scratch),
+        .scratch = malloc((size_t)(3 * DIG_JOINTS) * points * sizeof *made.scratch),
     };
     if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL) {
         dig_air_finish(&made);
@@ -291,11 +294,23 @@ static struct dig_air_point delayed(const struct dig_air_point point[], const si
     return out;
 }
 
-// What is left of the joints at one point, N at the rods, and what friction takes of it.
+// What friction may take more than the loss at a speed, either way: a rod that stands may still be
+// held by all that it rubbed with when it last moved, or by less.
+static double held_N(const struct dig_friction *const friction, const double push_N,
+                     const double rod_mps, const double loss_N)
+{
+    if (!(fabs(rod_mps) < moves_mps)) {
+        return 0.0;
+    }
+    return fabs(dig_friction_loss_N(friction, push_N, copysign(moves_mps, rod_mps)) - loss_N);
+}
+
+// What is left of the joints at one point, N at the rods, what friction takes of it, and what it
+// may take more.
 static void rest_at(const struct dig_machine *const    corrected,
                     const struct dig_correction *const correction,
                     struct dig_air_point *const point, const bool calm, double rest_N[DIG_JOINTS],
-                    double loss_N[DIG_JOINTS])
+                    double loss_N[DIG_JOINTS], double more_N[DIG_JOINTS])
 {
     struct dig_correction rigid = *correction;
     for (int j = 0; j < DIG_JOINTS; j++) {
@@ -314,18 +329,23 @@ static void rest_at(const struct dig_machine *const    corrected,
     for (int j = 0; j < DIG_JOINTS; j++) {
         rest_N[j] = 0.0;
         loss_N[j] = 0.0;
+        more_N[j] = 0.0;
         if (balance.lever_ok[j]) {
-            const double arm_m = balance.lever[j].arm_m;
-            rest_N[j]          = balance.rest_Nm[j] / arm_m;
-            loss_N[j] = dig_friction_loss_N(&correction->friction[j], readings.push[j].push_N,
-                                            arm_m * point->rates.velocity_radps[j]);
+            const struct dig_friction *const friction = &correction->friction[j];
+
+            const double arm_m   = balance.lever[j].arm_m;
+            const double push_N  = readings.push[j].push_N;
+            const double rod_mps = arm_m * point->rates.velocity_radps[j];
+            rest_N[j]            = balance.rest_Nm[j] / arm_m;
+            loss_N[j]            = dig_friction_loss_N(friction, push_N, rod_mps);
+            more_N[j]            = held_N(friction, push_N, rod_mps, loss_N[j]);
         }
     }
 }
 
 // Friction turns about at once where a motion does; averaged over the kernel as all else is.
-static double loss_at(const double (*const loss_N)[DIG_JOINTS], const size_t points,
-                      const size_t at, const size_t joint)
+static double smooth_at(const double (*const loss_N)[DIG_JOINTS], const size_t points,
+                        const size_t at, const size_t joint)
 {
     double sum    = 0.0;
     double weight = 0.0;
@@ -341,7 +361,7 @@ static double loss_at(const double (*const loss_N)[DIG_JOINTS], const size_t poi
     return sum / weight;
 }
 
-// Both of every point of a segment into the scratch: rests, then losses.
+// All of every point of a segment into the scratch: rests, losses, what may be lost more.
 static void rest_of(const struct dig_air *const air, const size_t s,
                     const struct dig_correction *const correction, const bool calm)
 {
@@ -349,10 +369,11 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     const struct dig_air_segment *const segment = &air->segment[s];
     const struct dig_air_point *const   point   = &air->point[segment->first_point];
     double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
+    double(*const more_N)[DIG_JOINTS]           = loss_N + segment->points;
     const struct dig_machine corrected          = dig_correction_machine(&air->machine, correction);
     for (size_t p = 0; p < segment->points; p++) {
         struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        rest_at(&corrected, correction, &at, calm, rest_N[p], loss_N[p]);
+        rest_at(&corrected, correction, &at, calm, rest_N[p], loss_N[p], more_N[p]);
     }
 }
 
@@ -361,7 +382,7 @@ static double rest_of_point_N(const struct dig_air *const air, const size_t s, c
 {
     const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
     const size_t points                     = air->segment[s].points;
-    return rest_N[point][joint] - loss_at(rest_N + points, points, point, joint);
+    return rest_N[point][joint] - smooth_at(rest_N + points, points, point, joint);
 }
 
 void dig_air_calm(struct dig_air *const air, const struct dig_correction correction[])
@@ -408,6 +429,27 @@ void dig_air_rest(const struct dig_air *const air, const struct dig_correction c
                 sum_N += rest_of_point_N(air, s, p, row->joint);
             }
             rest[r] = sum_N / (double)row->points / row->sigma_N;
+        }
+    }
+}
+
+void dig_air_held(const struct dig_air *const air, const struct dig_correction correction[],
+                  double held[])
+{
+    assert(air != NULL && correction != NULL && held != NULL);
+    for (size_t s = 0; s < air->segments; s++) {
+        const struct dig_air_segment *const segment = &air->segment[s];
+        const double(*const more_N)[DIG_JOINTS] =
+            (const double(*)[DIG_JOINTS])(void *)air->scratch + 2 * segment->points;
+        rest_of(air, s, &correction[s], false);
+        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
+            const struct dig_air_row *const row   = &air->row[r];
+            const size_t                    first = row->first - segment->first_point;
+            double                          sum_N = 0.0;
+            for (size_t p = first; p < first + row->points; p++) {
+                sum_N += smooth_at(more_N, segment->points, p, row->joint);
+            }
+            held[r] = sum_N / (double)row->points / row->sigma_N;
         }
     }
 }

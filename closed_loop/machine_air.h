@@ -49,7 +49,7 @@ struct dig_air {
     struct dig_air_point   *point;
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
-    double                 *scratch; // [6 * points]
+    double                 *scratch; // [9 * points]
 };
 
 /// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive
@@ -69,5 +69,12 @@ void dig_air_calm(struct dig_air *air, const struct dig_correction correction[])
 /// calm: of the calm pressures, as slopes are to be taken. Uses air's scratch.
 void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
+
+/// How much more than what the correction says, either way, friction may take of every row whose
+/// drive stands or creeps, in its sigmas: all that is dry in it at a standstill, as a rod that
+/// rubbed and stopped may be held by that force or by less; nothing where it moves. Uses air's
+/// scratch.
+void dig_air_held(const struct dig_air *air, const struct dig_correction correction[],
+                  double held[]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_AIR_H

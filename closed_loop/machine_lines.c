@@ -383,6 +383,11 @@ enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slo
             add_form(lines->air, effect, explained, wrong);
         }
     }
+    correct(lines, lines->at, correction);
+    dig_air_held(lines->air, correction, explained);
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        wrong[r] += explained[r];
+    }
     for (size_t r = 0; r < lines->air->rows; r++) {
         lines->trust[r] = 1.0 / hypot(1.0, wrong[r]);
     }

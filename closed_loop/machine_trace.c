@@ -180,7 +180,8 @@ static enum dig_status rest_by_dig(struct search *const s)
 // Effects join until none earns its place.
 static enum dig_status select_effects(struct search *const s)
 {
-    enum dig_status status = begin(s);
+    static const unsigned rubs   = 1U << DIG_EFFECT_CYLINDER_FRICTION;
+    enum dig_status       status = begin(s);
     if (status == DIG_OK) {
         status = rest_by_dig(s);
     }
@@ -197,6 +198,8 @@ static enum dig_status select_effects(struct search *const s)
         s->set = dig_fit_evidence(&s->fit, anew) >= dig_fit_evidence(&s->fit, more) - s->least
                      ? anew
                      : more;
+        // What friction explains tells how far to trust rows of drives that stand: it goes first.
+        s->set = round == 0 && (s->set & rubs) != 0 ? rubs : s->set;
         if (s->set == before) {
             break;
         }

@@ -62,6 +62,7 @@ static int tear_down(void **state)
 // What the machine does that its file does not say.
 struct fault {
     double dry_N;       // the bucket cylinder's seal, against its motion
+    double held_N;      // seals of all drives that bend .2 mm before they slip, and stay bent
     double rod_Pa;      // the bucket's rod side sensor reads so much more
     double late_s;      // pressures are so old
     double payload_kg;  // in the middle of the bucket, from the second dig on
@@ -101,6 +102,16 @@ static double rod_mps(const struct dig_rig_track *const t, const size_t i, const
     assert_int_equal(
         dig_rig_cylinder_m(&machine, (enum dig_joint)j, t->row[a].joints.rad[j], &to_m), DIG_OK);
     return (to_m - from_m) / (t->step_s * (double)(a - b));
+}
+
+// What bent seals hold: by so much of the rod's last way as they can bend.
+static void bend(const struct dig_rig_track *const t, const size_t i, double bent_m[DIG_JOINTS])
+{
+    static const double most_m = 2e-4;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        bent_m[j] += t->step_s * rod_mps(t, i, j);
+        bent_m[j] = fmin(fmax(bent_m[j], -most_m), most_m);
+    }
 }
 
 static double payload_N(const struct dig_rig_row *const row, const int j, const double kg)
@@ -167,13 +178,16 @@ static struct dig_machine_recording record(const int kind, const size_t order,
     const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
     const double                      kept  = exp(-t->step_s / 0.1);
     double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
+    double                            bent_m[DIG_JOINTS]       = { 0.0 };
     uint64_t                          state                    = seed;
     for (size_t i = 0; i < t->rows; i++) {
         const size_t       then = i > late ? i - late : 0;
         struct dig_rig_row row  = t->row[then];
         push_more(&row, DIG_JOINT_BUCKET,
                   fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
+        bend(t, then, bent_m);
         for (int j = 0; j < DIG_JOINTS; j++) {
+            push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s = t->step_s * (double)then + 40.0 * (double)order;
             push_more(&row, j, order > 0 ? payload_N(&row, j, fault->payload_kg) : 0.0);
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
@@ -315,6 +329,7 @@ static void each_effect_is_named_and_taken_off_the_digs(void **state)
         double             value;
     } cases[] = {
         { { .dry_N = 4000.0 }, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0 },
+        { { .held_N = 2000.0 }, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 2000.0 },
         { { .rod_Pa = 4e5 }, DIG_EFFECT_PRESSURE_OFFSET, NULL, 0.0 },
         { { .late_s = 0.2 }, DIG_EFFECT_SENSOR_DELAY, "delay_s", 0.2 },
         { { .payload_kg = 90.0 }, DIG_EFFECT_PAYLOAD, "payload_kg", 90.0 },
