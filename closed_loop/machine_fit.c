@@ -125,12 +125,17 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
             answer->at[column[i]] = share * x[i];
         }
     }
-    for (size_t i = 0; i < n && answer->sigma != NULL; i++) {
+    for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
         double one[MOST];
         memset(one, 0, n * sizeof one[0]);
         one[i] = 1.0;
         substitute(n, h, one);
-        answer->sigma[column[i]] = share * sqrt(fmax(one[i], 0.0));
+        if (answer->sigma != NULL) {
+            answer->sigma[column[i]] = share * sqrt(fmax(one[i], 0.0));
+        }
+        for (size_t j = 0; j < n && answer->covariance != NULL; j++) {
+            answer->covariance[column[i] * all + column[j]] = share * share * one[j];
+        }
     }
 }
 
@@ -211,6 +216,13 @@ void dig_fit_solve(const struct dig_fit *const fit, const unsigned set,
     assert(fit != NULL && answer != NULL);
     solve_at(fit, set, width_of(fit, set), answer);
     answer->log_evidence -= set != 0 ? log(WIDTHS) : 0.0;
+}
+
+void dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
+                        struct dig_fit_answer *const answer)
+{
+    assert(fit != NULL && answer != NULL);
+    solve_at(fit, set, 0, answer);
 }
 
 double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)

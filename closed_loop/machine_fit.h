@@ -37,6 +37,8 @@ struct dig_fit_answer {
     double  width; // of the prior
     double *at;    // [columns], 0 where not of the set; owned by the caller
     double *sigma; // [columns]; may be NULL
+    // [columns * columns], 0 where not of the set; may be NULL
+    double *covariance;
 };
 
 DIG_MUST_CHECK enum dig_status dig_fit_make(const struct dig_lines *lines, struct dig_fit *fit);
@@ -49,6 +51,10 @@ void dig_fit_sum(struct dig_fit *fit, const double weight[]);
 /// Solves for the effects of the set, a bit each of enum dig_effect_id. A bent column stays where
 /// the lines have it. at and sigma of *answer are filled.
 void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
+
+/// The same with priors as wide as the parameters' scales, which hold the more the less the air
+/// tells of a parameter.
+void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
 /// The log evidence of a set alone.
 double dig_fit_evidence(const struct dig_fit *fit, unsigned set);

@@ -24,6 +24,15 @@ dig_machine_side_create(const struct dig_machine *machine, const struct dig_curv
 
 void dig_machine_side_destroy(struct dig_machine_side *side);
 
+/// What free air leaves open of an effect's parameters: they are value and, for z of normal
+/// distribution, the sum over k of z[k] step[k]. With priors as wide as their scales: the narrow
+/// one that an effect is weighed with (machine_fit.h) says nothing of what free air does not tell.
+struct dig_machine_doubt {
+    size_t steps; // as many as parameters
+    double value[DIG_MODEL_PARAMETERS_MAX];
+    double step[DIG_MODEL_PARAMETERS_MAX][DIG_MODEL_PARAMETERS_MAX]; // [k][parameter]
+};
+
 /// What free air says.
 struct dig_machine_finding {
     bool                     significant; // something of the machine is missing
@@ -35,6 +44,7 @@ struct dig_machine_finding {
     struct dig_model_effect  effect[DIG_MODEL_EFFECTS_MAX];
     size_t                   candidates;
     struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
+    struct dig_machine_doubt doubt[DIG_TRACE_CANDIDATES_MAX];     // of each
     size_t                   sets;
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
     bool                     by_digs;     // effect[0] is of free air and the digs together

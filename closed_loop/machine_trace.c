@@ -1,6 +1,7 @@
 // The search for what is missing of the machine: effects join one after the other, and after each
 // the equations are made linear again where it has led.
 
+#include "closed_loop/dense.h"
 #include "closed_loop/machine_drift.h"
 #include "closed_loop/machine_fit.h"
 #include "closed_loop/machine_noise.h"
@@ -31,11 +32,14 @@ static const double tie = 5.0;
 // 5 % and 95 % of a normal distribution, in its sigmas.
 static const double ninety = 1.645;
 
+// In a parameter's scale squared: as good as none.
+static const double least_variance = 1e-10;
+
 struct search {
     struct dig_air           air;
     struct dig_lines         lines;
     struct dig_fit           fit;
-    double                  *at, *sigma;
+    double                  *at, *sigma, *covariance;
     unsigned                 set;
     double                   noise2;     // variance that rows may have without being unclear
     double                   least;      // log evidence that an effect must bring
@@ -53,6 +57,7 @@ static void search_finish(struct search *const s)
     dig_air_finish(&s->air);
     free(s->at);
     free(s->sigma);
+    free(s->covariance);
 }
 
 static enum dig_status search_make(const struct dig_machine_side *const side,
@@ -67,9 +72,10 @@ static enum dig_status search_make(const struct dig_machine_side *const side,
         status = dig_fit_make(&s->lines, &s->fit);
     }
     if (status == DIG_OK) {
-        s->at    = calloc(s->lines.columns, sizeof(double));
-        s->sigma = calloc(s->lines.columns, sizeof(double));
-        status   = s->at != NULL && s->sigma != NULL ? DIG_OK : DIG_ENOMEM;
+        s->at         = calloc(s->lines.columns, sizeof(double));
+        s->sigma      = calloc(s->lines.columns, sizeof(double));
+        s->covariance = calloc(s->lines.columns * s->lines.columns, sizeof(double));
+        status = s->at != NULL && s->sigma != NULL && s->covariance != NULL ? DIG_OK : DIG_ENOMEM;
     }
     return status;
 }
@@ -259,6 +265,43 @@ static size_t write_parameters(const struct search *const s, const enum dig_effe
     return n;
 }
 
+// Of the parameters as write_parameters() has them: the columns of a square root of their
+// covariance.
+static struct dig_machine_doubt doubt_of(struct search *const s, const enum dig_effect_id id)
+{
+    struct dig_fit_answer    answer = { .at = s->at, .covariance = s->covariance };
+    struct dig_machine_doubt made   = { .steps = 0 };
+    size_t                   column[DIG_MODEL_PARAMETERS_MAX];
+    double                   scale[DIG_MODEL_PARAMETERS_MAX];
+    double                   lower[DIG_MODEL_PARAMETERS_MAX * DIG_MODEL_PARAMETERS_MAX];
+    size_t                   n = 0;
+    memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
+    dig_fit_solve_wide(&s->fit, 1U << (unsigned)id, &answer);
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        if (s->lines.column[c].effect == id && s->lines.column[c].segment < 0) {
+            scale[n]      = s->lines.column[c].scale;
+            made.value[n] = dig_effect_of(id)->parameter[s->lines.column[c].parameter].absent +
+                            scale[n] * s->at[c];
+            column[n++] = c;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            lower[i * n + j] = s->covariance[column[i] * s->lines.columns + column[j]];
+        }
+        lower[i * n + i] += least_variance; // of one that is not fitted
+    }
+    if (dig_cholesky(n, lower) == DIG_OK) {
+        made.steps = n;
+        for (size_t k = 0; k < n; k++) {
+            for (size_t i = k; i < n; i++) {
+                made.step[k][i] = scale[i] * lower[i * n + k];
+            }
+        }
+    }
+    return made;
+}
+
 // Every effect as it competed: by itself, or in the set found.
 static void write_candidates(struct search *const s, const double inclusion[],
                              struct dig_machine_finding *const finding)
@@ -277,15 +320,19 @@ static void write_candidates(struct search *const s, const double inclusion[],
             .error        = (double)NAN,
             .seen_in      = DIG_PART_AIR,
         };
-        out->parameters = write_parameters(s, out->effect, out->parameter);
+        out->parameters                         = write_parameters(s, out->effect, out->parameter);
+        finding->doubt[finding->candidates - 1] = doubt_of(s, out->effect);
     }
     for (size_t i = 1; i < finding->candidates; i++) {
-        const struct dig_candidate moved = finding->candidate[i];
-        size_t                     to    = i;
+        const struct dig_candidate     moved = finding->candidate[i];
+        const struct dig_machine_doubt doubt = finding->doubt[i];
+        size_t                         to    = i;
         for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
             finding->candidate[to] = finding->candidate[to - 1];
+            finding->doubt[to]     = finding->doubt[to - 1];
         }
         finding->candidate[to] = moved;
+        finding->doubt[to]     = doubt;
     }
 }
 

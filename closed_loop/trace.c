@@ -307,12 +307,17 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
     }
-    bool blamed = false;
+    bool blamed  = false;
+    bool settled = false;
     if (status == DIG_OK && machine != NULL && !w->air->no_air && !w->air->unexplained &&
         w->search->significant && w->search->unlisted) {
         status = dig_trace_blame_machine(machine, settings, digs, measured, w, &blamed, error);
     }
-    if (status == DIG_OK && !blamed && w->air->effects > 0 && w->search->significant &&
+    if (status == DIG_OK && machine != NULL && !blamed && w->air->effects == 1 &&
+        w->search->significant && w->search->unlisted) {
+        status = dig_trace_settle_air(machine, settings, digs, measured, w, &settled, error);
+    }
+    if (status == DIG_OK && !blamed && !settled && w->air->effects > 0 && w->search->significant &&
         w->search->unlisted) {
         status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
     }

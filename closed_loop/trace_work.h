@@ -61,6 +61,16 @@ DIG_MUST_CHECK enum dig_status dig_trace_blame_machine(struct dig_machine_side  
                                                        struct dig_trace_work *w, bool *blamed,
                                                        struct dig_error *error);
 
+/// After a search that found nothing with a name beside the one effect of the machine that free air
+/// names: gives its parameters the values that free air and the digs together ask for, where the
+/// digs then are like the table's. *settled: whether; then air, measured[].machine, the batch and
+/// the search are of them.
+DIG_MUST_CHECK enum dig_status dig_trace_settle_air(struct dig_machine_side         *machine,
+                                                    const struct dig_trace_settings *settings,
+                                                    size_t digs, struct dig_measured measured[],
+                                                    struct dig_trace_work *w, bool *settled,
+                                                    struct dig_error *error);
+
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
 /// better. DIG_ENOMEM.

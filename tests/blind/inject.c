@@ -304,6 +304,12 @@ static double oil_degC(const struct blind_fault *const f, const double t_s)
     return 45.0 + 25.0 * (1.0 - exp(-t_s / (60.0 + 240.0 * f->p[1])));
 }
 
+// A gain as faint or strong as an offset: 0.8, 2.5 and 7 % for 0.06, 0.6 and 5 bar.
+static double gain_of(const double offset_Pa)
+{
+    return copysign(1e-4 * sqrt(fabs(offset_Pa)), offset_Pa);
+}
+
 // The faults that act on what a sensor reads, sample by sample.
 static void read_faults(const struct blind_fault *const f, const struct blind_place *const place,
                         struct dig_sample *const sample, const double t_s)
@@ -312,8 +318,12 @@ static void read_faults(const struct blind_fault *const f, const struct blind_pl
     const int     which = (int)(4.0 * f->p[1]);
     const double  turn  = 2.0 * DIG_PI * (0.12 + 0.35 * f->p[1]) * (place->start_s + t_s);
     switch ((int)f->effect) {
-    case BLIND_PRESSURE_OFFSET: // one chamber, or all of a common supply; sometimes a gain too
-        p[which == 0 ? 5 : 4] += f->p[0];
+    case BLIND_PRESSURE_OFFSET: // one chamber, or all of a common supply, or a gain alone
+        if (which == 2) {
+            p[f->p[2] < 0.5 ? 4 : 5] *= 1.0 + gain_of(f->p[0]);
+        } else {
+            p[which == 0 ? 5 : 4] += f->p[0];
+        }
         if (which == 3) {
             p[0] += f->p[0] * f->p[2];
             p[2] -= f->p[0] * f->p[3];

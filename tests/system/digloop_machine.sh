@@ -91,6 +91,22 @@ trace ripple
 check "what ripples in the ground has no name, and is not blamed on the machine" grep -q '"verdict": \["unlisted"\]' "$json"
 check "and is claimed, for the moment shows it" within "$(sed -nE 's/.*"probability": ([0-9.e-]+), "seen_in.*/\1/p' "$json")" 0.9 1
 
+# A gain of the bucket's pressure sensor: in free air there is little pressure, and an offset does as well.
+mkdir "$work/gain"
+cp "$machine" "$work/gain/true.yaml"
+record gain
+for dig in "$work"/gain/*.csv; do
+    awk -F, -v OFS=, '/^t_s/ { for (k = 1; k <= NF; k++) if ($k == "bucket_head_Pa") at = k; print; next } !/^#/ { $at *= 1.08 } { print }' "$dig" >"$dig.more"
+    mv "$dig.more" "$dig"
+done
+trace gain
+check "a gain of 8 % is an error of a pressure sensor, and nothing beside it" grep -q '"verdict": \["pressure_offset"\]' "$json"
+check "digs tell the gain, within its interval" awk '{ text = text $0 } END {
+    if (!match(text, /"bucket_head_gain": {"value": [^}]*}/)) exit 1
+    split(substr(text, RSTART, RLENGTH), part, /[:,}]/); exit !(part[5] > 0 && part[5] < 0.08 && part[7] > 0.08) }' "$json"
+check "and are predicted better" awk '/"error_before"/ { split($0, b, /[:,]/); before = b[3] } /"error_after"/ { split($0, a, /[:,]/); after = a[3] }
+    END { exit !(before > 0 && after < 0.8 * before) }' "$json"
+
 # The heavy bucket, recorded in the ground alone: nothing tells it from the soil.
 campaign airless 400 --no-air
 trace airless
