@@ -112,16 +112,38 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     }
 }
 
+// The share of each number's standard deviation that is the digs' own and goes together, beside
+// what the measurement is off by; of digs as large as those measured.
+static void tell_shares(const struct dig_gaussian *const g, double share[NUMBERS])
+{
+    double size2[CHANNELS] = { 0.0 };
+    double count[CHANNELS] = { 0.0 };
+    for (size_t i = 0; i < g->numbers; i++) {
+        const struct dig_compared *const n = &g->compared[i];
+        size2[n->channel] += n->mean * n->mean;
+        count[n->channel] += 1.0;
+    }
+    for (size_t i = 0; i < g->numbers; i++) {
+        const struct dig_compared *const n = &g->compared[i];
+        const double                     own =
+            size2[n->channel] / count[n->channel] * n->spread * n->spread * n->inverse_digs;
+        share[i] = sqrt(own / (own + n->sigma2 + least_u2));
+    }
+}
+
 // L of the numbers that are compared. False where the matrix is not positive definite.
 static bool factor(const struct matrix *const c, struct dig_gaussian *const g)
 {
     size_t at[NUMBERS];
+    double share[NUMBERS];
+    tell_shares(g, share);
     for (size_t i = 0; i < g->numbers; i++) {
         at[i] = g->compared[i].channel * BLOCKS + g->compared[i].block;
     }
     for (size_t i = 0; i < g->numbers; i++) {
         for (size_t j = 0; j <= i; j++) {
-            double sum = i == j ? 1.0 : (1.0 - own_share) * c->of[at[i]][at[j]];
+            double sum =
+                i == j ? 1.0 : (1.0 - own_share) * share[i] * share[j] * c->of[at[i]][at[j]];
             for (size_t k = 0; k < j; k++) {
                 sum -= g->lower[i][k] * g->lower[j][k];
             }

@@ -8,9 +8,10 @@
 //   q = (x - t)' D^-1 (x - t),   D_ij = u_i u_j C_ij,   u_i^2 = a^2 S_ii (1/d + 1/n) + sigma_i^2 /
 //   d
 //
-// and the digs are less likely by q / 2 + log det D / 2. Noise of the measurement is counted as
-// going together like the digs' own. C is drawn a little towards what depends on the distance of
-// two blocks alone, and gets a share of each number's own.
+// and the digs are less likely by q / 2 + log det D / 2. What the measurement is off by goes
+// together with nothing: off the diagonal C is less by its share, of digs as large as those
+// measured. C is drawn a little towards what depends on the distance of two blocks alone, and gets
+// a share of each number's own.
 
 #ifndef DIG_ESTIMATOR_GAUSSIAN_H
 #define DIG_ESTIMATOR_GAUSSIAN_H

@@ -131,7 +131,8 @@ static void append(const struct dig_curve_set *const set, const size_t entry,
                                         group->force_sigma2_N2[1] };
     const int           from        = all->count;
     int                 which[MOST];
-    double              scale[MOST];
+    double dig2[MOST], noise2_of[MOST], together[MOST], square[3] = { 0 }, squares[3] = { 0 };
+    double scale[MOST];
     for (int w = 0; w < (group->forces ? 3 : 1) * BLOCKS; w++) {
         const int    i = w / BLOCKS, b = w % BLOCKS;
         const double x    = mean_in(group, b, measured[i], NULL);
@@ -165,10 +166,20 @@ static void append(const struct dig_curve_set *const set, const size_t entry,
                                  mean_in(group, b, noise, NULL)) /
                    sqrt(own2);
         all->miss[n] = x - mean_in(group, b, NULL, c->mean[i]);
+        dig2[n]      = own2 * mean_in(group, b, one, NULL);
+        noise2_of[n] = mean_in(group, b, noise, NULL);
+        square[i] += x * x;
+        squares[i] += 1.0;
+    }
+    // What was measured wrong goes together with nothing; of digs as large as those measured.
+    for (int n = from; n < all->count; n++) {
+        const int    i   = which[n] / BLOCKS;
+        const double own = dig2[n] * square[i] / squares[i];
+        together[n]      = sqrt(own / (own + noise2_of[n]));
     }
     for (int n = from; n < all->count; n++) {
         for (int o = from; o < all->count; o++) {
-            all->d[n][o] = scale[n] * scale[o] *
+            all->d[n][o] = scale[n] * scale[o] * (n == o ? 1.0 : together[n] * together[o]) *
                            covariance_of(set, group->trajectory, which[n], which[o], relative_sd);
         }
     }
