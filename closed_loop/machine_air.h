@@ -2,7 +2,7 @@
 // newtons at its drive's rod, averaged over blocks of time. 0 but for noise when the machine is as
 // it is taken to be.
 //
-// Accelerations from angles are means over a kernel (1 - u^2)^2 of +-half_s; pressures and angles
+// Accelerations from angles are means over a kernel (1 - u^2)^2 of +-0.12 s; pressures and angles
 // are averaged over the same kernel first, so that inertia and drive are of one time.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_AIR_H
@@ -16,6 +16,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/// The kernel's half is the rates'; points of the air are so far apart.
+#define DIG_AIR_KERNEL_HALF_s 0.12
+#define DIG_AIR_STEP_s        0.025
 
 /// An instant of the air: readings averaged over the kernel, and rates. calm_Pa: what the chambers
 /// would read without noise, see dig_air_calm().

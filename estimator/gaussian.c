@@ -105,8 +105,9 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
             lag_of[0] * (summary != NULL ? summary->relative2[trajectory][channel]
                                          : dig_summary_relative2(set, trajectory, channel));
         for (size_t j = 0; j < NUMBERS; j++) {
-            const size_t one = i % BLOCKS, other = j % BLOCKS;
-            c->of[i][j] = across[i / BLOCKS][j / BLOCKS] *
+            const size_t one   = i % BLOCKS;
+            const size_t other = j % BLOCKS;
+            c->of[i][j]        = across[i / BLOCKS][j / BLOCKS] *
                           lag_of[one > other ? one - other : other - one] / lag_of[0];
         }
     }

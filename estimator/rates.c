@@ -113,3 +113,14 @@ void dig_rates_centred(const size_t n, const double time_s[], const double joint
                                   : fit(&sums, 0.0, sigma_rad);
     }
 }
+
+struct dig_rates dig_rates_between(const struct dig_rates *const a, const struct dig_rates *const b,
+                                   const double f)
+{
+    struct dig_rates out = *a;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        out.velocity_radps[j] += f * (b->velocity_radps[j] - a->velocity_radps[j]);
+        out.acceleration_radps2[j] += f * (b->acceleration_radps2[j] - a->acceleration_radps2[j]);
+    }
+    return out;
+}

@@ -122,10 +122,10 @@ static enum dig_status pool(sqlite3_stmt *const s, sqlite3 *const db, const char
     enum dig_status status = DIG_OK;
     int             step   = SQLITE_DONE;
     while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
-        double              curve[DIG_CHANNELS][DIG_CURVE_POINTS];
-        const sqlite3_int64 ground     = sqlite3_column_int64(s, 0);
-        const sqlite3_int64 trajectory = sqlite3_column_int64(s, 1);
-        status                         = read_run(s, path, head, curve, error);
+        double              curve[DIG_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
+        const sqlite3_int64 ground                                = sqlite3_column_int64(s, 0);
+        const sqlite3_int64 trajectory                            = sqlite3_column_int64(s, 1);
+        status = read_run(s, path, head, curve, error);
         if (status == DIG_OK && (ground != g.ground || trajectory != g.trajectory)) {
             close_gravel(&g, covariance);
             g = (struct gravel){ .ground = ground, .trajectory = trajectory };
