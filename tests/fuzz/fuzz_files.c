@@ -1,7 +1,8 @@
 // Every reader of a file against damaged files: mutates good examples at random and reads them,
 // under AddressSanitizer and UBSan. A reader must end with a status; a refusal must say why.
 //
-//   fuzz_files SECONDS [SEED]
+//   fuzz_files SECONDS [SEED [READER]]      of all readers in turn, or of one: fuzz_files 600 1
+//   table
 //
 // Prints, per reader, how many files it took and refused. A crash leaves the file, whatever
 // it is, as campaign.yaml in a folder of its seed.
@@ -270,6 +271,15 @@ static int load_examples(void)
     return 0;
 }
 
+static int target_named(const char *const name)
+{
+    int found = -1;
+    for (int i = 0; i < TARGETS; i++) {
+        found = strcmp(target[i].name, name) == 0 ? i : found;
+    }
+    return found;
+}
+
 int main(const int argc, char *argv[])
 {
     const double seconds = argc > 1 ? atof(argv[1]) : 10.0;
@@ -284,9 +294,14 @@ int main(const int argc, char *argv[])
     if (load_examples() != 0) {
         return 1;
     }
+    const int only = argc > 3 ? target_named(argv[3]) : -1;
+    if (argc > 3 && only < 0) {
+        (void)fprintf(stderr, "fuzz_files: \"%s\" is none of the readers\n", argv[3]);
+        return 2;
+    }
     const time_t end = time(NULL) + (time_t)seconds;
     for (long n = 0; time(NULL) < end; n++) {
-        const int i = (int)(n % TARGETS);
+        const int i = only >= 0 ? only : (int)(n % TARGETS);
         memcpy(text, target[i].good, target[i].size);
         const size_t size = mutate(text, target[i].size);
         FILE *const  file = fopen(path, "wb");
