@@ -1,5 +1,6 @@
 #include "closed_loop/machine_air.h"
 
+#include "core/linkage.h"
 #include "estimator/balance.h"
 #include "estimator/dynamics.h"
 
@@ -115,18 +116,19 @@ static double block_sigma_N(const struct dig_machine *const machine,
             DIG_OK) {
             return 0.0;
         }
-        const struct dig_front   front   = dig_front_place(machine, readings.joint_rad);
-        const struct dig_balance balance = dig_balance_solve(machine, &readings, &front);
-        const struct dig_lever  *lever   = &balance.lever[joint];
-        if (!balance.lever_ok[joint] || !readings.push[joint].valid ||
-            !dig_cylinder_is_clear(&machine->cylinder[joint], lever->length_m)) {
+        const struct dig_front front = dig_front_place(machine, readings.joint_rad);
+        struct dig_lever       lever = { .length_m = 0.0 };
+        if (!readings.push[joint].valid ||
+            dig_lever_solve(machine, (enum dig_joint)joint, readings.joint_rad[joint], &lever) !=
+                DIG_OK ||
+            !dig_cylinder_is_clear(&machine->cylinder[joint], lever.length_m)) {
             return 0.0;
         }
         double inertia_kgm2[DIG_JOINTS][DIG_JOINTS];
         dig_dynamics_inertia_kgm2(machine, &front, inertia_kgm2);
         slow = readings.push[joint].slow_N;
         for (int k = 0; k < DIG_JOINTS; k++) {
-            turn += pow(inertia_kgm2[joint][k] / lever->arm_m, 2.0) / (double)points;
+            turn += pow(inertia_kgm2[joint][k] / lever.arm_m, 2.0) / (double)points;
         }
     }
     // A block's mean acceleration is the difference of two speeds.
