@@ -72,13 +72,13 @@ whole() { # DIG: matches of that dig that are of all of it
 }
 check_timed "the dig before identifies the gravel" [ "$(judged dig 6 1)" = 1 ]
 check_timed "five digs are counted" [ "$(last health "$f" $h_digs)" = 5 ]
-check_timed "the one with the hole is matched as no whole one" [ "$(whole 2)" = 0 ]
+check_wrong "the one with the hole is matched as no whole one" [ "$(whole 2)" = 0 ]
 check_timed "and how it ended is not told" within "$(last endings "$f" 4)" 1 1
 check_timed "the next one identifies it" [ "$(judged dig 6 3) $([ "$(whole 3)" -ge 1 ] && echo 1)" = "1 1" ]
 check "the wall clock went an hour forth and two back" \
     eval 'within "$(sed -n 1p "$work/trouble.log")" 3598 3602 && within "$(sed -n 2p "$work/trouble.log")" -7202 -7198'
 check_timed "the dig in which it went forth identifies the gravel" [ "$(judged dig 6 4)" = 1 ]
 check_timed "and the one in which it went back" [ "$(judged dig 6 5)" = 1 ]
-check_timed "what is known does not grow old by it" eval '! grep -q "too old" "$work/can.log"'
+check_wrong "what is known does not grow old by it" eval '! grep -q "too old" "$work/can.log"'
 check_timed "no sample was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 finish
