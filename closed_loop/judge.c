@@ -1,6 +1,7 @@
 #include "closed_loop/judge.h"
 
 #include "closed_loop/chance.h"
+#include "closed_loop/features.h"
 #include "closed_loop/score.h"
 
 #include <assert.h>
@@ -56,6 +57,24 @@ void dig_judge_sd(const struct dig_surface *const surface, const struct dig_scat
         }
     }
     free(amplitude);
+}
+
+void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         const double dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         double       sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    double feature[DIG_FEATURES];
+    double alone[DIG_FORCE_CHANNELS];
+    double all[DIG_FORCE_CHANNELS];
+    dig_features_of(plain, feature);
+    dig_features_amplitude(feature, NULL, alone);
+    dig_features_of(dug, feature);
+    dig_features_amplitude(feature, NULL, all);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[c][k] *= all[c] / alone[c];
+        }
+    }
 }
 
 // Adds one dig's moment to a score.

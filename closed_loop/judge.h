@@ -13,6 +13,12 @@ void dig_judge_sd(const struct dig_surface *surface, const struct dig_scatter *s
                   size_t trajectory, const double place[DIG_AXES], double noise,
                   double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
+/// Of a dig that effects make another than its gravel alone would be: the scatter of digs is
+/// relative to what they are (closed_loop/batch.h), so sd grows as the sizes of the curves do.
+void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         const double dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         double       sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
 /// The error of the moment before or after over the digs that take[] allows, and its 90 % interval
 /// by drawing recordings: of one recording alone both ends are the value. All NaN without any.
 struct dig_error_range dig_judge_error(const struct dig_curve_set *set, size_t digs,

@@ -63,7 +63,8 @@ void dig_machine_side_destroy(struct dig_machine_side *const side)
 }
 
 // What the effects of the machine among these say of one dig.
-static enum dig_status correction_of(const size_t effects, const struct dig_model_effect effect[],
+static enum dig_status correction_of(const struct dig_machine_side *const side,
+                                     const size_t effects, const struct dig_model_effect effect[],
                                      const size_t dig, struct dig_correction *const correction)
 {
     struct dig_correction sum = { .delay_s = 0.0 };
@@ -78,6 +79,7 @@ static enum dig_status correction_of(const size_t effects, const struct dig_mode
             return status;
         }
         dig_effect_of(id)->correct(value, &sum);
+        sum.payload.mass_kg += id == DIG_EFFECT_PAYLOAD ? side->own_payload_kg[dig] : 0.0;
     }
     *correction = sum;
     return DIG_OK;
@@ -95,7 +97,7 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
     enum dig_status status = DIG_OK;
     for (size_t d = 0; d < side->digs && status == DIG_OK; d++) {
         struct dig_correction correction;
-        status = correction_of(effects, effect, d, &correction);
+        status = correction_of(side, effects, effect, d, &correction);
         if (status == DIG_OK) {
             *corrected = measured[d];
             status = dig_machine_dig_measure(&side->machine, side->set, &side->dig[d], &correction,

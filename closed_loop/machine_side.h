@@ -52,13 +52,14 @@ struct dig_machine_finding {
     const char *follows; // what pressures that drift then follow, for people; NULL: not told
 };
 
-/// Traces in the air of the fit and identify digs only, at this false-alarm rate. Seconds.
-DIG_MUST_CHECK enum dig_status dig_machine_side_trace(const struct dig_machine_side *side,
+/// Traces in the air of the fit and identify digs only, at this false-alarm rate, and remembers
+/// what payload each of them carried beyond the one they have in common. Seconds.
+DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *side,
                                                       double false_alarm, uint64_t seed,
                                                       struct dig_machine_finding *finding);
 
 /// Writes into measured[].machine what these effects (those of the machine among them) add to the
-/// measured curves of every dig.
+/// measured curves of every dig; a payload, in a dig that was traced in, as much as that dig's was.
 DIG_MUST_CHECK enum dig_status dig_machine_side_apply(const struct dig_machine_side *side,
                                                       size_t                         effects,
                                                       const struct dig_model_effect  effect[],

@@ -11,7 +11,8 @@ struct dig_machine_side {
     const struct dig_curve_set *set;
     size_t                      digs;
     struct dig_machine_dig      dig[DIG_MEASURED_MAX];
-    bool                        used[DIG_MEASURED_MAX]; // to trace in
+    bool                        used[DIG_MEASURED_MAX];           // to trace in
+    double                      own_payload_kg[DIG_MEASURED_MAX]; // beyond the digs' common one
 };
 
 #endif // DIG_CLOSED_LOOP_MACHINE_SIDE_PRIVATE_H

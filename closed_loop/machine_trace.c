@@ -361,6 +361,28 @@ static void write_effects(struct search *const s, const double inclusion[],
     }
 }
 
+// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
+// by the air before it. With payload alone where the set has none.
+static void write_own_payload(struct search *const s, double own_kg[DIG_MEASURED_MAX])
+{
+    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
+    struct dig_fit_answer alone   = { .at = s->at };
+    if ((s->set & carries) != 0) {
+        memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    } else {
+        dig_fit_solve(&s->fit, carries, &alone);
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        own_kg[d] = 0.0;
+    }
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
+            own_kg[s->air.segment[column->segment].dig] = column->scale * s->at[c];
+        }
+    }
+}
+
 // Effects that would do in the place of one of the set.
 static void write_sets(const struct search *const s, struct dig_machine_finding *const finding)
 {
@@ -416,7 +438,7 @@ static enum dig_status doubt_names(struct search *const s)
     return status;
 }
 
-enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side,
+enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
                                        const double false_alarm, const uint64_t seed,
                                        struct dig_machine_finding *const finding)
 {
@@ -454,6 +476,7 @@ enum dig_status dig_machine_side_trace(const struct dig_machine_side *const side
         finding->significant = s.set != 0 || unclear;
         bootstrap(&s, seed, inclusion);
         write_candidates(&s, inclusion, finding);
+        write_own_payload(&s, side->own_payload_kg);
         if (!unclear) {
             write_effects(&s, inclusion, finding);
             write_sets(&s, finding);

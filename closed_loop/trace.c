@@ -328,9 +328,8 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK) {
         status = dig_trace_confirm_without_air(w);
     }
-    // Nothing was found, or nothing that is corrected: nothing changes.
-    if (status == DIG_OK && w->air->effects == 0 &&
-        (!w->search->significant || (w->search->unlisted && w->air->unexplained))) {
+    // Nothing was found that is corrected: nothing changes.
+    if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
         w->search->chosen = w->before;
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,

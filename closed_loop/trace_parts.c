@@ -187,6 +187,10 @@ void dig_trace_fill_curves(const struct dig_tracing *const        t,
         if (unlisted != NULL) {
             add_unlisted(unlisted, trajectory, c->after);
         }
+        double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_surface_curve(t->surface, trajectory, after->number, plain);
+        dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
+                            (const double(*)[DIG_CURVE_POINTS])c->after, c->after_sd);
         for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 c->after[channel][k] += dig->machine[channel][k];

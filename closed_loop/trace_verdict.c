@@ -67,8 +67,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
         if (trace->unlisted == NULL) {
             return DIG_ENOMEM;
         }
-        // A machine that is not understood may do otherwise to the next dig.
-        if (of_soil && !air->unexplained) {
+        if (of_soil) {
             dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
         }
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",

@@ -91,12 +91,37 @@ static void sigma_is_the_tables_own(void **state)
     made_table_destroy(set);
 }
 
+// A dig that its ground makes three times as strong in the moment and twice in the forces.
+static void sigma_grows_with_what_is_dug(void **state)
+{
+    (void)state;
+    static const double times[DIG_FORCE_CHANNELS] = { 3.0, 2.0, 2.0 };
+    double              plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double              dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double              sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            plain[c][k] = 10.0 + sin(0.05 * (double)(k * (c + 1)));
+            dug[c][k]   = -times[c] * plain[c][k];
+            sd[c][k]    = 0.1 * plain[c][k];
+        }
+    }
+    dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
+                        (const double(*)[DIG_CURVE_POINTS])dug, sd);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            assert_close(sd[c][k], 0.1 * fabs(dug[c][k]), 1e-9);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_pool_by_squares_over_the_digs_taken),
         cmocka_unit_test(one_dig_has_no_interval_and_none_no_error),
         cmocka_unit_test(sigma_is_the_tables_own),
+        cmocka_unit_test(sigma_grows_with_what_is_dug),
     };
     return cmocka_run_group_tests_name("judge", tests, NULL, NULL);
 }

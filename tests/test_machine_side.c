@@ -66,6 +66,7 @@ struct fault {
     double rod_Pa;      // the bucket's rod side sensor reads so much more
     double late_s;      // pressures are so old
     double payload_kg;  // in the middle of the bucket, from the second dig on
+    bool   falls_out;   // before the second
     double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
     double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
@@ -180,6 +181,7 @@ static struct dig_machine_recording record(const int kind, const size_t order,
     double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
     double                            bent_m[DIG_JOINTS]       = { 0.0 };
     uint64_t                          state                    = seed;
+    const bool                        carries                  = order > (fault->falls_out ? 1 : 0);
     for (size_t i = 0; i < t->rows; i++) {
         const size_t       then = i > late ? i - late : 0;
         struct dig_rig_row row  = t->row[then];
@@ -189,7 +191,7 @@ static struct dig_machine_recording record(const int kind, const size_t order,
         for (int j = 0; j < DIG_JOINTS; j++) {
             push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s = t->step_s * (double)then + 40.0 * (double)order;
-            push_more(&row, j, order > 0 ? payload_N(&row, j, fault->payload_kg) : 0.0);
+            push_more(&row, j, carries ? payload_N(&row, j, fault->payload_kg) : 0.0);
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
@@ -365,6 +367,45 @@ static bool is_reported(const struct dig_machine_finding *const finding,
         }
     }
     return found;
+}
+
+// rms over one dig of what was taken off its moment less what is wrong with it, and of the latter.
+static void taken_off(const struct campaign *const c, const struct campaign *const clean,
+                      const size_t d, double *const left, double *const wrong)
+{
+    *left  = 0.0;
+    *wrong = 0.0;
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double more = c->measured[d].value[0][k] - clean->measured[d].value[0][k];
+        *left += pow(c->measured[d].machine[0][k] - more, 2.0) / DIG_CURVE_POINTS;
+        *wrong += pow(more, 2.0) / DIG_CURVE_POINTS;
+    }
+    *left  = sqrt(*left);
+    *wrong = sqrt(*wrong);
+}
+
+// A payload that fell out before the second dig and stuck before the third.
+static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
+{
+    (void)state;
+    const struct fault     none  = { .dry_N = 0.0 };
+    const struct fault     some  = { .payload_kg = 120.0, .falls_out = true };
+    struct campaign *const clean = trace(&none, 15);
+    struct campaign *const c     = trace(&some, 15);
+    double                 left[DIGS];
+    double                 wrong[DIGS];
+    assert_true(is_reported(&c->finding, DIG_EFFECT_PAYLOAD));
+    assert_int_equal(
+        dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, c->measured),
+        DIG_OK);
+    for (size_t d = 0; d < DIGS; d++) {
+        taken_off(c, clean, d, &left[d], &wrong[d]);
+        print_message("dig %zu: %.3f Nm wrong, %.3f left\n", d, wrong[d], left[d]);
+    }
+    assert_true(wrong[2] > 0.02 && left[2] < 0.4 * wrong[2]);
+    assert_true(wrong[1] < 0.1 * wrong[2] && left[1] < 0.4 * wrong[2]);
+    end(c);
+    end(clean);
 }
 
 // An effect of many parameters may be weak, too: it is not given to one of fewer.
@@ -567,6 +608,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_machine_as_its_file_says_raises_no_alarm),
         cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
+        cmocka_unit_test(each_dig_is_rid_of_the_payload_that_it_carried),
         cmocka_unit_test(a_weak_effect_is_reported_among_what_it_may_be),
         cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
         cmocka_unit_test(pressures_that_drift_get_no_name_and_say_what_they_follow),
