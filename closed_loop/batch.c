@@ -1,6 +1,7 @@
 #include "closed_loop/batch.h"
 
 #include "closed_loop/dense.h"
+#include "closed_loop/same_bed.h"
 
 #include <assert.h>
 #include <math.h>
@@ -268,6 +269,14 @@ void dig_batch_summarise(struct dig_batch *const batch)
     }
 }
 
+static void count_beds(struct dig_batch *const batch)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        struct dig_batch_group *const group = &batch->group[g];
+        group->repeats = 1.0 / (double)dig_same_bed_count(batch, g) - 1.0 / (double)group->digs;
+    }
+}
+
 enum dig_status dig_batch_make(const struct dig_surface *const surface,
                                const struct dig_scatter *const scatter, const size_t digs,
                                const struct dig_measured measured[], const bool take[],
@@ -300,6 +309,7 @@ enum dig_status dig_batch_make(const struct dig_surface *const surface,
     }
     if (status == DIG_OK) {
         dig_batch_summarise(batch);
+        count_beds(batch);
     }
     return status;
 }
@@ -323,4 +333,5 @@ void dig_batch_leave_out(const struct dig_batch *const batch, const size_t dig,
         }
     }
     dig_batch_summarise(others);
+    count_beds(others);
 }

@@ -268,7 +268,7 @@ static void weigh(struct problem *const p, const double x[], double noise[])
         if (!p->differs && p->hypothesis->effects > 0) {
             own = noise_of_dig(p, g, dig_batch_first(p->batch, g), x, size2);
         }
-        noise[g] = discrepancy + own +
+        noise[g] = discrepancy + own + group->repeats +
                    size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);
         p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + noise[g]);
     }

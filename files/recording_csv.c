@@ -12,7 +12,7 @@
 #define GAP_MAX_s  0.02 // 50 Hz
 #define ROWS_MIN   2
 #define GAP_SLACK  1e-6 // of the gap: times are written with few digits
-#define TIME_MAX_s 1e6  // of a recording; nanoseconds in 64 bits would hold far more
+#define TIME_MAX_s 9e9  // nanoseconds in 64 bits hold it; of seconds since 1970 till the year 2255
 
 static const struct dig_csv_column force_column[] = {
     { .name = "t_s" },

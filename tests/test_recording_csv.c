@@ -227,6 +227,29 @@ static void defects_of_machine_recordings_are_told_too(void **state)
     assert_int_equal(r.rows, 42);
 }
 
+// Loggers count seconds since 1970.
+static void times_may_be_of_a_calendar(void **state)
+{
+    (void)state;
+    struct dig_recording         force   = { 0 };
+    struct dig_machine_recording machine = { 0 };
+    assert_int_equal(
+        dig_recording_read(scratch_write("f.csv", FORCE
+                                         "1795437600.25,0,0,0,0,0,0,0,0,0\n1795437600.255,0,0,0,0,"
+                                         "0,0,0,0,0\n"),
+                           &force, NULL),
+        DIG_OK);
+    assert_close(force.row[1].t_s - force.row[0].t_s, 0.005, 1e-6);
+    assert_int_equal(
+        dig_machine_recording_read(
+            scratch_write("m.csv", MACHINE "1795437600.25,,,,,,,,,\n1795437600.255,,,,,,,,,\n"),
+            &machine, NULL),
+        DIG_OK);
+    assert_close((double)(machine.row[1].time_ns - machine.row[0].time_ns), 5e6, 1e3);
+    dig_recording_finish(&force);
+    dig_machine_recording_finish(&machine);
+}
+
 // A rig may measure the moment alone, or lose samples: missing is never zero.
 static void forces_may_be_missing_here_and_there_or_altogether(void **state)
 {
@@ -422,6 +445,7 @@ static void a_link_is_followed_and_stays_a_link(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(times_may_be_of_a_calendar),
         cmocka_unit_test(the_force_recording_of_the_formats_loads_as_it_is_written),
         cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
         cmocka_unit_test(a_machine_recording_may_have_a_hole_and_its_times_are_rounded),
