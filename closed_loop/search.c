@@ -89,25 +89,59 @@ static bool is_told_by_order(const struct dig_search_work *const c)
     return told;
 }
 
-static enum dig_status decide_whether(struct dig_search_work *const c)
+// Digs that scatter more about their means than the table's: all is weighed by their own scatter.
+static void allow_for_scatter(struct dig_search_work *const c,
+                              struct dig_statistic *const   statistic)
 {
-    struct dig_statistic statistic;
-    fit_all(c, &statistic);
-    enum dig_status status = dig_null_draw(c->batch, c->soil, &c->s->plain, c->s->rivals, c->single,
-                                           c->draws, &c->seed, &c->plain_null);
-    if (status != DIG_OK) {
-        return status;
-    }
     c->s->spread = 1.0;
     if (c->plain_null.mean[1] > 0.0 && !is_told_by_order(c) &&
-        dig_null_p(&c->plain_null, 1, statistic.about) < c->false_alarm) {
-        c->s->spread = sqrt(statistic.about / c->plain_null.mean[1]);
+        dig_null_p(&c->plain_null, 1, statistic->about) < c->false_alarm) {
+        c->s->spread = sqrt(statistic->about / c->plain_null.mean[1]);
         dig_batch_spread(c->batch, c->s->spread);
-        fit_all(c, &statistic);
+        fit_all(c, statistic);
     }
-    const double p    = fmin(dig_null_p(&c->plain_null, 0, statistic.misfit),
-                             dig_null_p(&c->plain_null, 2, statistic.gain));
-    c->s->p_complete  = 1.0 - (1.0 - p) * (1.0 - p);
+}
+
+// The smaller chance of two tests, as if there were but one.
+static double chance_of_either(const double p)
+{
+    return 1.0 - (1.0 - p) * (1.0 - p);
+}
+
+// Surely significant: no second thought about chance comes after it.
+static bool is_sure(const struct dig_search_work *const c)
+{
+    return c->s->p_complete <= rarer * c->false_alarm;
+}
+
+// By the misfit, and by the gain where that could still change the answer: a draw that rivals are
+// fitted to costs as much as thirty that none are.
+static enum dig_status decide_whether(struct dig_search_work *const c)
+{
+    struct dig_statistic    statistic;
+    uint64_t                seed  = c->seed;
+    struct dig_batch *const drawn = malloc(sizeof *drawn);
+    if (drawn == NULL) {
+        return DIG_ENOMEM;
+    }
+    *drawn = *c->batch;
+    fit_all(c, &statistic);
+    const struct dig_fitted plain = c->s->plain;
+    enum dig_status         status =
+        dig_null_draw(drawn, c->soil, &plain, 0, NULL, c->draws, &c->seed, &c->plain_null);
+    if (status == DIG_OK) {
+        allow_for_scatter(c, &statistic);
+        const double p     = dig_null_p(&c->plain_null, 0, statistic.misfit);
+        c->s->p_complete   = chance_of_either(p);
+        const bool decided = c->s->p_complete <= 0.0 || (c->whether_only && is_sure(c));
+        if (!decided) {
+            status = dig_null_draw(drawn, c->soil, &plain, c->s->rivals, c->single, c->draws, &seed,
+                                   &c->plain_null);
+            c->s->p_complete =
+                chance_of_either(fmin(p, dig_null_p(&c->plain_null, 2, statistic.gain)));
+        }
+    }
+    free(drawn);
     c->s->significant = c->s->p_complete < c->false_alarm;
     c->s->plain_fit   = dig_null_p(&c->plain_null, 0, dig_search_left(c, &c->s->plain));
     for (size_t i = 0; i < c->s->rivals; i++) {
@@ -189,25 +223,27 @@ static enum dig_status bootstrap(struct dig_search_work *const c, const size_t t
     return DIG_OK;
 }
 
-enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_soil *const soil,
-                               const double false_alarm, const size_t draws, const uint64_t seed,
-                               struct dig_search *const search)
+static enum dig_status run(struct dig_batch *const batch, const struct dig_soil *const soil,
+                           const double false_alarm, const size_t draws, const uint64_t seed,
+                           const bool whether_only, struct dig_search *const search)
 {
     assert(batch != NULL && soil != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);
     search->unnamed          = 1.0;
-    struct dig_search_work c = { .batch       = batch,
-                                 .soil        = soil,
-                                 .false_alarm = false_alarm,
-                                 .draws       = draws,
-                                 .seed        = seed,
-                                 .s           = search };
+    struct dig_search_work c = { .batch        = batch,
+                                 .soil         = soil,
+                                 .false_alarm  = false_alarm,
+                                 .draws        = draws,
+                                 .whether_only = whether_only,
+                                 .seed         = seed,
+                                 .s            = search };
     list_rivals(&c);
     enum dig_status status = decide_whether(&c);
     search->chosen         = search->plain;
-    if (status == DIG_OK) {
-        status = bootstrap(&c, draws / 4);
+    if (status != DIG_OK || (whether_only && is_sure(&c))) {
+        return status;
     }
+    status = bootstrap(&c, draws / 4);
     if (status == DIG_OK && search->significant) {
         status = dig_search_which(&c);
     }
@@ -232,4 +268,18 @@ enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_s
     }
     dig_search_set_probabilities(&c);
     return DIG_OK;
+}
+
+enum dig_status dig_search_run(struct dig_batch *const batch, const struct dig_soil *const soil,
+                               const double false_alarm, const size_t draws, const uint64_t seed,
+                               struct dig_search *const search)
+{
+    return run(batch, soil, false_alarm, draws, seed, false, search);
+}
+
+enum dig_status dig_search_whether(struct dig_batch *const batch, const struct dig_soil *const soil,
+                                   const double false_alarm, const size_t draws,
+                                   const uint64_t seed, struct dig_search *const search)
+{
+    return run(batch, soil, false_alarm, draws, seed, true, search);
 }

@@ -65,15 +65,16 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
     return any;
 }
 
-// What digs of the chosen hypothesis would show; whether a second effect is significant beside it.
+// What digs of the chosen hypothesis would show; whether a second effect is significant beside it,
+// if that is asked (more not NULL): most of the work.
 static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const more)
 {
     struct dig_hypothesis added[DIG_NULL_RIVALS];
     struct dig_fitted     fitted[DIG_NULL_RIVALS + 1];
     struct dig_statistic  statistic;
     struct dig_null       null;
-    const bool            room = c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
-    const size_t          n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
+    const bool   room = more != NULL && c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
+    const size_t n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
     // Digs that differ cost as many times more as there are of them.
     const size_t draws =
         dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
@@ -85,7 +86,9 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
         c->s->p_fit = dig_null_p(&null, 0, statistic.misfit);
         c->left     = statistic.misfit;
         c->expected = null.mean[0];
-        *more       = n > 0 && dig_null_p(&null, 2, statistic.gain) < c->false_alarm;
+        if (more != NULL) {
+            *more = n > 0 && dig_null_p(&null, 2, statistic.gain) < c->false_alarm;
+        }
     }
     return status;
 }
@@ -201,7 +204,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
         fit_again(c, best, &pair);
         status = choose_pair(c, best, &pair);
         if (status == DIG_OK) {
-            status = weigh_chosen(c, &more);
+            status = weigh_chosen(c, NULL);
         }
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);

@@ -19,6 +19,7 @@ struct dig_search_work {
     const struct dig_soil *soil;
     double                 false_alarm;
     size_t                 draws;
+    bool                   whether_only; // what it is, is not asked
     uint64_t               seed;
     struct dig_hypothesis  single[DIG_NULL_RIVALS];
     struct dig_null        plain_null;

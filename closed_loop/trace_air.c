@@ -110,6 +110,16 @@ enum dig_status dig_trace_weigh_air(struct dig_machine_side *const machine, cons
     return status;
 }
 
+// The digs as they were measured.
+static enum dig_status take_raw(struct dig_machine_side *const machine, const size_t digs,
+                                struct dig_measured measured[], struct dig_trace_work *const w,
+                                struct dig_error *const error)
+{
+    struct dig_fitted     raw;
+    const enum dig_status status = dig_machine_side_apply(machine, 0, w->air->effect, measured);
+    return status == DIG_OK ? dig_trace_batch(w, digs, measured, &raw, error) : status;
+}
+
 // Digs that are like the table's as they were measured, and like nothing once what free air names
 // is taken off: what it names is not what is there.
 enum dig_status dig_trace_doubt_air(struct dig_machine_side *const         machine,
@@ -117,24 +127,29 @@ enum dig_status dig_trace_doubt_air(struct dig_machine_side *const         machi
                                     const size_t digs, struct dig_measured measured[],
                                     struct dig_trace_work *const w, struct dig_error *const error)
 {
+    const double             level  = settings->false_alarm / 2.0;
     struct dig_batch *const  batch  = malloc(sizeof *batch);
     struct dig_search *const search = malloc(sizeof *search);
     enum dig_status          status = DIG_ENOMEM;
+    bool                     liker  = false;
     if (batch != NULL && search != NULL) {
-        struct dig_fitted raw;
         *batch  = *w->batch;
         *search = *w->search;
-        status  = dig_machine_side_apply(machine, 0, w->air->effect, measured);
+        status  = take_raw(machine, digs, measured, w, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_search_whether(w->batch, w->soil, level, settings->bootstraps, settings->seed,
+                                    w->search);
+        liker  = w->search->plain.squares < search->plain.squares - clearly_less;
+    }
+    if (status == DIG_OK && w->search->significant && liker) {
+        status = take_raw(machine, digs, measured, w, error);
         if (status == DIG_OK) {
-            status = dig_trace_batch(w, digs, measured, &raw, error);
-        }
-        if (status == DIG_OK) {
-            status = dig_search_run(w->batch, w->soil, settings->false_alarm / 2.0,
-                                    settings->bootstraps, settings->seed, w->search);
+            status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
+                                    w->search);
         }
     }
-    if (status == DIG_OK && (!w->search->significant ||
-                             w->search->plain.squares < search->plain.squares - clearly_less)) {
+    if (status == DIG_OK && (!w->search->significant || liker)) {
         give_up_air(w->air);
     } else if (status == DIG_OK) {
         *w->batch  = *batch;

@@ -141,8 +141,8 @@ static enum dig_status blame(struct dig_machine_side *const         machine,
     double                        ignored;
     status = take_off(machine, 1, &effect, digs, measured, w, &ignored, error);
     if (status == DIG_OK) {
-        status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
-                                w->search);
+        status = dig_search_whether(w->batch, w->soil, level, settings->bootstraps, settings->seed,
+                                    w->search);
     }
     if (status == DIG_OK && !w->search->significant) {
         *blamed = true;

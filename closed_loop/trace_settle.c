@@ -286,8 +286,8 @@ static enum dig_status try(struct dig_machine_side *const         machine,
         status = dig_trace_batch(w, digs, measured, &plain, error);
     }
     if (status == DIG_OK) {
-        status = dig_search_run(w->batch, w->soil, settings->false_alarm / 2.0,
-                                settings->bootstraps, settings->seed, w->search);
+        status = dig_search_whether(w->batch, w->soil, settings->false_alarm / 2.0,
+                                    settings->bootstraps, settings->seed, w->search);
     }
     if (status == DIG_OK && !w->search->significant) {
         *settled = true;
