@@ -72,8 +72,9 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
 
 static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
-                      const struct dig_correction *const correction, const double tooth_m,
-                      const size_t from, const size_t to, struct reading reading[])
+                      const struct dig_correction *const correction, const bool with_sigma,
+                      const double tooth_m, const size_t from, const size_t to,
+                      struct reading reading[])
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
@@ -85,8 +86,10 @@ static void solve_all(const struct dig_machine *const     machine,
         if (fabs(correction->delay_s) > 0.0) {
             put_back(dig, i, correction->delay_s, &sample, &rates);
         }
-        r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates, &r.wrench, &front) ==
-                   DIG_OK;
+        r.solved = (with_sigma ? dig_wrench_correct(&corrected, correction, &sample, &rates,
+                                                    &r.wrench, &front)
+                               : dig_wrench_without_sigma(&corrected, correction, &sample, &rates,
+                                                          &r.wrench, &front)) == DIG_OK;
         if (r.solved) {
             const double phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
             r.pose               = (struct dig_path_point){
@@ -180,13 +183,12 @@ static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measu
     measured->pitch_rad   = count > 0.0 ? sum / count : 0.0;
 }
 
-enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
-                                        const struct dig_curve_set *const   set,
-                                        const struct dig_machine_dig *const dig,
-                                        const struct dig_correction *const  correction,
-                                        struct dig_measured *const          measured)
+static enum dig_status measure(const struct dig_machine *const     machine,
+                               const struct dig_curve_set *const   set,
+                               const struct dig_machine_dig *const dig,
+                               const struct dig_correction *const correction, const bool with_sigma,
+                               struct dig_measured *const measured)
 {
-    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
     const size_t             from    = beside(dig, dig->contact, -beside_s);
     const size_t             to      = beside(dig, dig->end, beside_s);
     struct dig_window *const window  = calloc(1, sizeof *window);
@@ -197,7 +199,7 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
         free(reading);
         return DIG_ENOMEM;
     }
-    solve_all(machine, dig, correction, set->tooth_m, from, to, reading);
+    solve_all(machine, dig, correction, with_sigma, set->tooth_m, from, to, reading);
 
     enum dig_status status = DIG_OK;
     for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
@@ -220,4 +222,24 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
     free(window);
     free(reading);
     return status;
+}
+
+enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
+                                        const struct dig_curve_set *const   set,
+                                        const struct dig_machine_dig *const dig,
+                                        const struct dig_correction *const  correction,
+                                        struct dig_measured *const          measured)
+{
+    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
+    return measure(machine, set, dig, correction, true, measured);
+}
+
+enum dig_status dig_machine_dig_values(const struct dig_machine *const     machine,
+                                       const struct dig_curve_set *const   set,
+                                       const struct dig_machine_dig *const dig,
+                                       const struct dig_correction *const  correction,
+                                       struct dig_measured *const          measured)
+{
+    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
+    return measure(machine, set, dig, correction, false, measured);
 }

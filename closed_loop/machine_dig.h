@@ -53,4 +53,11 @@ DIG_MUST_CHECK enum dig_status dig_machine_dig_measure(const struct dig_machine 
                                                        const struct dig_correction  *correction,
                                                        struct dig_measured          *measured);
 
+/// The same without sigma, which is 0: half the work.
+DIG_MUST_CHECK enum dig_status dig_machine_dig_values(const struct dig_machine     *machine,
+                                                      const struct dig_curve_set   *set,
+                                                      const struct dig_machine_dig *dig,
+                                                      const struct dig_correction  *correction,
+                                                      struct dig_measured          *measured);
+
 #endif // DIG_CLOSED_LOOP_MACHINE_DIG_H

@@ -100,8 +100,8 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
         status = correction_of(side, effects, effect, d, &correction);
         if (status == DIG_OK) {
             *corrected = measured[d];
-            status = dig_machine_dig_measure(&side->machine, side->set, &side->dig[d], &correction,
-                                             corrected);
+            status = dig_machine_dig_values(&side->machine, side->set, &side->dig[d], &correction,
+                                            corrected);
         }
         for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
             const bool both = measured[d].measured[c] && corrected->measured[c];

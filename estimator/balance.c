@@ -125,6 +125,17 @@ static void add_force(struct dig_balance *const b, const struct dig_vec2 r_arm,
     }
 }
 
+bool dig_balance_tells_force(const struct dig_front *const front)
+{
+    assert(front != NULL);
+    const struct dig_vec2 pin    = front->pin_m[DIG_JOINT_BUCKET];
+    const struct dig_vec2 r_arm  = dig_vec2_sub(pin, front->pin_m[DIG_JOINT_ARM]);
+    const struct dig_vec2 r_boom = dig_vec2_sub(pin, front->pin_m[DIG_JOINT_BOOM]);
+    const double          sine =
+        fabs(dig_vec2_cross(r_arm, r_boom)) / (dig_vec2_norm(r_arm) * dig_vec2_norm(r_boom));
+    return sine >= DIG_WRENCH_MIN_SINE;
+}
+
 struct dig_balance dig_balance_solve(const struct dig_machine *const  machine,
                                      const struct dig_readings *const readings,
                                      const struct dig_front *const    front)
@@ -151,14 +162,11 @@ struct dig_balance dig_balance_solve(const struct dig_machine *const  machine,
         b.by_moment[DIG_PART_MY][DIG_JOINT_BUCKET] = -1.0;
     }
 
-    const struct dig_vec2 pin    = front->pin_m[DIG_JOINT_BUCKET];
-    const struct dig_vec2 r_arm  = dig_vec2_sub(pin, front->pin_m[DIG_JOINT_ARM]);
-    const struct dig_vec2 r_boom = dig_vec2_sub(pin, front->pin_m[DIG_JOINT_BOOM]);
-    const double          sine =
-        fabs(dig_vec2_cross(r_arm, r_boom)) / (dig_vec2_norm(r_arm) * dig_vec2_norm(r_boom));
-    b.force_ok = b.force_ok && sine >= DIG_WRENCH_MIN_SINE;
+    b.force_ok = b.force_ok && dig_balance_tells_force(front);
     if (b.force_ok) {
-        add_force(&b, r_arm, r_boom);
+        const struct dig_vec2 pin = front->pin_m[DIG_JOINT_BUCKET];
+        add_force(&b, dig_vec2_sub(pin, front->pin_m[DIG_JOINT_ARM]),
+                  dig_vec2_sub(pin, front->pin_m[DIG_JOINT_BOOM]));
     }
     return b;
 }

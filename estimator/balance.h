@@ -52,4 +52,7 @@ struct dig_balance dig_balance_solve(const struct dig_machine  *machine,
                                      const struct dig_readings *readings,
                                      const struct dig_front    *front);
 
+/// Whether the force can be told where the front stands: boom and arm not in one line.
+bool dig_balance_tells_force(const struct dig_front *front);
+
 #endif // DIG_ESTIMATOR_BALANCE_H

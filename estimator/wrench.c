@@ -54,6 +54,26 @@ static void add_angle_variance(const struct dig_machine *const  machine,
     }
 }
 
+// The same of whether it can be solved, alone: an angle changes its own joint's lever and no other.
+static void check_angle(const struct dig_machine *const  machine,
+                        const struct dig_readings *const readings, const int joint,
+                        struct dig_balance *const balance)
+{
+    const double sigma_rad = dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad);
+    const double h_rad     = fmax(sigma_rad, 1e-6);
+    for (int side = -1; side <= 1; side += 2) {
+        struct dig_readings near = *readings;
+        struct dig_lever    lever;
+        near.joint_rad[joint] += side * h_rad;
+        const struct dig_front front = dig_front_place(machine, near.joint_rad);
+        const bool solved = dig_lever_solve(machine, (enum dig_joint)joint, near.joint_rad[joint],
+                                            &lever) == DIG_OK;
+
+        balance->moment_ok = balance->moment_ok && (solved || joint != DIG_JOINT_BUCKET);
+        balance->force_ok  = balance->force_ok && solved && dig_balance_tells_force(&front);
+    }
+}
+
 // Adds what errors of the rates do through inertia and friction.
 static void add_rate_variance(const struct dig_machine *const  machine,
                               const struct dig_front *const    front,
@@ -138,11 +158,27 @@ static struct dig_wrench finish(const struct dig_balance *const balance,
     return w;
 }
 
+// All variances, and whether what errs a little can still be solved.
+static void add_variances(const struct dig_machine *const  machine,
+                          const struct dig_readings *const readings,
+                          const struct dig_front *const placed, struct dig_balance *const balance,
+                          struct variance *const variance, double geometry[DIG_PARTS])
+{
+    add_push_variance(readings, balance, variance);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        add_angle_variance(machine, readings, j, balance, variance);
+    }
+    if (readings->rates != NULL) {
+        add_rate_variance(machine, placed, readings, balance, variance);
+    }
+    dig_tolerance_variance(machine, readings, placed, balance, geometry);
+}
+
 static enum dig_status solve(const struct dig_machine *const    machine,
                              const struct dig_correction *const correction,
                              const struct dig_sample *const     sample,
-                             const struct dig_rates *const rates, struct dig_wrench *const wrench,
-                             struct dig_front *const front)
+                             const struct dig_rates *const rates, const bool with_sigma,
+                             struct dig_wrench *const wrench, struct dig_front *const front)
 {
     struct dig_readings   readings;
     const enum dig_status status = dig_readings_take(machine, correction, sample, rates, &readings);
@@ -152,18 +188,14 @@ static enum dig_status solve(const struct dig_machine *const    machine,
     const struct dig_front placed  = dig_front_place(machine, readings.joint_rad);
     struct dig_balance     balance = dig_balance_solve(machine, &readings, &placed);
 
-    struct variance variance = { .all = { 0.0 } };
-    add_push_variance(&readings, &balance, &variance);
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        add_angle_variance(machine, &readings, j, &balance, &variance);
+    struct variance variance            = { .all = { 0.0 } };
+    double          geometry[DIG_PARTS] = { 0.0 };
+    if (with_sigma) {
+        add_variances(machine, &readings, &placed, &balance, &variance, geometry);
     }
-    if (rates != NULL) {
-        add_rate_variance(machine, &placed, &readings, &balance, &variance);
+    for (int j = 0; j < DIG_JOINTS && !with_sigma; j++) {
+        check_angle(machine, &readings, j, &balance);
     }
-
-    double geometry[DIG_PARTS];
-    dig_tolerance_variance(machine, &readings, &placed, &balance, geometry);
-
     if (correction != NULL && dig_correction_is_geometric(correction)) {
         draw_lengths(machine, correction, &readings, &balance);
     }
@@ -181,7 +213,7 @@ enum dig_status dig_wrench_solve(const struct dig_machine *const machine,
                                  struct dig_wrench *const wrench, struct dig_front *const front)
 {
     assert(machine != NULL && sample != NULL && wrench != NULL && front != NULL);
-    return solve(machine, NULL, sample, NULL, wrench, front);
+    return solve(machine, NULL, sample, NULL, true, wrench, front);
 }
 
 enum dig_status dig_wrench_correct(const struct dig_machine *const    corrected,
@@ -192,5 +224,17 @@ enum dig_status dig_wrench_correct(const struct dig_machine *const    corrected,
 {
     assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
     assert(wrench != NULL && front != NULL);
-    return solve(corrected, correction, sample, rates, wrench, front);
+    return solve(corrected, correction, sample, rates, true, wrench, front);
+}
+
+enum dig_status dig_wrench_without_sigma(const struct dig_machine *const    corrected,
+                                         const struct dig_correction *const correction,
+                                         const struct dig_sample *const     sample,
+                                         const struct dig_rates *const      rates,
+                                         struct dig_wrench *const           wrench,
+                                         struct dig_front *const            front)
+{
+    assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
+    assert(wrench != NULL && front != NULL);
+    return solve(corrected, correction, sample, rates, false, wrench, front);
 }

@@ -48,4 +48,13 @@ dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correct
                    const struct dig_sample *sample, const struct dig_rates *rates,
                    struct dig_wrench *wrench, struct dig_front *front);
 
+/// The same without any sigma, all 0: what is told, and whether, is the same to the bit. A third of
+/// the work.
+DIG_MUST_CHECK enum dig_status dig_wrench_without_sigma(const struct dig_machine    *corrected,
+                                                        const struct dig_correction *correction,
+                                                        const struct dig_sample     *sample,
+                                                        const struct dig_rates      *rates,
+                                                        struct dig_wrench           *wrench,
+                                                        struct dig_front            *front);
+
 #endif // DIG_ESTIMATOR_WRENCH_H

@@ -200,6 +200,53 @@ static void noise_of_the_rates_widens_sigma(void **state)
     assert_close(shaken.sigma_My_Nm, expected, 0.05 * expected);
 }
 
+// Over all poses, of angles that are read badly: what lies a sigma away from a toggle or from a
+// stretched arm is not told, with sigmas or without.
+static void without_sigmas_the_same_is_told(void **state)
+{
+    (void)state;
+    enum { STEPS = 64 };
+    struct dig_machine          rough = model_machine();
+    const struct dig_correction c     = { .friction = { { .coulomb_N = 900.0 } } };
+    const struct dig_rates rates = { .velocity_radps = { 0.1, -0.2, 0.3 }, .velocity_sigma = 0.01 };
+    const double           zero[DIG_JOINTS] = { 0.0 };
+    struct dig_sample      sample           = sample_of(&rough, zero);
+    size_t                 spoilt           = 0;
+    rough.four_bar.link_m *= 0.7; // it has a toggle, and no stop comes before it
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        rough.cylinder[j].min_length_m = 0.0;
+        rough.cylinder[j].max_length_m = 100.0;
+    }
+    for (size_t i = 0; i < (size_t)STEPS * STEPS; i++) {
+        struct dig_wrench told[2], sharp;
+        struct dig_front  front[2];
+        sample.value[DIG_SIGNAL_ARM_rad]    = -2.8 + 3.0 * (double)(i / STEPS) / STEPS;
+        sample.value[DIG_SIGNAL_BUCKET_rad] = -3.0 + 6.0 * (double)(i % STEPS) / STEPS;
+        rough.angle_sigma_rad               = 1e-6;
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, &sharp, &front[0]),
+                         DIG_OK);
+        rough.angle_sigma_rad = 0.1;
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, &told[0], &front[0]),
+                         DIG_OK);
+        assert_int_equal(dig_wrench_without_sigma(&rough, &c, &sample, &rates, &told[1], &front[1]),
+                         DIG_OK);
+        assert_memory_equal(&front[0], &front[1], sizeof front[0]);
+        assert_int_equal(told[0].moment_valid, told[1].moment_valid);
+        assert_int_equal(told[0].force_valid, told[1].force_valid);
+        assert_memory_equal(&told[0].My_Nm, &told[1].My_Nm, sizeof told[0].My_Nm);
+        assert_memory_equal(&told[0].Fx_N, &told[1].Fx_N, sizeof told[0].Fx_N);
+        assert_memory_equal(&told[0].Fz_N, &told[1].Fz_N, sizeof told[0].Fz_N);
+        assert_true(fabs(told[1].sigma_My_Nm) + fabs(told[1].sigma_Fx_N) <= 0.0);
+        spoilt |= sharp.moment_valid && !told[1].moment_valid ? 1U : 0U;
+        spoilt |=
+            sharp.force_valid && sharp.moment_valid && told[1].moment_valid && !told[1].force_valid
+                ? 2U
+                : 0U;
+        spoilt |= told[1].force_valid ? 4U : 0U;
+    }
+    assert_int_equal(spoilt, 7);
+}
+
 static void what_cannot_be_is_refused(void **state)
 {
     (void)state;
@@ -226,6 +273,7 @@ int main(void)
         cmocka_unit_test(moved_pins_leave_the_stops_where_they_are),
         cmocka_unit_test(friction_is_taken_off_in_both_directions),
         cmocka_unit_test(noise_of_the_rates_widens_sigma),
+        cmocka_unit_test(without_sigmas_the_same_is_told),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests_name("correction", tests, NULL, NULL);
