@@ -24,7 +24,7 @@ static double miss2(const struct dig_batch *const batch, const struct dig_batch 
     double                              feature[DIG_FEATURES];
     double                              y[DIG_FEATURES];
     double                              ignored;
-    dig_hypothesis_fit(others, soil, &from->hypothesis, from->number, false, &fitted);
+    dig_hypothesis_fit(others, soil, &from->hypothesis, from->number, DIG_FIT_BARE, &fitted);
     dig_hypothesis_features(soil, &fitted.hypothesis, fitted.number,
                             &batch->measured[left->measured], feature, &ignored);
     dig_batch_whiten(group, feature, y);

@@ -29,12 +29,30 @@ static const size_t least_order = 4;    // digs that can show a trend: two that 
 static const double sigmas_90   = 1.645;
 static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
 
+// The plain dig that effects are added to: the same for all digs of a trajectory.
+struct plain {
+    double feature[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+};
+
+// The same numbers are asked about again and again: what was worked out of the last ones is kept.
 struct problem {
     const struct dig_batch      *batch;
     const struct dig_soil       *soil;
     const struct dig_hypothesis *hypothesis;
-    bool                         differs;                    // from dig to dig of a trajectory
-    double                       weight[DIG_TRAJECTORY_MAX]; // of a group's mean: 1 / sigma
+    size_t                       numbers;
+    bool                         differs; // from dig to dig of a trajectory
+
+    double       place[DIG_AXES]; // of which plain is
+    struct plain plain[DIG_TRAJECTORY_MAX];
+
+    double at[DIG_HYPOTHESIS_NUMBERS];             // of which these are
+    double mean[DIG_TRAJECTORY_MAX][DIG_FEATURES]; // y of the model, over a group's digs
+    double y[DIG_MEASURED_MAX][DIG_FEATURES];      // of each dig, where they differ
+
+    double weighed_at[DIG_HYPOTHESIS_NUMBERS]; // of which these are
+    double noise[DIG_TRAJECTORY_MAX];
+    double weight[DIG_TRAJECTORY_MAX]; // of a group's mean: 1 / sigma
 };
 
 static bool differs_by_dig(const enum dig_effect_id effect)
@@ -79,12 +97,6 @@ bool dig_hypothesis_possible(const struct dig_batch *const batch, const struct d
                : most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
 }
 
-// The plain dig that effects are added to: the same for all digs of a trajectory.
-struct plain {
-    double feature[DIG_FEATURES];
-    double amplitude[DIG_FORCE_CHANNELS];
-};
-
 static struct plain plain_of(const struct dig_soil *const soil, const size_t trajectory,
                              const double number[])
 {
@@ -99,7 +111,9 @@ static void add_effects(const struct dig_soil *const soil, const struct plain *c
                         double *const noise)
 {
     memcpy(feature, plain->feature, sizeof plain->feature);
-    *noise = 0.0;
+    if (noise != NULL) {
+        *noise = 0.0;
+    }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const double share = dig_soil_share(hypothesis->effect[e], dig);
         dig_soil_add(soil, hypothesis->effect[e], (size_t)dig->trajectory, number,
@@ -132,97 +146,113 @@ void dig_hypothesis_curve(const struct dig_soil *const       soil,
     }
 }
 
-// y of the model of one dig of a group.
-static void model_of(const struct problem *const p, const size_t group,
-                     const struct dig_measured *const dig, const double x[], double y[])
+static bool is_same(const size_t n, const double a[], const double b[])
+{
+    bool same = true;
+    for (size_t i = 0; i < n; i++) {
+        same = same && fabs(a[i] - b[i]) <= 0.0;
+    }
+    return same;
+}
+
+// NaN is never the same.
+static void forget(struct problem *const p)
+{
+    for (size_t i = 0; i < DIG_HYPOTHESIS_NUMBERS; i++) {
+        p->at[i]         = (double)NAN;
+        p->weighed_at[i] = (double)NAN;
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        p->place[a] = (double)NAN;
+    }
+}
+
+static const struct plain *plain_at(struct problem *const p, const size_t group, const double x[])
+{
+    if (!is_same(DIG_AXES, p->place, x)) {
+        memcpy(p->place, x, sizeof p->place);
+        for (size_t g = 0; g < p->batch->groups; g++) {
+            p->plain[g] = plain_of(p->soil, p->batch->group[g].trajectory, x);
+        }
+    }
+    return &p->plain[group];
+}
+
+static void model_dig(struct problem *const p, const size_t group,
+                      const struct dig_measured *const dig, const double x[], double y[])
 {
     double feature[DIG_FEATURES];
-    double noise;
-    dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &noise);
+    add_effects(p->soil, plain_at(p, group, x), p->hypothesis, x, dig, feature, NULL);
     dig_batch_whiten(&p->batch->group[group], feature, y);
 }
 
-// Where all digs of a trajectory are alike only their mean counts.
-static size_t means_alone(const struct problem *const p, const double x[], double r[])
+static void model_digs(struct problem *const p, const size_t group, const double x[])
 {
-    size_t n = 0;
-    for (size_t g = 0; g < p->batch->groups; g++) {
-        const struct dig_batch_group *const group = &p->batch->group[g];
-        double                              y[DIG_FEATURES];
-        model_of(p, g, dig_batch_first(p->batch, g), x, y);
-        for (size_t k = 0; k < group->features; k++) {
-            r[n++] = (group->mean[k] - y[k]) * p->weight[g];
+    const struct dig_batch_group *const of = &p->batch->group[group];
+    memset(p->mean[group], 0, sizeof p->mean[group]);
+    for (size_t i = 0; i < p->batch->digs; i++) {
+        if (p->batch->dig[i].group == group) {
+            model_dig(p, group, &p->batch->measured[p->batch->dig[i].measured], x, p->y[i]);
+            for (size_t k = 0; k < of->features; k++) {
+                p->mean[group][k] += p->y[i][k] / (double)of->digs;
+            }
         }
     }
-    return n;
 }
 
-static size_t means_and_digs(const struct problem *const p, const double x[], double r[])
+// y of the model at x: where all digs of a trajectory are alike only their mean counts.
+static void model_at(struct problem *const p, const double x[])
 {
-    size_t n = 0;
+    if (is_same(p->numbers, p->at, x)) {
+        return;
+    }
+    memcpy(p->at, x, p->numbers * sizeof x[0]);
     for (size_t g = 0; g < p->batch->groups; g++) {
-        const struct dig_batch_group *const group              = &p->batch->group[g];
-        double                              mean[DIG_FEATURES] = { 0.0 };
-        double                              y[DIG_MEASURED_MAX][DIG_FEATURES];
-        const struct plain                  plain = plain_of(p->soil, group->trajectory, x);
-        for (size_t i = 0; i < p->batch->digs; i++) {
-            if (p->batch->dig[i].group == g) {
-                const struct dig_measured *const dig =
-                    &p->batch->measured[p->batch->dig[i].measured];
-                double feature[DIG_FEATURES];
-                double noise;
-                add_effects(p->soil, &plain, p->hypothesis, x, dig, feature, &noise);
-                dig_batch_whiten(group, feature, y[i]);
-                for (size_t k = 0; k < group->features; k++) {
-                    mean[k] += y[i][k] / (double)group->digs;
-                }
-            }
-        }
-        for (size_t k = 0; k < group->features; k++) {
-            r[n++] = (group->mean[k] - mean[k]) * p->weight[g];
-        }
-        for (size_t i = 0; i < p->batch->digs; i++) {
-            for (size_t k = 0; p->batch->dig[i].group == g && k < group->features; k++) {
-                r[n++] = p->batch->dig[i].y[k] - group->mean[k] - (y[i][k] - mean[k]);
-            }
+        if (p->differs) {
+            model_digs(p, g, x);
+        } else {
+            model_dig(p, g, dig_batch_first(p->batch, g), x, p->mean[g]);
         }
     }
-    return n;
 }
 
 static void residual(void *const context, const double x[], double r[])
 {
-    const struct problem *const p = context;
-    (void)(p->differs ? means_and_digs(p, x, r) : means_alone(p, x, r));
+    struct problem *const p = context;
+    size_t                n = 0;
+    model_at(p, x);
+    for (size_t g = 0; g < p->batch->groups; g++) {
+        const struct dig_batch_group *const group = &p->batch->group[g];
+        for (size_t k = 0; k < group->features; k++) {
+            r[n++] = (group->mean[k] - p->mean[g][k]) * p->weight[g];
+        }
+        for (size_t i = 0; p->differs && i < p->batch->digs; i++) {
+            for (size_t k = 0; p->batch->dig[i].group == g && k < group->features; k++) {
+                r[n++] = p->batch->dig[i].y[k] - group->mean[k] - (p->y[i][k] - p->mean[g][k]);
+            }
+        }
+    }
 }
 
-// How much larger the effects make a dig than it would be plain, in the batch's units squared.
-static double effect_squares(const struct problem *const p, const size_t g,
-                             const struct dig_measured *const dig, const double x[])
+// How much larger the effects make a dig (with: its y) than it would be plain, in the batch's units
+// squared.
+static double effect_squares(const struct dig_batch_group *const group, const double with[],
+                             const double plain[])
 {
-    double with[DIG_FEATURES];
-    double plain[DIG_FEATURES];
-    double amplitude[DIG_FORCE_CHANNELS];
-    double y[DIG_FEATURES];
-    model_of(p, g, dig, x, with);
-    dig_surface_features(p->soil->surface, (size_t)dig->trajectory, x, plain, amplitude);
-    dig_batch_whiten(&p->batch->group[g], plain, y);
     double sum = 0.0;
-    for (size_t k = 0; k < p->batch->group[g].features; k++) {
-        sum += (with[k] - y[k]) * (with[k] - y[k]);
+    for (size_t k = 0; k < group->features; k++) {
+        sum += (with[k] - plain[k]) * (with[k] - plain[k]);
     }
     return sum;
 }
 
 // The size of a plain dig of the gravel over that of the group's digs, squared: what is known of
 // the plain digs' scatter counts for as much less beside digs that are larger.
-static double size2_of_plain(const struct problem *const p, const size_t g, const double x[],
+static double size2_of_plain(struct problem *const p, const size_t g, const double x[],
                              double *const factor)
 {
-    const struct dig_batch_group *const group = &p->batch->group[g];
-    double                              plain[DIG_FEATURES];
-    double                              amplitude[DIG_FORCE_CHANNELS];
-    dig_surface_features(p->soil->surface, group->trajectory, x, plain, amplitude);
+    const struct dig_batch_group *const group     = &p->batch->group[g];
+    const double *const                 amplitude = plain_at(p, g, x)->amplitude;
     *factor = dig_scatter_factor(p->batch->scatter, group->trajectory,
                                  dig_soil_strength(p->soil->surface, x, amplitude));
     return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
@@ -238,40 +268,57 @@ static double unlikeness_of(const struct dig_hypothesis *const hypothesis)
 }
 
 // What the effects bring along for one dig of a group: of templates, and what they may be unlike.
-static double noise_of_dig(const struct problem *const p, const size_t g,
+static double noise_of_dig(struct problem *const p, const size_t g,
                            const struct dig_measured *const dig, const double x[],
-                           const double size2)
+                           const double with[], const double plain[], const double size2)
 {
-    double feature[DIG_FEATURES];
-    double of_templates;
-    dig_hypothesis_features(p->soil, p->hypothesis, x, dig, feature, &of_templates);
+    double       feature[DIG_FEATURES];
+    double       of_templates;
     const double unlike = unlikeness_of(p->hypothesis);
-    return size2 * of_templates +
-           unlike * unlike * effect_squares(p, g, dig, x) / (double)p->batch->group[g].features;
+    add_effects(p->soil, plain_at(p, g, x), p->hypothesis, x, dig, feature, &of_templates);
+    return size2 * of_templates + unlike * unlike *
+                                      effect_squares(&p->batch->group[g], with, plain) /
+                                      (double)p->batch->group[g].features;
+}
+
+// The same on average over a group's digs, where they differ.
+static double noise_of_effects(struct problem *const p, const size_t g, const double x[],
+                               const double size2)
+{
+    const struct dig_batch_group *const group = &p->batch->group[g];
+    double                              plain[DIG_FEATURES];
+    double                              sum = 0.0;
+    if (p->hypothesis->effects == 0) {
+        return 0.0;
+    }
+    model_at(p, x);
+    dig_batch_whiten(group, plain_at(p, g, x)->feature, plain);
+    if (!p->differs) {
+        return noise_of_dig(p, g, dig_batch_first(p->batch, g), x, p->mean[g], plain, size2);
+    }
+    for (size_t i = 0; i < p->batch->digs; i++) {
+        if (p->batch->dig[i].group == g) {
+            const struct dig_measured *const dig = &p->batch->measured[p->batch->dig[i].measured];
+            sum += noise_of_dig(p, g, dig, x, p->y[i], plain, size2) / (double)group->digs;
+        }
+    }
+    return sum;
 }
 
 // v of each group at x. Digs that an effect makes differ share what it brings along on average.
 static void weigh(struct problem *const p, const double x[], double noise[])
 {
-    for (size_t g = 0; g < p->batch->groups; g++) {
+    const bool again = is_same(p->numbers, p->weighed_at, x);
+    for (size_t g = 0; g < p->batch->groups && !again; g++) {
         const struct dig_batch_group *const group = &p->batch->group[g];
-        double                              own   = 0.0;
         double                              factor;
         const double                        size2 = size2_of_plain(p, g, x, &factor);
-        for (size_t i = 0; p->differs && i < p->batch->digs; i++) {
-            if (p->batch->dig[i].group == g) {
-                const struct dig_measured *const dig =
-                    &p->batch->measured[p->batch->dig[i].measured];
-                own += noise_of_dig(p, g, dig, x, size2) / (double)group->digs;
-            }
-        }
-        if (!p->differs && p->hypothesis->effects > 0) {
-            own = noise_of_dig(p, g, dig_batch_first(p->batch, g), x, size2);
-        }
-        noise[g] = discrepancy + own + group->repeats +
-                   size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);
-        p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + noise[g]);
+        p->noise[g]                               = discrepancy + noise_of_effects(p, g, x, size2) +
+                      size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);
+        p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + p->noise[g]);
     }
+    memcpy(p->weighed_at, x, p->numbers * sizeof x[0]);
+    memcpy(noise, p->noise, p->batch->groups * sizeof noise[0]);
 }
 
 static void set_bounds(const struct problem *const p, struct dig_levenberg *const l)
@@ -345,8 +392,8 @@ static void set_interval(const struct dig_levenberg *const l, const double norma
 static double misfit_at(struct problem *const p, const struct dig_levenberg *const l,
                         const double x[], struct dig_fitted *const f)
 {
-    double r[RESIDUALS_MAX] = { 0.0 };
-    double squares          = 0.0;
+    double *const r       = l->memory;
+    double        squares = 0.0;
     weigh(p, x, f->noise);
     residual(p, x, r);
     for (size_t i = 0; i < l->residuals; i++) {
@@ -359,9 +406,9 @@ static double misfit_at(struct problem *const p, const struct dig_levenberg *con
 
 // Least squares with weights that follow: the best of all rounds, and of the start, is kept.
 static void fit_from(struct problem *const p, struct dig_levenberg *const l, const double start[],
-                     struct dig_fitted *const f)
+                     const bool with_interval, struct dig_fitted *const f)
 {
-    double            x[DIG_HYPOTHESIS_NUMBERS];
+    double            x[DIG_HYPOTHESIS_NUMBERS]                               = { 0.0 };
     double            normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
     struct dig_fitted tried                                                   = *f;
     for (size_t j = 0; j < l->unknowns; j++) {
@@ -371,26 +418,33 @@ static void fit_from(struct problem *const p, struct dig_levenberg *const l, con
     for (int round = 0; round < ROUNDS; round++) {
         double squares = 0.0;
         weigh(p, x, tried.noise);
-        dig_levenberg_run(l, x, &squares, normal);
+        dig_levenberg_run(l, x, &squares, with_interval && round + 1 == ROUNDS ? normal : NULL);
         if (misfit_at(p, l, x, &tried) < f->misfit) {
             *f = tried;
         }
     }
-    set_interval(l, normal, f);
+    if (with_interval) {
+        set_interval(l, normal, f);
+    }
 }
 
 void dig_hypothesis_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
                         const struct dig_hypothesis *const hypothesis, const double start[],
-                        const bool thorough, struct dig_fitted *const fitted)
+                        const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
     static const double places[][DIG_AXES] = {
         { -0.6, -0.6, 0.0 }, { 0.6, -0.6, 0.0 }, { -0.6, 0.6, 0.0 }, { 0.6, 0.6, 0.0 }
     };
-    const size_t   more = thorough ? sizeof places / sizeof places[0] : 0;
+    const size_t   more = care == DIG_FIT_THOROUGH ? sizeof places / sizeof places[0] : 0;
     double         memory[MEMORY];
-    struct problem p       = { .batch = batch, .soil = soil, .hypothesis = hypothesis };
-    p.differs              = dig_hypothesis_differs(hypothesis);
-    struct dig_levenberg l = { .unknowns   = DIG_AXES + hypothesis->effects,
+    struct problem p;
+    p.batch      = batch;
+    p.soil       = soil;
+    p.hypothesis = hypothesis;
+    p.numbers    = DIG_AXES + hypothesis->effects;
+    p.differs    = dig_hypothesis_differs(hypothesis);
+    forget(&p);
+    struct dig_levenberg l = { .unknowns   = p.numbers,
                                .residuals  = count_residuals(&p),
                                .step       = 1e-4,
                                .iterations = 25,
@@ -406,7 +460,7 @@ void dig_hypothesis_fit(const struct dig_batch *const batch, const struct dig_so
             memcpy(from, places[s - 1], sizeof places[0]);
         }
         struct dig_fitted tried = { .hypothesis = *hypothesis };
-        fit_from(&p, &l, from, &tried);
+        fit_from(&p, &l, from, care != DIG_FIT_BARE, &tried);
         if (tried.misfit < best.misfit) {
             best = tried;
         }
@@ -425,12 +479,11 @@ double dig_hypothesis_squares(const struct dig_batch *const  batch,
         for (size_t i = 0; i < batch->digs; i++) {
             double feature[DIG_FEATURES];
             double y[DIG_FEATURES];
-            double ignored;
             if (batch->dig[i].group != g) {
                 continue;
             }
             dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
-                                    &batch->measured[batch->dig[i].measured], feature, &ignored);
+                                    &batch->measured[batch->dig[i].measured], feature, NULL);
             dig_batch_whiten(group, feature, y);
             for (size_t k = 0; k < group->features; k++) {
                 mean[k] += y[k] / (double)group->digs;

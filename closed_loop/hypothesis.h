@@ -45,14 +45,17 @@ bool dig_hypothesis_possible(const struct dig_batch *batch, const struct dig_soi
 /// True when some effect of it differs from dig to dig of a trajectory.
 bool dig_hypothesis_differs(const struct dig_hypothesis *hypothesis);
 
-/// Fits. start: numbers to start from (place, u); more starts are tried when thorough. Some hundred
-/// microseconds a start.
+/// What of a fit is asked for: number and misfit from one start; its intervals too (low and high
+/// are 0 otherwise); all that, from more starts.
+enum dig_fit_care { DIG_FIT_BARE, DIG_FIT_ONCE, DIG_FIT_THOROUGH };
+
+/// Fits. start: numbers to start from (place, u). Some hundred microseconds a start.
 void dig_hypothesis_fit(const struct dig_batch *batch, const struct dig_soil *soil,
                         const struct dig_hypothesis *hypothesis, const double start[],
-                        bool thorough, struct dig_fitted *fitted);
+                        enum dig_fit_care care, struct dig_fitted *fitted);
 
-/// Features of one dig of a batch by a fitted hypothesis, units of the table; *noise as v, without
-/// what all hypotheses have.
+/// Features of one dig of a batch by a fitted hypothesis, units of the table; *noise (NULL: not
+/// asked for) as v, without what all hypotheses have.
 void dig_hypothesis_features(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
                              const double number[], const struct dig_measured *dig,
                              double feature[DIG_FEATURES], double *noise);

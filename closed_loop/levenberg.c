@@ -31,7 +31,8 @@ static void clip(const struct dig_levenberg *const p, double x[])
 static void differentiate(const struct dig_levenberg *const p, const double x[], const double r[],
                           double jacobian[])
 {
-    for (size_t j = 0; j < p->unknowns; j++) {
+    // Backwards: numbers of effects first, while the caller may still know the gravel's plain dig.
+    for (size_t j = p->unknowns; j-- > 0;) {
         double *const column = jacobian + j * p->residuals;
         double        moved[DIG_LEVENBERG_UNKNOWNS];
         memcpy(moved, x, p->unknowns * sizeof moved[0]);
@@ -118,6 +119,7 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
     double *const tried                            = r + problem->residuals;
     double *const jacobian                         = tried + problem->residuals;
     double        gradient[DIG_LEVENBERG_UNKNOWNS] = { 0.0 };
+    double        product[SQUARE]                  = { 0.0 };
     double        damping                          = 1e-3;
     bool          better                           = true;
     clip(problem, x);
@@ -125,11 +127,11 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
     double sum = sum_of_squares(problem->residuals, r);
     for (int i = 0; i < problem->iterations && better; i++) {
         differentiate(problem, x, r, jacobian);
-        normal_equations(problem, x, r, jacobian, normal, gradient);
+        normal_equations(problem, x, r, jacobian, product, gradient);
         const double before = sum;
         better              = false;
         for (int tries = 0; tries < 6 && !better; tries++) {
-            better = take_step(problem, normal, gradient, damping, x, tried, &sum);
+            better = take_step(problem, product, gradient, damping, x, tried, &sum);
             damping *= better ? 0.2 : 10.0;
         }
         if (better) {
@@ -139,9 +141,12 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
             break;
         }
     }
-    if (better) {
+    if (better && normal != NULL) {
         differentiate(problem, x, r, jacobian);
-        normal_equations(problem, x, r, jacobian, normal, gradient);
+        normal_equations(problem, x, r, jacobian, product, gradient);
+    }
+    if (normal != NULL) {
+        memcpy(normal, product, problem->unknowns * problem->unknowns * sizeof normal[0]);
     }
     *squares = sum;
 }

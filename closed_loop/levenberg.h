@@ -21,8 +21,8 @@ struct dig_levenberg {
 };
 
 /// Improves x, which is put within the bounds first. *squares: the sum of squares at the end.
-/// normal, [unknowns * unknowns]: J'J there, rows and columns of unknowns held or at a bound that
-/// holds them 0.
+/// normal, [unknowns * unknowns] (NULL: not asked for): J'J there, rows and columns of unknowns
+/// held or at a bound that holds them 0.
 void dig_levenberg_run(const struct dig_levenberg *problem, double x[], double *squares,
                        double normal[]);
 

@@ -25,7 +25,7 @@ static void split(const struct dig_batch *const batch, const struct dig_soil *co
 static void fit_rival(const struct dig_batch *const batch, const struct dig_soil *const soil,
                       const struct dig_hypothesis *const base,
                       const struct dig_hypothesis *const rival, const struct dig_fitted *const from,
-                      const bool thorough, struct dig_fitted *const fitted)
+                      const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
     static const double starts[] = { 0.3, 0.6, -0.5 };
     const size_t        last     = DIG_AXES + rival->effects - 1;
@@ -42,7 +42,7 @@ static void fit_rival(const struct dig_batch *const batch, const struct dig_soil
         if (s > 0 && fabs(at[last]) <= 0.0) {
             continue;
         }
-        dig_hypothesis_fit(batch, soil, rival, at, thorough, &tried);
+        dig_hypothesis_fit(batch, soil, rival, at, care, &tried);
         if (tried.misfit < best.misfit) {
             best = tried;
         }
@@ -52,16 +52,17 @@ static void fit_rival(const struct dig_batch *const batch, const struct dig_soil
 
 void dig_null_fit(const struct dig_batch *const batch, const struct dig_soil *const soil,
                   const struct dig_hypothesis *const base, const size_t rivals,
-                  const struct dig_hypothesis rival[], const double start[], const bool thorough,
-                  struct dig_fitted fitted[], struct dig_statistic *const statistic)
+                  const struct dig_hypothesis rival[], const double start[],
+                  const enum dig_fit_care care, struct dig_fitted fitted[],
+                  struct dig_statistic *const statistic)
 {
     assert(rivals <= DIG_NULL_RIVALS);
-    dig_hypothesis_fit(batch, soil, base, start, thorough, &fitted[0]);
+    dig_hypothesis_fit(batch, soil, base, start, care, &fitted[0]);
     split(batch, soil, &fitted[0], statistic);
     statistic->gain = 0.0;
     statistic->best = rivals;
     for (size_t i = 0; i < rivals; i++) {
-        fit_rival(batch, soil, base, &rival[i], &fitted[0], thorough, &fitted[1 + i]);
+        fit_rival(batch, soil, base, &rival[i], &fitted[0], care, &fitted[1 + i]);
         const double gain = fitted[0].misfit - fitted[1 + i].misfit;
         if (gain > statistic->gain) {
             statistic->gain = gain;
@@ -142,8 +143,8 @@ enum dig_status dig_null_draw(const struct dig_batch *const  batch,
     for (size_t d = 0; d < draws; d++) {
         struct dig_statistic s;
         dig_null_digs(batch, soil, fitted, seed, drawn);
-        dig_null_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number, false, again,
-                     &s);
+        dig_null_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number, DIG_FIT_BARE,
+                     again, &s);
         const double value[3] = { s.misfit, s.about, s.gain };
         for (size_t i = 0; i < 3; i++) {
             const double off = value[i] - made.mean[i];

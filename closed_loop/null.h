@@ -33,7 +33,7 @@ struct dig_null {
 /// fits: fitted[0] by base, fitted[1 + i] by rival i.
 void dig_null_fit(const struct dig_batch *batch, const struct dig_soil *soil,
                   const struct dig_hypothesis *base, size_t rivals,
-                  const struct dig_hypothesis rival[], const double start[], bool thorough,
+                  const struct dig_hypothesis rival[], const double start[], enum dig_fit_care care,
                   struct dig_fitted fitted[], struct dig_statistic *statistic);
 
 /// Draws the digs of one campaign from fitted into drawn, which is a copy of batch.

@@ -98,7 +98,7 @@ enum dig_status dig_portmanteau_judge(const struct dig_batch *const  batch,
     for (size_t d = 0; d < draws; d++) {
         struct dig_fitted again;
         dig_null_digs(batch, soil, fitted, &seed, drawn);
-        dig_hypothesis_fit(drawn, soil, &fitted->hypothesis, fitted->number, false, &again);
+        dig_hypothesis_fit(drawn, soil, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
         const double mean = all_digs(drawn, soil, &again, q);
         made.expected += mean / (double)draws;
         as_large += mean >= made.statistic ? 1.0 : 0.0;

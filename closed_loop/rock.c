@@ -192,8 +192,8 @@ static void fit_place(struct room *const r, const struct place *const p,
         take_off(r, p, rock->factor);
         double from[DIG_HYPOTHESIS_NUMBERS];
         memcpy(from, rock->plain.number, sizeof from);
-        dig_hypothesis_fit(&r->without, r->soil, &plain->hypothesis, from, round == 0,
-                           &rock->plain);
+        dig_hypothesis_fit(&r->without, r->soil, &plain->hypothesis, from,
+                           round == 0 ? DIG_FIT_THOROUGH : DIG_FIT_ONCE, &rock->plain);
     }
     judge(r, p, plain, rock);
 }

@@ -66,14 +66,15 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     static const struct dig_hypothesis outside = { .effects = 0, .outside = true };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_fitted                  fitted[DIG_NULL_RIVALS + 1];
-    dig_null_fit(c->batch, c->soil, &plain, c->s->rivals, c->single, middle, true, fitted,
-                 statistic);
+    dig_null_fit(c->batch, c->soil, &plain, c->s->rivals, c->single, middle, DIG_FIT_THOROUGH,
+                 fitted, statistic);
     c->s->plain = fitted[0];
     for (size_t i = 0; i < c->s->rivals; i++) {
         c->s->rival[i]        = fitted[1 + i];
         c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 1);
     }
-    dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, true, &c->s->beyond);
+    dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
+                       &c->s->beyond);
 }
 
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.
@@ -214,7 +215,7 @@ static enum dig_status bootstrap(struct dig_search_work *const c, const size_t t
         struct dig_statistic statistic;
         resample(c->batch, &c->seed, drawn);
         dig_null_fit(drawn, c->soil, &c->s->plain.hypothesis, c->s->rivals, c->single,
-                     c->s->plain.number, false, fitted, &statistic);
+                     c->s->plain.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < c->s->rivals) {
             c->s->inclusion[statistic.best] += 1.0 / (double)times;
         }

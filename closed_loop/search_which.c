@@ -55,7 +55,7 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
         struct dig_statistic  statistic;
         const size_t          n = list_additions(c, &c->single[first], added);
         dig_null_fit(c->batch, c->soil, &c->single[first], n, added, c->s->rival[first].number,
-                     false, fitted, &statistic);
+                     DIG_FIT_ONCE, fitted, &statistic);
         if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
             best  = fitted[1 + statistic.best].misfit;
             *pair = fitted[1 + statistic.best];
@@ -78,8 +78,8 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
     // Digs that differ cost as many times more as there are of them.
     const size_t draws =
         dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
-    dig_null_fit(c->batch, c->soil, &c->s->chosen.hypothesis, n, added, c->s->chosen.number, false,
-                 fitted, &statistic);
+    dig_null_fit(c->batch, c->soil, &c->s->chosen.hypothesis, n, added, c->s->chosen.number,
+                 DIG_FIT_BARE, fitted, &statistic);
     const enum dig_status status =
         dig_null_draw(c->batch, c->soil, &c->s->chosen, n, added, draws, &c->seed, &null);
     if (status == DIG_OK) {
@@ -130,7 +130,7 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
         if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
             struct dig_fitted again;
             start[DIG_AXES] = pair->number[DIG_AXES + e];
-            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, false, &again);
+            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_ONCE, &again);
             if (again.misfit < c->s->rival[best].misfit) {
                 c->s->rival[best]        = again;
                 c->s->log_evidence[best] = dig_search_evidence(c, &again, 1);

@@ -146,20 +146,26 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
             some[n++] = i;
         }
     }
-    double shape[DIG_FEATURES] = { 0.0 };
-    double sum                 = *noise;
-    for (size_t i = 0; i < n; i++) {
-        const double *const of = template->feature[some[i]];
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            shape[f] += term[some[i]] * of[f];
-        }
+    double sum = noise != NULL ? *noise : 0.0;
+    for (size_t i = 0; noise != NULL && i < n; i++) {
         for (size_t j = 0; j < n; j++) {
             sum += term[some[i]] * template->inverse[some[i]][some[j]] * term[some[j]];
         }
     }
-    *noise = sum;
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        feature[f] += shape[f] * amplitude[f / DIG_FEATURE_BINS];
+    if (noise != NULL) {
+        *noise = sum;
+    }
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double shape[DIG_FEATURE_BINS] = { 0.0 };
+        for (size_t i = 0; i < n; i++) {
+            const double *const of = &template->feature[some[i]][c * DIG_FEATURE_BINS];
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                shape[b] += term[some[i]] * of[b];
+            }
+        }
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            feature[c * DIG_FEATURE_BINS + b] += shape[b] * amplitude[c];
+        }
     }
 }
 

@@ -75,7 +75,7 @@ bool dig_soil_knows(const struct dig_soil *soil, enum dig_effect_id effect, size
 double dig_soil_share(enum dig_effect_id effect, const struct dig_measured *dig);
 
 /// Adds the effect at u to a plain dig's features (in place) and the variance of what was added, in
-/// units of the variance of one plain dig, to *noise. share as above.
+/// units of the variance of one plain dig, to *noise (NULL: not asked for). share as above.
 void dig_soil_add(const struct dig_soil *soil, enum dig_effect_id effect, size_t trajectory,
                   const double place[DIG_AXES], double u, double share,
                   const double plain[DIG_FEATURES], const double amplitude[DIG_FORCE_CHANNELS],

@@ -228,15 +228,17 @@ void dig_surface_features(const struct dig_surface *const surface, const size_t 
     double term[DIG_SURFACE_TERMS];
     terms_at(surface, place, term);
     amplitude_at(surface, trajectory, term, amplitude);
-    double shape[DIG_FEATURES] = { 0.0 };
-    for (size_t j = 0; j < surface->terms; j++) {
-        const double *const of = surface->feature[trajectory][j];
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            shape[f] += term[j] * of[f];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double shape[DIG_FEATURE_BINS] = { 0.0 };
+        for (size_t j = 0; j < surface->terms; j++) {
+            const double *const of = &surface->feature[trajectory][j][c * DIG_FEATURE_BINS];
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                shape[b] += term[j] * of[b];
+            }
         }
-    }
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        feature[f] = shape[f] * amplitude[f / DIG_FEATURE_BINS];
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            feature[c * DIG_FEATURE_BINS + b] = shape[b] * amplitude[c];
+        }
     }
 }
 

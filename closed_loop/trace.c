@@ -117,7 +117,7 @@ enum dig_status dig_trace_batch(const struct dig_trace_work *const w, const size
     enum dig_status                    status =
         dig_batch_make(w->surface, w->scatter, digs, measured, w->fit, NULL, w->batch);
     for (int round = 0; round < 2 && status == DIG_OK; round++) {
-        dig_hypothesis_fit(w->batch, w->soil, &none, middle, true, plain);
+        dig_hypothesis_fit(w->batch, w->soil, &none, middle, DIG_FIT_THOROUGH, plain);
         if (round == 0) {
             status = dig_batch_make(w->surface, w->scatter, digs, measured, w->fit, plain->number,
                                     w->batch);
@@ -258,7 +258,7 @@ static void choose_rate(struct dig_trace_work *const w)
         double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         memcpy(start, w->before.number, DIG_AXES * sizeof start[0]);
         w->soil->along = (double)along;
-        dig_hypothesis_fit(w->batch, w->soil, &rate, start, true, &fitted);
+        dig_hypothesis_fit(w->batch, w->soil, &rate, start, DIG_FIT_THOROUGH, &fitted);
         misfit[along] = fitted.misfit;
     }
     w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;

@@ -38,7 +38,7 @@ static const struct dig_fitted *fit_of(const enum dig_effect_id effect, const si
     static struct dig_fitted    fitted[2];
     const struct dig_hypothesis hypothesis                     = { effects, { effect }, false };
     const double                middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    dig_hypothesis_fit(&batch, soil, &hypothesis, middle, true, &fitted[effects]);
+    dig_hypothesis_fit(&batch, soil, &hypothesis, middle, DIG_FIT_THOROUGH, &fitted[effects]);
     return &fitted[effects];
 }
 

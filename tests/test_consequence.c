@@ -37,7 +37,7 @@ static int make(void **state)
         dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK) {
         return 1;
     }
-    dig_hypothesis_fit(batch, soil, &none, middle, true, &plain);
+    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
     return 0;
 }
 

@@ -85,7 +85,7 @@ static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
         assert_int_equal(
             dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
             DIG_OK);
-        dig_hypothesis_fit(&batch, soil, &plain, start, true, &fitted);
+        dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
         const struct dig_gravel found = dig_surface_gravel(world.surface, fitted.number);
         const double            truth = made_variance(&batch.group[0], &found);
         const double            said  = fitted.noise[0] - discrepancy;
@@ -93,10 +93,92 @@ static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
     }
 }
 
+// - 2 log likelihood as the header has it, of a fit: its squares, worked out anew.
+static double squares_of(const struct dig_batch *const b, const struct dig_fitted *const f)
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < b->groups; g++) {
+        const struct dig_batch_group *const group = &b->group[g];
+        double                              model[DIGS][DIG_FEATURES];
+        double                              mean[DIG_FEATURES] = { 0.0 };
+        for (size_t i = 0; i < b->digs; i++) {
+            double feature[DIG_FEATURES];
+            double noise;
+            dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature,
+                                    &noise);
+            dig_batch_whiten(group, feature, model[i]);
+            for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
+                mean[k] += model[i][k] / (double)group->digs;
+            }
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            sum += pow(group->mean[k] - mean[k], 2.0) / (1.0 / (double)group->digs + f->noise[g]);
+            for (size_t i = 0; i < b->digs; i++) {
+                sum += b->dig[i].group == g
+                           ? pow(b->dig[i].y[k] - group->mean[k] - (model[i][k] - mean[k]), 2.0)
+                           : 0.0;
+            }
+        }
+    }
+    return sum;
+}
+
+// Whether there are clearly smaller squares a little off.
+static bool is_lower_beside(const struct dig_batch *const b, const struct dig_fitted *const f)
+{
+    bool lower = false;
+    for (size_t j = 0; j < DIG_AXES + f->hypothesis.effects; j++) {
+        for (double step = -0.02; step <= 0.02; step += 0.04) {
+            struct dig_fitted off = *f;
+            off.number[j] += step;
+            lower = lower || (fabs(off.number[j]) < 1.0 && squares_of(b, &off) < f->squares - 0.02);
+        }
+    }
+    return lower;
+}
+
+// What a fit keeps of the numbers it has tried is theirs: it ends where the squares are least, and
+// tells those of that place, with intervals and without.
+static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
+{
+    (void)state;
+    static const struct dig_hypothesis all[] = {
+        { .effects = 0 },
+        { .effects = 1, .effect = { DIG_EFFECT_LAYERING } },
+        { .effects = 1, .effect = { DIG_EFFECT_WEAR } },
+        { .effects = 2, .effect = { DIG_EFFECT_COHESION, DIG_EFFECT_WEAR } },
+    };
+    static const bool       take[DIGS]                    = { true, true, true, true };
+    const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
+    const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 0.05 };
+    static struct dig_batch batch;
+    double                  place[DIG_AXES];
+    dig(&gravel, 1.3, 17);
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i].order = i;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
+        struct dig_fitted bare, once;
+        dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_BARE, &bare);
+        dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_ONCE, &once);
+        assert_close(once.squares, squares_of(&batch, &once), 1e-9 * once.squares);
+        assert_false(is_lower_beside(&batch, &once));
+        assert_memory_equal(bare.number, once.number, sizeof bare.number);
+        assert_memory_equal(bare.noise, once.noise, sizeof bare.noise);
+        assert_memory_equal(&bare.misfit, &once.misfit, sizeof bare.misfit);
+        assert_close(bare.low[0], 0.0, 0.0);
+        assert_true(once.low[0] < once.number[0] && once.number[0] < once.high[0]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_tables_error_counts_for_less_beside_larger_digs),
+        cmocka_unit_test(a_fit_ends_where_the_squares_it_tells_are_least),
     };
     return cmocka_run_group_tests_name("hypothesis", tests, world_setup, world_teardown);
 }

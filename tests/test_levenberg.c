@@ -60,12 +60,25 @@ static void a_held_unknown_stays(void **state)
     assert_close(x[1], 0.49, 1e-4);
 }
 
+static void without_curvature_it_ends_in_the_same_place(void **state)
+{
+    (void)state;
+    double                     memory[8], normal[4], squares[2] = { 0.0, 0.0 };
+    double                     x[2][2] = { { -1.2, 1.0 }, { -1.2, 1.0 } };
+    const struct dig_levenberg p       = problem(memory, 0.5);
+    dig_levenberg_run(&p, x[0], &squares[0], normal);
+    dig_levenberg_run(&p, x[1], &squares[1], NULL);
+    assert_memory_equal(x[0], x[1], sizeof x[0]);
+    assert_memory_equal(&squares[0], &squares[1], sizeof squares[0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_bottom_of_a_curved_valley_is_found),
         cmocka_unit_test(a_bound_is_kept_and_the_rest_is_fitted),
         cmocka_unit_test(a_held_unknown_stays),
+        cmocka_unit_test(without_curvature_it_ends_in_the_same_place),
     };
     return cmocka_run_group_tests_name("levenberg", tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ static struct dig_whiteness judge(const double magnitude, uint64_t seed)
     struct dig_fitted           plain;
     struct dig_whiteness        white = { .digs = 77 };
     memcpy(start, place, sizeof place);
-    dig_hypothesis_fit(batch, soil, &none, start, true, &plain);
+    dig_hypothesis_fit(batch, soil, &none, start, DIG_FIT_THOROUGH, &plain);
     assert_int_equal(dig_portmanteau_judge(batch, soil, &plain, DRAWS, seed, &white), DIG_OK);
     assert_int_equal(white.digs, DIGS);
     return white;

@@ -87,7 +87,7 @@ static void the_mean_of_one_bed_is_no_nearer_to_its_gravel(void **state)
         for (int once = 0; once < 2; once++) {
             struct dig_batch *const batch = batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
             struct dig_fitted       fitted;
-            dig_hypothesis_fit(batch, soil, &plain, middle, true, &fitted);
+            dig_hypothesis_fit(batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
             mean[once] += (fitted.squares - batch->group[0].about) / CAMPAIGNS;
             free(batch);
         }

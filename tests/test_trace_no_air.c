@@ -36,8 +36,8 @@ static struct dig_trace_work work(const size_t digs)
         dig_batch_make(world.surface, world.scatter, digs, measured, take, place, &batch), DIG_OK);
     memset(&search, 0, sizeof search);
     search.significant = true;
-    dig_hypothesis_fit(&batch, soil, &plain, middle, true, &search.plain);
-    dig_hypothesis_fit(&batch, soil, &layer, middle, true, &search.chosen);
+    dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &search.plain);
+    dig_hypothesis_fit(&batch, soil, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
     air = (struct dig_machine_finding){ .p_complete = 1.0, .no_air = true };
     return (struct dig_trace_work){ .soil = soil, .batch = &batch, .search = &search, .air = &air };
 }

@@ -79,7 +79,7 @@ static void regress(struct dig_regressed *const means, struct dig_regressed *con
     dig_surface_place(world.surface, &gravel, place);
     assert_int_equal(
         dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
-    dig_hypothesis_fit(batch, soil, &none, middle, true, &plain);
+    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
     assert_int_equal(dig_regress_means(batch, soil, &plain, means), DIG_OK);
     assert_int_equal(dig_regress_digs(batch, soil, &plain, digs), DIG_OK);
 }
