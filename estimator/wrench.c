@@ -54,7 +54,8 @@ static void add_angle_variance(const struct dig_machine *const  machine,
     }
 }
 
-// The same of whether it can be solved, alone: an angle changes its own joint's lever and no other.
+// The same of whether it can be solved, alone: an angle changes its own joint's lever and no other,
+// and the bucket's moves no pin.
 static void check_angle(const struct dig_machine *const  machine,
                         const struct dig_readings *const readings, const int joint,
                         struct dig_balance *const balance)
@@ -65,12 +66,16 @@ static void check_angle(const struct dig_machine *const  machine,
         struct dig_readings near = *readings;
         struct dig_lever    lever;
         near.joint_rad[joint] += side * h_rad;
-        const struct dig_front front = dig_front_place(machine, near.joint_rad);
         const bool solved = dig_lever_solve(machine, (enum dig_joint)joint, near.joint_rad[joint],
                                             &lever) == DIG_OK;
 
-        balance->moment_ok = balance->moment_ok && (solved || joint != DIG_JOINT_BUCKET);
-        balance->force_ok  = balance->force_ok && solved && dig_balance_tells_force(&front);
+        balance->force_ok = balance->force_ok && solved;
+        if (joint == DIG_JOINT_BUCKET) {
+            balance->moment_ok = balance->moment_ok && solved;
+        } else if (balance->force_ok) {
+            const struct dig_front front = dig_front_place(machine, near.joint_rad);
+            balance->force_ok            = dig_balance_tells_force(&front);
+        }
     }
 }
 
