@@ -25,7 +25,8 @@ struct dig_outline {
 struct dig_summary {
     const struct dig_curve_set *set;
     // [entries * trajectories] of the moments' means, in the set's order, as who looks for the
-    // nearest reads no more; then the other layers of each curve together.
+    // nearest reads no more; then of each curve the forces' means, which the noise-weighted
+    // distance looks at besides; then of each the standard deviations.
     const struct dig_outline *outline;
     double                    relative2[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
 };
@@ -41,7 +42,11 @@ static inline size_t dig_outline_place(const struct dig_curve_set *const set, co
                                        const size_t slot)
 {
     const size_t curves = set->entries * set->trajectories;
-    return layer == 0 ? slot : curves + slot * (DIG_OUTLINE_LAYERS - 1) + layer - 1;
+    if (layer == 0) {
+        return slot;
+    }
+    return layer % 2 == 0 ? curves + slot * (DIG_FORCE_CHANNELS - 1) + layer / 2 - 1
+                          : (curves + slot) * DIG_FORCE_CHANNELS + layer / 2;
 }
 
 /// The outline of the set's curve [slot]: of its mean, and of its standard deviation.
