@@ -6,6 +6,7 @@
 #include "estimator/approach_slots.h"
 #include "estimator/approaches.h"
 #include "estimator/cylinder.h"
+#include "estimator/departure.h"
 #include "estimator/ending.h"
 #include "estimator/estimator_state.h"
 #include "estimator/sensed.h"
@@ -230,6 +231,26 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
     return status;
 }
 
+// Once the path has left the trajectory, no way out near a later leg of it counts as dug.
+static enum dig_status observe_plain(const struct dig_curve_set *const set, const double limit_m,
+                                     const struct dig_route route[], const struct dig_track whole[],
+                                     struct dig_raw *const raw, struct dig_observation *const out)
+{
+    const int            t = out->trajectory;
+    struct dig_departure departure;
+    const bool           left = !raw->followed.missing &&
+                      dig_departure_choose(set->trajectories, route, &raw->path, limit_m,
+                                           tie_share * limit_m, whole, &departure) == t;
+    const struct dig_track *const track  = left ? &departure.track : &whole[t];
+    const enum dig_status         status = dig_window_observe(
+                &raw->window, &route[t], track, left ? limit_m : 2.0 * limit_m, set->smooth_half_s, out);
+    if (status == DIG_OK && out->ending == DIG_ENDING_ABORTED &&
+        !dig_ending_is_known(&route[t], track, &raw->path, limit_m)) {
+        out->ending = DIG_ENDING_OPEN;
+    }
+    return status;
+}
+
 // The whole path decides which trajectory it was; an observation is made if it was one.
 static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
                                const struct dig_route route[], struct dig_raw *const raw,
@@ -246,12 +267,10 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
     if (chosen < 0) {
         return DIG_ENOMATCH;
     }
-    struct dig_observation out = { .dig_count = raw->dig_count, .trajectory = chosen };
-    const enum dig_status  status =
-        dig_approach_varies(set, (size_t)chosen)
-             ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
-             : dig_window_observe(&raw->window, &route[chosen], &fitted[chosen], 2.0 * limit_m,
-                                  set->smooth_half_s, &out);
+    struct dig_observation out    = { .dig_count = raw->dig_count, .trajectory = chosen };
+    const enum dig_status  status = dig_approach_varies(set, (size_t)chosen)
+                                        ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
+                                        : observe_plain(set, limit_m, route, fitted, raw, &out);
     if (status != DIG_OK) {
         return status;
     }

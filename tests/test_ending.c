@@ -62,6 +62,47 @@ static void what_is_still_on_its_way_is_left_open(void **state)
     assert_int_equal(ending(0.45, 0.09, 0.05, 0.0), DIG_ENDING_OPEN); // cut the corner
 }
 
+// Dug from one progress to another; before that, in the air, from above.
+static struct dig_path dug(const double from, const double to)
+{
+    struct dig_path path = { .spacing_m = 0.002 };
+    for (double above_m = 0.04; above_m > 0.001; above_m -= 0.002) {
+        const struct dig_path_point at = { 0.5 + fmin(0.2 * from, 0.1),
+                                           -0.3 + fmax(0.2 * from - 0.1, 0.0) + above_m, 0.02 };
+        (void)dig_path_add(&path, &at, false);
+    }
+    for (double p = from; p <= to; p += 0.01) {
+        const struct dig_path_point at = { 0.5 + fmin(0.2 * p, 0.1),
+                                           -0.3 + fmax(0.2 * p - 0.1, 0.0), 0.02 };
+        if (p <= from) {
+            dig_path_touch(&path, &at);
+        }
+        (void)dig_path_add(&path, &at, true);
+    }
+    return path;
+}
+
+static bool known(const double from, const double to, const double off_m)
+{
+    const struct dig_route route = legs();
+    const struct dig_track track = { .dx_m = 0.5, .dz_m = -0.3 - off_m, .turn_m = 0.02 };
+    const struct dig_path  path  = dug(from, to);
+    return dig_ending_is_known(&route, &track, &path, limit_m);
+}
+
+// By hand: the corner is at 0.5, and 8 mm are 0.04 of the path.
+static void only_a_piece_round_a_corner_is_known_to_be_where_it_is(void **state)
+{
+    (void)state;
+    assert_true(known(0.0, 0.3, 0.0));
+    assert_true(known(0.2, 0.4, 0.0)); // contact tells where on the first leg it is
+    assert_true(known(0.44, 0.56, 0.0));
+    assert_false(known(0.48, 0.56, 0.0));
+    assert_false(known(0.44, 0.52, 0.0));
+    assert_false(known(0.6, 0.8, 0.0));
+    assert_false(known(0.0, 0.3, 0.005)); // beside it
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -69,6 +110,7 @@ int main(void)
         cmocka_unit_test(what_leaves_the_path_before_its_end_is_aborted),
         cmocka_unit_test(what_goes_back_the_way_it_came_is_aborted),
         cmocka_unit_test(what_is_still_on_its_way_is_left_open),
+        cmocka_unit_test(only_a_piece_round_a_corner_is_known_to_be_where_it_is),
     };
     return cmocka_run_group_tests_name("ending", tests, NULL, NULL);
 }
