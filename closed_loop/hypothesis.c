@@ -313,7 +313,7 @@ static void weigh(struct problem *const p, const double x[], double noise[])
         const struct dig_batch_group *const group = &p->batch->group[g];
         double                              factor;
         const double                        size2 = size2_of_plain(p, g, x, &factor);
-        p->noise[g]                               = discrepancy + noise_of_effects(p, g, x, size2) +
+        p->noise[g] = discrepancy + noise_of_effects(p, g, x, size2) + group->repeats +
                       size2 * factor * dig_surface_noise(p->soil->surface, group->trajectory, x);
         p->weight[g] = 1.0 / sqrt(1.0 / (double)group->digs + p->noise[g]);
     }
