@@ -231,8 +231,11 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         .row     = malloc(DIG_JOINTS * points * sizeof *made.row),
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
         .scratch = malloc((size_t)(3 * DIG_JOINTS) * points * sizeof *made.scratch),
+        .pose    = calloc(points, sizeof *made.pose),
+        .posed   = calloc(2 * digs + 1, sizeof *made.posed),
     };
-    if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL) {
+    if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL ||
+        made.pose == NULL || made.posed == NULL) {
         dig_air_finish(&made);
         return DIG_ENOMEM;
     }
@@ -253,6 +256,8 @@ void dig_air_finish(struct dig_air *const air)
         free(air->row);
         free(air->segment);
         free(air->scratch);
+        free(air->pose);
+        free(air->posed);
         *air = (struct dig_air){ .points = 0 };
     }
 }

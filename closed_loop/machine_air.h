@@ -46,6 +46,14 @@ struct dig_air_segment {
     double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
 };
 
+/// What of a point's balance pressures and friction have no part in.
+struct dig_air_pose {
+    bool   known;
+    bool   lever_ok[DIG_JOINTS];
+    double arm_m[DIG_JOINTS];
+    double mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
+};
+
 /// Free with dig_air_finish().
 struct dig_air {
     struct dig_machine      machine;
@@ -54,6 +62,8 @@ struct dig_air {
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
     double                 *scratch; // [9 * points]
+    struct dig_air_pose    *pose;    // [points], with the correction last asked about
+    struct dig_correction  *posed;   // [segments], which that is
 };
 
 /// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive

@@ -2,9 +2,11 @@
 
 #include "closed_loop/machine_air.h"
 #include "estimator/balance.h"
+#include "estimator/dynamics.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 
 static const double half_s = DIG_AIR_KERNEL_HALF_s;
 static const double step_s = DIG_AIR_STEP_s;
@@ -49,38 +51,67 @@ static double held_N(const struct dig_friction *const friction, const double pus
     return fabs(dig_friction_loss_N(friction, push_N, copysign(moves_mps, rod_mps)) - loss_N);
 }
 
+// Levers and masses; half of all that is asked differs in pressures or friction alone.
+static const struct dig_air_pose *pose_of(const struct dig_machine *const  corrected,
+                                          const struct dig_readings *const readings,
+                                          const struct dig_rates *const    rates,
+                                          struct dig_air_pose *const       pose)
+{
+    if (pose->known) {
+        return pose;
+    }
+    const struct dig_front front = dig_front_place(corrected, readings->joint_rad);
+    dig_dynamics_Nm(corrected, &front, rates, readings->pitch_rad, pose->mass_Nm);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_lever lever;
+        pose->lever_ok[j] =
+            dig_lever_solve(corrected, (enum dig_joint)j, readings->joint_rad[j], &lever) == DIG_OK;
+        pose->arm_m[j] = pose->lever_ok[j] ? lever.arm_m : 0.0;
+    }
+    pose->known = true;
+    return pose;
+}
+
+// True when two corrections leave levers, masses and delay alike: all that follows the pressures'.
+static bool stand_alike(const struct dig_correction *const a, const struct dig_correction *const b)
+{
+    const size_t        from  = offsetof(struct dig_correction, bucket) / sizeof(double);
+    const double *const one   = (const double *)(const void *)a;
+    const double *const other = (const double *)(const void *)b;
+    bool                alike = true;
+    for (size_t i = from; i < sizeof *a / sizeof(double); i++) {
+        alike = alike && fabs(one[i] - other[i]) <= 0.0;
+    }
+    return alike;
+}
+
 // What is left of the joints at one point, N at the rods, what friction takes of it, and what it
 // may take more.
 static void rest_at(const struct dig_machine *const    corrected,
                     const struct dig_correction *const correction,
-                    struct dig_air_point *const point, const bool calm, double rest_N[DIG_JOINTS],
+                    struct dig_air_point *const point, const bool calm,
+                    struct dig_air_pose *const kept, double rest_N[DIG_JOINTS],
                     double loss_N[DIG_JOINTS], double more_N[DIG_JOINTS])
 {
-    struct dig_correction rigid = *correction;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        rigid.friction[j] = (struct dig_friction){ .coulomb_N = 0.0 };
-    }
     for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
         point->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = point->calm_Pa[c];
     }
     struct dig_readings readings;
-    const bool          read =
-        dig_readings_take(corrected, &rigid, &point->sample, &point->rates, &readings) == DIG_OK;
-    const struct dig_front   front   = read ? dig_front_place(corrected, readings.joint_rad)
-                                            : (struct dig_front){ .attitude_rad = { 0.0 } };
-    const struct dig_balance balance = read ? dig_balance_solve(corrected, &readings, &front)
-                                            : (struct dig_balance){ .moment_ok = false };
+    const bool read = dig_readings_take(corrected, correction, &point->sample, &point->rates,
+                                        &readings) == DIG_OK;
+    const struct dig_air_pose *const pose =
+        read ? pose_of(corrected, &readings, &point->rates, kept) : NULL;
     for (int j = 0; j < DIG_JOINTS; j++) {
         rest_N[j] = 0.0;
         loss_N[j] = 0.0;
         more_N[j] = 0.0;
-        if (balance.lever_ok[j]) {
+        if (pose != NULL && pose->lever_ok[j]) {
             const struct dig_friction *const friction = &correction->friction[j];
 
-            const double arm_m   = balance.lever[j].arm_m;
+            const double arm_m   = pose->arm_m[j];
             const double push_N  = readings.push[j].push_N;
             const double rod_mps = arm_m * point->rates.velocity_radps[j];
-            rest_N[j]            = balance.rest_Nm[j] / arm_m;
+            rest_N[j]            = (arm_m * push_N + pose->mass_Nm[j]) / arm_m;
             loss_N[j]            = dig_friction_loss_N(friction, push_N, rod_mps);
             more_N[j]            = held_N(friction, push_N, rod_mps, loss_N[j]);
         }
@@ -114,10 +145,17 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     const struct dig_air_point *const   point   = &air->point[segment->first_point];
     double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
     double(*const more_N)[DIG_JOINTS]           = loss_N + segment->points;
-    const struct dig_machine corrected          = dig_correction_machine(&air->machine, correction);
+    const struct dig_machine   corrected        = dig_correction_machine(&air->machine, correction);
+    struct dig_air_pose *const pose             = &air->pose[segment->first_point];
+    if (!stand_alike(correction, &air->posed[s])) {
+        air->posed[s] = *correction;
+        for (size_t p = 0; p < segment->points; p++) {
+            pose[p].known = false;
+        }
+    }
     for (size_t p = 0; p < segment->points; p++) {
         struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        rest_at(&corrected, correction, &at, calm, rest_N[p], loss_N[p], more_N[p]);
+        rest_at(&corrected, correction, &at, calm, &pose[p], rest_N[p], loss_N[p], more_N[p]);
     }
 }
 
