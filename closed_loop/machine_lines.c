@@ -10,6 +10,9 @@
 // A payload of one segment beside the common one: this share of the common one's scale.
 static const double own_share = 0.5;
 
+// A common payload of so much tells where it lies.
+static const double telling_kg = 5.0;
+
 // How far an effect may be from the form of its formula, which where it is strong is more than the
 // sensors' noise: a share of what it explains of a row, and of the step where it comes or goes
 // within a block, as friction does when a rod turns about. A constant error of a sensor, a mass
@@ -27,10 +30,19 @@ static const struct {
 // Step of the differences, in scales.
 static const double step = 0.05;
 
-// Nothing was dug before the first dig.
+// Of all campaigns' first digs most were clean, and those that were not are told by their own.
 static bool is_carrying(const struct dig_air_segment *const segment)
 {
     return segment->dig > 0 || segment->after;
+}
+
+void dig_lines_carry(const double own_kg, const struct dig_burden *const common,
+                     struct dig_burden *const payload)
+{
+    const double share = own_kg / (telling_kg + fmax(common->mass_kg, 0.0));
+    payload->moment_kgm.x += share * common->moment_kgm.x;
+    payload->moment_kgm.y += share * common->moment_kgm.y;
+    payload->mass_kg += own_kg;
 }
 
 static void list_columns(struct dig_lines *const lines)
@@ -45,9 +57,7 @@ static void list_columns(struct dig_lines *const lines)
     }
     const double scale = own_share * dig_effect_of(DIG_EFFECT_PAYLOAD)->parameter[0].scale;
     for (size_t s = 0; s < lines->air->segments; s++) {
-        if (is_carrying(&lines->air->segment[s])) {
-            lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
-        }
+        lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
     }
     lines->columns = n;
 }
@@ -147,46 +157,61 @@ static void correct(const struct dig_lines *const lines, const double at[],
             }
         }
     }
+    struct dig_correction common = { .delay_s = 0.0 };
+    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value[DIG_EFFECT_PAYLOAD], &common);
     for (size_t c = 0; c < lines->columns; c++) {
         if (lines->column[c].segment >= 0) {
-            correction[lines->column[c].segment].payload.mass_kg += lines->column[c].scale * at[c];
+            dig_lines_carry(lines->column[c].scale * at[c], &common.payload,
+                            &correction[lines->column[c].segment].payload);
         }
     }
 }
 
-// All slopes, by central differences; columns of one segment are cut out of the common payload's.
-static void fill_slopes(const struct dig_lines *const lines, const unsigned set, double *const at,
-                        struct dig_correction correction[], double *const less, double *const slope)
+// How every row changes with some columns at once, by a central difference.
+static void slope_of(const struct dig_lines *const lines, const size_t columns,
+                     const size_t column[], double *const at, struct dig_correction correction[],
+                     double *const less, double *const slope)
 {
-    const size_t rows    = lines->air->rows;
-    size_t       payload = 0;
-    for (size_t c = 0; c < lines->columns; c++) {
-        double *const                        mine   = &slope[c * rows];
-        const struct dig_lines_column *const column = &lines->column[c];
-        memset(mine, 0, rows * sizeof *mine);
-        if (((set >> column->effect) & 1U) == 0) {
-            continue;
+    for (int way = -1; way <= 1; way += 2) {
+        for (size_t c = 0; c < columns; c++) {
+            at[column[c]] += way < 0 ? -step : 2.0 * step;
         }
-        if (column->segment >= 0) {
-            const struct dig_air_segment *const s = &lines->air->segment[column->segment];
-            for (size_t r = s->first_row; r < s->first_row + s->rows; r++) {
-                mine[r] = own_share * slope[payload * rows + r];
-            }
-            continue;
-        }
-        payload = column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 ? c : payload;
+        correct(lines, at, correction);
+        dig_air_rest(lines->air, correction, true, way < 0 ? less : slope);
+    }
+    for (size_t c = 0; c < columns; c++) {
+        at[column[c]] -= step;
+    }
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        slope[r] = (slope[r] - less[r]) / (2.0 * step);
+    }
+}
 
-        const double here = at[c];
-        at[c]             = here + step;
-        correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, true, mine);
-        at[c] = here - step;
-        correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, true, less);
-        at[c] = here;
-        for (size_t r = 0; r < rows; r++) {
-            mine[r] = (mine[r] - less[r]) / (2.0 * step);
+// All slopes. A segment has one column of its own at most, so that all of these are moved at once
+// and each takes its segment's rows.
+static void fill_slopes(const struct dig_lines *const lines, const unsigned set, double *const at,
+                        struct dig_correction correction[], double *const less, double *const all,
+                        size_t own[], double *const slope)
+{
+    const size_t rows = lines->air->rows;
+    size_t       owns = 0;
+    memset(slope, 0, lines->columns * rows * sizeof *slope);
+    for (size_t c = 0; c < lines->columns; c++) {
+        if (((set >> lines->column[c].effect) & 1U) == 0) {
+            continue;
         }
+        if (lines->column[c].segment >= 0) {
+            own[owns++] = c;
+        } else {
+            slope_of(lines, 1, &c, at, correction, less, &slope[c * rows]);
+        }
+    }
+    if (owns > 0) {
+        slope_of(lines, owns, own, at, correction, less, all);
+    }
+    for (size_t i = 0; i < owns; i++) {
+        const struct dig_air_segment *const s = &lines->air->segment[lines->column[own[i]].segment];
+        memcpy(&slope[own[i] * rows + s->first_row], &all[s->first_row], s->rows * sizeof *slope);
     }
 }
 
@@ -247,13 +272,14 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     const size_t                 rows = lines->air->rows + 1;
     struct dig_correction *const correction =
         malloc((lines->air->segments + 1) * sizeof *correction);
-    double *const   rest   = malloc(2 * rows * sizeof *rest);
+    double *const   rest   = malloc(3 * rows * sizeof *rest);
     double *const   slope  = malloc(lines->columns * rows * sizeof *slope);
+    size_t *const   own    = malloc((lines->air->segments + 1) * sizeof *own);
     enum dig_status status = DIG_ENOMEM;
-    if (correction != NULL && rest != NULL && slope != NULL) {
+    if (correction != NULL && rest != NULL && slope != NULL && own != NULL) {
         correct(lines, lines->at, correction);
         dig_air_calm(lines->air, correction);
-        fill_slopes(lines, set, lines->at, correction, rest + rows, slope);
+        fill_slopes(lines, set, lines->at, correction, rest + rows, rest + 2 * rows, own, slope);
         correct(lines, lines->at, correction);
         dig_air_rest(lines->air, correction, false, rest);
         sum_up(lines, rest, slope);
@@ -262,6 +288,7 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     free(correction);
     free(rest);
     free(slope);
+    free(own);
     return status;
 }
 

@@ -4,8 +4,8 @@
 //   rest(theta) = rest + sum over columns of slope * (theta - at)      every row in its own sigmas
 //
 // A column is one parameter in units of its scale, 1 sigma of what is likely before anything is
-// measured. Payload is the same in all segments that carry one (none before the first dig), and
-// besides may be another in each: one column more for each such segment.
+// measured. Payload is the same in all segments but the one before the first dig, and besides may
+// be another in each: one column more for every segment.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_LINES_H
 #define DIG_CLOSED_LOOP_MACHINE_LINES_H
@@ -43,6 +43,10 @@ struct dig_lines {
     struct dig_lines_normal *normal; // [digs]
     double                  *trust;  // [rows] what each row's rest and slopes are multiplied by
 };
+
+/// Adds a payload of one's own, which lies where the common one does; where there is hardly any, in
+/// the bucket's centre of mass.
+void dig_lines_carry(double own_kg, const struct dig_burden *common, struct dig_burden *payload);
 
 /// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);

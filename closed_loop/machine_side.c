@@ -1,6 +1,7 @@
 #include "closed_loop/machine_side.h"
 
 #include "closed_loop/machine_dig.h"
+#include "closed_loop/machine_lines.h"
 #include "closed_loop/reading_noise.h"
 #include "estimator/effects/effect.h"
 
@@ -62,6 +63,16 @@ void dig_machine_side_destroy(struct dig_machine_side *const side)
     free(side);
 }
 
+// The common payload, which the first dig lacks, and the dig's own.
+static void carry(const struct dig_machine_side *const side, const double value[], const size_t dig,
+                  struct dig_burden *const payload)
+{
+    struct dig_correction common = { .delay_s = 0.0 };
+    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value, &common);
+    *payload = dig > 0 ? common.payload : (struct dig_burden){ .mass_kg = 0.0 };
+    dig_lines_carry(side->own_payload_kg[dig], &common.payload, payload);
+}
+
 // What the effects of the machine among these say of one dig.
 static enum dig_status correction_of(const struct dig_machine_side *const side,
                                      const size_t effects, const struct dig_model_effect effect[],
@@ -70,7 +81,7 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
     struct dig_correction sum = { .delay_s = 0.0 };
     for (size_t e = 0; e < effects; e++) {
         const enum dig_effect_id id = effect[e].effect;
-        if (!dig_effect_is_of_machine(id) || (id == DIG_EFFECT_PAYLOAD && dig == 0)) {
+        if (!dig_effect_is_of_machine(id)) {
             continue;
         }
         double                value[DIG_MODEL_PARAMETERS_MAX];
@@ -78,8 +89,11 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
         if (status != DIG_OK) {
             return status;
         }
-        dig_effect_of(id)->correct(value, &sum);
-        sum.payload.mass_kg += id == DIG_EFFECT_PAYLOAD ? side->own_payload_kg[dig] : 0.0;
+        if (id == DIG_EFFECT_PAYLOAD) {
+            carry(side, value, dig, &sum.payload);
+        } else {
+            dig_effect_of(id)->correct(value, &sum);
+        }
     }
     *correction = sum;
     return DIG_OK;

@@ -183,6 +183,36 @@ static enum dig_status rest_by_dig(struct search *const s)
     return status;
 }
 
+// In scales.
+static double common_payload(const struct search *const s)
+{
+    double payload = 0.0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 && column->segment < 0) {
+            payload = s->lines.at[c];
+        }
+    }
+    return payload;
+}
+
+// A first dig that carried more than the others looks like a bucket that is heavier and carries
+// less than nothing.
+static enum dig_status take_weight_for_payload(struct search *const s)
+{
+    static const unsigned weighs = 1U << DIG_EFFECT_BUCKET_WEIGHT;
+    if ((s->set & weighs) == 0 || !(common_payload(s) < 0.0)) {
+        return DIG_OK;
+    }
+    s->set &= ~weighs;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const bool gone = s->lines.column[c].effect == DIG_EFFECT_BUCKET_WEIGHT ||
+                          s->lines.column[c].effect == DIG_EFFECT_PAYLOAD;
+        s->lines.at[c] = gone ? 0.0 : s->lines.at[c];
+    }
+    return refine(s);
+}
+
 // Effects join until none earns its place.
 static enum dig_status select_effects(struct search *const s)
 {
@@ -211,7 +241,7 @@ static enum dig_status select_effects(struct search *const s)
         }
         status = refine(s);
     }
-    return status;
+    return status == DIG_OK ? take_weight_for_payload(s) : status;
 }
 
 // SplitMix64 (Steele, Lea, Flood 2014).
@@ -413,18 +443,11 @@ static void write_sets(const struct search *const s, struct dig_machine_finding 
 // theirs; so does a payload that weighs less than nothing.
 static bool is_makeshift(const struct search *const s)
 {
-    int    effects = 0;
-    double payload = 0.0;
+    int effects = 0;
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
     }
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
-        if (column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 && column->segment < 0) {
-            payload = s->lines.at[c];
-        }
-    }
-    return effects > MOST_AT_ONCE || payload < 0.0;
+    return effects > MOST_AT_ONCE || common_payload(s) < 0.0;
 }
 
 // Where pressures that drift explain no less than the effects found, these have no claim to it.

@@ -1,9 +1,11 @@
 // Which effect, or which two: the best single effect, pairs beside it, and whether to believe them.
 
 #include "closed_loop/confirm.h"
+#include "closed_loop/drift.h"
 #include "closed_loop/search_work.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
@@ -15,6 +17,9 @@ static const double most_left = 2.5;
 static const double much_left = 4.0;
 static const double matched   = 0.65;
 static const double half      = 0.5;
+
+// Of a normal distribution, exceeded either way once in a hundred.
+static const double most_bent = 2.576;
 
 // Below this chance of its own misfit the plain hypothesis is refuted by itself.
 static const double refuted = 0.001;
@@ -110,6 +115,18 @@ static bool is_believable(const struct dig_search_work *const c)
     return is_matched(c) && (c->s->p_fit >= DIG_SEARCH_LEAST_FIT ||
                              (dig_search_share(c, &c->s->chosen) >= DIG_SEARCH_LEAST_SHARE &&
                               c->left <= most_left * c->expected));
+}
+
+// A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
+// campaigns a drift that is one comes out as bent.
+static bool drifts_otherwise(struct dig_search_work *const c)
+{
+    const bool does = fabs(dig_drift_bend(c->batch, c->soil, &c->s->chosen)) > most_bent;
+    if (does) {
+        (void)snprintf(c->s->without_name.depends_on, sizeof c->s->without_name.depends_on,
+                       "the order of the digs");
+    }
+    return does;
 }
 
 // Beside a plain hypothesis that could be true an effect must be decisive. Where it cannot, an
@@ -211,8 +228,8 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     if (status == DIG_OK) {
         status = dig_confirm_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen, &c->s->confirmed);
     }
-    if (status == DIG_OK &&
-        (!is_decisive(c, evidence) || c->s->confirmed < 0.0 || !is_believable(c))) {
+    if (status == DIG_OK && (!is_decisive(c, evidence) || c->s->confirmed < 0.0 ||
+                             !is_believable(c) || drifts_otherwise(c))) {
         give_up(c);
         status = look_for_rock(c);
     }

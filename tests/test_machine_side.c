@@ -1,6 +1,7 @@
 // Tests for closed_loop/machine_side.c and its parts: machine recordings from the rig's machine
 // (virtual work), spoilt here by formulas of the test's own.
 
+#include "closed_loop/machine_lines.h"
 #include "closed_loop/machine_side.h"
 
 #include "files/machine_yaml.h"
@@ -67,6 +68,7 @@ struct fault {
     double late_s;      // pressures are so old
     double payload_kg;  // in the middle of the bucket, from the second dig on
     bool   falls_out;   // before the second
+    bool   was_there;   // in the first already, twice as much
     double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
     double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
@@ -170,6 +172,14 @@ static void thin(const size_t every, struct dig_machine_recording *const r)
     r->rows = every > 0 ? kept : r->rows;
 }
 
+static double carried_kg(const struct fault *const fault, const size_t order)
+{
+    if (order == 0) {
+        return fault->was_there ? 2.0 * fault->payload_kg : 0.0;
+    }
+    return order > 1 || !fault->falls_out ? fault->payload_kg : 0.0;
+}
+
 static struct dig_machine_recording record(const int kind, const size_t order,
                                            const struct fault *const fault, const uint64_t seed)
 {
@@ -181,7 +191,6 @@ static struct dig_machine_recording record(const int kind, const size_t order,
     double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
     double                            bent_m[DIG_JOINTS]       = { 0.0 };
     uint64_t                          state                    = seed;
-    const bool                        carries                  = order > (fault->falls_out ? 1 : 0);
     for (size_t i = 0; i < t->rows; i++) {
         const size_t       then = i > late ? i - late : 0;
         struct dig_rig_row row  = t->row[then];
@@ -191,7 +200,7 @@ static struct dig_machine_recording record(const int kind, const size_t order,
         for (int j = 0; j < DIG_JOINTS; j++) {
             push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s = t->step_s * (double)then + 40.0 * (double)order;
-            push_more(&row, j, carries ? payload_N(&row, j, fault->payload_kg) : 0.0);
+            push_more(&row, j, payload_N(&row, j, carried_kg(fault, order)));
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
@@ -384,6 +393,26 @@ static void taken_off(const struct campaign *const c, const struct campaign *con
     *wrong = sqrt(*wrong);
 }
 
+// The first dig of a campaign need not be the machine's first.
+static void a_payload_may_have_been_there_before_the_first_dig(void **state)
+{
+    (void)state;
+    const struct fault     none  = { .dry_N = 0.0 };
+    const struct fault     laden = { .payload_kg = 70.0, .was_there = true };
+    struct campaign *const clean = trace(&none, 16);
+    struct campaign *const c     = trace(&laden, 16);
+    double                 left, wrong;
+    expect_found(c, DIG_EFFECT_PAYLOAD, NULL, 0.0);
+    assert_int_equal(
+        dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, c->measured),
+        DIG_OK);
+    taken_off(c, clean, 0, &left, &wrong);
+    print_message("%.3f Nm wrong, %.3f left\n", wrong, left);
+    assert_true(wrong > 0.02 && left < 0.4 * wrong);
+    end(c);
+    end(clean);
+}
+
 // A payload that fell out before the second dig and stuck before the third.
 static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
 {
@@ -406,6 +435,30 @@ static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
     assert_true(wrong[1] < 0.1 * wrong[2] && left[1] < 0.4 * wrong[2]);
     end(c);
     end(clean);
+}
+
+// Soil lies in a bucket where soil has lain before; a hair of it tells nothing of where.
+static void a_payload_of_ones_own_lies_where_the_common_one_does(void **state)
+{
+    (void)state;
+    const struct dig_burden common = { 60.0, { 6.0, -12.0 }, 0.0 };
+    const struct dig_burden hair   = { 0.01, { 0.5, -0.5 }, 0.0 };
+    struct dig_burden       two    = common;
+    struct dig_burden       alone  = { 0.0, { 0.0, 0.0 }, 0.0 };
+    struct dig_burden       any    = { 0.0, { 0.0, 0.0 }, 0.0 };
+    struct dig_burden       rid    = common;
+    dig_lines_carry(80.0, &common, &two);
+    assert_close(two.mass_kg, 140.0, 1e-12);
+    assert_close(two.moment_kgm.x / two.mass_kg, 0.1, 0.01);
+    assert_close(two.moment_kgm.y / two.mass_kg, -0.2, 0.02);
+    dig_lines_carry(80.0, &common, &alone); // in the first dig, say
+    assert_close(alone.mass_kg, 80.0, 1e-12);
+    assert_close(alone.moment_kgm.y / alone.mass_kg, -0.2, 0.02);
+    dig_lines_carry(100.0, &hair, &any);
+    assert_close(any.moment_kgm.x / any.mass_kg, 0.0, 0.11);
+    dig_lines_carry(-60.0, &common, &rid); // fell out
+    assert_close(rid.mass_kg, 0.0, 1e-12);
+    assert_close(rid.moment_kgm.x, 0.0, 0.6);
 }
 
 // An effect of many parameters may be weak, too: it is not given to one of fewer.
@@ -608,6 +661,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_machine_as_its_file_says_raises_no_alarm),
         cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
+        cmocka_unit_test(a_payload_of_ones_own_lies_where_the_common_one_does),
+        cmocka_unit_test(a_payload_may_have_been_there_before_the_first_dig),
         cmocka_unit_test(each_dig_is_rid_of_the_payload_that_it_carried),
         cmocka_unit_test(a_weak_effect_is_reported_among_what_it_may_be),
         cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),

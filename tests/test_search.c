@@ -246,6 +246,37 @@ static void a_trend_must_foretell_the_digs_left_out(void **state)
     }
 }
 
+// A strength that comes to rest, or steps once, drifts from dig to dig as no tooth wears.
+static void a_drift_that_bends_is_no_wear(void **state)
+{
+    (void)state;
+    static const double     growth[3][DIGS] = { { 1.0, 1.15, 1.3, 1.45, 1.6, 1.75 },
+                                                { 1.0, 1.5, 1.75, 1.85, 1.9, 1.92 },
+                                                { 1.0, 1.0, 1.0, 1.0, 1.6, 1.6 } };
+    const struct dig_gravel gravel          = { { 0.6, 0.55, 2500 } };
+    for (int law = 0; law < 3; law++) {
+        int wear = 0;
+        int bent = 0;
+        for (uint64_t seed = 60; seed < 66; seed++) {
+            uint64_t luck = seed;
+            dig(&gravel, 0, NULL, NULL, &luck);
+            for (size_t i = 0; i < DIGS; i++) {
+                for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                        measured[i].value[c][k] *= growth[law][i];
+                    }
+                }
+            }
+            const struct dig_search s = search_digs(&gravel, 0.01, luck);
+            wear += names(&s, DIG_EFFECT_WEAR) ? 1 : 0;
+            bent += s.unlisted && strstr(s.without_name.depends_on, "order") != NULL ? 1 : 0;
+        }
+        print_message("law %d: wear %d, bent %d of 6\n", law, wear, bent);
+        assert_true(law == 0 ? wear >= 5 && bent == 0 : wear <= 2);
+        assert_true(law != 1 || bent >= 4);
+    }
+}
+
 // A single effect whose fit stopped short leaves what a second effect takes off: before the pair is
 // believed the single one is fitted again from where the pair has led.
 static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
@@ -332,6 +363,7 @@ int main(void)
         cmocka_unit_test(a_gravel_beyond_the_grid_is_no_effect),
         cmocka_unit_test(the_same_seed_gives_the_same_answer),
         cmocka_unit_test(no_effect_is_named_that_is_not_decisive),
+        cmocka_unit_test(a_drift_that_bends_is_no_wear),
         cmocka_unit_test(a_trend_must_foretell_the_digs_left_out),
         cmocka_unit_test(a_pair_does_not_lead_for_having_been_fitted_better),
         cmocka_unit_test(whether_is_answered_alike_with_and_without_what),
