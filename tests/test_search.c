@@ -21,6 +21,18 @@ static void dig(const struct dig_gravel *const gravel, const size_t effects,
     }
 }
 
+// Makes every dig so many times as strong.
+static void grow(const double times[DIGS])
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[i].value[c][k] *= times[i];
+            }
+        }
+    }
+}
+
 static struct dig_batch batch; // of the digs searched last
 
 static void put_in_batch(const struct dig_gravel *const gravel, const size_t digs)
@@ -232,13 +244,7 @@ static void a_trend_must_foretell_the_digs_left_out(void **state)
     for (int off = 0; off <= 1; off++) {
         uint64_t seed = 50;
         dig(&gravel, 0, NULL, NULL, &seed);
-        for (size_t i = 0; i < DIGS; i++) {
-            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                    measured[i].value[c][k] *= growth[off][i];
-                }
-            }
-        }
+        grow(growth[off]);
         const struct dig_search s = search_digs(&gravel, 0.01, seed);
         assert_true(s.significant);
         assert_int_equal(names(&s, DIG_EFFECT_WEAR), !off);
@@ -260,13 +266,7 @@ static void a_drift_that_bends_is_no_wear(void **state)
         for (uint64_t seed = 60; seed < 66; seed++) {
             uint64_t luck = seed;
             dig(&gravel, 0, NULL, NULL, &luck);
-            for (size_t i = 0; i < DIGS; i++) {
-                for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                        measured[i].value[c][k] *= growth[law][i];
-                    }
-                }
-            }
+            grow(growth[law]);
             const struct dig_search s = search_digs(&gravel, 0.01, luck);
             wear += names(&s, DIG_EFFECT_WEAR) ? 1 : 0;
             bent += s.unlisted && strstr(s.without_name.depends_on, "order") != NULL ? 1 : 0;
