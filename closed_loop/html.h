@@ -7,7 +7,8 @@
 
 #include <stdio.h>
 
-/// text with <, > and & escaped.
+/// text as HTML or SVG, between tags or inside a quoted attribute: markup is escaped, a control
+/// character or a byte that is not UTF-8 becomes U+FFFD. Every text on a page goes through here.
 void dig_html_text(FILE *to, const char *text);
 
 /// From the doctype to the <h1>, both with this title. The style makes phones and desktops happy;

@@ -130,11 +130,11 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
         .x_label = "path of the dig done, %",
         .y_label = "moment about the bucket pin, N·m at rig scale",
         .series  = 4,
-        .s       = { { "1 σ of one dig", DIG_PLOT_BAND, "#1f5fa8", n, x, low, high },
-                     { "recording fed to the rig", DIG_PLOT_DASHED, "#888888", n, x, dig->recording_Nm,
+        .s       = { { "1 σ of one dig", DIG_PLOT_BAND, 0x1f5fa8, n, x, low, high },
+                     { "recording fed to the rig", DIG_PLOT_DASHED, 0x888888, n, x, dig->recording_Nm,
                        NULL },
-                     { model, DIG_PLOT_LINE, "#1f5fa8", n, x, dig->model_Nm, NULL },
-                     { "measured through pressures", DIG_PLOT_LINE, "#c0392b", n, x, measured, NULL } },
+                     { model, DIG_PLOT_LINE, 0x1f5fa8, n, x, dig->model_Nm, NULL },
+                     { "measured through pressures", DIG_PLOT_LINE, 0xc0392b, n, x, measured, NULL } },
     };
     (void)fputs("<figure>\n", to);
     const enum dig_status status = dig_plot_svg(&plot, to, error);

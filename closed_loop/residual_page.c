@@ -86,10 +86,10 @@ static enum dig_status put_plot(FILE *const to, const struct dig_trend *const tr
         .width   = 480,
         .height  = 300,
         .series  = 4,
-        .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, "#c77f00", trend->bins, x, low, high },
-               { NULL, DIG_PLOT_LINE, "#888888", trend->bins, x, zero, NULL },
-               { "mean", DIG_PLOT_LINE, "#c77f00", trend->bins, x, y, NULL },
-               { NULL, DIG_PLOT_POINTS, "#c77f00", trend->bins, x, y, NULL } },
+        .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, 0xc77f00, trend->bins, x, low, high },
+               { NULL, DIG_PLOT_LINE, 0x888888, trend->bins, x, zero, NULL },
+               { "mean", DIG_PLOT_LINE, 0xc77f00, trend->bins, x, y, NULL },
+               { NULL, DIG_PLOT_POINTS, 0xc77f00, trend->bins, x, y, NULL } },
     };
     (void)fputs("<figure>\n", to);
     const enum dig_status status = dig_plot_svg(&plot, to, error);

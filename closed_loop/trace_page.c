@@ -225,25 +225,25 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
     };
     if (!same) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ NULL, DIG_PLOT_BAND, "#e0a030", n, p.x, p.low[0], p.high[0] };
+            (struct dig_plot_series){ NULL, DIG_PLOT_BAND, 0xe0a030, n, p.x, p.low[0], p.high[0] };
     }
     plot.s[plot.series++] = (struct dig_plot_series){
-        same ? "1 σ of one dig" : NULL, DIG_PLOT_BAND, "#1f5fa8", n, p.x, p.low[1], p.high[1]
+        same ? "1 σ of one dig" : NULL, DIG_PLOT_BAND, 0x1f5fa8, n, p.x, p.low[1], p.high[1]
     };
     if (!same) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ "before", DIG_PLOT_DASHED,         "#c77f00", n,
+            (struct dig_plot_series){ "before", DIG_PLOT_DASHED,         0xc77f00, n,
                                       p.x,      curves->before[channel], NULL };
     }
     plot.s[plot.series++] = (struct dig_plot_series){ same ? "before and after" : "after",
                                                       DIG_PLOT_LINE,
-                                                      "#1f5fa8",
+                                                      0x1f5fa8,
                                                       n,
                                                       p.x,
                                                       curves->after[channel],
                                                       NULL };
     plot.s[plot.series++] =
-        (struct dig_plot_series){ "measured", DIG_PLOT_LINE, "#c0392b", n, p.x, p.measured, NULL };
+        (struct dig_plot_series){ "measured", DIG_PLOT_LINE, 0xc0392b, n, p.x, p.measured, NULL };
     (void)fputs("<figure>\n", to);
     const enum dig_status status = dig_plot_svg(&plot, to, error);
     (void)fputs("</figure>\n", to);

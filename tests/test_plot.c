@@ -1,0 +1,100 @@
+// Tests for closed_loop/plot.c: what stands in a text is drawn, and nothing of it is run.
+
+#include "closed_loop/plot.h"
+
+#include "tests/scratch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double two[] = { 0.0, 1.0 };
+
+static char *svg_of(const char *const text)
+{
+    const struct dig_plot plot = {
+        .title   = text,
+        .x_label = text,
+        .y_label = text,
+        .series  = 1,
+        .s       = { { text, DIG_PLOT_LINE, 0x1f5fa8, 2, two, two, NULL } },
+    };
+    struct dig_error error = { "" };
+    char            *svg   = NULL;
+    size_t           size  = 0;
+    FILE *const      to    = open_memstream(&svg, &size);
+    assert_int_equal(dig_plot_svg(&plot, to, &error), DIG_OK);
+    (void)fclose(to);
+    return svg;
+}
+
+static void no_text_runs_a_command(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *before, *behind;
+    } holds[] = {
+        { "a`touch ", "`.csv" },
+        { "a\"; system('touch ", "') #" },
+        { "a\nsystem \"touch ", "\"\n" },
+        { "a\nEOD\n!touch ", "\n" },
+        { "$(touch ", ")" },
+        { "@{`touch ", "`}" },
+    };
+    const char *const owned = scratch_path("OWNED");
+    for (size_t i = 0; i < sizeof holds / sizeof holds[0]; i++) {
+        char text[512];
+        (void)snprintf(text, sizeof text, "%s%s%s", holds[i].before, owned, holds[i].behind);
+        free(svg_of(text));
+        assert_false(scratch_exists("OWNED"));
+    }
+}
+
+static void markup_and_control_characters_are_escaped(void **state)
+{
+    (void)state;
+    char *const svg = svg_of("<script>\"'&\x1b[31m\xff\xc2\x9b é");
+    assert_null(strstr(svg, "<script>"));
+    assert_null(strchr(svg, '\x1b'));
+    assert_null(strchr(svg, '\xff'));
+    assert_null(strstr(svg, "\xc2\x9b"));
+    const char *at    = svg;
+    int         found = 0;
+    while ((at = strstr(at, "&lt;script&gt;&quot;&#39;&amp;\xef\xbf\xbd[31m\xef\xbf\xbd")) !=
+           NULL) {
+        at++;
+        found++;
+    }
+    assert_int_equal(found, 4); // title, both labels, key
+    assert_non_null(strstr(svg, " é"));
+    free(svg);
+}
+
+static void the_users_start_up_file_is_not_run(void **state)
+{
+    (void)state;
+    FILE *const file = fopen(scratch_path(".gnuplot"), "w");
+    assert_non_null(file);
+    (void)fprintf(file, "system 'touch %s'\n", scratch_path("STARTED"));
+    (void)fclose(file);
+    char home[4096];
+    (void)snprintf(home, sizeof home, "%s", scratch_path(""));
+    const char *const was  = getenv("HOME");
+    char *const       kept = strdup(was == NULL ? "" : was);
+    (void)setenv("HOME", home, 1);
+    free(svg_of("plain"));
+    (void)setenv("HOME", kept, 1);
+    free(kept);
+    assert_false(scratch_exists("STARTED"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_text_runs_a_command),
+        cmocka_unit_test(markup_and_control_characters_are_escaped),
+        cmocka_unit_test(the_users_start_up_file_is_not_run),
+    };
+    return cmocka_run_group_tests_name("plot", tests, scratch_setup, scratch_teardown);
+}
