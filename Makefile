@@ -30,13 +30,15 @@ say  = @printf '  %-6s %s\n' $(1) $(2)
 
 # A program's main is the one source of its folder that has the program's name.
 modules   := closed_loop firmware_host offline_dem estimator tables files core
-src        = $(filter-out firmware_host/digsightd.c,$(wildcard $(1)/*.c $(1)/effects/*.c))
+src        = $(filter-out firmware_host/digsightd.c,$(wildcard $(1)/*.c $(1)/*/*.c))
 rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c))
 tool_src  := $(wildcard tools/*.c)
 # The rest of a program too large for one file: tools/NAME/*.c belongs to tools/NAME.c.
 tool_parts := $(foreach t,$(tool_src),$(wildcard $(t:.c=)/*.c))
-test_src  := $(wildcard tests/test_*.c)
-testlib   := $(filter-out $(test_src),$(wildcard tests/*.c))
+# tests/FOLDER/test_x.c tests FOLDER's x. What stands beside it is a fixture, linked into that folder's tests;
+# what stands in tests/ itself, into every test.
+test_src  := $(wildcard tests/*/test_*.c)
+testlib   := $(wildcard tests/*.c)
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
 # Those that wait for a bus most of the time: one after the other, beside those that compute; CAN in User
@@ -45,7 +47,7 @@ can_tests := $(addprefix tests/system/,daemon_can.sh daemon_can_faults.sh daemon
 bus_tests := $(filter-out $(can_tests),$(wildcard tests/system/daemon_*.sh)) $(can_tests)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
 # Tests whose subject runs threads.
-threaded_tests := $(shell grep -l pthread tests/test_*.c)
+threaded_tests := $(shell grep -l pthread tests/*/test_*.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) $(tool_parts) \
              $(wildcard firmware_host/digsightd.c tools/rig/digrig.c)
@@ -150,17 +152,19 @@ $(BUILD)/bin/%: $(libs)
 	$(call say,LD,$@)
 	$(Q)mkdir -p $(@D) && $(call link,$(LIBS))
 
-$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(call objs,$(testlib)) $(libs)
+.SECONDEXPANSION:
+fixtures = $(call objs,$(filter-out $(test_src) tests/blind/blind.c,$(wildcard tests/$(1)/*.c)))
+$(patsubst %.c,$(BUILD)/%,$(test_src)): %: %.o $(call objs,$(testlib)) $$(call fixtures,$$(notdir $$(@D))) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(call pkg_libs,cmocka) $(LIBS))
 
 # What these tests count, or answer themselves, is called in its place.
 comma  := ,
 wrap    = $(addprefix -Wl$(comma)--wrap=,$(1))
-$(BUILD)/tests/test_loop_calls: LDFLAGS += $(call wrap,malloc calloc realloc free aligned_alloc posix_memalign \
+$(BUILD)/tests/firmware_host/test_loop_calls: LDFLAGS += $(call wrap,malloc calloc realloc free aligned_alloc posix_memalign \
     pthread_mutex_lock pthread_mutex_trylock pthread_cond_wait pthread_rwlock_rdlock pthread_rwlock_wrlock sem_wait sem_post \
     printf fprintf vfprintf puts fputs fputc fwrite write)
-$(BUILD)/tests/test_loop_overrun: LDFLAGS += $(call wrap,clock_gettime clock_nanosleep)
+$(BUILD)/tests/firmware_host/test_loop_overrun: LDFLAGS += $(call wrap,clock_gettime clock_nanosleep)
 
 # Programs that only system tests need.
 $(BUILD)/tests/system/%: $(BUILD)/tests/system/%.o $(libs)
@@ -177,7 +181,7 @@ check-unit: $(test_bins) ## The unit tests alone
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 # Tests that repeat, for statistics or in larger beds, what smaller ones do once: minutes under a sanitizer, for nothing new.
-statistics := $(addprefix tests/test_,$(addsuffix .c,coverage pour rig_track round_trip search slump small_digs))
+statistics := $(foreach t,coverage pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
@@ -233,13 +237,12 @@ $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(libs)
 # effect and, in proportion, those with one; BLIND_ARGS: see tests/blind/README.md.
 BLIND_N     ?= 1000
 BLIND_TABLE ?= tables/rig.sqlite
-blind_objs  := $(call objs,$(wildcard tests/blind/*.c))
+blind_objs  := $(call objs,$(filter-out $(test_src),$(wildcard tests/blind/*.c)))
 bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig ## How often digloop trace is right, on campaigns it never saw
 	$(Q)mkdir -p $(BUILD)/blind
 	$(Q)$(BUILD)/tests/blind/blind --table $(BLIND_TABLE) --bin $(BUILD)/bin --cache $(BUILD)/blind \
 	    --split judge -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
 
-$(BUILD)/tests/test_blind: $(filter-out %/blind.o,$(blind_objs))
 $(BUILD)/tests/blind/blind: $(blind_objs) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))

@@ -24,7 +24,8 @@ static size_t utf8_length(const char *const text)
     const bool overlong  = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90);
     const bool surrogate = c[0] == 0xed && c[1] >= 0xa0;
     const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
-    const bool control   = c[0] < 0x20 || c[0] == 0x7f || (c[0] == 0xc2 && c[1] < 0xa0);
+    const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
+                         (c[0] == 0xc2 && c[1] < 0xa0);
     return overlong || surrogate || too_large || control ? 0 : n;
 }
 

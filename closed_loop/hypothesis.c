@@ -21,7 +21,7 @@ static const double discrepancy = 0.05;
 
 // A template is a likeness of what lies in the ground: this share of what it adds is its error.
 // Rocks have all shapes: what one of triangles in another code adds to Fz differs by a third from
-// what a sphere does (tests/test_ensemble.c).
+// what a sphere does (tests/offline_dem/test_ensemble.c).
 static const double unlikeness = 0.2, unlikeness_of_rocks = 0.3;
 
 static const double least_pace  = 0.05; // range of log(pace) that can show a dependence

@@ -1,6 +1,6 @@
-// Curves with bands as an SVG picture. The gnuplot program (found in PATH) draws axes and curves and
-// is given numbers only: its language runs commands that stand in a text. Titles, labels and the key
-// are written around its picture here, escaped.
+// Curves with bands as an SVG picture. The gnuplot program (found in PATH) draws axes and curves
+// and is given numbers only: its language runs commands that stand in a text. Titles, labels and
+// the key are written around its picture here, escaped.
 
 #ifndef DIG_CLOSED_LOOP_PLOT_H
 #define DIG_CLOSED_LOOP_PLOT_H
@@ -17,7 +17,7 @@ enum dig_plot_style { DIG_PLOT_LINE, DIG_PLOT_DASHED, DIG_PLOT_POINTS, DIG_PLOT_
 struct dig_plot_series {
     const char         *title; // in the key; NULL: not in the key
     enum dig_plot_style style;
-    unsigned            rgb;   // 0x1f5fa8
+    unsigned            rgb; // 0x1f5fa8
     size_t              n;
     const double       *x;
     const double       *y;    // the lower edge of a band

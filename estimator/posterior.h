@@ -37,7 +37,8 @@
 #define DIG_POSTERIOR_CORRELATION 0.25
 
 /// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
-/// each of three gravels and three trajectories (tables/rig.sqlite; tests/test_posterior.c).
+/// each of three gravels and three trajectories (tables/rig.sqlite;
+/// tests/estimator/test_posterior.c).
 #define DIG_POSTERIOR_MY_FX (-0.93)
 #define DIG_POSTERIOR_MY_FZ 0.63
 #define DIG_POSTERIOR_FX_FZ (-0.49)

@@ -5,7 +5,7 @@
 //   r(s, s') = (1 - shared) exp(-(s - s')^2 / (2 l^2)) + shared        along one channel
 //
 // and between channels the correlations of estimator/posterior.h times that. The table's packings
-// show this shape (tests/test_spread.c).
+// show this shape (tests/estimator/test_spread.c).
 //
 //   white knots, l apart -> sums under exp(-(s - knot)^2 / l^2), normalised -> a dig's error
 

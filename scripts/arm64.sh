@@ -44,16 +44,16 @@ scripts/setup.sh build arm64 || skip "the cross compiler cannot be installed her
 export PKG_CONFIG_SYSROOT_DIR=$PWD/$root
 export PKG_CONFIG_LIBDIR=$PWD/$root/usr/lib/$tuple/pkgconfig:$PWD/$root/usr/share/pkgconfig
 tests=("$@")
-[ $# -gt 0 ] || for t in tests/test_*.c; do tests+=("$(basename "$t" .c)"); done
+[ $# -gt 0 ] || for t in tests/*/test_*.c; do t=${t#tests/}; tests+=("${t%.c}"); done
 targets=()
 for t in "${tests[@]}"; do targets+=("$build/tests/$t"); done
 # Debian 12's cross compiler (12.2) breaks down vectorizing a sum; loops that ask for it are vectorized all the same.
 make --no-print-directory -j "$(nproc)" BUILD="$build" CC="$tuple-gcc --sysroot=$PWD/$root" CFLAGS="-O2 -g -fno-tree-loop-vectorize" AR=$tuple-ar all "${targets[@]}"
 
 # Each test behind a line that runs it under qemu.
-mkdir -p "$build/run"
 wrapped=()
 for t in "${tests[@]}"; do
+    mkdir -p "$build/run/$(dirname "$t")"
     printf '#!/bin/sh\nexec qemu-aarch64 -L "%s" "%s"\n' "$PWD/$root" "$build/tests/$t" >"$build/run/$t"
     chmod +x "$build/run/$t"
     wrapped+=("$build/run/$t")

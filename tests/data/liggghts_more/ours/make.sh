@@ -1,5 +1,5 @@
 #!/bin/sh
-# Digs with our engine what LIGGGHTS has dug beside this folder: six beds each, for tests/test_ensemble.c.
+# Digs with our engine what LIGGGHTS has dug beside this folder: six beds each, for tests/offline_dem/test_ensemble.c.
 # A minute and a half of one core a bed and two digs, two minutes of a card (ENGINE=cuda JOBS=15) for all but the rock, which
 # the kernel dug.
 # usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/data/liggghts_more/ours/make.sh

@@ -1,0 +1,184 @@
+#include "closed_loop/hypothesis.h"
+
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <string.h>
+
+enum { DIGS = 4, WORLDS = 10, MANY = 400 };
+
+// What two DEM codes may differ by stands in the noise of every group:
+// docs/numerics/closed_loop.md.
+static const double discrepancy = 0.05;
+
+static struct dig_measured measured[DIGS];
+
+// Plain digs, every force times so much.
+static void dig(const struct dig_gravel *const gravel, const double larger, uint64_t seed)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[i].value[c][k] *= larger;
+            }
+        }
+    }
+}
+
+static void true_features(const struct dig_gravel *const gravel, double feature[DIG_FEATURES])
+{
+    static double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    uint64_t      seed = 77;
+    memset(mean, 0, sizeof mean);
+    for (int i = 0; i < MANY; i++) {
+        const struct dig_measured one = made_dig(gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                mean[c][k] += one.value[c][k] / MANY;
+            }
+        }
+    }
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])mean, feature);
+}
+
+// Mean square of what tables of other packings say of this gravel beside the truth, in the group's
+// units: by making the tables.
+static double made_variance(const struct dig_batch_group *const group,
+                            const struct dig_gravel *const      gravel)
+{
+    double truth[DIG_FEATURES];
+    double y_true[DIG_FEATURES];
+    double sum = 0.0;
+    true_features(gravel, truth);
+    dig_batch_whiten(group, truth, y_true);
+    for (uint64_t w = 0; w < WORLDS; w++) {
+        struct made_world other = made_world(1000 + w);
+        double            place[DIG_AXES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+        double            y[DIG_FEATURES];
+        dig_surface_place(other.surface, gravel, place);
+        dig_surface_features(other.surface, MADE_ACTUAL, place, feature, size);
+        dig_batch_whiten(group, feature, y);
+        for (size_t k = 0; k < group->features; k++) {
+            sum += (y[k] - y_true[k]) * (y[k] - y_true[k]) / (double)group->features / WORLDS;
+        }
+        made_world_finish(&other);
+    }
+    return sum;
+}
+
+// The unit of a group is what its digs scatter by. Beside digs three times as large as any the
+// table holds, what the table does not know counts for so much less.
+static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
+{
+    (void)state;
+    static const struct dig_hypothesis plain                         = { .effects = 0 };
+    static const bool                  take[DIGS]                    = { true, true, true, true };
+    const struct dig_gravel            gravel                        = { { 0.6, 0.55, 3900 } };
+    const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    for (double larger = 1.0; larger < 4.0; larger += 2.0) {
+        static struct dig_batch batch;
+        struct dig_fitted       fitted;
+        double                  place[DIG_AXES];
+        dig(&gravel, larger, 9);
+        dig_surface_place(world.surface, &gravel, place);
+        assert_int_equal(
+            dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+            DIG_OK);
+        dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
+        const struct dig_gravel found = dig_surface_gravel(world.surface, fitted.number);
+        const double            truth = made_variance(&batch.group[0], &found);
+        const double            said  = fitted.noise[0] - discrepancy;
+        assert_true(said > 0.5 * truth && said < 2.0 * truth);
+    }
+}
+
+// - 2 log likelihood as the header has it, of a fit: its squares, worked out anew.
+static double squares_of(const struct dig_batch *const b, const struct dig_fitted *const f)
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < b->groups; g++) {
+        const struct dig_batch_group *const group = &b->group[g];
+        double                              model[DIGS][DIG_FEATURES];
+        double                              mean[DIG_FEATURES] = { 0.0 };
+        for (size_t i = 0; i < b->digs; i++) {
+            double feature[DIG_FEATURES];
+            double noise;
+            dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature,
+                                    &noise);
+            dig_batch_whiten(group, feature, model[i]);
+            for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
+                mean[k] += model[i][k] / (double)group->digs;
+            }
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            sum += pow(group->mean[k] - mean[k], 2.0) / (1.0 / (double)group->digs + f->noise[g]);
+            for (size_t i = 0; i < b->digs; i++) {
+                sum += b->dig[i].group == g
+                           ? pow(b->dig[i].y[k] - group->mean[k] - (model[i][k] - mean[k]), 2.0)
+                           : 0.0;
+            }
+        }
+    }
+    return sum;
+}
+
+// Whether there are clearly smaller squares a little off.
+static bool is_lower_beside(const struct dig_batch *const b, const struct dig_fitted *const f)
+{
+    bool lower = false;
+    for (size_t j = 0; j < DIG_AXES + f->hypothesis.effects; j++) {
+        for (double step = -0.02; step <= 0.02; step += 0.04) {
+            struct dig_fitted off = *f;
+            off.number[j] += step;
+            lower = lower || (fabs(off.number[j]) < 1.0 && squares_of(b, &off) < f->squares - 0.02);
+        }
+    }
+    return lower;
+}
+
+// What a fit keeps of the numbers it has tried is theirs: it ends where the squares are least, and
+// tells those of that place, with intervals and without.
+static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
+{
+    (void)state;
+    static const struct dig_hypothesis all[] = {
+        { .effects = 0 },
+        { .effects = 1, .effect = { DIG_EFFECT_LAYERING } },
+        { .effects = 1, .effect = { DIG_EFFECT_WEAR } },
+        { .effects = 2, .effect = { DIG_EFFECT_COHESION, DIG_EFFECT_WEAR } },
+    };
+    static const bool       take[DIGS]                    = { true, true, true, true };
+    const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
+    const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 0.05 };
+    static struct dig_batch batch;
+    double                  place[DIG_AXES];
+    dig(&gravel, 1.3, 17);
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i].order = i;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
+        struct dig_fitted bare, once;
+        dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_BARE, &bare);
+        dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_ONCE, &once);
+        assert_close(once.squares, squares_of(&batch, &once), 1e-9 * once.squares);
+        assert_false(is_lower_beside(&batch, &once));
+        assert_memory_equal(bare.number, once.number, sizeof bare.number);
+        assert_memory_equal(bare.noise, once.noise, sizeof bare.noise);
+        assert_memory_equal(&bare.misfit, &once.misfit, sizeof bare.misfit);
+        assert_close(bare.low[0], 0.0, 0.0);
+        assert_true(once.low[0] < once.number[0] && once.number[0] < once.high[0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_tables_error_counts_for_less_beside_larger_digs),
+        cmocka_unit_test(a_fit_ends_where_the_squares_it_tells_are_least),
+    };
+    return cmocka_run_group_tests_name("hypothesis", tests, world_setup, world_teardown);
+}

@@ -1,0 +1,108 @@
+// Tests for closed_loop/same_bed.c, and what a batch and a hypothesis make of it: the made table's
+// digs, some recorded again with noise of sensors.
+
+#include "closed_loop/same_bed.h"
+
+#include "closed_loop/hypothesis.h"
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 8 };
+
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+
+// Each bed is dug and recorded so many times, every time with noise of this share of the moment.
+static struct dig_batch *batch_of(struct dig_measured measured[DIGS], const size_t times,
+                                  const double noise, uint64_t seed)
+{
+    bool                    take[DIGS];
+    double                  place[DIG_AXES];
+    struct dig_batch *const batch = malloc(sizeof *batch);
+    for (size_t i = 0; i < DIGS; i++) {
+        take[i] = true;
+        if (i % times == 0) {
+            measured[i] = made_dig(&gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
+            continue;
+        }
+        measured[i] = measured[i - 1];
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[i].value[c][k] *= 1.0 + noise * model_normal(&seed);
+            }
+        }
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    return batch;
+}
+
+static void recordings_of_one_bed_count_once(void **state)
+{
+    (void)state;
+    struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        for (size_t times = 1; times <= DIGS; times *= 2) {
+            struct dig_batch *const batch = batch_of(measured, times, 0.03, seed);
+            const size_t            beds  = DIGS / times;
+            assert_int_equal(dig_same_bed_count(batch, 0), beds);
+            assert_close(1.0 / DIGS + batch->group[0].repeats, 1.0 / (double)beds, 1e-12);
+            free(batch);
+        }
+    }
+    free(measured);
+}
+
+static void without_a_dig_its_bed_counts_as_long_as_another_has_it(void **state)
+{
+    (void)state;
+    struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
+    struct dig_batch *const    batch    = batch_of(measured, 2, 0.03, 5);
+    struct dig_batch *const    others   = malloc(sizeof *others);
+    dig_batch_leave_out(batch, 0, others);
+    assert_close(others->group[0].repeats, 1.0 / 4 - 1.0 / 7, 1e-12);
+    *batch = *others;
+    dig_batch_leave_out(batch, 0, others);
+    assert_close(others->group[0].repeats, 1.0 / 3 - 1.0 / 6, 1e-12);
+    free(others);
+    free(batch);
+    free(measured);
+}
+
+// What the mean of digs is off by is what the mean of their beds is: over many campaigns, the
+// squares that a plain gravel leaves come to as much with one bed recorded eight times as with
+// eight beds.
+static void the_mean_of_one_bed_is_no_nearer_to_its_gravel(void **state)
+{
+    (void)state;
+    enum { CAMPAIGNS = 60 };
+    static const struct dig_hypothesis plain    = { .effects = 0 };
+    struct dig_measured *const         measured = calloc(DIGS, sizeof *measured);
+    double                             mean[2]  = { 0.0 };
+    double                             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    for (uint64_t seed = 1; seed <= CAMPAIGNS; seed++) {
+        for (int once = 0; once < 2; once++) {
+            struct dig_batch *const batch = batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
+            struct dig_fitted       fitted;
+            dig_hypothesis_fit(batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
+            mean[once] += (fitted.squares - batch->group[0].about) / CAMPAIGNS;
+            free(batch);
+        }
+    }
+    print_message("squares of the mean: %.1f of one bed, %.1f of %d\n", mean[0], mean[1], DIGS);
+    assert_true(mean[0] > 0.7 * mean[1] && mean[0] < 2.0 * mean[1]);
+    free(measured);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(recordings_of_one_bed_count_once),
+        cmocka_unit_test(without_a_dig_its_bed_counts_as_long_as_another_has_it),
+        cmocka_unit_test(the_mean_of_one_bed_is_no_nearer_to_its_gravel),
+    };
+    return cmocka_run_group_tests_name("same_bed", tests, world_setup, world_teardown);
+}

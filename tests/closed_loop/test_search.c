@@ -1,0 +1,372 @@
+#include "closed_loop/search_work.h"
+
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 6, DRAWS = 24 };
+
+static struct dig_measured measured[DIGS];
+
+// Three simple and three real digs of a gravel with these effects.
+static void dig(const struct dig_gravel *const gravel, const size_t effects,
+                const enum dig_effect_id effect[], const double magnitude[], uint64_t *const seed)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, effect,
+                               magnitude, seed);
+        measured[i].order = i;
+    }
+}
+
+// Makes every dig so many times as strong.
+static void grow(const double times[DIGS])
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[i].value[c][k] *= times[i];
+            }
+        }
+    }
+}
+
+static struct dig_batch batch; // of the digs searched last
+
+static void put_in_batch(const struct dig_gravel *const gravel, const size_t digs)
+{
+    bool   take[DIGS];
+    double place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        take[i] = i < digs;
+    }
+    dig_surface_place(world.surface, gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+}
+
+static struct dig_search search_some(const struct dig_gravel *const gravel, const size_t digs,
+                                     const double false_alarm, const uint64_t seed)
+{
+    static struct dig_search found;
+    put_in_batch(gravel, digs);
+    assert_int_equal(dig_search_run(&batch, soil, false_alarm, DRAWS, seed, &found), DIG_OK);
+    return found;
+}
+
+static struct dig_search search_digs(const struct dig_gravel *const gravel,
+                                     const double false_alarm, const uint64_t seed)
+{
+    return search_some(gravel, DIGS, false_alarm, seed);
+}
+
+static struct dig_search search(const struct dig_gravel *const gravel, const size_t effects,
+                                const enum dig_effect_id effect[], const double magnitude[],
+                                uint64_t seed)
+{
+    dig(gravel, effects, effect, magnitude, &seed);
+    return search_digs(gravel, 0.01, seed);
+}
+
+static bool in_a_set(const struct dig_search *const s, const enum dig_effect_id effect)
+{
+    for (size_t i = 0; i < s->sets; i++) {
+        for (size_t e = 0; e < s->set[i].effects; e++) {
+            if (s->set[i].effect[e] == effect) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Twelve campaigns without an effect: two false alarms at one in a hundred come once in a hundred
+// and fifty.
+static void nothing_is_found_where_nothing_is(void **state)
+{
+    (void)state;
+    uint64_t seed   = 21;
+    int      alarms = 0;
+    for (int i = 0; i < 12; i++) {
+        const struct dig_gravel gravel = { { 0.32 + 0.56 * model_uniform(&seed),
+                                             0.15 + 0.8 * model_uniform(&seed),
+                                             1600 + 2200 * model_uniform(&seed) } };
+        const struct dig_search s      = search(&gravel, 0, NULL, NULL, seed);
+        alarms += s.significant ? 1 : 0;
+    }
+    assert_true(alarms <= 1);
+}
+
+static void an_effect_is_named_and_measured(void **state)
+{
+    (void)state;
+    static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION,
+                                                 DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_LAYERING };
+    const struct dig_gravel         gravel   = { { 0.6, 0.55, 2500 } };
+    for (size_t i = 0; i < sizeof effect / sizeof effect[0]; i++) {
+        const double            magnitude = 0.5;
+        const struct dig_search s         = search(&gravel, 1, &effect[i], &magnitude, 100 + i);
+        assert_true(s.significant);
+        assert_false(s.unlisted);
+        assert_int_equal(s.chosen.hypothesis.effects, 1);
+        assert_true(s.chosen.hypothesis.effect[0] == effect[i] || in_a_set(&s, effect[i]));
+        assert_true(s.probability[0] > 0.5 || s.sets > 0);
+        if (s.chosen.hypothesis.effect[0] == effect[i]) {
+            // Friction and density make much the same digs, and what sticks acts by its ratio to
+            // the weight: that ratio is what digs tell.
+            const struct dig_gravel found = dig_surface_gravel(world.surface, s.chosen.number);
+            const bool              sticks =
+                effect[i] == DIG_EFFECT_COHESION || effect[i] == DIG_EFFECT_ADHESION;
+            const double density = found.value[DIG_AXIS_DENSITY_kgpm3];
+            const double by      = sticks ? 2500.0 / density : 1.0;
+            assert_close(by * dig_soil_magnitude(soil, effect[i], s.chosen.number[DIG_AXES]), 0.5,
+                         0.15);
+        }
+    }
+}
+
+static void two_effects_at_once_are_both_named(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id effect[2] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION };
+    const double             both[2]   = { 0.6, 0.7 };
+    const struct dig_search  s         = search(&gravel, 2, effect, both, 7);
+    int                      found     = 0;
+    for (size_t e = 0; e < s.chosen.hypothesis.effects; e++) {
+        found +=
+            s.chosen.hypothesis.effect[e] == effect[0] || s.chosen.hypothesis.effect[e] == effect[1]
+                ? 1
+                : 0;
+    }
+    assert_int_equal(s.chosen.hypothesis.effects, 2);
+    assert_int_equal(found, 2);
+}
+
+// A trend over four digs cannot be asked of a fifth: as a second effect it is not named. Over six
+// it is.
+static void a_second_effect_that_no_dig_confirms_is_not_named(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel  = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id layer[] = { DIG_EFFECT_LAYERING };
+    const double             much[]  = { 0.8 };
+    uint64_t                 seed    = 71;
+    dig(&gravel, 1, layer, much, &seed);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[i].value[c][k] *= 1.0 + 0.14 * (double)i;
+            }
+        }
+    }
+    const struct dig_search four = search_some(&gravel, 4, 0.01, seed);
+    assert_int_equal(four.chosen.hypothesis.effects, 1);
+    assert_int_equal(four.chosen.hypothesis.effect[0], DIG_EFFECT_LAYERING);
+    const struct dig_search six = search_digs(&gravel, 0.01, seed);
+    assert_int_equal(six.chosen.hypothesis.effects, 2);
+}
+
+static void what_has_no_name_gets_none(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id dip       = DIG_EFFECT_UNLISTED;
+    const double             magnitude = 0.8;
+    const struct dig_search  s         = search(&gravel, 1, &dip, &magnitude, 8);
+    assert_true(s.significant);
+    assert_true(s.unlisted);
+    assert_int_equal(s.chosen.hypothesis.effects, 0);
+    assert_true(s.without_name.functions > 0);
+}
+
+static void a_gravel_beyond_the_grid_is_no_effect(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.25, 0.05, 1200 } };
+    const struct dig_search s      = search(&gravel, 0, NULL, NULL, 9);
+    assert_true(!s.significant || s.outside);
+    assert_int_equal(s.chosen.hypothesis.effects, 0);
+    assert_false(s.unlisted);
+}
+
+static void the_same_seed_gives_the_same_answer(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id effect    = DIG_EFFECT_LAYERING;
+    const double             magnitude = 0.3;
+    const struct dig_search  a         = search(&gravel, 1, &effect, &magnitude, 10);
+    const struct dig_search  b         = search(&gravel, 1, &effect, &magnitude, 10);
+    assert_close(a.p_complete, b.p_complete, 0.0);
+    assert_memory_equal(a.chosen.number, b.chosen.number, sizeof a.chosen.number);
+}
+
+static bool names(const struct dig_search *const s, const enum dig_effect_id effect)
+{
+    bool named = false;
+    for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects; e++) {
+        named = named || s->chosen.hypothesis.effect[e] == effect;
+    }
+    return named;
+}
+
+// However lightly one takes something to be missing: plain digs do not decide for an effect.
+static void no_effect_is_named_that_is_not_decisive(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel  = { { 0.6, 0.55, 2500 } };
+    uint64_t                seed    = 40;
+    int                     tempted = 0;
+    for (int i = 0; i < 8 || (tempted == 0 && i < 64); i++) {
+        dig(&gravel, 0, NULL, NULL, &seed);
+        const struct dig_search s    = search_digs(&gravel, 0.95, seed);
+        double                  best = 0.0;
+        for (size_t r = 0; r < s.rivals; r++) {
+            best = fmax(best, s.log_evidence[r]);
+        }
+        tempted += s.p_complete < 0.95 && best > 0.0 ? 1 : 0;
+        assert_true(!s.significant || s.unlisted || s.chosen.hypothesis.effects == 0);
+    }
+    assert_true(tempted > 0); // an effect led, if not by much
+}
+
+// Digs that grow by a tenth each wear the tooth; one that is far off at the end of equal ones is
+// fitted by a trend, too, but a trend through the others does not foretell it.
+static void a_trend_must_foretell_the_digs_left_out(void **state)
+{
+    (void)state;
+    static const double     growth[2][DIGS] = { { 1.0, 1.1, 1.2, 1.3, 1.4, 1.5 },
+                                                { 1.0, 1.0, 1.0, 1.0, 1.0, 1.5 } };
+    const struct dig_gravel gravel          = { { 0.6, 0.55, 2500 } };
+    for (int off = 0; off <= 1; off++) {
+        uint64_t seed = 50;
+        dig(&gravel, 0, NULL, NULL, &seed);
+        grow(growth[off]);
+        const struct dig_search s = search_digs(&gravel, 0.01, seed);
+        assert_true(s.significant);
+        assert_int_equal(names(&s, DIG_EFFECT_WEAR), !off);
+        assert_true(off ? s.confirmed < 0.0 : s.confirmed > 0.0);
+    }
+}
+
+// A strength that comes to rest, or steps once, drifts from dig to dig as no tooth wears.
+static void a_drift_that_bends_is_no_wear(void **state)
+{
+    (void)state;
+    static const double     growth[3][DIGS] = { { 1.0, 1.15, 1.3, 1.45, 1.6, 1.75 },
+                                                { 1.0, 1.5, 1.75, 1.85, 1.9, 1.92 },
+                                                { 1.0, 1.0, 1.0, 1.0, 1.6, 1.6 } };
+    const struct dig_gravel gravel          = { { 0.6, 0.55, 2500 } };
+    for (int law = 0; law < 3; law++) {
+        int wear = 0;
+        int bent = 0;
+        for (uint64_t seed = 60; seed < 66; seed++) {
+            uint64_t luck = seed;
+            dig(&gravel, 0, NULL, NULL, &luck);
+            grow(growth[law]);
+            const struct dig_search s = search_digs(&gravel, 0.01, luck);
+            wear += names(&s, DIG_EFFECT_WEAR) ? 1 : 0;
+            bent += s.unlisted && strstr(s.without_name.depends_on, "order") != NULL ? 1 : 0;
+        }
+        print_message("law %d: wear %d, bent %d of 6\n", law, wear, bent);
+        assert_true(law == 0 ? wear >= 5 && bent == 0 : wear <= 2);
+        assert_true(law != 1 || bent >= 4);
+    }
+}
+
+// A single effect whose fit stopped short leaves what a second effect takes off: before the pair is
+// believed the single one is fitted again from where the pair has led.
+static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id slope     = DIG_EFFECT_GROUND_SLOPE;
+    const double             magnitude = 0.5;
+    struct dig_search        s         = search(&gravel, 1, &slope, &magnitude, 102);
+    struct dig_search_work   c         = { .batch       = &batch,
+                                           .soil        = soil,
+                                           .false_alarm = 2.0, // a second effect is looked for
+                                           .draws       = DRAWS,
+                                           .seed        = 5,
+                                           .s           = &s };
+    for (size_t i = 0; i < s.rivals; i++) {
+        c.single[i] = s.rival[i].hypothesis;
+    }
+    assert_int_equal(
+        dig_null_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS, &c.seed, &c.plain_null),
+        DIG_OK);
+    const size_t best   = dig_search_best_rival(&s);
+    const double before = s.log_evidence[best];
+    assert_int_equal(s.rival[best].hypothesis.effect[0], slope);
+    const double short_of = 30.0; // of the misfit
+    s.rival[best].misfit += short_of;
+    s.rival[best].number[DIG_AXES] *= 0.8;
+    s.log_evidence[best] = dig_search_evidence(&c, &s.rival[best], 1);
+    assert_int_equal(dig_search_best_rival(&s), best);
+    assert_true(s.log_evidence[best] < before - 2.0 * DIG_SEARCH_TOLD_APART);
+    assert_int_equal(dig_search_which(&c), DIG_OK);
+    assert_close(s.log_evidence[best], before, 1.0);
+    assert_int_equal(s.chosen.hypothesis.effects, 1);
+}
+
+// All of an answer that is given where it matters only whether something is missing.
+static void assert_same_whether(const struct dig_search *const a, const struct dig_search *const b)
+{
+    assert_int_equal(a->significant, b->significant);
+    assert_memory_equal(&a->spread, &b->spread, sizeof a->spread);
+    assert_memory_equal(&a->plain.misfit, &b->plain.misfit, sizeof a->plain.misfit);
+    assert_memory_equal(&a->plain.squares, &b->plain.squares, sizeof a->plain.squares);
+    assert_memory_equal(a->plain.number, b->plain.number, sizeof a->plain.number);
+    assert_memory_equal(a->plain.noise, b->plain.noise, sizeof a->plain.noise);
+}
+
+// An answer cut short is the answer: of digs with nothing missing, with much missing, and, on the
+// way from one to the other, where it is in doubt.
+static void whether_is_answered_alike_with_and_without_what(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+    const enum dig_effect_id effect = DIG_EFFECT_LAYERING;
+    unsigned                 answer = 0;
+    for (size_t i = 0; i <= 6; i++) {
+        static struct dig_search short_one;
+        const double             magnitude = 0.1 * (double)i;
+        uint64_t                 seed      = 40 + i;
+        dig(&gravel, 1, &effect, &magnitude, &seed);
+        const struct dig_search whole = search_digs(&gravel, 0.01, seed);
+        put_in_batch(&gravel, DIGS);
+        assert_int_equal(dig_search_whether(&batch, soil, 0.01, DRAWS, seed, &short_one), DIG_OK);
+        assert_same_whether(&short_one, &whole);
+        assert_true(short_one.p_complete >= whole.p_complete);
+        const bool cut = short_one.significant && short_one.chosen.hypothesis.effects == 0 &&
+                         !short_one.unlisted;
+        answer |= !short_one.significant ? 1U : cut ? 2U : 4U;
+        if (!cut) {
+            assert_memory_equal(short_one.inclusion, whole.inclusion, sizeof whole.inclusion);
+            assert_int_equal(short_one.chosen.hypothesis.effects, whole.chosen.hypothesis.effects);
+        }
+    }
+    assert_int_equal(answer & 3U, 3U);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_found_where_nothing_is),
+        cmocka_unit_test(an_effect_is_named_and_measured),
+        cmocka_unit_test(two_effects_at_once_are_both_named),
+        cmocka_unit_test(a_second_effect_that_no_dig_confirms_is_not_named),
+        cmocka_unit_test(what_has_no_name_gets_none),
+        cmocka_unit_test(a_gravel_beyond_the_grid_is_no_effect),
+        cmocka_unit_test(the_same_seed_gives_the_same_answer),
+        cmocka_unit_test(no_effect_is_named_that_is_not_decisive),
+        cmocka_unit_test(a_drift_that_bends_is_no_wear),
+        cmocka_unit_test(a_trend_must_foretell_the_digs_left_out),
+        cmocka_unit_test(a_pair_does_not_lead_for_having_been_fitted_better),
+        cmocka_unit_test(whether_is_answered_alike_with_and_without_what),
+    };
+    return cmocka_run_group_tests_name("search", tests, world_setup, world_teardown);
+}

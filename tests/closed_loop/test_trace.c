@@ -1,0 +1,245 @@
+#include "closed_loop/trace.h"
+
+#include "closed_loop/residuals.h"
+
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 8 };
+
+static struct dig_measured measured[DIGS];
+
+// Four simple and four real digs; the first identifies, the last two real ones are held out.
+static void dig_campaign(const size_t effects, const enum dig_effect_id effect,
+                         const double magnitude, uint64_t seed)
+{
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, &effect,
+                               &magnitude, &seed);
+        measured[i].order = i;
+        measured[i].use   = i == 0 ? DIG_USE_IDENTIFY : DIG_USE_FIT;
+    }
+    measured[5].use = DIG_USE_HOLDOUT;
+    measured[7].use = DIG_USE_HOLDOUT;
+}
+
+static enum dig_status run(struct dig_trace *const trace, struct dig_error *const error)
+{
+    struct dig_trace_settings settings = dig_trace_settings_default();
+    settings.bootstraps                = 24;
+    return dig_trace_run(world.set, NULL, world.effects, &settings, NULL, DIGS, measured, trace,
+                         error);
+}
+
+static void adding_the_effect_makes_the_holdout_better(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_LAYERING, 0.8, 31);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_true(trace.significant);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
+    assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
+    assert_int_equal(trace.holdouts, 2);
+    assert_true(trace.applied);
+    assert_true(trace.after.value < 0.7 * trace.before.value);
+    assert_true(trace.after.low <= trace.after.value && trace.after.value <= trace.after.high);
+    // What is left is no more than two sigma of what one dig scatters.
+    assert_true(trace.after.value < 2.0 * trace.noise_floor);
+    assert_true(isnan(trace.residual[DIG_PART_AIR]));
+    assert_true(trace.candidate[0].effect == DIG_EFFECT_LAYERING);
+    dig_trace_finish(&trace);
+}
+
+// Of two holdouts: the root of the mean square of their own errors, as near as they are of one
+// size.
+static void what_is_left_is_told_dig_by_dig(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_COHESION, 0.8, 31);
+    (void)snprintf(measured[5].name, sizeof measured[5].name, "five.csv");
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    const struct dig_residuals *const r = trace.residuals;
+    assert_non_null(r);
+    assert_int_equal(r->digs, DIGS);
+    assert_string_equal(r->dig[5].name, "five.csv");
+    assert_string_equal(r->dig[5].trajectory, "actual");
+    assert_int_equal(r->dig[5].use, DIG_USE_HOLDOUT);
+    double before = 0.0;
+    double after  = 0.0;
+    for (size_t i = 5; i < DIGS; i += 2) {
+        for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {
+            before += pow(r->dig[i].before[p][DIG_CHANNEL_MY_Nm].relative, 2.0) / 2.0;
+            after += pow(r->dig[i].after[p][DIG_CHANNEL_MY_Nm].relative, 2.0) / 2.0;
+        }
+        assert_true(isnan(r->dig[i].air_sigmas));
+    }
+    assert_close(sqrt(before) / trace.before.value, 1.0, 0.02);
+    assert_close(sqrt(after) / trace.after.value, 1.0, 0.02);
+    // Not white without cohesion, white with it; and the digs say where along the path it shows:
+    // the sine that it is made of falls from its first quarter to its third.
+    assert_true(r->without.p <= 0.01);
+    assert_true(r->with.p > 0.05);
+    assert_int_equal(r->without.digs, DIGS - 2);
+    assert_true(r->known[DIG_CHANNEL_MY_Nm] && r->known[DIG_CHANNEL_FZ_N]);
+    const struct dig_trend *const path = &r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PATH];
+    assert_true(path->slope < 0.0 && path->p < 0.01);
+    assert_int_equal(path->bin[0].digs, DIGS - 2);
+    assert_true(isnan(r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PASS].slope));
+    dig_trace_finish(&trace);
+}
+
+static void without_an_effect_before_and_after_are_the_same(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 32);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_false(trace.significant);
+    assert_int_equal(trace.effects, 0);
+    assert_close(trace.after.value, trace.before.value, 1e-12);
+    assert_false(trace.applied);
+    assert_memory_equal(&trace.gravel_before, &trace.gravel, sizeof trace.gravel);
+    assert_memory_equal(&trace.low_before, &trace.low, sizeof trace.low);
+    assert_memory_equal(&trace.high_before, &trace.high, sizeof trace.high);
+    assert_null(trace.unlisted);
+    dig_trace_finish(&trace);
+}
+
+static void what_has_no_name_is_corrected_all_the_same(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_non_null(trace.unlisted);
+    assert_true(trace.unlisted->depends_on[0] != '\0');
+    assert_true(trace.after.value < 0.7 * trace.before.value);
+    dig_trace_finish(&trace);
+}
+
+// Without a name as with one: no more than even odds are claimed for what the moment hardly shows.
+static void what_the_moment_does_not_show_is_not_claimed(void **state)
+{
+    (void)state;
+    struct dig_trace trace;
+    dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_true(trace.effect[0].probability > 0.95);
+    dig_trace_finish(&trace);
+
+    static struct dig_measured in_forces[DIGS];
+    memcpy(in_forces, measured, sizeof in_forces);
+    dig_campaign(0, DIG_EFFECT_UNLISTED, 0.0, 33);
+    for (size_t i = 0; i < DIGS; i++) {
+        memcpy(in_forces[i].value[DIG_CHANNEL_MY_Nm], measured[i].value[DIG_CHANNEL_MY_Nm],
+               sizeof in_forces[i].value[DIG_CHANNEL_MY_Nm]);
+    }
+    memcpy(measured, in_forces, sizeof in_forces);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_int_equal(trace.effects, 1);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_true(trace.significant && trace.p_complete < 0.01);
+    assert_true(trace.effect[0].probability <= 0.5);
+    dig_trace_finish(&trace);
+}
+
+// What the machine adds is taken off the digs and put back on the prediction.
+static void the_machines_share_is_the_machines(void **state)
+{
+    (void)state;
+    struct dig_trace plain, shifted;
+    dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 34);
+    assert_int_equal(run(&plain, NULL), DIG_OK);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] = 0.3;
+            measured[i].value[DIG_CHANNEL_MY_Nm][k] += 0.3;
+        }
+    }
+    assert_int_equal(run(&shifted, NULL), DIG_OK);
+    assert_false(shifted.significant);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(shifted.gravel.value[a] / plain.gravel.value[a], 1.0, 0.05);
+    }
+    const double moved = shifted.curves[5].after[DIG_CHANNEL_MY_Nm][100] -
+                         plain.curves[5].after[DIG_CHANNEL_MY_Nm][100];
+    assert_close(moved, 0.3, 0.05);
+    dig_trace_finish(&plain);
+    dig_trace_finish(&shifted);
+}
+
+static void too_few_digs_are_refused_and_nothing_is_written(void **state)
+{
+    (void)state;
+    struct dig_trace trace = { .digs = 42 };
+    struct dig_error error = { "" };
+    dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 35);
+    for (size_t i = 1; i < DIGS; i++) {
+        measured[i].use = DIG_USE_HOLDOUT;
+    }
+    assert_int_equal(run(&trace, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "expected two or more"));
+    measured[1].use        = DIG_USE_FIT;
+    measured[1].trajectory = 7;
+    assert_int_equal(run(&trace, &error), DIG_EINVAL);
+    assert_int_equal(trace.digs, 42);
+}
+
+static void another_scenes_effects_are_refused(void **state)
+{
+    (void)state;
+    struct dig_trace trace = { .digs = 42 };
+    struct dig_error error = { "" };
+    dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 36);
+    world.effects->scene_hash[0] ^= 1;
+    assert_int_equal(run(&trace, &error), DIG_EINVAL);
+    world.effects->scene_hash[0] ^= 1;
+    assert_non_null(strstr(error.text, "another scene"));
+    assert_int_equal(trace.digs, 42);
+}
+
+// A dig held out decides nothing: another holdout, the same verdict and gravel.
+static void the_holdout_is_for_the_error_alone(void **state)
+{
+    (void)state;
+    struct dig_trace a, b;
+    dig_campaign(1, DIG_EFFECT_LAYERING, 0.6, 37);
+    assert_int_equal(run(&a, NULL), DIG_OK);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        measured[7].value[DIG_CHANNEL_MY_Nm][k] *= 3.0;
+    }
+    assert_int_equal(run(&b, NULL), DIG_OK);
+    assert_close(a.p_complete, b.p_complete, 0.0);
+    assert_memory_equal(&a.gravel, &b.gravel, sizeof a.gravel);
+    assert_true(b.after.value > a.after.value);
+    dig_trace_finish(&a);
+    dig_trace_finish(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(adding_the_effect_makes_the_holdout_better),
+        cmocka_unit_test(what_is_left_is_told_dig_by_dig),
+        cmocka_unit_test(without_an_effect_before_and_after_are_the_same),
+        cmocka_unit_test(what_has_no_name_is_corrected_all_the_same),
+        cmocka_unit_test(what_the_moment_does_not_show_is_not_claimed),
+        cmocka_unit_test(the_machines_share_is_the_machines),
+        cmocka_unit_test(too_few_digs_are_refused_and_nothing_is_written),
+        cmocka_unit_test(another_scenes_effects_are_refused),
+        cmocka_unit_test(the_holdout_is_for_the_error_alone),
+    };
+    return cmocka_run_group_tests_name("trace", tests, world_setup, world_teardown);
+}

@@ -1,0 +1,104 @@
+// Tests for closed_loop/trace_no_air.c
+
+#include "closed_loop/trace_work.h"
+#include "tests/closed_loop/world_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 4 };
+
+static struct dig_measured        measured[DIGS];
+static struct dig_batch           batch;
+static struct dig_search          search;
+static struct dig_machine_finding air;
+
+// The first digs of four with a layer, along two trajectories in turn, and both hypotheses fitted.
+static struct dig_trace_work work(const size_t digs)
+{
+    static const enum dig_effect_id    effect     = DIG_EFFECT_LAYERING;
+    static const bool                  take[DIGS] = { true, true, true, true };
+    static const struct dig_gravel     gravel     = { { 0.6, 0.55, 2500 } };
+    static const struct dig_hypothesis plain      = { .effects = 0 };
+    static const struct dig_hypothesis layer      = { 1, { DIG_EFFECT_LAYERING }, false };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const double                       magnitude                      = 0.8;
+    uint64_t                           seed                           = 61;
+    double                             place[DIG_AXES];
+    for (size_t i = 0; i < digs; i++) {
+        measured[i]       = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &effect,
+                                     &magnitude, &seed);
+        measured[i].order = i;
+    }
+    dig_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_batch_make(world.surface, world.scatter, digs, measured, take, place, &batch), DIG_OK);
+    memset(&search, 0, sizeof search);
+    search.significant = true;
+    dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &search.plain);
+    dig_hypothesis_fit(&batch, soil, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
+    air = (struct dig_machine_finding){ .p_complete = 1.0, .no_air = true };
+    return (struct dig_trace_work){ .soil = soil, .batch = &batch, .search = &search, .air = &air };
+}
+
+static bool is_confirmed(struct dig_trace_work *const w)
+{
+    w->confirmed = false;
+    assert_int_equal(dig_trace_confirm_without_air(w), DIG_OK);
+    return w->confirmed;
+}
+
+static void what_predicts_the_digs_left_out_is_confirmed(void **state)
+{
+    (void)state;
+    struct dig_trace_work w = work(4);
+    assert_true(is_confirmed(&w));
+    // One that says of every dig what no effect says predicts none better.
+    search.chosen = search.plain;
+    assert_false(is_confirmed(&w));
+    // With free air it is not asked.
+    air.no_air = false;
+    assert_true(is_confirmed(&w));
+    air.no_air         = true;
+    search.significant = false;
+    assert_true(is_confirmed(&w));
+}
+
+static void without_a_name_a_second_dig_of_a_trajectory_is_asked_for(void **state)
+{
+    (void)state;
+    struct dig_trace_work w = work(3);
+    search.unlisted         = true;
+    assert_true(is_confirmed(&w));
+    w               = work(2);
+    search.unlisted = true;
+    assert_false(is_confirmed(&w));
+}
+
+static void the_advice_begins_with_the_air_that_is_missing(void **state)
+{
+    (void)state;
+    const struct dig_trace_work w     = work(2);
+    struct dig_trace            trace = { .advice = "a table would serve" };
+    dig_trace_advise_on_air(&w, &trace);
+    assert_memory_equal(trace.advice, "no free air in the recordings: effects of the machine", 53);
+    assert_non_null(strstr(trace.advice, "Of the digs alone: a table would serve"));
+    memset(trace.advice, 'x', sizeof trace.advice - 1);
+    dig_trace_advise_on_air(&w, &trace);
+    assert_true(strlen(trace.advice) < sizeof trace.advice);
+    (void)snprintf(trace.advice, sizeof trace.advice, "as it was");
+    air.no_air = false;
+    dig_trace_advise_on_air(&w, &trace);
+    assert_string_equal(trace.advice, "as it was");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_predicts_the_digs_left_out_is_confirmed),
+        cmocka_unit_test(without_a_name_a_second_dig_of_a_trajectory_is_asked_for),
+        cmocka_unit_test(the_advice_begins_with_the_air_that_is_missing),
+    };
+    return cmocka_run_group_tests_name("trace_no_air", tests, world_setup, world_teardown);
+}

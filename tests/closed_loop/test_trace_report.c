@@ -1,0 +1,462 @@
+// Tests for closed_loop/trace_report.c, closed_loop/trace_page.c and closed_loop/html.c
+
+#include "closed_loop/trace_report.h"
+
+#include "closed_loop/residual_report.h"
+#include "files/yaml_tree.h"
+#include "tests/made_table.h"
+#include "tests/scratch.h"
+
+#define EXAMPLE "tests/data/formats/trace.json"
+
+enum { DIGS = 3 };
+
+struct example {
+    struct dig_trace          trace;
+    struct dig_trace_curves   curves[DIGS];
+    struct dig_measured       measured[DIGS];
+    struct dig_model_unlisted unlisted;
+    struct dig_residuals      residuals;
+    struct dig_curve_set     *set;
+    struct dig_trace_subject  subject;
+};
+
+static void fill_digs(struct example *const e)
+{
+    static const double shrink[DIGS] = { 1.0, 1.02, 0.97 };
+    for (size_t d = 0; d < DIGS; d++) {
+        struct dig_measured *const m = &e->measured[d];
+        (void)snprintf(m->name, sizeof m->name, "dig <%zu>.csv", d + 1);
+        m->order                       = d;
+        m->trajectory                  = d == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        m->use                         = (enum dig_use)d;
+        m->pass                        = d == 2 ? 2 : 1;
+        m->pace                        = 1.0;
+        m->first                       = 0.05;
+        m->last                        = 0.9;
+        m->measured[DIG_CHANNEL_MY_Nm] = true;
+        m->measured[DIG_CHANNEL_FZ_N]  = d == 1;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            const struct dig_gravel gravel = { { 0.5, 0.5, 2500.0 } };
+            const double            p      = (double)k / (DIG_CURVE_POINTS - 1);
+            const double y = made_moment_Nm(&gravel, d == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, p, 0.0);
+            m->value[DIG_CHANNEL_MY_Nm][k]              = y * (shrink[d] + 0.05 * sin(40.0 * p));
+            e->curves[d].before[DIG_CHANNEL_MY_Nm][k]   = 0.8 * y;
+            e->curves[d].after[DIG_CHANNEL_MY_Nm][k]    = y;
+            e->curves[d].after_sd[DIG_CHANNEL_MY_Nm][k] = 0.1 * y;
+        }
+    }
+}
+
+static struct dig_residual left(const double rms)
+{
+    return (struct dig_residual){ rms, rms / 4.0, 5.0 * rms };
+}
+
+// Two digs: of the second, a holdout that was not lifted, the moment alone was measured.
+static void fill_residuals(struct dig_residuals *const r)
+{
+    const struct dig_residual none = left((double)NAN);
+    r->digs                        = 2;
+    for (size_t i = 0; i < r->digs; i++) {
+        struct dig_residuals_dig *const dig = &r->dig[i];
+        for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                const bool known  = p != DIG_PART_AIR && (i == 0 || (c == 0 && p == DIG_PART_SOIL));
+                dig->before[p][c] = known ? left(0.5 * (double)(c + 1)) : none;
+                dig->after[p][c]  = known ? left(0.125 * (double)(c + 1)) : none;
+            }
+        }
+        dig->air_sigmas = i == 0 ? 2.5 : (double)NAN;
+        dig->use        = i == 0 ? DIG_USE_FIT : DIG_USE_HOLDOUT;
+        dig->pass       = (unsigned)i + 1;
+        (void)snprintf(dig->name, sizeof dig->name, "dig <%zu>.csv", i + 1);
+        (void)snprintf(dig->trajectory, sizeof dig->trajectory, "simpleA");
+    }
+    r->known[DIG_CHANNEL_MY_Nm] = true;
+    for (int s = 0; s < DIG_STATES; s++) {
+        r->trend[DIG_CHANNEL_MY_Nm][s] = (struct dig_trend){
+            .slope       = s == DIG_STATE_PASS ? (double)NAN : 0.5,
+            .low         = s == DIG_STATE_PASS ? (double)NAN : 0.25,
+            .high        = s == DIG_STATE_PASS ? (double)NAN : 0.75,
+            .correlation = s == DIG_STATE_PASS ? (double)NAN : 0.375,
+            .p           = s == DIG_STATE_PASS ? (double)NAN : 0.002,
+            .bins        = 2,
+            .bin         = { { 0.25, -0.125, 0.0625, 2 }, { 0.75, 0.125, (double)NAN, 1 } },
+        };
+    }
+    r->without = (struct dig_whiteness){ 2, 24.5, 20.0, 30.0, 9.0, 0.005 };
+    r->with    = (struct dig_whiteness){ 2, 8.5, 8.0, 9.0, 9.25, 0.5 };
+}
+
+// On the heap: the curves are large.
+static struct example *make(void)
+{
+    struct example *const e = calloc(1, sizeof *e);
+    assert_non_null(e);
+    e->trace = (struct dig_trace){
+        .significant   = true,
+        .p_complete    = 0.0004,
+        .false_alarm   = 0.01,
+        .noise_floor   = 0.11,
+        .residual      = { 2.5, 1.25, (double)NAN },
+        .applied       = true,
+        .effects       = 2,
+        .effect        = { { .effect      = DIG_EFFECT_CYLINDER_FRICTION,
+                             .probability = 0.98,
+                             .parameters  = 1,
+                             .parameter   = { { "coulomb_N", 812.0, 760.0, 861.0 } } },
+                           { .effect = DIG_EFFECT_UNLISTED, .probability = 0.75 } },
+        .seen_in       = { DIG_PART_AIR, DIG_PART_SOIL },
+        .unlisted      = &e->unlisted,
+        .candidates    = 2,
+        .candidate     = { { .effect       = DIG_EFFECT_CYLINDER_FRICTION,
+                             .log_evidence = 31.5,
+                             .p_fit        = 0.4,
+                             .inclusion    = 0.97,
+                             .error        = 0.13,
+                             .parameters   = 1,
+                             .parameter    = { { "coulomb_N", 812.0, 760.0, 861.0 } },
+                             .seen_in      = DIG_PART_AIR },
+                           { .effect       = DIG_EFFECT_COHESION,
+                             .log_evidence = -2.0,
+                             .p_fit        = 0.001,
+                             .error        = 0.25,
+                             .seen_in      = DIG_PART_SOIL } },
+        .sets          = 1,
+        .set           = { { 2, { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE } } },
+        .tells         = 2,
+        .tell          = { { { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE },
+                             false,
+                             "a dig along <simpleB>",
+                             1.5,
+                             4.0 },
+                           { { DIG_EFFECT_PRESSURE_OFFSET, DIG_EFFECT_BUCKET_WEIGHT },
+                             true,
+                             "",
+                             0.0,
+                             0.0 } },
+        .gravel_before = { { 0.41, 0.5, 2300.0 } },
+        .gravel        = { { 0.52, 0.47, 2431.0 } },
+        .low           = { { 0.44, 0.31, 2100.0 } },
+        .high          = { { 0.63, 0.66, 2800.0 } },
+        .before        = { 0.31, 0.27, 0.36 },
+        .after         = { 0.14, 0.12, 0.17 },
+        .holdouts      = 2,
+        .digs          = DIGS,
+        .curves        = e->curves,
+        .command       = "cat >g.yaml <<'END'\npoints: []\nEND\n",
+        .residuals     = &e->residuals,
+        .advice        = "dig \"simpleB\" & see <again>",
+    };
+    (void)snprintf(e->unlisted.depends_on, sizeof e->unlisted.depends_on, "speed and depth");
+    const struct made_options options = { .relative_sd = 0.1, .packings = 3 };
+    e->set                            = made_table(&options);
+    e->subject                        = (struct dig_trace_subject){
+                               .campaign = "pit <7>",
+                               .table    = "rig.sqlite",
+                               .set      = e->set,
+                               .digs     = DIGS,
+                               .measured = e->measured,
+    };
+    fill_digs(e);
+    fill_residuals(&e->residuals);
+    return e;
+}
+
+static void drop(struct example *const e)
+{
+    made_table_destroy(e->set);
+    free(e);
+}
+
+static char *json_of(const struct dig_trace *const trace)
+{
+    const char *const path = scratch_path("trace.json");
+    FILE *const       file = fopen(path, "w");
+    assert_non_null(file);
+    dig_trace_json(trace, file);
+    assert_int_equal(fclose(file), 0);
+    size_t size = 0;
+    return scratch_read(path, &size);
+}
+
+// What stands at a dotted key of a JSON text, which is YAML too.
+static void expect(const char *const text, const char *const key, const char *const value)
+{
+    yaml_document_t  document;
+    struct dig_error error = { "" };
+    if (dig_yaml_parse("trace.json", text, strlen(text), &document, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    int                      found = 0;
+    const yaml_node_t *const node  = dig_yaml_find(&document, key, &found);
+    if (node == NULL || node->type != YAML_SCALAR_NODE) {
+        fail_msg("%s: not there, expected %s", key, value);
+    } else {
+        assert_string_equal(dig_yaml_text_of(node), value);
+    }
+    yaml_document_delete(&document);
+}
+
+static void json_is_the_documented_example(void **state)
+{
+    (void)state;
+    struct example *const e    = make();
+    char *const           text = json_of(&e->trace);
+    size_t                size = 0;
+    char *const           kept = scratch_read(EXAMPLE, &size);
+    assert_string_equal(text, kept);
+    free(kept);
+    free(text);
+    drop(e);
+}
+
+// The keys people script against, each where the contract has it.
+static void json_holds_the_keys_of_the_contract(void **state)
+{
+    (void)state;
+    struct example *const e    = make();
+    char *const           text = json_of(&e->trace);
+    expect(text, "significant", "true");
+    expect(text, "applied", "true");
+    expect(text, "command", "cat >g.yaml <<'END'\npoints: []\nEND\n");
+    expect(text, "noise_floor", "0.11");
+    expect(text, "material.density_kgpm3.value", "2431");
+    expect(text, "material.friction.low", "0.44");
+    expect(text, "error_before.holdout", "0.31");
+    expect(text, "error_after.high", "0.17");
+    expect(text, "metric", "relative Euclidean norm of the moment, moving average ±0.16 s");
+    expect(text, "advice", "dig \"simpleB\" & see <again>");
+    assert_contains(text, "\"verdict\": [\"cylinder_friction\", \"unlisted\"]");
+    assert_contains(text, "\"indistinguishable\": [[\"cohesion\", \"ground_slope\"]]");
+    assert_contains(text, "\"seen_in\": \"air\", \"parameters\": {\"coulomb_N\": {\"value\": 812, "
+                          "\"low\": 760, \"high\": 861}}");
+    assert_contains(text, "{\"effects\": [\"cohesion\", \"ground_slope\"], \"in\": \"soil\", "
+                          "\"how\": \"a dig along <simpleB>\", \"sigmas\": 1.5, \"repeats\": 4}");
+    assert_contains(text, "\"bucket_weight\"], \"in\": null, \"how\": \"\", \"sigmas\": null");
+    expect(text, "whiteness.without.p", "0.005");
+    expect(text, "whiteness.with.expected", "9.25");
+    assert_contains(text, "{\"file\": \"dig <2>.csv\", \"trajectory\": \"simpleA\", \"role\": "
+                          "\"holdout\", \"pass\": 2, \"air\": {\"sigmas\": null}");
+    assert_contains(text,
+                    "\"fz_N\": {\"before\": {\"rms\": 1.5, \"relative\": 0.375, \"sigmas\": 7.5}, "
+                    "\"after\": {\"rms\": 0.375,");
+    assert_contains(text, "{\"of\": \"moment_Nm\", \"against\": \"depth_m\", \"slope\": 0.5,");
+    free(text);
+    drop(e);
+}
+
+static void no_effect_is_the_verdict_none_and_no_holdout_is_null(void **state)
+{
+    (void)state;
+    struct dig_trace trace = { .before = { (double)NAN, (double)NAN, (double)NAN },
+                               .after  = { (double)NAN, (double)NAN, (double)NAN } };
+    char *const      text  = json_of(&trace);
+    assert_contains(text, "\"verdict\": [\"none\"]");
+    assert_contains(text, "\"indistinguishable\": []");
+    expect(text, "error_after.holdout", "null");
+    expect(text, "significant", "false");
+    expect(text, "no_air", "false");
+    expect(text, "whiteness", "null");
+    assert_contains(text, "\"residuals\": [],\n \"residual_against\": [],");
+    free(text);
+    trace.no_air      = true;
+    char *const blind = json_of(&trace);
+    expect(blind, "no_air", "true");
+    free(blind);
+}
+
+static void control_characters_stay_inside_a_json_string(void **state)
+{
+    (void)state;
+    struct dig_trace trace = { .advice = "a\nb\\c" };
+    char *const      text  = json_of(&trace);
+    assert_contains(text, "\"advice\": \"a\\u000ab\\\\c\"");
+    free(text);
+}
+
+static void a_sentence_says_the_verdict(void **state)
+{
+    (void)state;
+    char                  text[1024];
+    struct example *const e = make();
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    assert_string_equal(text, "Missing: cylinder_friction (probability 0.98, seen in air) and an "
+                              "effect that has no name here, which depends on speed and depth "
+                              "(probability 0.75, seen in soil).");
+    e->trace.effects = 0;
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    assert_contains(text, "none of the effects known");
+    e->trace.significant = false;
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    assert_contains(text, "Nothing is missing");
+    e->trace.no_air = true;
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    assert_contains(text, "no free air tells of the machine");
+    e->trace.no_air = false;
+    dig_trace_sentence(&e->trace, sizeof text, text);
+    // Cut, not overrun.
+    dig_trace_sentence(&e->trace, 8, text);
+    assert_string_equal(text, "Nothing");
+    drop(e);
+}
+
+static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
+{
+    (void)state;
+    struct example *const e    = make();
+    const char *const     path = scratch_path("trace.txt");
+    FILE *const           file = fopen(path, "w");
+    assert_non_null(file);
+    dig_trace_text(&e->trace, file);
+    e->trace.before.value = (double)NAN;
+    e->trace.holdouts     = 1;
+    dig_trace_text(&e->trace, file);
+    assert_int_equal(fclose(file), 0);
+    size_t      size = 0;
+    char *const text = scratch_read(path, &size);
+    assert_contains(text, "coulomb_N 812   90 %: 760 to 861");
+    assert_contains(text, "cannot tell apart: cohesion, ground_slope");
+    assert_contains(text, "error after  0.140   90 %: 0.120 to 0.170");
+    assert_contains(text, "error before unknown: no holdout dig");
+    assert_contains(text, "error after  0.140   one dig: no interval");
+    assert_null(strstr(text, "not applied"));
+    assert_contains(text, "next: dig \"simpleB\"");
+    assert_contains(text, "to tell apart: cohesion and ground_slope differ most by a dig along "
+                          "<simpleB>: 1.5 scatters of one dig; 4 of them would tell them apart");
+    assert_contains(text, "pressure_offset and bucket_weight: nothing that was tried");
+    // To be pasted: each line where a shell wants it.
+    assert_contains(text, "\n\ncat >g.yaml <<'END'\npoints: []\nEND\n");
+    free(text);
+    drop(e);
+}
+
+// A change that was not made is told in every form of the report.
+static void what_is_named_and_not_applied_is_told(void **state)
+{
+    (void)state;
+    struct example *const e     = make();
+    struct dig_error      error = { "" };
+    const char *const     path  = scratch_path("refused.txt");
+    FILE *const           file  = fopen(path, "w");
+    assert_non_null(file);
+    e->trace.applied = false;
+    e->trace.digs    = 0;
+    dig_trace_text(&e->trace, file);
+    assert_int_equal(fclose(file), 0);
+    size_t      size = 0;
+    char *const text = scratch_read(path, &size);
+    assert_contains(text, "named, not applied: cylinder_friction, unlisted;");
+    free(text);
+    char *const json = json_of(&e->trace);
+    expect(json, "applied", "false");
+    free(json);
+    const char *const html = scratch_path("refused.html");
+    e->trace.holdouts      = 1;
+    assert_int_equal(dig_trace_html(&e->trace, &e->subject, html, &error), DIG_OK);
+    char *const page = scratch_read(html, &size);
+    assert_contains(page, "named, not applied: cylinder_friction, unlisted;");
+    assert_contains(page, "On 1 dig that took no part in the fit (one dig: no interval).");
+    free(page);
+    // Nothing was found: nothing was refused either.
+    char sentence[64];
+    e->trace.effects = 0;
+    dig_trace_not_applied(&e->trace, sizeof sentence, sentence);
+    assert_string_equal(sentence, "");
+    drop(e);
+}
+
+static void the_page_stands_alone_and_draws_every_dig(void **state)
+{
+    (void)state;
+    struct example *const e     = make();
+    const char *const     path  = scratch_path("trace.html");
+    struct dig_error      error = { "" };
+    if (dig_trace_html(&e->trace, &e->subject, path, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    size_t      size = 0;
+    char *const page = scratch_read(path, &size);
+    assert_contains(page, "pit &lt;7&gt;");
+    assert_contains(page, "Missing: cylinder_friction");
+    assert_contains(page, "dig &quot;simpleB&quot; &amp; see &lt;again&gt;");
+    assert_contains(page, "<th>cohesion<br>ground_slope</th>");
+    assert_contains(page, ">a dig along &lt;simpleB&gt;</td><td>1.50</td><td>4</td>");
+    assert_contains(page, "bucket_weight</th>");
+    assert_contains(page, ">nothing that was tried</td>");
+    assert_contains(page, "cohesion, ground_slope");
+    assert_contains(page, "noise floor 0.110");
+    assert_contains(page, "On 2 digs that took no part in the fit, with 90 % intervals");
+    assert_contains(page, "<pre>cat &gt;g.yaml &lt;&lt;&#39;END&#39;\npoints: []\nEND\n</pre>");
+    size_t pictures = 0;
+    for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
+        pictures++;
+    }
+    // The error, each dig's moment, one dig's force, and the residual over path and depth.
+    assert_int_equal(pictures, 1 + DIGS + 1 + 2);
+    assert_contains(page, "actual, fit, Fz");
+    assert_contains(
+        page,
+        "<th>dig &lt;1&gt;.csv<br><span class=muted>fit</span></th><td>moment</td><td>2.5</td>");
+    assert_contains(page, "it is not white");
+    assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
+    assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
+    // Namespaces are names; anything else with a scheme would be fetched.
+    for (const char *at = page; (at = strstr(at, "://")) != NULL; at++) {
+        if (strncmp(at, "://www.w3.org/", 14) != 0) {
+            fail_msg("the page points elsewhere: %.40s", at);
+        }
+    }
+    free(page);
+    assert_false(scratch_exists("trace.html.part"));
+    const char *const keep = getenv("DIG_KEEP_PAGE");
+    if (keep != NULL) {
+        assert_int_equal(dig_trace_html(&e->trace, &e->subject, keep, &error), DIG_OK);
+    }
+    drop(e);
+}
+
+static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
+{
+    (void)state;
+    struct example *const e     = make();
+    struct dig_error      error = { "" };
+    const char *const     path  = scratch_path("plain.html");
+    e->trace.significant        = false;
+    e->trace.effects            = 0;
+    e->trace.candidates         = 0;
+    e->trace.sets               = 0;
+    e->trace.tells              = 0;
+    e->trace.digs               = 0;
+    e->trace.residuals          = NULL;
+    e->trace.before.value       = (double)NAN;
+    e->trace.advice[0]          = '\0';
+    e->trace.command[0]         = '\0';
+    assert_int_equal(dig_trace_html(&e->trace, &e->subject, path, &error), DIG_OK);
+    size_t      size = 0;
+    char *const page = scratch_read(path, &size);
+    assert_contains(page, "No dig was held out");
+    assert_null(strstr(page, "What to do next"));
+    assert_null(strstr(page, "Residual dig by dig"));
+    free(page);
+    assert_int_equal(dig_trace_html(&e->trace, &e->subject, scratch_path("no/such.html"), &error),
+                     DIG_EIO);
+    drop(e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(json_is_the_documented_example),
+        cmocka_unit_test(json_holds_the_keys_of_the_contract),
+        cmocka_unit_test(no_effect_is_the_verdict_none_and_no_holdout_is_null),
+        cmocka_unit_test(control_characters_stay_inside_a_json_string),
+        cmocka_unit_test(a_sentence_says_the_verdict),
+        cmocka_unit_test(the_terminal_gets_parameters_sets_errors_and_advice),
+        cmocka_unit_test(what_is_named_and_not_applied_is_told),
+        cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
+        cmocka_unit_test(a_trace_without_holdout_or_findings_has_a_page_too),
+    };
+    return cmocka_run_group_tests_name("trace_report", tests, scratch_setup, scratch_teardown);
+}

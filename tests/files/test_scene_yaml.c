@@ -1,0 +1,138 @@
+// Tests for files/scene_yaml.c and config/scenes/
+
+#include "core/units.h"
+#include "tests/files/yaml_fixture.h"
+
+// Where the tooth starts and the pin ends: the first stands in the reference digs' manifest as
+// toe_x0_m, the second is the last line of curves/mu0.3_mur0.3_rho2500__actual.csv there.
+static void the_rig_is_the_scene_of_the_reference_digs(void **state)
+{
+    (void)state;
+    const struct dig_scene             rig     = yaml_scene("config/scenes/rig.yaml");
+    const struct dig_trajectory *const actual  = dig_scene_find(&rig, "actual");
+    const struct dig_trajectory *const simpleA = dig_scene_find(&rig, "simpleA");
+    const struct dig_trajectory *const simpleB = dig_scene_find(&rig, "simpleB");
+    assert_non_null(actual);
+    assert_non_null(simpleA);
+    assert_non_null(simpleB);
+
+    const double tooth_m = dig_scene_tooth_m(&rig);
+    assert_close(tooth_m, 0.09, 1e-15);
+    assert_close(actual->start_x_m + tooth_m * sin(actual->theta0_rad), 0.045, 1e-12);
+    assert_close(simpleA->start_x_m + tooth_m * sin(simpleA->theta0_rad), 0.06, 1e-12);
+    assert_close(simpleB->start_x_m + tooth_m * sin(simpleB->theta0_rad), 0.09, 1e-12);
+
+    const struct dig_pose end = dig_trajectory_pose(actual, 6.797531);
+    assert_close(end.x_m, 0.215512, 2e-6);
+    assert_close(end.z_m, 0.194212, 2e-6);
+    assert_close(end.theta_rad / DIG_RAD_PER_DEG, 29.823, 1e-4);
+    assert_close(rig.box.x_max_m * (rig.box.y_max_m - rig.box.y_min_m) * rig.box.z_max_m,
+                 0.31 * 0.12 * 0.085, 1e-15);
+    assert_close(rig.material.young_Pa, 5e6, 0.0);
+    assert_close(rig.time_step_s, 6.25e-5, 0.0);
+    assert_true(rig.may_tremble);
+    // The grains poured fill a region 0.196747 m high to .3, over a bed 0.085 m high.
+    assert_close(rig.packing.fill_factor * rig.box.z_max_m, 0.3 * 0.196747, 1e-6);
+}
+
+static void loads(const char *const path)
+{
+    (void)yaml_scene(path);
+}
+
+static void every_scene_that_is_shipped_loads(void **state)
+{
+    (void)state;
+    yaml_loads_all("config/scenes", loads);
+}
+
+static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+{
+    (void)state;
+    const struct dig_scene s = yaml_scene("tests/data/formats/scene.yaml");
+    assert_string_equal(s.name, "tub");
+    assert_int_equal(s.bucket.points, 4);
+    assert_close(s.bucket.x_m[2], -0.12, 0.0);
+    assert_close(s.bucket.z_m[2], -0.05, 0.0);
+    assert_close(s.box.y_min_m, -0.3, 0.0);
+    assert_close(s.packing.relax_s, 0.2, 0.0);
+    assert_close(s.material.restitution, 0.2, 0.0);
+    assert_int_equal(s.trajectories, 1);
+    assert_int_equal(s.trajectory[0].phases, 2);
+    assert_string_equal(s.trajectory[0].phase[1].name, "pull");
+    assert_close(s.trajectory[0].phase[1].omega_radps, DIG_PI / 18.0, 1e-15);
+    assert_close(s.trajectory[0].theta0_rad, -DIG_PI / 12.0, 1e-15);
+}
+
+static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
+{
+    (void)state;
+    size_t      size = 0;
+    char *const text = scratch_read("tests/data/formats/scene.yaml", &size);
+    char        before[65], after[65];
+    yaml_scene_hash(text, before);
+    assert_int_equal(strlen(before), 64);
+
+    static const char *const same[][2] = {
+        { "name: tub\n", "name:   tub # a comment\n" },
+        { "source: made up for this example\n", "" },
+        { "young_Pa: 5.0e+6", "young_Pa: 5000000" },
+        { "x: [0, 1.0]", "x:\n    - 0\n    - 1" },
+    };
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        char *const other = yaml_with(text, same[i][0], same[i][1]);
+        yaml_scene_hash(other, after);
+        assert_string_equal(before, after);
+        free(other);
+    }
+    static const char *const differs[][2] = {
+        { "name: tub", "name: tube" },
+        { "young_Pa: 5.0e+6", "young_Pa: 5.1e+6" },
+        { "x: [0, 1.0]", "x: [0, 1.01]" },
+        { "omega_degps: 10", "omega_degps: 10.5" },
+    };
+    for (size_t i = 0; i < sizeof differs / sizeof differs[0]; i++) {
+        char *const other = yaml_with(text, differs[i][0], differs[i][1]);
+        yaml_scene_hash(other, after);
+        assert_string_not_equal(before, after);
+        free(other);
+    }
+    free(text);
+}
+
+static void what_cannot_be_is_refused_with_line_and_key(void **state)
+{
+    (void)state;
+    static const char *const bad[][3] = {
+        { "young_Pa: 5.0e+6", "young_Pa: -1", "bad.yaml:22: material.young_Pa: -1" },
+        { "y: [-0.3, 0.3]", "y: [0.3, -0.3]", "bad.yaml:12: box_m.y: [0.3, -0.3]" },
+        { "y: [-0.3, 0.3]", "y: [0.3]", "bad.yaml:12: box_m.y: 1 values" },
+        { "duration_s: 1,", "duration_s: 0,",
+          "bad.yaml:35: trajectories[0].phases[1].duration_s: 0" },
+        { "output_s: 0.005", "output_s: 0.5", "bad.yaml:28: output_s: 0.5" },
+        { "    - [-0.12, -0.2]\n    - [-0.12, -0.05]\n", "",
+          "bad.yaml:6: bucket.profile_m: 2 values" },
+        { "name: scrape", "name: ''", "bad.yaml:30: trajectories[0].name: nothing" },
+    };
+    yaml_refuses_each("tests/data/formats/scene.yaml", sizeof bad / sizeof bad[0], bad,
+                      yaml_scene_refused);
+}
+
+static void every_key_is_known_and_needed(void **state)
+{
+    (void)state;
+    yaml_knows_every_key("tests/data/formats/scene.yaml", yaml_scene_refused);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_rig_is_the_scene_of_the_reference_digs),
+        cmocka_unit_test(every_scene_that_is_shipped_loads),
+        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
+        cmocka_unit_test(the_hash_is_of_what_is_meant_not_of_how_it_is_written),
+        cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
+        cmocka_unit_test(every_key_is_known_and_needed),
+    };
+    return cmocka_run_group_tests_name("scene_yaml", tests, scratch_setup, scratch_teardown);
+}
