@@ -17,7 +17,7 @@ CFLAGS     ?= -O2 -g
 STD        := -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -fno-common
 WARN       := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion \
               -Wfloat-equal -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wundef \
-              -Wswitch-enum -Wvla -Wcast-qual -Wformat=2 -Wwrite-strings
+              -Werror=implicit-function-declaration -Wswitch-enum -Wvla -Wcast-qual -Wformat=2 -Wwrite-strings
 ALL_CFLAGS  = $(STD) $(WARN) -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -MMD -MP $(CFLAGS)
 
 # Expanded only by the rules that need the library, so a missing one stops that rule and no other.
@@ -126,14 +126,14 @@ $(BUILD)/offline_dem/%.o:   CPPFLAGS += -fopenmp-simd -fno-math-errno -fno-trapp
 # What is fitted to digs is loops over thirty numbers, which are taken several at once so; the bits are the same.
 $(BUILD)/closed_loop/%.o:   CFLAGS += -O3
 # No one asks errno after a square root; without it the loop over the points of a curve is vectorised.
-$(BUILD)/estimator/likelihood.o: CPPFLAGS += -fno-math-errno
+$(BUILD)/estimator/match/likelihood.o: CPPFLAGS += -fno-math-errno
 # What the numbers of a dig depend on, told apart in every run of a table.
-numerics_src := $(filter-out $(addprefix offline_dem/,sweep.c sweep.h worker.c worker.h vtk.c vtk.h engine_ode.c \
-                engine_ode.h engine_cuda.c engine_cuda.h device_cuda.c device_cuda.h watched_pour.c watched_pour.h),$(wildcard offline_dem/*.[ch] offline_dem/cuda/*.cu)) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
+numerics_src := $(filter-out offline_dem/dig/vtk.% offline_dem/dig/watched_pour.%,$(wildcard $(foreach r,law shapes kernel world dig,offline_dem/$r/*.[ch])) \
+                $(filter-out %_cuda.c %_cuda.h,$(wildcard offline_dem/device/*.[ch])) $(wildcard offline_dem/cuda/*.cu)) $(wildcard core/scene*.[ch] core/curve.[ch] core/units.h)
 numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLAGS)'; $(CC) -dumpfullversion -dumpmachine; } \
                 | sha256sum | cut -c1-12)
-$(BUILD)/offline_dem/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'
-$(BUILD)/offline_dem/sweep.o: $(numerics_src)
+$(BUILD)/offline_dem/sweep/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'
+$(BUILD)/offline_dem/sweep/sweep.o: $(numerics_src)
 $(BUILD)/tables/%.o:        CPPFLAGS += $(call foreign,sqlite3)
 $(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm libcyaml)
 $(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus libcyaml)
@@ -211,7 +211,7 @@ $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 # No multiply is fused with an add: the card's bits are the processor's. native: for the card of this machine.
 NVCCFLAGS  ?= -O3 -arch=native
 cuda: $(BUILD)/libdig_cuda.so ## The library of `--engine cuda`, with NVIDIA's nvcc
-$(BUILD)/libdig_cuda.so: offline_dem/cuda/card.cu $(wildcard offline_dem/*.h core/*.h)
+$(BUILD)/libdig_cuda.so: offline_dem/cuda/card.cu $(wildcard offline_dem/*/*.h core/*.h)
 	$(call say,NVCC,$@)
 	$(Q)mkdir -p $(@D) && $(NVCC) -std=c++20 -fmad=false $(NVCCFLAGS) -Xcompiler -fPIC -shared -I. $< -o $@
 
@@ -266,8 +266,8 @@ lint-tidy-upper lint-tidy-lower: $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(tidy_src) | xargs -P $(JOBS) -I{} \
 	    clang-tidy --quiet {} -- $(STD) $(lint_flags) 2>/dev/null
 
-layers: ## Fail on an include that points the wrong way
-	$(Q)./scripts/check_layers.sh
+layers: all ## Fail on an include or a circle of calls that points the wrong way
+	$(Q)./scripts/check_layers.sh $(BUILD)
 
 format: ## Rewrite the sources with clang-format
 	$(Q)clang-format -i $$(git ls-files '*.[ch]')

@@ -1,5 +1,5 @@
 // The effects that a model of digging may lack, by the names results give them. What each does to
-// a prediction stands in estimator/effects/; what it does to a bed, in offline_dem/variant.h.
+// a prediction stands in estimator/effects/; what it does to a bed, in offline_dem/dig/variant.h.
 
 #ifndef DIG_CORE_EFFECT_H
 #define DIG_CORE_EFFECT_H

@@ -23,7 +23,7 @@
 ///   - a linkage that does not close somewhere between min_deg and max_deg
 ///   - a cylinder whose stroke, min_length_m to max_length_m, is less than half of that range. A
 ///     stop within the range is no fault: the machine then does not reach the end of it, and the
-///     estimator says so of what it measures there (estimator/wrench.h)
+///     estimator says so of what it measures there (estimator/wrench/wrench.h)
 ///   - a lever that between the stops changes sign or falls below a twentieth of its largest
 ///   - a cylinder that extends to twice its retracted length or more: its rod would not go in
 ///   - a centre of mass farther from its pin than 1.25 times the link's length, or an inertia about
@@ -32,7 +32,7 @@
 ///   - a bucket longer than twice its arm, a front heavier than the machine that carries it
 ///
 /// A corrected machine is not asked: its stops stay where the file's geometry has them
-/// (estimator/correction.h). A fraction of a millisecond.
+/// (estimator/wrench/correction.h). A fraction of a millisecond.
 DIG_MUST_CHECK enum dig_status dig_geometry_check(const struct dig_machine *machine,
                                                   struct dig_error         *error);
 

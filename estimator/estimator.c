@@ -2,25 +2,20 @@
 
 #include "core/linkage.h"
 #include "core/units.h"
-#include "estimator/approach_route.h"
-#include "estimator/approach_slots.h"
-#include "estimator/approaches.h"
-#include "estimator/cylinder.h"
-#include "estimator/departure.h"
-#include "estimator/ending.h"
+#include "estimator/approach/approach_route.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/approach/approaches.h"
+#include "estimator/approach/observe_dig.h"
 #include "estimator/estimator_state.h"
-#include "estimator/sensed.h"
-#include "estimator/wrench.h"
+#include "estimator/track/abort_detection.h"
+#include "estimator/track/ending.h"
+#include "estimator/wrench/cylinder.h"
+#include "estimator/wrench/sensed.h"
+#include "estimator/wrench/wrench.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-// Two trajectories whose fits differ by less than this share of path_limit_m cannot be told apart.
-static const double tie_share = 0.125;
-
-// The soil is looked for from so much deeper than the table was dug, to see what is off it.
-static const double probe_deeper = 1.5;
 
 // Rates of the joints come from the angles of so long.
 static const double rates_window_s = 0.25;
@@ -56,7 +51,7 @@ static bool set_is_sound(const struct dig_curve_set *const set)
 // Forgets the dig going on.
 static void forget_dig(struct dig_estimator *const e)
 {
-    dig_raw_forget(e->raw, e->set);
+    dig_recorded_dig_forget(e->raw, e->set);
     e->next_follower = 0;
     e->choice        = (struct dig_choice){ .told = -1, .candidate = -1 };
     e->progress      = (double)NAN;
@@ -129,13 +124,14 @@ static struct dig_path_point rig_point(const struct dig_estimator *const e,
                                        const struct dig_front *const     front)
 {
     const struct dig_vec2 *const pin = &front->pin_m[DIG_JOINT_BUCKET];
-    return dig_raw_point(e->set, e->lambda, pin->x, pin->y, front->attitude_rad[DIG_JOINT_BUCKET]);
+    return dig_recorded_dig_point(e->set, e->lambda, pin->x, pin->y,
+                                  front->attitude_rad[DIG_JOINT_BUCKET]);
 }
 
 // Vertices of the samples before contact, then the one in contact.
 static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
 {
-    dig_raw_touch(e->raw, touched);
+    dig_recorded_dig_touch(e->raw, touched);
     for (size_t t = 0; t < e->set->trajectories; t++) {
         e->follower[t] = dig_follower_start(&e->route[t], &e->raw->path, e->settings.path_limit_m);
     }
@@ -160,9 +156,9 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         track_of[t] = &e->follower[t].track;
     }
     const int before = e->choice.told;
-    const int chosen =
-        dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, e->choice.candidate);
-    const int told = dig_choice_step(&e->choice, tracks, chosen);
+    const int chosen = dig_track_choose(tracks, track_of, limit_m, DIG_TRACK_TIE_SHARE * limit_m,
+                                        e->choice.candidate);
+    const int told   = dig_choice_step(&e->choice, tracks, chosen);
     if (told != before) {
         e->progress = (double)NAN;
     }
@@ -193,134 +189,13 @@ static bool path_is_over(const struct dig_estimator *const e)
            e->off_path_m > e->settings.path_limit_m;
 }
 
-// A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
-// the depth is told by where the soil began to resist, looked for along the way of the deepest dig.
-// What of the two lies beyond the table counts as distance.
-static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
-                                      const struct dig_track *const track,
-                                      struct dig_raw *const raw, struct dig_observation *const out)
-{
-    const size_t t = (size_t)out->trajectory;
-    const double deepest =
-        fmin(probe_deeper * dig_approach_deepest(set, t), DIG_APPROACH_DEPTH_MOST);
-    const struct dig_route deep = dig_approach_route_deep(set, t, deepest);
-    struct dig_observation seen = *out;
-    enum dig_status        status =
-        dig_window_observe(&raw->window, &deep, track, 2.0 * limit_m, set->smooth_half_s, &seen);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const struct dig_approach made = {
-        .depth      = dig_approach_depth(set, t, deepest, track->turn_m / set->tooth_m, seen.first,
-                                         seen.last, seen.moment_Nm),
-        .attack_rad = track->turn_m / set->tooth_m,
-    };
-    seen.made                       = made;
-    const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
-    const struct dig_route route    = dig_approach_route_deep(set, t, seen.approach.depth);
-    const double           off_m    = hypot(track->rms_m, beyond_m);
-    if (!(off_m <= limit_m)) {
-        return DIG_ENOMATCH;
-    }
-    status =
-        dig_window_observe(&raw->window, &route, track, 2.0 * limit_m, set->smooth_half_s, &seen);
-    if (status == DIG_OK) {
-        seen.off_path_m = off_m;
-        *out            = seen;
-    }
-    return status;
-}
-
-// Once the path has left the trajectory, no way out near a later leg of it counts as dug.
-static enum dig_status observe_plain(const struct dig_curve_set *const set, const double limit_m,
-                                     const struct dig_route route[], const struct dig_track whole[],
-                                     struct dig_raw *const raw, struct dig_observation *const out)
-{
-    const int            t = out->trajectory;
-    struct dig_departure departure;
-    const bool           left = !raw->followed.missing &&
-                      dig_departure_choose(set->trajectories, route, &raw->path, limit_m,
-                                           tie_share * limit_m, whole, &departure) == t;
-    const struct dig_track *const track  = left ? &departure.track : &whole[t];
-    const enum dig_status         status = dig_window_observe(
-                &raw->window, &route[t], track, left ? limit_m : 2.0 * limit_m, set->smooth_half_s, out);
-    if (status == DIG_OK && out->ending == DIG_ENDING_ABORTED &&
-        !dig_ending_is_known(&route[t], track, &raw->path, limit_m)) {
-        out->ending = DIG_ENDING_OPEN;
-    }
-    return status;
-}
-
-// The whole path decides which trajectory it was; an observation is made if it was one.
-static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
-                               const struct dig_route route[], struct dig_raw *const raw,
-                               struct dig_observation *const observation)
-{
-    const size_t            tracks = set->trajectories;
-    struct dig_track        fitted[DIG_TRAJECTORY_MAX];
-    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < tracks; t++) {
-        fitted[t]   = dig_track_fit(&route[t], &raw->path, limit_m);
-        track_of[t] = &fitted[t];
-    }
-    const int chosen = dig_track_choose(tracks, track_of, limit_m, tie_share * limit_m, -1);
-    if (chosen < 0) {
-        return DIG_ENOMATCH;
-    }
-    struct dig_observation out    = { .dig_count = raw->dig_count, .trajectory = chosen };
-    const enum dig_status  status = dig_approach_varies(set, (size_t)chosen)
-                                        ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
-                                        : observe_plain(set, limit_m, route, fitted, raw, &out);
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (!(out.last - out.first >= DIG_ENDING_LEAST)) {
-        return DIG_ENOMATCH;
-    }
-    *observation = out;
-    return DIG_OK;
-}
-
-enum dig_status dig_raw_observe(const struct dig_curve_set *const          set,
-                                const struct dig_estimator_settings *const settings,
-                                struct dig_raw *const                      raw,
-                                struct dig_observation *const              observation)
-{
-    assert(set != NULL && settings != NULL && raw != NULL && observation != NULL);
-    struct dig_route route[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < set->trajectories; t++) {
-        route[t] = dig_approach_route(set, t);
-    }
-    return observe(set, settings->path_limit_m, route, raw, observation);
-}
-
-bool dig_raw_gave_up(const struct dig_curve_set *const          set,
-                     const struct dig_estimator_settings *const settings,
-                     const struct dig_raw *const raw, int *const trajectory, double *const progress)
-{
-    assert(set != NULL && settings != NULL && raw != NULL && trajectory != NULL &&
-           progress != NULL);
-    struct dig_route route[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < set->trajectories; t++) {
-        route[t] = dig_approach_route(set, t);
-    }
-    const double limit_m = settings->path_limit_m;
-    if (!dig_followed_gave_up(&raw->followed, set->trajectories, route, &raw->path, limit_m,
-                              tie_share * limit_m)) {
-        return false;
-    }
-    *trajectory = raw->followed.trajectory;
-    *progress   = raw->followed.progress;
-    return true;
-}
-
 // Hands the dig out raw and goes on in the spare, or observes it here.
 static void finish_dig(struct dig_estimator *const e)
 {
     e->raw->dig_count = ++e->digs;
     if (!e->lends) {
         e->has_observation |=
-            observe(e->set, e->settings.path_limit_m, e->route, e->raw, &e->observation) == DIG_OK;
+            dig_recorded_dig_observe(e->set, &e->settings, e->raw, &e->observation) == DIG_OK;
     } else if (e->spare != NULL && e->finished == NULL) {
         e->finished = e->raw;
         e->raw      = e->spare;
@@ -331,12 +206,7 @@ static void finish_dig(struct dig_estimator *const e)
     forget_dig(e);
 }
 
-size_t dig_raw_size(void)
-{
-    return sizeof(struct dig_raw);
-}
-
-void dig_estimator_lend(struct dig_estimator *const estimator, struct dig_raw *const spare)
+void dig_estimator_lend(struct dig_estimator *const estimator, struct dig_recorded_dig *const spare)
 {
     assert(estimator != NULL && spare != NULL && estimator->spare == NULL);
     estimator->lends = true;
@@ -349,11 +219,11 @@ bool dig_estimator_wants_raw(const struct dig_estimator *const estimator)
     return estimator->spare == NULL;
 }
 
-struct dig_raw *dig_estimator_take_raw(struct dig_estimator *const estimator)
+struct dig_recorded_dig *dig_estimator_take_raw(struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
-    struct dig_raw *const finished = estimator->finished;
-    estimator->finished            = NULL;
+    struct dig_recorded_dig *const finished = estimator->finished;
+    estimator->finished                     = NULL;
     return finished;
 }
 
@@ -371,7 +241,7 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    dig_raw_add(e->raw, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
+    dig_recorded_dig_add(e->raw, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
     dig_followed_sample(&e->raw->followed, e->raw->window.open, time_ns,
                         sqrt(e->lambda) * dig_window_hole_s(e->set->smooth_half_s));
 

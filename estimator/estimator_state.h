@@ -3,14 +3,14 @@
 #ifndef DIG_ESTIMATOR_ESTIMATOR_STATE_H
 #define DIG_ESTIMATOR_ESTIMATOR_STATE_H
 
-#include "estimator/correction.h"
 #include "estimator/estimator.h"
-#include "estimator/motion.h"
-#include "estimator/phase.h"
-#include "estimator/rates.h"
-#include "estimator/raw.h"
-#include "estimator/route.h"
-#include "estimator/track.h"
+#include "estimator/track/motion.h"
+#include "estimator/track/phase.h"
+#include "estimator/track/recorded_dig.h"
+#include "estimator/track/route.h"
+#include "estimator/track/track.h"
+#include "estimator/wrench/correction.h"
+#include "estimator/wrench/rates.h"
 
 struct dig_estimator {
     // fixed at start
@@ -29,28 +29,28 @@ struct dig_estimator {
     int64_t last_ns;
 
     // of the dig going on
-    struct dig_phase_state  phase;
-    struct dig_motion_state motion;
-    struct dig_raw         *raw; // its samples and path
-    struct dig_follower     follower[DIG_TRAJECTORY_MAX];
-    size_t                  next_follower; // the one whose turn it is to be refined
-    struct dig_choice       choice;        // the trajectory
-    double                  progress;
-    double                  off_path_m;
+    struct dig_phase_state   phase;
+    struct dig_motion_state  motion;
+    struct dig_recorded_dig *raw; // its samples and path
+    struct dig_follower      follower[DIG_TRAJECTORY_MAX];
+    size_t                   next_follower; // the one whose turn it is to be refined
+    struct dig_choice        choice;        // the trajectory
+    double                   progress;
+    double                   off_path_m;
 
     // of digs before
     uint32_t                   digs;
     bool                       has_observation;
     struct dig_observation     observation;
     bool                       lends;    // digs are handed out raw
-    struct dig_raw            *spare;    // for the next dig; NULL: none
-    struct dig_raw            *finished; // to be taken; NULL: none
+    struct dig_recorded_dig   *spare;    // for the next dig; NULL: none
+    struct dig_recorded_dig   *finished; // to be taken; NULL: none
     uint32_t                   lost;
     const struct dig_forecast *forecast; // NULL: none
 
     // where raw and forecast point unless others were lent
-    struct dig_raw      own_raw;
-    struct dig_forecast own_forecast;
+    struct dig_recorded_dig own_raw;
+    struct dig_forecast     own_forecast;
 };
 
 #endif // DIG_ESTIMATOR_ESTIMATOR_STATE_H

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// The columns of a bed, as offline_dem/bed.h has them.
+/// The columns of a bed, as offline_dem/kernel/bed.h has them.
 struct dig_bed_columns {
     size_t    grains;
     double   *x_m, *y_m, *z_m, *radius_m; // [grains]

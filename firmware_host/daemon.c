@@ -1,8 +1,8 @@
 #include "firmware_host/daemon.h"
 
-#include "firmware_host/load.h"
-#include "firmware_host/notify.h"
-#include "firmware_host/publish.h"
+#include "firmware_host/config/load.h"
+#include "firmware_host/publish/publish.h"
+#include "firmware_host/threads/notify.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -25,36 +25,36 @@
 
 /// Bytes behind the handoffs, in one block with everything else the threads touch.
 struct handoff_memory {
-    struct dig_reading    readings[READINGS];
-    struct dig_record     records[RECORDS];
-    struct dig_raw       *digs[DIGS], *spares[DIGS];
-    struct dig_estimate   estimates[ESTIMATES];
-    struct dig_fit_result results[RESULTS];
-    struct dig_offer      offer[3], table[3];
-    struct dig_table_news tables[3];
-    struct dig_outlook    outlook[3];
-    struct dig_pulse      pulse[3];
-    struct dig_note       input_notes[3], fit_notes[3];
+    struct dig_reading       readings[READINGS];
+    struct dig_record        records[RECORDS];
+    struct dig_recorded_dig *digs[DIGS], *spares[DIGS];
+    struct dig_estimate      estimates[ESTIMATES];
+    struct dig_fit_result    results[RESULTS];
+    struct dig_offer         offer[3], table[3];
+    struct dig_table_news    tables[3];
+    struct dig_outlook       outlook[3];
+    struct dig_pulse         pulse[3];
+    struct dig_note          input_notes[3], fit_notes[3];
 };
 
 struct dig_daemon {
-    char                  path[PATH_MAX];
-    struct dig_loaded     loaded;
-    struct dig_estimator *estimator;
-    struct dig_raw       *raw[DIGS];
-    struct dig_input      input;
-    struct dig_loop       loop;
-    struct dig_fit        fit;
-    struct dig_publisher  publisher;
-    struct dig_early      early;
-    struct dig_ring       readings, records, digs, spares, estimates, results;
-    struct dig_latest     offer, table, tables, outlook, pulse, input_notes, fit_notes;
-    atomic_llong          publish_generation;
-    struct handoff_memory memory;
-    struct dig_rt_grant   grant;
-    sem_t                 granted;
-    atomic_bool           stop;         // input, tick, matcher
-    atomic_bool           stop_publish; // after them
+    char                     path[PATH_MAX];
+    struct dig_loaded        loaded;
+    struct dig_estimator    *estimator;
+    struct dig_recorded_dig *raw[DIGS];
+    struct dig_input         input;
+    struct dig_loop          loop;
+    struct dig_fit           fit;
+    struct dig_publisher     publisher;
+    struct dig_early_match   early;
+    struct dig_ring          readings, records, digs, spares, estimates, results;
+    struct dig_latest        offer, table, tables, outlook, pulse, input_notes, fit_notes;
+    atomic_llong             publish_generation;
+    struct handoff_memory    memory;
+    struct dig_rt_grant      grant;
+    sem_t                    granted;
+    atomic_bool              stop;         // input, tick, matcher
+    atomic_bool              stop_publish; // after them
 };
 
 static enum dig_status create_input(struct dig_daemon *const d, const char *const path,
@@ -151,7 +151,7 @@ static void connect_threads(struct dig_daemon *const d)
     }
 
     d->early.estimates = &d->estimates;
-    dig_early_forget(&d->early, d->loaded.set);
+    dig_early_match_forget(&d->early, d->loaded.set);
     atomic_store(&d->publish_generation, 1);
     d->fit = (struct dig_fit){
         .config_path = d->path,
@@ -193,7 +193,7 @@ static bool allocate(struct dig_daemon *const d)
     bool all     = true;
     d->estimator = calloc(1, dig_estimator_size());
     for (size_t i = 0; i < DIGS; i++) {
-        d->raw[i] = calloc(1, dig_raw_size());
+        d->raw[i] = calloc(1, dig_recorded_dig_size());
         all       = all && d->raw[i] != NULL;
     }
     return all && d->estimator != NULL;

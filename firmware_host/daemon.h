@@ -8,9 +8,9 @@
 #define DIG_FIRMWARE_HOST_DAEMON_H
 
 #include "core/machine.h"
-#include "firmware_host/config.h"
-#include "firmware_host/publish.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/signal_map.h"
+#include "firmware_host/config/config.h"
+#include "firmware_host/publish/publish.h"
 
 struct dig_daemon;
 

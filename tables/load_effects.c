@@ -89,36 +89,6 @@ enum dig_status dig_sql_load_effects(sqlite3 *const db, const char *const path,
     return status;
 }
 
-enum dig_status dig_effects_load(const char *const path, const struct dig_curve_set *const plain,
-                                 struct dig_effect_set **const set, struct dig_error *const error)
-{
-    assert(path != NULL && plain != NULL && set != NULL);
-
-    struct dig_curve_set  *beside = NULL;
-    struct dig_effect_set *made   = NULL;
-    enum dig_status        status = dig_table_list(path, &beside, &made, error);
-    if (status != DIG_OK || beside == NULL || made == NULL) {
-        return status;
-    }
-    if (strcmp(made->scene_hash, plain->scene_hash) != 0) {
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: scene: holds \"%s\" (%.12s…), expected the scene of the table "
-                               "it goes with, \"%s\" (%.12s…)",
-                               path, beside->scene_name, beside->scene_hash, plain->scene_name,
-                               plain->scene_hash);
-    } else if (made->entries == 0) {
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: ground: no rows with an effect, expected at least one", path);
-    }
-    dig_curve_set_destroy(beside);
-    if (status != DIG_OK) {
-        dig_effect_set_destroy(made);
-        return status;
-    }
-    *set = made;
-    return DIG_OK;
-}
-
 void dig_effect_set_destroy(struct dig_effect_set *const set)
 {
     if (set != NULL) {

@@ -6,7 +6,7 @@
 
 #include "core/scene.h"
 #include "core/units.h"
-#include "offline_dem/world.h"
+#include "offline_dem/world/world.h"
 #include "tests/testlib.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 #include "tests/driven.h"
 
 #include "core/units.h"
+#include "estimator/approach/observe_dig.h"
 #include "estimator/estimator_state.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -60,14 +61,15 @@ static bool take(struct driven *const b)
     if (b->spare == NULL) {
         return dig_estimator_take_dig(b->estimator, &b->observation);
     }
-    struct dig_raw *const raw = dig_estimator_take_raw(b->estimator);
+    struct dig_recorded_dig *const raw = dig_estimator_take_raw(b->estimator);
     if (raw == NULL) {
         return false;
     }
     assert_false(dig_estimator_take_dig(b->estimator, &b->observation));
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
-    const bool any = dig_raw_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
-    b->gave_up = !any && dig_raw_gave_up(b->set, &settings, raw, &b->gave_up_of, &b->gave_up_at);
+    const bool any = dig_recorded_dig_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
+    b->gave_up =
+        !any && dig_recorded_dig_gave_up(b->set, &settings, raw, &b->gave_up_of, &b->gave_up_at);
     if (!b->keeps) {
         dig_estimator_lend(b->estimator, raw);
     }
@@ -104,7 +106,7 @@ void driven_tick(struct driven *const b, const struct dig_pose pose, const doubl
     b->steps_with_allocation += allocations(b) != before ? 1 : 0;
     b->observations += taken ? 1 : 0;
     if (b->shadow != NULL && !dropped) {
-        dig_shadow_take(b->shadow, b->set, lambda, &b->estimate);
+        dig_live_recording_take(b->shadow, b->set, lambda, &b->estimate);
         assert_true(b->shadow->on ==
                     (!dig_estimator_is_idle(b->estimator) && b->estimate.phase != DIG_PHASE_AIR));
     }
@@ -154,9 +156,9 @@ static void look_at_shadow(struct driven *const b, const double progress)
         return;
     }
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
-    struct dig_raw *const               scratch  = calloc(1, sizeof *scratch);
+    struct dig_recorded_dig *const      scratch  = calloc(1, sizeof *scratch);
     struct dig_observation *const       early    = &b->early[b->earlies++];
-    if (dig_shadow_observe(b->set, &settings, b->shadow, scratch, early) != DIG_OK) {
+    if (dig_live_recording_observe(b->set, &settings, b->shadow, scratch, early) != DIG_OK) {
         early->trajectory = -1;
     }
     free(scratch);

@@ -5,8 +5,8 @@
 #ifndef DIG_TESTS_DRIVEN_H
 #define DIG_TESTS_DRIVEN_H
 
+#include "estimator/approach/live_recording.h"
 #include "estimator/estimator.h"
-#include "estimator/shadow.h"
 #include "tests/made_table.h"
 
 /// How often, and at what progress, a dig is looked at while it goes on.
@@ -28,20 +28,20 @@ struct drive {
 
 /// One machine, one table, one estimator, and the digs driven through it.
 struct driven {
-    struct dig_machine     machine;
-    struct dig_curve_set  *set;
-    struct dig_estimator  *estimator;
-    struct dig_raw        *spare; // NULL: digs are observed in the tick
-    bool                   keeps; // does not give a finished dig back
-    double                 time_s;
-    const unsigned long   *allocations; // of this thread; NULL: nobody counts
-    size_t                 observations, steps_with_allocation;
-    struct dig_shadow     *shadow; // NULL: none follows
-    struct dig_observation observation;
-    bool                   gave_up;    // of the raw dig taken last, when nothing was told of it:
-    int                    gave_up_of; // the trajectory, and where
-    double                 gave_up_at;
-    struct dig_estimate    estimate;
+    struct dig_machine         machine;
+    struct dig_curve_set      *set;
+    struct dig_estimator      *estimator;
+    struct dig_recorded_dig   *spare; // NULL: digs are observed in the tick
+    bool                       keeps; // does not give a finished dig back
+    double                     time_s;
+    const unsigned long       *allocations; // of this thread; NULL: nobody counts
+    size_t                     observations, steps_with_allocation;
+    struct dig_live_recording *shadow; // NULL: none follows
+    struct dig_observation     observation;
+    bool                       gave_up; // of the raw dig taken last, when nothing was told of it:
+    int                        gave_up_of; // the trajectory, and where
+    double                     gave_up_at;
+    struct dig_estimate        estimate;
     // of the dig driven last
     struct dig_observation early[DRIVEN_LOOKS]; // what the shadow saw; trajectory -1: nothing
     int                    earlies;

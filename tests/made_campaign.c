@@ -135,8 +135,8 @@ static struct dig_effect_set *make_effects(const struct dig_curve_set *const set
 }
 
 // As many packings of a few gravels as a table of some size has, about their own means.
-static struct dig_scatter *make_scatter(const struct dig_surface *const surface,
-                                        uint64_t *const                 seed)
+static struct dig_scatter *make_scatter(const struct dig_response_surface *const surface,
+                                        uint64_t *const                          seed)
 {
     const size_t                 n = (size_t)SPREADS * PACKINGS * MADE_TRAJECTORIES;
     struct dig_scatter_residual *r = calloc(n, sizeof *r);
@@ -187,7 +187,7 @@ struct made_world made_world(const uint64_t seed)
     }
     world.effects = make_effects(world.set, &state);
     world.surface = calloc(1, sizeof *world.surface);
-    if (dig_surface_fit(world.set, world.surface) != DIG_OK) {
+    if (dig_response_surface_fit(world.set, world.surface) != DIG_OK) {
         abort();
     }
     world.scatter = make_scatter(world.surface, &state);

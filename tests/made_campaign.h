@@ -4,8 +4,8 @@
 #ifndef DIG_TESTS_MADE_CAMPAIGN_H
 #define DIG_TESTS_MADE_CAMPAIGN_H
 
-#include "closed_loop/measured.h"
-#include "closed_loop/scatter.h"
+#include "closed_loop/model/scatter.h"
+#include "closed_loop/recordings/measured.h"
 #include "core/effect_set.h"
 #include "tests/made_table.h"
 
@@ -14,10 +14,10 @@
 /// The made table, its curves means of five scattering digs, and beds with cohesion, layering,
 /// ground slope and adhesion at three gravels, three magnitudes, of three digs each.
 struct made_world {
-    struct dig_curve_set  *set;
-    struct dig_effect_set *effects;
-    struct dig_surface    *surface;
-    struct dig_scatter    *scatter;
+    struct dig_curve_set        *set;
+    struct dig_effect_set       *effects;
+    struct dig_response_surface *surface;
+    struct dig_scatter          *scatter;
 };
 
 /// Owned by the caller; free with made_world_finish().

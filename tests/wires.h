@@ -5,8 +5,8 @@
 #define DIG_TESTS_WIRES_H
 
 #include "core/units.h"
-#include "firmware_host/fit.h"
-#include "firmware_host/loop.h"
+#include "firmware_host/matching/fit.h"
+#include "firmware_host/tick/loop.h"
 
 #include <math.h>
 
@@ -21,16 +21,16 @@ struct wires {
     struct dig_latest offer, table, tables, outlook, pulse, notes;
     atomic_llong      tick_generation, publish_generation; // of the table in use there
 
-    struct dig_reading    reading_memory[WIRES_RING];
-    struct dig_record     record_memory[WIRES_RING];
-    struct dig_raw       *dig_memory[4], *spare_memory[4];
-    struct dig_fit_result result_memory[WIRES_RESULTS];
-    struct dig_estimate   estimate_memory[WIRES_TELLS];
-    struct dig_offer      offer_memory[3], table_memory[3];
-    struct dig_table_news tables_memory[3];
-    struct dig_outlook    outlook_memory[3];
-    struct dig_pulse      pulse_memory[3];
-    struct dig_note       note_memory[3];
+    struct dig_reading       reading_memory[WIRES_RING];
+    struct dig_record        record_memory[WIRES_RING];
+    struct dig_recorded_dig *dig_memory[4], *spare_memory[4];
+    struct dig_fit_result    result_memory[WIRES_RESULTS];
+    struct dig_estimate      estimate_memory[WIRES_TELLS];
+    struct dig_offer         offer_memory[3], table_memory[3];
+    struct dig_table_news    tables_memory[3];
+    struct dig_outlook       outlook_memory[3];
+    struct dig_pulse         pulse_memory[3];
+    struct dig_note          note_memory[3];
 };
 
 /// All of them empty, the first table in use. They stay where they are.
@@ -121,12 +121,12 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
 }
 
 /// That matcher looks at the dig going on, too; none does yet.
-static inline void wires_init_early(struct wires *const w, struct dig_early *const early,
+static inline void wires_init_early(struct wires *const w, struct dig_early_match *const early,
                                     struct dig_fit *const fit)
 {
     fit->early       = early;
     early->estimates = &w->estimates;
-    dig_early_forget(early, fit->set);
+    dig_early_match_forget(early, fit->set);
 }
 
 /// What a tick tells of the bucket at a pose of the rig and of its moment there, with the noise of

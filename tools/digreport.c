@@ -1,10 +1,10 @@
 // digreport: what a run of the daemon showed, from its LCM log.
 
-#include "closed_loop/observe.h"
-#include "closed_loop/report.h"
-#include "closed_loop/score.h"
+#include "closed_loop/accuracy/score.h"
+#include "closed_loop/recordings/observe.h"
+#include "closed_loop/report/report.h"
 #include "estimator/estimator.h"
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"

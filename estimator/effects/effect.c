@@ -1,7 +1,7 @@
 #include "estimator/effects/effect.h"
 
+#include "estimator/approach/interpolate.h"
 #include "estimator/effects/list.h"
-#include "estimator/interpolate.h"
 
 #include <assert.h>
 #include <math.h>

@@ -16,8 +16,8 @@
 #include "core/effect_set.h"
 #include "core/model.h"
 #include "core/status.h"
-#include "estimator/correction.h"
 #include "estimator/effects/template.h"
+#include "estimator/wrench/correction.h"
 
 #include <stdbool.h>
 #include <stddef.h>

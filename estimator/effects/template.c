@@ -1,6 +1,6 @@
 #include "estimator/effects/template.h"
 
-#include "estimator/interpolate.h"
+#include "estimator/approach/interpolate.h"
 
 #include <assert.h>
 #include <math.h>

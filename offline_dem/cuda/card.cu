@@ -1,10 +1,10 @@
-// The device interface (offline_dem/device.h) on a graphics card. A step is two kernels: a thread a
+// The device interface (offline_dem/world/device.h) on a graphics card. A step is two kernels: a thread a
 // pair and a thread a grain for what is outside, then a thread a grain that moves it; with clumps a
 // third between them. No sum is shared between threads, so the same steps give the same bits, and
-// with -fmad=false those of offline_dem/device_host.c, but for clumps.
+// with -fmad=false those of offline_dem/device/device_host.c, but for clumps.
 
-#include "offline_dem/device_grain.h"
-#include "offline_dem/device_surfaces.h"
+#include "offline_dem/device/device_grain.h"
+#include "offline_dem/device/device_surfaces.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -162,9 +162,9 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
         place(c, FIRST, n + 1, v->first, &w->first),
         place(c, PUSH_OF, p, v->push_of, &w->push_of),
         place_const(c, PAIR_LAW, DIG_DEVICE_LAWS, v->pair_law, &w->pair_law),
-        place_const(c, WALL_LAW, DIG_KINDS_MAX, v->wall_law, &w->wall_law),
-        place_const(c, TOOL_LAW, DIG_KINDS_MAX, v->tool_law, &w->tool_law),
-        place_const(c, KIND, DIG_KINDS_MAX, v->kind, &w->kind),
+        place_const(c, WALL_LAW, DIG_GRAIN_TYPES_MAX, v->wall_law, &w->wall_law),
+        place_const(c, TOOL_LAW, DIG_GRAIN_TYPES_MAX, v->tool_law, &w->tool_law),
+        place_const(c, KIND, DIG_GRAIN_TYPES_MAX, v->kind, &w->kind),
         place_const(c, SHAPE, v->shape == nullptr ? 0 : 1, v->shape, &w->shape),
         place(c, MOTION, n, v->motion, &w->motion),
         place(c, MEMORY, p, v->memory, &w->memory),

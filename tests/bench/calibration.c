@@ -8,9 +8,9 @@
 //
 //   calibration TABLE.sqlite TRAJECTORY [RECORDING.csv…]     RECORDING: mu0.3_mur0.3_rho2500….csv
 
-#include "closed_loop/observe.h"
-#include "estimator/likelihood.h"
-#include "estimator/pool.h"
+#include "closed_loop/recordings/observe.h"
+#include "estimator/match/likelihood.h"
+#include "estimator/match/pool.h"
 #include "files/recording_csv.h"
 #include "tables/derive.h"
 #include "tables/load.h"

@@ -15,8 +15,8 @@
 #include "core/recording.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
-#include "firmware_host/fit.h"
-#include "firmware_host/rt.h"
+#include "firmware_host/matching/fit.h"
+#include "firmware_host/threads/rt.h"
 #include "tables/load.h"
 #include "tests/wires.h"
 
@@ -39,8 +39,8 @@ struct bench {
     struct dig_estimator        *estimator;
     struct dig_config            config;
     struct wires                 wires;
-    struct dig_early             early;
-    struct dig_raw              *raw[2];
+    struct dig_early_match       early;
+    struct dig_recorded_dig     *raw[2];
     struct dig_loop              loop;
     struct dig_fit               fit;
 };
@@ -85,11 +85,11 @@ static void connect(struct bench *const b)
     settings.prediction_s                = 1.0 / 15.0;
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     for (int i = 0; i < 2; i++) {
-        b->raw[i] = calloc(1, dig_raw_size());
+        b->raw[i] = calloc(1, dig_recorded_dig_size());
         (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
     }
     b->early.estimates = &b->wires.estimates;
-    dig_early_forget(&b->early, b->set);
+    dig_early_match_forget(&b->early, b->set);
     wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
     b->fit.machine                  = &b->machine;
     b->fit.early                    = &b->early;

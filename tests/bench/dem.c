@@ -6,8 +6,8 @@
 //                                  second of processor time, and kB of memory at the most
 // Gravel and time step are those of config/scenes/rig.yaml.
 
-#include "offline_dem/random.h"
-#include "offline_dem/world.h"
+#include "offline_dem/law/random.h"
+#include "offline_dem/world/world.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -14,10 +14,10 @@
 //   off SHARE    by what share of an axis an interval's end is off without it, at most
 // Fails when an entry or its distance (of either kind) is not the same to the last bit.
 
-#include "estimator/match.h"
-#include "estimator/interpolate.h"
-#include "estimator/posterior.h"
-#include "estimator/summary.h"
+#include "estimator/match/match.h"
+#include "estimator/approach/interpolate.h"
+#include "estimator/match/posterior.h"
+#include "estimator/match/prefilter.h"
 #include "tables/load.h"
 
 #include <math.h>
@@ -194,7 +194,7 @@ static double interval_off(const struct dig_curve_set *const set, const struct d
     return off;
 }
 
-static void weigh_once(const struct dig_summary *const     summary,
+static void weigh_once(const struct dig_prefilter *const   summary,
                        const struct dig_observation *const o, struct times *const weighed)
 {
     struct dig_match match = { .valid = true }, plain = { .valid = true };
@@ -211,7 +211,7 @@ static void weigh_once(const struct dig_summary *const     summary,
 }
 
 // One dig, with and without the summary. Returns by how much the intervals differ.
-static double match_once(const struct dig_summary *const     summary,
+static double match_once(const struct dig_prefilter *const   summary,
                          const struct dig_observation *const o, struct times *const nearest,
                          struct times *const refined)
 {
@@ -271,9 +271,9 @@ int main(const int argc, char **const argv)
         die(error.text);
     }
     const struct dig_curve_set *const set     = grow(from, (size_t)points);
-    struct dig_outline *const         outline = take(dig_summary_outlines(set), sizeof *outline);
-    struct dig_summary                summary;
-    dig_summary_make(set, outline, &summary);
+    struct dig_outline *const         outline = take(dig_prefilter_outlines(set), sizeof *outline);
+    struct dig_prefilter              summary;
+    dig_prefilter_make(set, outline, &summary);
 
     static struct times nearest, moment, forces, weighed[2];
     double              off  = 0.0;

@@ -8,9 +8,9 @@
 //
 //   nearest_entry TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY
 
-#include "estimator/likelihood.h"
-#include "estimator/match.h"
-#include "estimator/pool.h"
+#include "estimator/match/likelihood.h"
+#include "estimator/match/match.h"
+#include "estimator/match/pool.h"
 #include "tables/derive.h"
 #include "tables/load.h"
 #include "tables/store.h"

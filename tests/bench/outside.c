@@ -12,9 +12,9 @@
 //   outside TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE_OF_THE_PATH]
 
 #include "core/error.h"
-#include "estimator/match.h"
-#include "estimator/pool.h"
-#include "estimator/posterior.h"
+#include "estimator/match/match.h"
+#include "estimator/match/pool.h"
+#include "estimator/match/posterior.h"
 #include "tables/derive.h"
 #include "tables/load.h"
 #include "tables/store.h"

@@ -6,9 +6,9 @@
 // ASPECT above 1: clumps of two spheres, as `digtable dig --effect grain_shape=ASPECT` makes them.
 
 #include "files/scene_yaml.h"
-#include "offline_dem/dig.h"
-#include "offline_dem/setup.h"
-#include "offline_dem/variant.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/setup.h"
+#include "offline_dem/dig/variant.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,12 +76,12 @@ static enum dig_status watch(struct dig_world *const world, struct row *const ro
 static enum dig_status rest(const struct dig_scene *const scene, const struct dig_gravel *const g,
                             struct row *const row, struct dig_error *const error)
 {
-    struct dig_bed        bed    = { 0 };
-    struct dig_kinds      kinds  = { 0 };
-    struct dig_world      world  = { 0 };
-    struct dig_ode_scene *ode    = dig_ode_scene_create(scene);
-    enum dig_status       status = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
-                                               : dig_bed_pour(scene, g, 1, NULL, &bed, error);
+    struct dig_bed         bed    = { 0 };
+    struct dig_grain_types kinds  = { 0 };
+    struct dig_world       world  = { 0 };
+    struct dig_ode_scene  *ode    = dig_ode_scene_create(scene);
+    enum dig_status        status = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
+                                                : dig_bed_pour(scene, g, 1, NULL, &bed, error);
     if (status == DIG_OK) {
         status = dig_setup_world(scene, g, ode, &bed, 0.0, &kinds, &world, error);
     }

@@ -1,6 +1,6 @@
 #include "tests/blind/oracle.h"
 
-#include "estimator/interpolate.h"
+#include "estimator/approach/interpolate.h"
 
 #include <assert.h>
 #include <math.h>

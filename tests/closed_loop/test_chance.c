@@ -1,4 +1,4 @@
-#include "closed_loop/chance.h"
+#include "closed_loop/numeric/chance.h"
 
 #include "tests/testlib.h"
 

@@ -1,10 +1,10 @@
-// Tests for closed_loop/coverage.c, and by it: that the band of a prediction holds on digs that
-// took no part in the table.
+// Tests for closed_loop/accuracy/coverage.c, and by it: that the band of a prediction holds on digs
+// that took no part in the table.
 
-#include "closed_loop/coverage.h"
+#include "closed_loop/accuracy/coverage.h"
 
-#include "closed_loop/observe.h"
-#include "estimator/match.h"
+#include "closed_loop/recordings/observe.h"
+#include "estimator/match/match.h"
 #include "files/recording_csv.h"
 #include "tables/load.h"
 #include "tests/testlib.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/dense.h"
+#include "closed_loop/numeric/dense.h"
 
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,16 +1,16 @@
-// Tests for closed_loop/design*.c
+// Tests for closed_loop/design/design*.c
 
-#include "closed_loop/design.h"
+#include "closed_loop/design/design.h"
 
-#include "closed_loop/chance.h"
-#include "closed_loop/design_report.h"
+#include "closed_loop/design/design_report.h"
+#include "closed_loop/numeric/chance.h"
 #include "tests/made_table.h"
 #include "tests/scratch.h"
 
 struct bench {
-    struct dig_curve_set *set;
-    struct dig_surface   *surface;
-    struct dig_scatter   *scatter;
+    struct dig_curve_set        *set;
+    struct dig_response_surface *surface;
+    struct dig_scatter          *scatter;
 };
 
 // A made table with its surface and the scatter that its standard deviations tell.
@@ -21,7 +21,7 @@ static struct bench make(const double relative_sd, const double family)
                                           .packings    = 5 };
     struct bench              b = { made_table(&options), calloc(1, sizeof *b.surface), NULL };
     assert_non_null(b.surface);
-    assert_int_equal(dig_surface_fit(b.set, b.surface), DIG_OK);
+    assert_int_equal(dig_response_surface_fit(b.set, b.surface), DIG_OK);
     assert_int_equal(dig_scatter_pool(b.surface, 0, NULL, &b.scatter), DIG_OK);
     return b;
 }
@@ -68,7 +68,7 @@ static void flatten(const struct bench *const b, const size_t t)
     for (size_t e = 1; e < b->set->entries; e++) {
         b->set->curve[e * b->set->trajectories + t] = b->set->curve[t];
     }
-    assert_int_equal(dig_surface_fit(b->set, b->surface), DIG_OK);
+    assert_int_equal(dig_response_surface_fit(b->set, b->surface), DIG_OK);
 }
 
 static void a_dig_that_every_gravel_resists_alike_comes_last(void **state)
@@ -101,7 +101,7 @@ static void equal_digs_are_not_confirmed(void **state)
         struct dig_curve *const curve = &b.set->curve[e * b.set->trajectories];
         curve[MADE_SIMPLE_B]          = curve[MADE_SIMPLE_A];
     }
-    assert_int_equal(dig_surface_fit(b.set, b.surface), DIG_OK);
+    assert_int_equal(dig_response_surface_fit(b.set, b.surface), DIG_OK);
     dig_scatter_destroy(b.scatter);
     assert_int_equal(dig_scatter_pool(b.surface, 0, NULL, &b.scatter), DIG_OK);
     const struct dig_design d = run(&b, 300);

@@ -1,6 +1,6 @@
 // What `digloop design` recommends on the tables that ship.
 
-#include "closed_loop/design.h"
+#include "closed_loop/design/design.h"
 
 #include "tables/load.h"
 #include "tests/testlib.h"
@@ -12,17 +12,17 @@
 static struct dig_design design_of(const char *const path, const uint64_t seed,
                                    char recommended[DIG_NAME_SIZE], char reference[DIG_NAME_SIZE])
 {
-    const struct dig_design_settings settings = { .draws = 400, .seed = seed };
-    struct dig_surface *const        surface  = calloc(1, sizeof *surface);
-    struct dig_curve_set            *set      = NULL;
-    struct dig_scatter              *scatter  = NULL;
-    struct dig_error                 error    = { "" };
-    struct dig_design                design;
+    const struct dig_design_settings   settings = { .draws = 400, .seed = seed };
+    struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
+    struct dig_curve_set              *set      = NULL;
+    struct dig_scatter                *scatter  = NULL;
+    struct dig_error                   error    = { "" };
+    struct dig_design                  design;
     assert_non_null(surface);
     if (dig_table_load(path, &set, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_int_equal(dig_surface_fit(set, surface), DIG_OK);
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
     assert_int_equal(dig_scatter_measure(path, surface, &scatter, &error), DIG_OK);
     assert_int_equal(dig_design_run(surface, scatter, NULL, &settings, &design), DIG_OK);
     memcpy(recommended, set->trajectory[design.rank[0]].name, DIG_NAME_SIZE);

@@ -1,4 +1,4 @@
-#include "closed_loop/features.h"
+#include "closed_loop/recordings/features.h"
 
 #include "tests/testlib.h"
 

@@ -1,4 +1,4 @@
-#include "closed_loop/hypothesis.h"
+#include "closed_loop/model/hypothesis.h"
 
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
@@ -44,21 +44,21 @@ static void true_features(const struct dig_gravel *const gravel, double feature[
 
 // Mean square of what tables of other packings say of this gravel beside the truth, in the group's
 // units: by making the tables.
-static double made_variance(const struct dig_batch_group *const group,
-                            const struct dig_gravel *const      gravel)
+static double made_variance(const struct dig_whitened_digs_group *const group,
+                            const struct dig_gravel *const              gravel)
 {
     double truth[DIG_FEATURES];
     double y_true[DIG_FEATURES];
     double sum = 0.0;
     true_features(gravel, truth);
-    dig_batch_whiten(group, truth, y_true);
+    dig_whitened_digs_whiten(group, truth, y_true);
     for (uint64_t w = 0; w < WORLDS; w++) {
         struct made_world other = made_world(1000 + w);
         double            place[DIG_AXES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
         double            y[DIG_FEATURES];
-        dig_surface_place(other.surface, gravel, place);
-        dig_surface_features(other.surface, MADE_ACTUAL, place, feature, size);
-        dig_batch_whiten(group, feature, y);
+        dig_response_surface_place(other.surface, gravel, place);
+        dig_response_surface_features(other.surface, MADE_ACTUAL, place, feature, size);
+        dig_whitened_digs_whiten(group, feature, y);
         for (size_t k = 0; k < group->features; k++) {
             sum += (y[k] - y_true[k]) * (y[k] - y_true[k]) / (double)group->features / WORLDS;
         }
@@ -77,16 +77,16 @@ static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
     const struct dig_gravel            gravel                        = { { 0.6, 0.55, 3900 } };
     const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     for (double larger = 1.0; larger < 4.0; larger += 2.0) {
-        static struct dig_batch batch;
-        struct dig_fitted       fitted;
-        double                  place[DIG_AXES];
+        static struct dig_whitened_digs batch;
+        struct dig_fitted               fitted;
+        double                          place[DIG_AXES];
         dig(&gravel, larger, 9);
-        dig_surface_place(world.surface, &gravel, place);
-        assert_int_equal(
-            dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-            DIG_OK);
+        dig_response_surface_place(world.surface, &gravel, place);
+        assert_int_equal(dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take,
+                                                place, &batch),
+                         DIG_OK);
         dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
-        const struct dig_gravel found = dig_surface_gravel(world.surface, fitted.number);
+        const struct dig_gravel found = dig_response_surface_gravel(world.surface, fitted.number);
         const double            truth = made_variance(&batch.group[0], &found);
         const double            said  = fitted.noise[0] - discrepancy;
         assert_true(said > 0.5 * truth && said < 2.0 * truth);
@@ -94,19 +94,19 @@ static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
 }
 
 // - 2 log likelihood as the header has it, of a fit: its squares, worked out anew.
-static double squares_of(const struct dig_batch *const b, const struct dig_fitted *const f)
+static double squares_of(const struct dig_whitened_digs *const b, const struct dig_fitted *const f)
 {
     double sum = 0.0;
     for (size_t g = 0; g < b->groups; g++) {
-        const struct dig_batch_group *const group = &b->group[g];
-        double                              model[DIGS][DIG_FEATURES];
-        double                              mean[DIG_FEATURES] = { 0.0 };
+        const struct dig_whitened_digs_group *const group = &b->group[g];
+        double                                      model[DIGS][DIG_FEATURES];
+        double                                      mean[DIG_FEATURES] = { 0.0 };
         for (size_t i = 0; i < b->digs; i++) {
             double feature[DIG_FEATURES];
             double noise;
             dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature,
                                     &noise);
-            dig_batch_whiten(group, feature, model[i]);
+            dig_whitened_digs_whiten(group, feature, model[i]);
             for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
                 mean[k] += model[i][k] / (double)group->digs;
             }
@@ -124,7 +124,8 @@ static double squares_of(const struct dig_batch *const b, const struct dig_fitte
 }
 
 // Whether there are clearly smaller squares a little off.
-static bool is_lower_beside(const struct dig_batch *const b, const struct dig_fitted *const f)
+static bool is_lower_beside(const struct dig_whitened_digs *const b,
+                            const struct dig_fitted *const        f)
 {
     bool lower = false;
     for (size_t j = 0; j < DIG_AXES + f->hypothesis.effects; j++) {
@@ -148,18 +149,19 @@ static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
         { .effects = 1, .effect = { DIG_EFFECT_WEAR } },
         { .effects = 2, .effect = { DIG_EFFECT_COHESION, DIG_EFFECT_WEAR } },
     };
-    static const bool       take[DIGS]                    = { true, true, true, true };
-    const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
-    const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 0.05 };
-    static struct dig_batch batch;
-    double                  place[DIG_AXES];
+    static const bool               take[DIGS]                    = { true, true, true, true };
+    const struct dig_gravel         gravel                        = { { 0.6, 0.55, 2500 } };
+    const double                    start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 0.05 };
+    static struct dig_whitened_digs batch;
+    double                          place[DIG_AXES];
     dig(&gravel, 1.3, 17);
     for (size_t i = 0; i < DIGS; i++) {
         measured[i].order = i;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
     for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
         struct dig_fitted bare, once;
         dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_BARE, &bare);

@@ -1,4 +1,4 @@
-#include "closed_loop/judge.h"
+#include "closed_loop/accuracy/judge.h"
 
 #include "tests/made_table.h"
 #include "tests/testlib.h"
@@ -69,17 +69,17 @@ static void one_dig_has_no_interval_and_none_no_error(void **state)
 static void sigma_is_the_tables_own(void **state)
 {
     (void)state;
-    const struct made_options options = { .packings = 5, .relative_sd = 0.1 };
-    struct dig_curve_set     *set     = made_table(&options);
-    struct dig_surface       *surface = malloc(sizeof *surface);
-    struct dig_scatter       *scatter = NULL;
-    assert_int_equal(dig_surface_fit(set, surface), DIG_OK);
+    const struct made_options    options = { .packings = 5, .relative_sd = 0.1 };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    struct dig_scatter          *scatter = NULL;
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
     assert_int_equal(dig_scatter_pool(surface, 0, NULL, &scatter), DIG_OK);
     const double place[DIG_AXES] = { 0.1, 0.2, 0.0 };
     double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double       sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double       more[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    dig_surface_curve(surface, MADE_ACTUAL, place, curve);
+    dig_response_surface_curve(surface, MADE_ACTUAL, place, curve);
     dig_judge_sd(surface, scatter, MADE_ACTUAL, place, 0.0, sd);
     dig_judge_sd(surface, scatter, MADE_ACTUAL, place, 3.0, more);
     for (size_t k = 20; k < DIG_CURVE_POINTS - 20; k += 20) {

@@ -1,4 +1,4 @@
-#include "closed_loop/levenberg.h"
+#include "closed_loop/numeric/levenberg.h"
 
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for closed_loop/machine_motion.c
+// Tests for closed_loop/machine/machine_motion.c
 
-#include "closed_loop/machine_motion.h"
+#include "closed_loop/machine/machine_motion.h"
 
 #include "core/units.h"
 #include "files/machine_yaml.h"

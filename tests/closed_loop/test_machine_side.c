@@ -1,8 +1,8 @@
-// Tests for closed_loop/machine_side.c and its parts: machine recordings from the rig's machine
-// (virtual work), spoilt here by formulas of the test's own.
+// Tests for closed_loop/machine/machine_side.c and its parts: machine recordings from the rig's
+// machine (virtual work), spoilt here by formulas of the test's own.
 
-#include "closed_loop/machine_lines.h"
-#include "closed_loop/machine_side.h"
+#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_side.h"
 
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"

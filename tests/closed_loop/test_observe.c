@@ -1,6 +1,6 @@
-// Tests for closed_loop/observe.c
+// Tests for closed_loop/recordings/observe.c
 
-#include "closed_loop/observe.h"
+#include "closed_loop/recordings/observe.h"
 
 #include "core/approach_set.h"
 #include "core/units.h"

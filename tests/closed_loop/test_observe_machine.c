@@ -1,9 +1,9 @@
-// Tests for closed_loop/observe_machine.c: machine recordings from the rig's machine (virtual
-// work), against the force recordings they were made of.
+// Tests for closed_loop/recordings/observe_machine.c: machine recordings from the rig's machine
+// (virtual work), against the force recordings they were made of.
 
-#include "closed_loop/observe_machine.h"
+#include "closed_loop/recordings/observe_machine.h"
 
-#include "closed_loop/observe.h"
+#include "closed_loop/recordings/observe.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "tests/made_table.h"

@@ -1,6 +1,6 @@
-// Tests for closed_loop/plot.c: what stands in a text is drawn, and nothing of it is run.
+// Tests for closed_loop/report/plot.c: what stands in a text is drawn, and nothing of it is run.
 
-#include "closed_loop/plot.h"
+#include "closed_loop/report/plot.h"
 
 #include "tests/scratch.h"
 

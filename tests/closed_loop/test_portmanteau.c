@@ -1,4 +1,4 @@
-#include "closed_loop/portmanteau.h"
+#include "closed_loop/search/portmanteau.h"
 
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
@@ -8,11 +8,11 @@
 
 enum { DIGS = 6, DRAWS = 99 };
 
-static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world       world;
-static struct dig_soil        *soil;
-static struct dig_batch       *batch;
-static struct dig_measured    *measured;
+static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
+static struct made_world         world;
+static struct dig_soil          *soil;
+static struct dig_whitened_digs *batch;
+static struct dig_measured      *measured;
 
 static int make(void **state)
 {
@@ -44,9 +44,10 @@ static struct dig_whiteness judge(const double magnitude, uint64_t seed)
                                &magnitude, &seed);
         take[i]     = true;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
+        DIG_OK);
     const struct dig_hypothesis none                          = { .effects = 0 };
     double                      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_fitted           plain;

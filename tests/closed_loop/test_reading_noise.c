@@ -1,4 +1,4 @@
-#include "closed_loop/reading_noise.h"
+#include "closed_loop/recordings/reading_noise.h"
 
 #include "files/machine_yaml.h"
 #include "tests/model_front.h"

@@ -1,8 +1,8 @@
-// Tests for closed_loop/report.c and closed_loop/plot.c
+// Tests for closed_loop/report/report.c and closed_loop/report/plot.c
 
-#include "closed_loop/report.h"
+#include "closed_loop/report/report.h"
 
-#include "closed_loop/plot.h"
+#include "closed_loop/report/plot.h"
 #include "tests/scratch.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
-#include "closed_loop/residual.h"
+#include "closed_loop/verdict/residual.h"
 
-#include "closed_loop/judge.h"
-#include "closed_loop/state.h"
+#include "closed_loop/accuracy/judge.h"
+#include "closed_loop/recordings/regressors.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
 
@@ -28,7 +28,7 @@ static struct bench make(const double soil, const double lifted)
     b.dig->measured[DIG_CHANNEL_MY_Nm] = true;
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         const double p            = (double)k / (DIG_CURVE_POINTS - 1);
-        const double by           = dig_state_is_lifted(b.set, MADE_ACTUAL, p) ? lifted : soil;
+        const double by           = dig_regressors_is_lifted(b.set, MADE_ACTUAL, p) ? lifted : soil;
         const bool   in           = p >= b.dig->first && p <= b.dig->last;
         b.curves->before[0][k]    = 2.0 + p;
         b.curves->before_sd[0][k] = 0.08;

@@ -1,17 +1,17 @@
 // A rock that lies elsewhere than the table's. The made world's beds of layers, which are humps,
 // are taken for beds of a rock here.
 
-#include "closed_loop/rock.h"
+#include "closed_loop/search/rock.h"
 
-#include "closed_loop/search.h"
+#include "closed_loop/search/search.h"
 #include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
 
 enum { DIGS = 6, DRAWS = 24 };
 
-static struct dig_measured measured[DIGS];
-static struct dig_batch    batch;
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
 
 static int rocky_setup(void **state)
 {
@@ -73,9 +73,10 @@ static void dig(const double ahead_m, const double factor[], uint64_t seed)
         }
     }
     double place[DIG_AXES];
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
 }
 
 static struct dig_search search(void)
@@ -124,7 +125,8 @@ static void what_is_no_hump_is_no_rock(void **state)
     }
     static const bool take[DIGS] = { true, true, true, true, true, true };
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, NULL, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, &batch),
+        DIG_OK);
     found = search();
     assert_true(found.significant && found.unlisted);
     assert_false(found.is_rock);

@@ -1,9 +1,9 @@
-// Tests for closed_loop/same_bed.c, and what a batch and a hypothesis make of it: the made table's
-// digs, some recorded again with noise of sensors.
+// Tests for closed_loop/model/same_bed.c, and what a batch and a hypothesis make of it: the made
+// table's digs, some recorded again with noise of sensors.
 
-#include "closed_loop/same_bed.h"
+#include "closed_loop/model/same_bed.h"
 
-#include "closed_loop/hypothesis.h"
+#include "closed_loop/model/hypothesis.h"
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
 
@@ -15,12 +15,12 @@ enum { DIGS = 8 };
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
 // Each bed is dug and recorded so many times, every time with noise of this share of the moment.
-static struct dig_batch *batch_of(struct dig_measured measured[DIGS], const size_t times,
-                                  const double noise, uint64_t seed)
+static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], const size_t times,
+                                          const double noise, uint64_t seed)
 {
-    bool                    take[DIGS];
-    double                  place[DIG_AXES];
-    struct dig_batch *const batch = malloc(sizeof *batch);
+    bool                            take[DIGS];
+    double                          place[DIG_AXES];
+    struct dig_whitened_digs *const batch = malloc(sizeof *batch);
     for (size_t i = 0; i < DIGS; i++) {
         take[i] = true;
         if (i % times == 0) {
@@ -34,9 +34,10 @@ static struct dig_batch *batch_of(struct dig_measured measured[DIGS], const size
             }
         }
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
+        DIG_OK);
     return batch;
 }
 
@@ -46,8 +47,8 @@ static void recordings_of_one_bed_count_once(void **state)
     struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (size_t times = 1; times <= DIGS; times *= 2) {
-            struct dig_batch *const batch = batch_of(measured, times, 0.03, seed);
-            const size_t            beds  = DIGS / times;
+            struct dig_whitened_digs *const batch = batch_of(measured, times, 0.03, seed);
+            const size_t                    beds  = DIGS / times;
             assert_int_equal(dig_same_bed_count(batch, 0), beds);
             assert_close(1.0 / DIGS + batch->group[0].repeats, 1.0 / (double)beds, 1e-12);
             free(batch);
@@ -59,13 +60,13 @@ static void recordings_of_one_bed_count_once(void **state)
 static void without_a_dig_its_bed_counts_as_long_as_another_has_it(void **state)
 {
     (void)state;
-    struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
-    struct dig_batch *const    batch    = batch_of(measured, 2, 0.03, 5);
-    struct dig_batch *const    others   = malloc(sizeof *others);
-    dig_batch_leave_out(batch, 0, others);
+    struct dig_measured *const      measured = calloc(DIGS, sizeof *measured);
+    struct dig_whitened_digs *const batch    = batch_of(measured, 2, 0.03, 5);
+    struct dig_whitened_digs *const others   = malloc(sizeof *others);
+    dig_whitened_digs_leave_out(batch, 0, others);
     assert_close(others->group[0].repeats, 1.0 / 4 - 1.0 / 7, 1e-12);
     *batch = *others;
-    dig_batch_leave_out(batch, 0, others);
+    dig_whitened_digs_leave_out(batch, 0, others);
     assert_close(others->group[0].repeats, 1.0 / 3 - 1.0 / 6, 1e-12);
     free(others);
     free(batch);
@@ -85,8 +86,9 @@ static void the_mean_of_one_bed_is_no_nearer_to_its_gravel(void **state)
     double                             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     for (uint64_t seed = 1; seed <= CAMPAIGNS; seed++) {
         for (int once = 0; once < 2; once++) {
-            struct dig_batch *const batch = batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
-            struct dig_fitted       fitted;
+            struct dig_whitened_digs *const batch =
+                batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
+            struct dig_fitted fitted;
             dig_hypothesis_fit(batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
             mean[once] += (fitted.squares - batch->group[0].about) / CAMPAIGNS;
             free(batch);

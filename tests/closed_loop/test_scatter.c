@@ -1,4 +1,4 @@
-#include "closed_loop/scatter.h"
+#include "closed_loop/model/scatter.h"
 
 #include "tests/made_table.h"
 #include "tests/model_front.h"
@@ -10,7 +10,8 @@ enum { ENTRIES = 80, PACKINGS = 4 };
 
 // Residuals about their entry's mean of digs whose features have sd 0.1 (first half of the bins) or
 // 0.2, neighbours correlated by a half, everything times sqrt(factor).
-static struct dig_scatter *pooled(const struct dig_surface *const surface, const double slope)
+static struct dig_scatter *pooled(const struct dig_response_surface *const surface,
+                                  const double                             slope)
 {
     uint64_t                     seed = 9;
     struct dig_scatter_residual *r    = calloc((size_t)ENTRIES * PACKINGS, sizeof *r);
@@ -43,21 +44,21 @@ static struct dig_scatter *pooled(const struct dig_surface *const surface, const
     return scatter;
 }
 
-static struct dig_surface *make_surface(struct dig_curve_set **const set)
+static struct dig_response_surface *make_surface(struct dig_curve_set **const set)
 {
-    const struct made_options options = { .relative_sd = 0.15, .packings = 5 };
-    *set                              = made_table(&options);
-    struct dig_surface *surface       = malloc(sizeof *surface);
-    assert_int_equal(dig_surface_fit(*set, surface), DIG_OK);
+    const struct made_options options    = { .relative_sd = 0.15, .packings = 5 };
+    *set                                 = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    assert_int_equal(dig_response_surface_fit(*set, surface), DIG_OK);
     return surface;
 }
 
 static void a_known_covariance_is_found(void **state)
 {
     (void)state;
-    struct dig_curve_set *set;
-    struct dig_surface   *surface = make_surface(&set);
-    struct dig_scatter   *s       = pooled(surface, 0.0);
+    struct dig_curve_set        *set;
+    struct dig_response_surface *surface = make_surface(&set);
+    struct dig_scatter          *s       = pooled(surface, 0.0);
     assert_close(s->freedom[0], ENTRIES * (PACKINGS - 1), 1e-9);
     assert_close(s->widened[0], 1.05, 0.1);
     for (size_t f = 0; f + 1 < DIG_FEATURES; f++) {
@@ -76,9 +77,9 @@ static void a_known_covariance_is_found(void **state)
 static void stronger_gravels_may_scatter_more(void **state)
 {
     (void)state;
-    struct dig_curve_set *set;
-    struct dig_surface   *surface = make_surface(&set);
-    struct dig_scatter   *s       = pooled(surface, 0.6);
+    struct dig_curve_set        *set;
+    struct dig_response_surface *surface = make_surface(&set);
+    struct dig_scatter          *s       = pooled(surface, 0.6);
     assert_close(dig_scatter_factor(s, 0, 1.0) / dig_scatter_factor(s, 0, 0.0), 1.6, 0.2);
     assert_close(dig_scatter_factor(s, 0, -1.0) / dig_scatter_factor(s, 0, 0.0), 0.45, 0.15);
     assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4); // never none
@@ -91,9 +92,9 @@ static void stronger_gravels_may_scatter_more(void **state)
 static void a_table_without_runs_uses_its_curves(void **state)
 {
     (void)state;
-    struct dig_curve_set *set;
-    struct dig_surface   *surface = make_surface(&set);
-    struct dig_scatter   *s       = NULL;
+    struct dig_curve_set        *set;
+    struct dig_response_surface *surface = make_surface(&set);
+    struct dig_scatter          *s       = NULL;
     assert_int_equal(dig_scatter_pool(surface, 0, NULL, &s), DIG_OK);
     assert_int_equal(s->residuals[0], 0);
     assert_close(s->freedom[0], 0.0, 0.0);

@@ -1,6 +1,6 @@
-// Tests for closed_loop/score.c
+// Tests for closed_loop/accuracy/score.c
 
-#include "closed_loop/score.h"
+#include "closed_loop/accuracy/score.h"
 
 #include "tests/testlib.h"
 

@@ -1,4 +1,4 @@
-#include "closed_loop/search_work.h"
+#include "closed_loop/search/search_work.h"
 
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
@@ -33,7 +33,7 @@ static void grow(const double times[DIGS])
     }
 }
 
-static struct dig_batch batch; // of the digs searched last
+static struct dig_whitened_digs batch; // of the digs searched last
 
 static void put_in_batch(const struct dig_gravel *const gravel, const size_t digs)
 {
@@ -42,9 +42,10 @@ static void put_in_batch(const struct dig_gravel *const gravel, const size_t dig
     for (size_t i = 0; i < DIGS; i++) {
         take[i] = i < digs;
     }
-    dig_surface_place(world.surface, gravel, place);
+    dig_response_surface_place(world.surface, gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
 }
 
 static struct dig_search search_some(const struct dig_gravel *const gravel, const size_t digs,
@@ -116,8 +117,9 @@ static void an_effect_is_named_and_measured(void **state)
         if (s.chosen.hypothesis.effect[0] == effect[i]) {
             // Friction and density make much the same digs, and what sticks acts by its ratio to
             // the weight: that ratio is what digs tell.
-            const struct dig_gravel found = dig_surface_gravel(world.surface, s.chosen.number);
-            const bool              sticks =
+            const struct dig_gravel found =
+                dig_response_surface_gravel(world.surface, s.chosen.number);
+            const bool sticks =
                 effect[i] == DIG_EFFECT_COHESION || effect[i] == DIG_EFFECT_ADHESION;
             const double density = found.value[DIG_AXIS_DENSITY_kgpm3];
             const double by      = sticks ? 2500.0 / density : 1.0;
@@ -295,9 +297,9 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     for (size_t i = 0; i < s.rivals; i++) {
         c.single[i] = s.rival[i].hypothesis;
     }
-    assert_int_equal(
-        dig_null_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS, &c.seed, &c.plain_null),
-        DIG_OK);
+    assert_int_equal(dig_null_simulation_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS,
+                                              &c.seed, &c.plain_null),
+                     DIG_OK);
     const size_t best   = dig_search_best_rival(&s);
     const double before = s.log_evidence[best];
     assert_int_equal(s.rival[best].hypothesis.effect[0], slope);

@@ -1,4 +1,4 @@
-#include "closed_loop/soil.h"
+#include "closed_loop/model/soil.h"
 
 #include "tests/closed_loop/world_fixture.h"
 
@@ -9,8 +9,8 @@
 static void plain_at(const struct dig_gravel *const gravel, const size_t t, double place[DIG_AXES],
                      double plain[DIG_FEATURES], double size[DIG_FORCE_CHANNELS])
 {
-    dig_surface_place(world.surface, gravel, place);
-    dig_surface_features(world.surface, t, place, plain, size);
+    dig_response_surface_place(world.surface, gravel, place);
+    dig_response_surface_features(world.surface, t, place, plain, size);
 }
 
 // What the made world puts in at half its largest magnitude comes out, at a gravel that is none of
@@ -108,7 +108,7 @@ static void features_are_those_of_the_curve(void **state)
         plain_at(&gravel, MADE_ACTUAL, place, plain, size);
         memcpy(with, plain, sizeof with);
         dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.1, 2.0, plain, size, with, &noise);
-        dig_surface_curve(world.surface, MADE_ACTUAL, place, bare);
+        dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
         memcpy(curve, bare, sizeof curve);
         dig_soil_add_curve(soil, effect[e], MADE_ACTUAL, place, 0.1, 2.0,
                            (const double(*)[DIG_CURVE_POINTS])bare, curve);
@@ -133,7 +133,7 @@ static void the_tooths_speed_tells_features_as_it_tells_the_curve(void **state)
     memcpy(with, plain, sizeof with);
     dig_soil_add(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0, plain, size, with,
                  &noise);
-    dig_surface_curve(world.surface, MADE_ACTUAL, place, bare);
+    dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
     memcpy(curve, bare, sizeof curve);
     dig_soil_add_curve(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0,
                        (const double(*)[DIG_CURVE_POINTS])bare, curve);

@@ -1,5 +1,5 @@
-#include "closed_loop/soil.h"
-#include "closed_loop/soil_fit.h"
+#include "closed_loop/model/soil.h"
+#include "closed_loop/model/soil_fit.h"
 #include "tables/load.h"
 #include "tables/load_effects.h"
 #include "tests/testlib.h"
@@ -9,11 +9,11 @@
 #include <string.h>
 
 // The tables that ship.
-static struct dig_curve_set  *set;
-static struct dig_effect_set *effects;
-static struct dig_surface    *surface;
-static struct dig_scatter    *scatter;
-static struct dig_soil       *soil;
+static struct dig_curve_set        *set;
+static struct dig_effect_set       *effects;
+static struct dig_response_surface *surface;
+static struct dig_scatter          *scatter;
+static struct dig_soil             *soil;
 
 static int load(void **state)
 {
@@ -23,7 +23,7 @@ static int load(void **state)
     surface                 = calloc(1, sizeof *surface);
     if (surface == NULL || dig_table_load(table, &set, &error) != DIG_OK ||
         dig_effects_load("tables/rig_effects.sqlite", set, &effects, &error) != DIG_OK ||
-        dig_surface_fit(set, surface) != DIG_OK ||
+        dig_response_surface_fit(set, surface) != DIG_OK ||
         dig_scatter_measure(table, surface, &scatter, &error) != DIG_OK ||
         dig_soil_create(surface, effects, scatter, &soil) != DIG_OK) {
         print_error("%s\n", error.text);
@@ -61,8 +61,8 @@ static double left_of(const size_t entry, const size_t t)
     }
     dig_features_of((const double(*)[DIG_CURVE_POINTS])mean, bed);
     dig_features_amplitude(bed, NULL, size);
-    dig_surface_place(surface, &of->gravel, place);
-    dig_surface_features(surface, t, place, plain, amplitude);
+    dig_response_surface_place(surface, &of->gravel, place);
+    dig_response_surface_features(surface, t, place, plain, amplitude);
     memcpy(model, plain, sizeof model);
     const double u = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
     dig_soil_add(soil, of->effect, t, place, u, 1.0, plain, amplitude, model, &noise);
@@ -111,8 +111,8 @@ static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
     const size_t            actual = 2;
     assert_string_equal(set->trajectory[actual].name, "actual");
     double place[DIG_AXES], plain[DIG_FEATURES], amplitude[DIG_FORCE_CHANNELS];
-    dig_surface_place(surface, &gravel, place);
-    dig_surface_features(surface, actual, place, plain, amplitude);
+    dig_response_surface_place(surface, &gravel, place);
+    dig_response_surface_features(surface, actual, place, plain, amplitude);
     for (int side = -1; side <= 1; side += 2) {
         double with[DIG_FEATURES];
         double size[DIG_FORCE_CHANNELS];

@@ -1,6 +1,6 @@
-// Tests for closed_loop/tell_apart.c
+// Tests for closed_loop/verdict/tell_apart.c
 
-#include "closed_loop/tell_apart.h"
+#include "closed_loop/verdict/tell_apart.h"
 
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
@@ -40,7 +40,7 @@ static void candidate(const enum dig_effect_id effect, const double u)
 {
     struct dig_fitted *const f = &search->rival[search->rivals++];
     *f                         = (struct dig_fitted){ .hypothesis = { 1, { effect }, false } };
-    dig_surface_place(world.surface, &gravel, f->number);
+    dig_response_surface_place(world.surface, &gravel, f->number);
     f->number[DIG_AXES] = u;
 }
 
@@ -80,8 +80,8 @@ static double of_the_whole(const double share, const size_t trajectory)
     double feature[DIG_FEATURES];
     double size[DIG_FORCE_CHANNELS];
     double sum = 0.0;
-    dig_surface_place(world.surface, &gravel, place);
-    dig_surface_features(world.surface, trajectory, place, feature, size);
+    dig_response_surface_place(world.surface, &gravel, place);
+    dig_response_surface_features(world.surface, trajectory, place, feature, size);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         const double sd =
             size[f / DIG_FEATURE_BINS] * sqrt(world.scatter->covariance[trajectory][f][f]);

@@ -1,6 +1,6 @@
-#include "closed_loop/trace.h"
+#include "closed_loop/verdict/trace.h"
 
-#include "closed_loop/residuals.h"
+#include "closed_loop/verdict/residuals.h"
 
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
@@ -90,10 +90,10 @@ static void what_is_left_is_told_dig_by_dig(void **state)
     assert_true(r->with.p > 0.05);
     assert_int_equal(r->without.digs, DIGS - 2);
     assert_true(r->known[DIG_CHANNEL_MY_Nm] && r->known[DIG_CHANNEL_FZ_N]);
-    const struct dig_trend *const path = &r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PATH];
+    const struct dig_trend *const path = &r->trend[DIG_CHANNEL_MY_Nm][DIG_REGRESSOR_PATH];
     assert_true(path->slope < 0.0 && path->p < 0.01);
     assert_int_equal(path->bin[0].digs, DIGS - 2);
-    assert_true(isnan(r->trend[DIG_CHANNEL_MY_Nm][DIG_STATE_PASS].slope));
+    assert_true(isnan(r->trend[DIG_CHANNEL_MY_Nm][DIG_REGRESSOR_PASS].slope));
     dig_trace_finish(&trace);
 }
 

@@ -1,6 +1,6 @@
-// Tests for closed_loop/trace_no_air.c
+// Tests for closed_loop/verdict/trace_no_air.c
 
-#include "closed_loop/trace_work.h"
+#include "closed_loop/verdict/trace_work.h"
 #include "tests/closed_loop/world_fixture.h"
 
 #include <stdio.h>
@@ -10,7 +10,7 @@
 enum { DIGS = 4 };
 
 static struct dig_measured        measured[DIGS];
-static struct dig_batch           batch;
+static struct dig_whitened_digs   batch;
 static struct dig_search          search;
 static struct dig_machine_finding air;
 
@@ -31,9 +31,10 @@ static struct dig_trace_work work(const size_t digs)
                                      &magnitude, &seed);
         measured[i].order = i;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, digs, measured, take, place, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, digs, measured, take, place, &batch),
+        DIG_OK);
     memset(&search, 0, sizeof search);
     search.significant = true;
     dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &search.plain);

@@ -1,8 +1,9 @@
-// Tests for closed_loop/trace_report.c, closed_loop/trace_page.c and closed_loop/html.c
+// Tests for closed_loop/report/trace_report.c, closed_loop/report/trace_page.c and
+// closed_loop/report/html.c
 
-#include "closed_loop/trace_report.h"
+#include "closed_loop/report/trace_report.h"
 
-#include "closed_loop/residual_report.h"
+#include "closed_loop/report/residual_report.h"
 #include "files/yaml_tree.h"
 #include "tests/made_table.h"
 #include "tests/scratch.h"
@@ -74,13 +75,13 @@ static void fill_residuals(struct dig_residuals *const r)
         (void)snprintf(dig->trajectory, sizeof dig->trajectory, "simpleA");
     }
     r->known[DIG_CHANNEL_MY_Nm] = true;
-    for (int s = 0; s < DIG_STATES; s++) {
+    for (int s = 0; s < DIG_REGRESSORS; s++) {
         r->trend[DIG_CHANNEL_MY_Nm][s] = (struct dig_trend){
-            .slope       = s == DIG_STATE_PASS ? (double)NAN : 0.5,
-            .low         = s == DIG_STATE_PASS ? (double)NAN : 0.25,
-            .high        = s == DIG_STATE_PASS ? (double)NAN : 0.75,
-            .correlation = s == DIG_STATE_PASS ? (double)NAN : 0.375,
-            .p           = s == DIG_STATE_PASS ? (double)NAN : 0.002,
+            .slope       = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.5,
+            .low         = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.25,
+            .high        = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.75,
+            .correlation = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.375,
+            .p           = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.002,
             .bins        = 2,
             .bin         = { { 0.25, -0.125, 0.0625, 2 }, { 0.75, 0.125, (double)NAN, 1 } },
         };

@@ -1,4 +1,4 @@
-#include "closed_loop/trace_verdict.h"
+#include "closed_loop/verdict/trace_verdict.h"
 
 #include "estimator/effects/effect.h"
 #include "tests/closed_loop/world_fixture.h"
@@ -9,7 +9,7 @@
 enum { DIGS = 6, DRAWS = 24 };
 
 static struct dig_measured             measured[DIGS];
-static struct dig_batch                batch;
+static struct dig_whitened_digs        batch;
 static struct dig_search               found;
 static const struct dig_trace_settings settings = { .false_alarm = 0.01 };
 
@@ -25,9 +25,10 @@ static struct dig_tracing search(const enum dig_effect_id effect, const double m
                                      &magnitude, &seed);
         measured[i].order = i;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
     assert_int_equal(dig_search_run(&batch, soil, settings.false_alarm, DRAWS, seed, &found),
                      DIG_OK);
     return (struct dig_tracing){ .set      = world.set,

@@ -1,4 +1,4 @@
-#include "closed_loop/unlisted.h"
+#include "closed_loop/search/unlisted.h"
 
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
@@ -11,7 +11,7 @@ enum { DIGS = 7 };
 static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
 static struct made_world         world;
 static struct dig_soil          *soil;
-static struct dig_batch         *batch;
+static struct dig_whitened_digs *batch;
 static struct dig_measured      *measured;
 static struct dig_model_unlisted share;
 
@@ -48,9 +48,10 @@ static double correct(const double magnitude[2], const enum made_trajectory alon
                                      &magnitude[simple ? i % 2 : 0], &seed);
         take[i]           = true;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
+        DIG_OK);
     struct dig_fitted plain = { .hypothesis = { .effects = 0 } };
     memcpy(plain.number, place, sizeof place);
     for (size_t g = 0; g < batch->groups; g++) {

@@ -1,6 +1,6 @@
-// Tests for closed_loop/unlisted_basis.c and closed_loop/unlisted_regression.c
+// Tests for closed_loop/search/unlisted_basis.c and closed_loop/search/unlisted_regression.c
 
-#include "closed_loop/unlisted_regression.h"
+#include "closed_loop/search/unlisted_regression.h"
 
 #include "core/units.h"
 #include "tests/made_campaign.h"
@@ -12,11 +12,11 @@
 
 enum { DIGS = 8 };
 
-static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world       world;
-static struct dig_soil        *soil;
-static struct dig_batch       *batch;
-static struct dig_measured    *measured;
+static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
+static struct made_world         world;
+static struct dig_soil          *soil;
+static struct dig_whitened_digs *batch;
+static struct dig_measured      *measured;
 
 static int make(void **state)
 {
@@ -76,9 +76,10 @@ static void regress(struct dig_regressed *const means, struct dig_regressed *con
     for (size_t i = 0; i < DIGS; i++) {
         take[i] = true;
     }
-    dig_surface_place(world.surface, &gravel, place);
+    dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_batch_make(world.surface, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
+        DIG_OK);
     dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
     assert_int_equal(dig_regress_means(batch, soil, &plain, means), DIG_OK);
     assert_int_equal(dig_regress_digs(batch, soil, &plain, digs), DIG_OK);

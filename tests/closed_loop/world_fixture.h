@@ -4,7 +4,7 @@
 #ifndef DIG_TESTS_WORLD_FIXTURE_H
 #define DIG_TESTS_WORLD_FIXTURE_H
 
-#include "closed_loop/soil.h"
+#include "closed_loop/model/soil.h"
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for estimator/approach_fit.c: ways driven point by point, by their definition.
+// Tests for estimator/approach/approach_fit.c: ways driven point by point, by their definition.
 
-#include "estimator/approach_fit.h"
+#include "estimator/approach/approach_fit.h"
 
 #include "tests/scratch.h"
 

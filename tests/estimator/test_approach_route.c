@@ -1,8 +1,8 @@
-// Tests for estimator/approach_route.c, and for the turn in estimator/track.c.
+// Tests for estimator/approach/approach_route.c, and for the turn in estimator/track/track.c.
 
-#include "estimator/approach_route.h"
+#include "estimator/approach/approach_route.h"
 
-#include "estimator/approaches.h"
+#include "estimator/approach/approaches.h"
 #include "tests/model_front.h"
 #include "tests/scratch.h"
 

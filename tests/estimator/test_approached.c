@@ -1,11 +1,11 @@
-// Tests for estimator/approaches.c, approach_response.c, approach_error.c and approached.c on a
-// table whose curves are known at every depth and attack.
+// Tests for estimator/approach/approaches.c, approach_response.c, approach_error.c and approached.c
+// on a table whose curves are known at every depth and attack.
 
-#include "estimator/approached.h"
+#include "estimator/approach/approached.h"
 
-#include "estimator/approaches.h"
-#include "estimator/match.h"
-#include "estimator/predict.h"
+#include "estimator/approach/approaches.h"
+#include "estimator/match/match.h"
+#include "estimator/predict/predict.h"
 #include "tests/scratch.h"
 
 #include "tests/approach_table.h"

@@ -1,11 +1,11 @@
-// Tests for estimator/correction.c and dig_wrench_correct() of wrench.c: samples of a machine that
-// is not as its file says, made by virtual work, must give the true load back.
+// Tests for estimator/wrench/correction.c and dig_wrench_correct() of wrench.c: samples of a
+// machine that is not as its file says, made by virtual work, must give the true load back.
 
-#include "estimator/correction.h"
+#include "estimator/wrench/correction.h"
 
 #include "core/linkage.h"
-#include "estimator/cylinder.h"
-#include "estimator/wrench.h"
+#include "estimator/wrench/cylinder.h"
+#include "estimator/wrench/wrench.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 

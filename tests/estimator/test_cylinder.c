@@ -1,6 +1,6 @@
-// Tests for estimator/cylinder.c
+// Tests for estimator/wrench/cylinder.c
 
-#include "estimator/cylinder.h"
+#include "estimator/wrench/cylinder.h"
 
 #include "tests/model_front.h"
 #include "tests/testlib.h"

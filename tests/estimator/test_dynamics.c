@@ -1,7 +1,8 @@
-// Tests for estimator/dynamics.c. The oracle is Lagrange's equation, differentiated numerically:
-// energies from places found by the test's own chain of turns, no recursion, no forces.
+// Tests for estimator/wrench/dynamics.c. The oracle is Lagrange's equation, differentiated
+// numerically: energies from places found by the test's own chain of turns, no recursion, no
+// forces.
 
-#include "estimator/dynamics.h"
+#include "estimator/wrench/dynamics.h"
 
 #include "tests/model_front.h"
 #include "tests/testlib.h"

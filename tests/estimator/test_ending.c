@@ -1,7 +1,7 @@
-// Tests for estimator/ending.c: a path of two legs, by hand. Digs driven through the estimator and
-// given up: test_recognition.c, test_estimator_digs.c.
+// Tests for estimator/track/ending.c: a path of two legs, by hand. Digs driven through the
+// estimator and given up: test_recognition.c, test_estimator_digs.c.
 
-#include "estimator/ending.h"
+#include "estimator/track/ending.h"
 
 #include "tests/testlib.h"
 

@@ -3,7 +3,7 @@
 
 #include "estimator/estimator.h"
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "tests/count_allocations.h"
 #include "tests/driven.h"
 #include "tests/model_front.h"

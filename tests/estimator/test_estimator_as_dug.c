@@ -2,8 +2,8 @@
 // made is told from what a machine measures of it, and beyond the table it is none of its digs.
 
 #include "core/units.h"
-#include "estimator/approach_slots.h"
-#include "estimator/shadow.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/approach/live_recording.h"
 #include "tests/testlib.h"
 #include "tests/wires.h"
 
@@ -21,10 +21,10 @@ static const struct dig_approach cross[] = {
 static const double least_off_m = 1e-3;
 
 struct bench {
-    struct approach_table table;
-    struct dig_shadow     shadow;
-    struct dig_raw        scratch;
-    int64_t               time_ns;
+    struct approach_table     table;
+    struct dig_live_recording shadow;
+    struct dig_recorded_dig   scratch;
+    int64_t                   time_ns;
 };
 
 static struct bench *bench_create(void)
@@ -32,7 +32,7 @@ static struct bench *bench_create(void)
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
     approach_table_init(&b->table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
-    dig_shadow_forget(&b->shadow, &b->table.cube.set);
+    dig_live_recording_forget(&b->shadow, &b->table.cube.set);
     return b;
 }
 
@@ -40,7 +40,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
                  const enum dig_dig_phase phase)
 {
     const struct dig_estimate e = wires_estimate(b->time_ns += TICK_NS, pose, moment_Nm, phase);
-    dig_shadow_take(&b->shadow, &b->table.cube.set, WIRES_LAMBDA, &e);
+    dig_live_recording_take(&b->shadow, &b->table.cube.set, WIRES_LAMBDA, &e);
 }
 
 // The bucket comes down along its first leg, as it goes on in the soil, and makes the dig.
@@ -62,7 +62,7 @@ static enum dig_status dig(struct bench *const b, const size_t t, const struct d
         tell(b, dig_trajectory_pose(&dug, t_s), approach_moment_Nm(3, t, t_s, factor),
              t_s < 0.1 ? DIG_PHASE_CONTACT : DIG_PHASE_DIG);
     }
-    return dig_shadow_observe(&b->table.cube.set, &settings, &b->shadow, &b->scratch, seen);
+    return dig_live_recording_observe(&b->table.cube.set, &settings, &b->shadow, &b->scratch, seen);
 }
 
 static void depth_and_attack_are_told_where_the_table_was_dug_so(void **state)

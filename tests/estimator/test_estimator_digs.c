@@ -139,7 +139,7 @@ static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
         const struct drive *const drive = &cases[i].drive;
         struct driven *const      b     = driven_create(drive->sensors);
         b->shadow                       = calloc(1, sizeof *b->shadow);
-        dig_shadow_forget(b->shadow, b->set);
+        dig_live_recording_forget(b->shadow, b->set);
         driven_dig(b, *drive);
         assert_int_equal(b->observations, 1);
         assert_int_equal(b->earlies, DRIVEN_LOOKS);
@@ -197,7 +197,7 @@ static void a_dig_handed_out_raw_is_observed_the_same(void **state)
     };
     struct driven *const inside = driven_create(true), *const beside = driven_create(true);
     beside->allocations = &allocations;
-    beside->spare       = calloc(1, dig_raw_size());
+    beside->spare       = calloc(1, dig_recorded_dig_size());
     assert_non_null(beside->spare);
     dig_estimator_lend(beside->estimator, beside->spare);
     for (size_t i = 0; i < sizeof drives / sizeof drives[0]; i++) {

@@ -1,6 +1,6 @@
-// Tests for estimator/fit_nlopt.c and estimator/posterior.c
+// Tests for estimator/match/fit_nlopt.c and estimator/match/posterior.c
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 
 #include "tests/made_table.h"
 #include "tests/model_front.h"

@@ -1,7 +1,7 @@
-// Tests for estimator/followed.c: two routes that part half way, by hand. Digs given up with a
-// load, driven through the estimator: test_recognition.c.
+// Tests for estimator/track/followed.c: two routes that part half way, by hand. Digs given up with
+// a load, driven through the estimator: test_recognition.c.
 
-#include "estimator/followed.h"
+#include "estimator/track/followed.h"
 
 #include "tests/testlib.h"
 

@@ -1,12 +1,12 @@
-// Tests for estimator/gaussian.c: what is asked of a table's covariance, the formula in what digs
-// made by it show, and the posterior that follows. That D is built as written is tested by
+// Tests for estimator/match/gaussian.c: what is asked of a table's covariance, the formula in what
+// digs made by it show, and the posterior that follows. That D is built as written is tested by
 // test_weighted.c.
 
-#include "estimator/gaussian.h"
+#include "estimator/match/gaussian.h"
 
-#include "estimator/likelihood.h"
-#include "estimator/match.h"
-#include "estimator/posterior.h"
+#include "estimator/match/likelihood.h"
+#include "estimator/match/match.h"
+#include "estimator/match/posterior.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

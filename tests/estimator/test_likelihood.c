@@ -1,9 +1,10 @@
-// Tests for estimator/likelihood.c and summary.c: the formula written out, and what outlines lose
+// Tests for estimator/match/likelihood.c and prefilter.c: the formula written out, and what
+// outlines lose
 
-#include "estimator/likelihood.h"
+#include "estimator/match/likelihood.h"
 
-#include "estimator/match.h"
-#include "estimator/posterior.h"
+#include "estimator/match/match.h"
+#include "estimator/match/posterior.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -39,12 +40,12 @@ static struct dig_observation make_dig(const struct dig_gravel *const gravel,
     return o;
 }
 
-static struct dig_summary sum_up(const struct dig_curve_set *const set,
-                                 struct dig_outline **const        outline)
+static struct dig_prefilter sum_up(const struct dig_curve_set *const set,
+                                   struct dig_outline **const        outline)
 {
-    struct dig_summary summary;
-    *outline = calloc(dig_summary_outlines(set), sizeof **outline);
-    dig_summary_make(set, *outline, &summary);
+    struct dig_prefilter summary;
+    *outline = calloc(dig_prefilter_outlines(set), sizeof **outline);
+    dig_prefilter_make(set, *outline, &summary);
     return summary;
 }
 
@@ -139,8 +140,8 @@ static void an_outline_has_the_means_of_blocks_and_none_of_what_was_not_dug(void
     (void)state;
     struct dig_curve_set *const set          = made_table(&options);
     set->packings[4 * MADE_TRAJECTORIES + 1] = 0;
-    struct dig_outline      *outline         = NULL;
-    const struct dig_summary summary         = sum_up(set, &outline);
+    struct dig_outline        *outline       = NULL;
+    const struct dig_prefilter summary       = sum_up(set, &outline);
     for (size_t slot = 0; slot < set->entries * set->trajectories; slot++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (int b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
@@ -185,8 +186,8 @@ static void of_curves_that_are_level_in_blocks_the_rough_likelihood_is_the_true_
             }
         }
     }
-    struct dig_outline      *outline = NULL;
-    const struct dig_summary summary = sum_up(set, &outline);
+    struct dig_outline        *outline = NULL;
+    const struct dig_prefilter summary = sum_up(set, &outline);
     for (int forces = 0; forces < 2; forces++) {
         struct dig_observation dig = make_dig(&set->gravel[20], MADE_ACTUAL, forces == 1, &seed);
         for (int k = 0; k < POINTS; k++) {
@@ -220,7 +221,7 @@ static void a_dig_of_which_no_block_is_whole_has_no_outline(void **state)
     struct dig_curve_set *const set     = made_table(&options);
     uint64_t                    seed    = 33;
     struct dig_outline         *outline = NULL;
-    const struct dig_summary    summary = sum_up(set, &outline);
+    const struct dig_prefilter  summary = sum_up(set, &outline);
     struct dig_observation      dig     = make_dig(&set->gravel[20], MADE_ACTUAL, false, &seed);
     dig.first = 0.03, dig.last = 0.12; // points 8 to 30
     struct dig_pool_sums sums;
@@ -246,7 +247,7 @@ static void a_summary_changes_nothing_that_matters(void **state)
     struct dig_curve_set *const set     = made_table(&holed);
     uint64_t                    seed    = 34;
     struct dig_outline         *outline = NULL;
-    const struct dig_summary    summary = sum_up(set, &outline);
+    const struct dig_prefilter  summary = sum_up(set, &outline);
     for (int trial = 0; trial < 8; trial++) {
         const struct dig_gravel gravel = random_gravel(&seed);
         struct dig_observation  dig[2] = {

@@ -1,8 +1,8 @@
-// Tests for estimator/match.c and estimator/interpolate.c
+// Tests for estimator/match/match.c and estimator/approach/interpolate.c
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 
-#include "estimator/interpolate.h"
+#include "estimator/approach/interpolate.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,6 +1,6 @@
-// Tests for estimator/motion.c
+// Tests for estimator/track/motion.c
 
-#include "estimator/motion.h"
+#include "estimator/track/motion.h"
 
 #include "core/units.h"
 #include "tests/made_table.h"

@@ -1,8 +1,8 @@
-// Tests for estimator/nearest.c: the search by outlines beside one that looks at everything
+// Tests for estimator/match/nearest.c: the search by outlines beside one that looks at everything
 
-#include "estimator/nearest.h"
+#include "estimator/match/nearest.h"
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -84,10 +84,10 @@ static int look_everywhere(const struct dig_curve_set *const set, const size_t d
 static int nearest_of(const struct dig_curve_set *const set, const size_t digs,
                       const struct dig_observation dig[])
 {
-    struct dig_outline *const outline = calloc(dig_summary_outlines(set), sizeof *outline);
-    struct dig_summary        summary;
+    struct dig_outline *const outline = calloc(dig_prefilter_outlines(set), sizeof *outline);
+    struct dig_prefilter      summary;
     struct dig_match          plain = { .nearest = -1 }, by = { .nearest = -1 };
-    dig_summary_make(set, outline, &summary);
+    dig_prefilter_make(set, outline, &summary);
     const enum dig_status status = dig_match_nearest_by(&summary, digs, dig, 2.5, &by);
     assert_int_equal(dig_match_nearest_pool(set, digs, dig, 2.5, &plain), status);
     free(outline);
@@ -293,9 +293,9 @@ static void what_is_refused_of_all_entries_is_refused_by_a_summary(void **state)
     wander(moment_of(set, 0, 0), 0.1, &seed);
     struct dig_observation dig = observe(moment_of(set, 0, 0), 0, 1.0, &seed);
     struct dig_outline     outline[DIG_OUTLINE_LAYERS];
-    struct dig_summary     summary;
+    struct dig_prefilter   summary;
     struct dig_match       match = { .nearest = 42 };
-    dig_summary_make(set, outline, &summary);
+    dig_prefilter_make(set, outline, &summary);
     assert_int_equal(dig_match_nearest_by(&summary, 0, &dig, 2.5, &match), DIG_EINVAL);
     assert_int_equal(dig_match_nearest_by(&summary, 1, &dig, NAN, &match), DIG_EINVAL);
     assert_int_equal(dig_fit_refine_by(&summary, 1, &dig, 100, &match), DIG_EINVAL);
@@ -319,9 +319,9 @@ static void what_is_far_by_its_outline_is_not_looked_at(void **state)
             moment_of(set, e, 0)[k] += e == NEAREST ? 0.0F : 50.0F;
         }
     }
-    struct dig_outline outline[DIG_OUTLINE_LAYERS * ENTRIES];
-    struct dig_summary summary;
-    dig_summary_make(set, outline, &summary);
+    struct dig_outline   outline[DIG_OUTLINE_LAYERS * ENTRIES];
+    struct dig_prefilter summary;
+    dig_prefilter_make(set, outline, &summary);
     const struct dig_observation dig = observe(moment_of(set, NEAREST, 0), 0, 0.1, &seed);
     for (size_t e = 0; e < ENTRIES; e++) {
         for (int k = 0; k < POINTS && e != NEAREST; k++) {

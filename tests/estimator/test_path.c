@@ -1,6 +1,6 @@
-// Tests for estimator/path.c, route.c and track.c
+// Tests for estimator/track/path.c, route.c and track.c
 
-#include "estimator/track.h"
+#include "estimator/track/track.h"
 
 #include "tests/made_table.h"
 #include "tests/model_front.h"

@@ -1,6 +1,6 @@
-// Tests for estimator/phase.c
+// Tests for estimator/track/phase.c
 
-#include "estimator/phase.h"
+#include "estimator/track/phase.h"
 
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,8 +1,8 @@
-// Tests for estimator/pool.c, and for what several digs do to distance and posterior
+// Tests for estimator/match/pool.c, and for what several digs do to distance and posterior
 
-#include "estimator/pool.h"
+#include "estimator/match/pool.h"
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

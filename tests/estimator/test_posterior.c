@@ -1,10 +1,10 @@
-// Tests for estimator/posterior.c: what the forces add to the moment
+// Tests for estimator/match/posterior.c: what the forces add to the moment
 
-#include "estimator/posterior.h"
+#include "estimator/match/posterior.h"
 
-#include "closed_loop/observe.h"
-#include "estimator/interpolate.h"
-#include "estimator/match.h"
+#include "closed_loop/recordings/observe.h"
+#include "estimator/approach/interpolate.h"
+#include "estimator/match/match.h"
 #include "files/recording_csv.h"
 #include "tables/derive.h"
 #include "tables/load.h"

@@ -1,8 +1,8 @@
-// Tests for estimator/predict.c
+// Tests for estimator/predict/predict.c
 
-#include "estimator/predict.h"
+#include "estimator/predict/predict.h"
 
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
 

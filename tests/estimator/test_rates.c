@@ -1,6 +1,6 @@
-// Tests for estimator/rates.c
+// Tests for estimator/wrench/rates.c
 
-#include "estimator/rates.h"
+#include "estimator/wrench/rates.h"
 
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,4 +1,4 @@
-// Tests for what the estimator recognises of a dig: what the bucket does (estimator/motion.c,
+// Tests for what the estimator recognises of a dig: what the bucket does (estimator/track/motion.c,
 // phase.c), which trajectory it digs, how far it gets and how it ends (track.c, window.c, ending.c,
 // followed.c). Digs of tables/rig.sqlite, each in another bed, dug in eleven ways.
 //

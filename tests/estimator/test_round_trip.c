@@ -3,7 +3,7 @@
 
 #include "estimator/estimator.h"
 
-#include "estimator/wrench.h"
+#include "estimator/wrench/wrench.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "tests/made_table.h"

@@ -1,7 +1,7 @@
-// Tests for estimator/sensed.c: a rig's force sensor read by virtual work (tools/rig/gauge.c), and
-// back by a balance of forces.
+// Tests for estimator/wrench/sensed.c: a rig's force sensor read by virtual work
+// (tools/rig/gauge.c), and back by a balance of forces.
 
-#include "estimator/sensed.h"
+#include "estimator/wrench/sensed.h"
 
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"

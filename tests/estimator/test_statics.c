@@ -1,6 +1,6 @@
-// Tests for estimator/statics.c
+// Tests for estimator/wrench/statics.c
 
-#include "estimator/statics.h"
+#include "estimator/wrench/statics.h"
 
 #include "core/units.h"
 #include "tests/model_front.h"

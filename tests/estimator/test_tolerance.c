@@ -1,11 +1,11 @@
-// Tests for estimator/tolerance.c and the tolerances of sensed.c: machines drawn with other pins,
-// masses and centres, their samples by virtual work, read as the file's machine would. No formula
-// is shared.
+// Tests for estimator/wrench/tolerance.c and the tolerances of sensed.c: machines drawn with other
+// pins, masses and centres, their samples by virtual work, read as the file's machine would. No
+// formula is shared.
 
-#include "estimator/tolerance.h"
+#include "estimator/wrench/tolerance.h"
 
-#include "estimator/sensed.h"
-#include "estimator/wrench.h"
+#include "estimator/wrench/sensed.h"
+#include "estimator/wrench/wrench.h"
 #include "files/machine_yaml.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

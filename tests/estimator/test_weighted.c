@@ -1,11 +1,11 @@
-// Tests for estimator/weighted.c: the formula written out, and what it finds that the Euclidean
-// norm of the moment does not
+// Tests for estimator/match/weighted.c: the formula written out, and what it finds that the
+// Euclidean norm of the moment does not
 
-#include "estimator/weighted.h"
+#include "estimator/match/weighted.h"
 
-#include "estimator/match.h"
-#include "estimator/posterior.h"
-#include "estimator/spread.h"
+#include "estimator/match/entry_scatter.h"
+#include "estimator/match/match.h"
+#include "estimator/match/posterior.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -75,7 +75,7 @@ static double mean_in(const struct dig_pooled *const group, const int block, con
     return sum / points;
 }
 
-// Mean of the correlation of all pairs of points of two blocks, as spread.h has it.
+// Mean of the correlation of all pairs of points of two blocks, as entry_scatter.h has it.
 static double assumed(const struct dig_trajectory *const t, const int one, const int other)
 {
     const double whole_m = dig_trajectory_path_m(t, 0.09, dig_trajectory_duration_s(t));
@@ -84,8 +84,9 @@ static double assumed(const struct dig_trajectory *const t, const int one, const
         for (int j = 0; j < WIDE; j++) {
             const double away_m = whole_m * ((one - other) * WIDE + i - j) / 255.0;
             const double own =
-                exp(-3.14159265358979 * pow(away_m / (DIG_SPREAD_WIDTH * 0.09), 2.0));
-            sum += (DIG_SPREAD_SHARED + (1.0 - DIG_SPREAD_SHARED) * own) / (WIDE * WIDE);
+                exp(-3.14159265358979 * pow(away_m / (DIG_ENTRY_SCATTER_WIDTH * 0.09), 2.0));
+            sum +=
+                (DIG_ENTRY_SCATTER_SHARED + (1.0 - DIG_ENTRY_SCATTER_SHARED) * own) / (WIDE * WIDE);
         }
     }
     return sum;
@@ -237,9 +238,9 @@ static struct dig_weighted by_hand(const struct dig_curve_set *const set,
 static struct dig_weighted find(const struct dig_curve_set *const set,
                                 const struct dig_pool_sums *const sums, const size_t nearest)
 {
-    struct dig_outline *const outline = calloc(dig_summary_outlines(set), sizeof *outline);
-    struct dig_summary        summary;
-    dig_summary_make(set, outline, &summary);
+    struct dig_outline *const outline = calloc(dig_prefilter_outlines(set), sizeof *outline);
+    struct dig_prefilter      summary;
+    dig_prefilter_make(set, outline, &summary);
     const struct dig_weighted by    = dig_weighted_find(set, &summary, sums, nearest);
     const struct dig_weighted plain = dig_weighted_find(set, NULL, sums, nearest);
     free(outline);

@@ -1,6 +1,6 @@
-// Tests for estimator/wrench.c
+// Tests for estimator/wrench/wrench.c
 
-#include "estimator/wrench.h"
+#include "estimator/wrench/wrench.h"
 
 #include "core/linkage.h"
 #include "core/units.h"

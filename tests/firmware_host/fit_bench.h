@@ -4,7 +4,7 @@
 #ifndef DIG_TESTS_FIT_BENCH_H
 #define DIG_TESTS_FIT_BENCH_H
 
-#include "firmware_host/fit.h"
+#include "firmware_host/matching/fit.h"
 #include "tests/cube_table.h"
 #include "tests/testlib.h"
 #include "tests/wires.h"

@@ -3,7 +3,7 @@
 #ifndef DIG_TESTS_LOOP_BENCH_H
 #define DIG_TESTS_LOOP_BENCH_H
 
-#include "firmware_host/loop.h"
+#include "firmware_host/tick/loop.h"
 
 #include "files/machine_yaml.h"
 #include "files/scene_yaml.h"
@@ -24,7 +24,7 @@ struct bench {
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
     struct wires                  wires;
-    struct dig_raw               *raw[2];
+    struct dig_recorded_dig      *raw[2];
     struct dig_loop               loop;
 };
 
@@ -68,7 +68,7 @@ static inline struct bench *bench_create(void)
     dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], BENCH_ESTIMATES,
                   b->wires.estimate_memory);
     for (int i = 0; i < 2; i++) {
-        b->raw[i] = calloc(1, dig_raw_size());
+        b->raw[i] = calloc(1, dig_recorded_dig_size());
         assert_non_null(b->raw[i]);
         (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
     }

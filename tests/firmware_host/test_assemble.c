@@ -1,6 +1,6 @@
-// Tests for firmware_host/assemble.c
+// Tests for firmware_host/tick/assemble.c
 
-#include "firmware_host/assemble.h"
+#include "firmware_host/tick/assemble.h"
 
 #include "tests/testlib.h"
 

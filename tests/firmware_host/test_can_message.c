@@ -1,9 +1,9 @@
-// Tests for firmware_host/can_message.c, with messages as recvmsg() would fill them.
+// Tests for firmware_host/bus/can_message.c, with messages as recvmsg() would fill them.
 
 // Kernel time stamps and drop counts are Linux', not POSIX'.
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
 
-#include "firmware_host/can_message.h"
+#include "firmware_host/bus/can_message.h"
 
 #include "tests/testlib.h"
 

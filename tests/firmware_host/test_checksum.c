@@ -1,7 +1,7 @@
-// Tests for firmware_host/checksum.c: published check values, and digrig's own seal, which divides
-// polynomials another way.
+// Tests for firmware_host/bus/checksum.c: published check values, and digrig's own seal, which
+// divides polynomials another way.
 
-#include "firmware_host/checksum.h"
+#include "firmware_host/bus/checksum.h"
 
 #include "tests/testlib.h"
 #include "tools/rig/can_layout.h"

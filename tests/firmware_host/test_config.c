@@ -1,6 +1,6 @@
-// Tests for firmware_host/config.c
+// Tests for firmware_host/config/config.c
 
-#include "firmware_host/config.h"
+#include "firmware_host/config/config.h"
 
 #include "tests/scratch.h"
 

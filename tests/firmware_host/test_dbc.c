@@ -1,6 +1,6 @@
-// Tests for firmware_host/dbc.c
+// Tests for firmware_host/bus/dbc.c
 
-#include "firmware_host/dbc.h"
+#include "firmware_host/bus/dbc.h"
 
 #include "tests/scratch.h"
 

@@ -1,5 +1,5 @@
-// Tests for firmware_host/fit.c: which digs identify. What it makes of several, of digs of several
-// depths, and over a restart: test_fit_ground.c, test_fit_as_dug.c, test_fit_state.c.
+// Tests for firmware_host/matching/fit.c: which digs identify. What it makes of several, of digs of
+// several depths, and over a restart: test_fit_ground.c, test_fit_as_dug.c, test_fit_state.c.
 
 #include "tests/firmware_host/fit_bench.h"
 
@@ -9,7 +9,7 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
     struct bench *const b = bench_create();
     for (int gravel = 0; gravel < GRAVELS; gravel++) {
         struct dig_fit_result result;
-        b->fit.known = (struct dig_known){ .any = false };
+        b->fit.known = (struct dig_gravel_track){ .any = false };
         bench_dig(b, gravel, 0, 1.0);
         const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
         assert_non_null(offer);

@@ -1,6 +1,6 @@
-// Tests for firmware_host/fit.c with a table dug at several depths and attacks.
+// Tests for firmware_host/matching/fit.c with a table dug at several depths and attacks.
 
-#include "firmware_host/fit.h"
+#include "firmware_host/matching/fit.h"
 
 #include "tests/approach_table.h"
 #include "tests/scratch.h"
@@ -69,7 +69,7 @@ static void digs_of_different_depths_are_matched_together(void **state)
     assert_int_equal(b->fit.known.differed, 0);
 
     // The same digs taken for plain ones contradict each other.
-    b->fit.known = (struct dig_known){ .any = false };
+    b->fit.known = (struct dig_gravel_track){ .any = false };
     dig_deep(b, 5, 0, 0.8, 1.0);
     dig_deep(b, 5, 0, 1.2, 1.0);
     assert_true(b->fit.pool.digs < 2 || b->fit.known.match.distance > 0.1);
@@ -108,7 +108,7 @@ static void how_it_was_made_is_known_with_the_gravel(void **state)
     dig_fit_restore(&again->fit);
     assert_true(again->fit.known.restored);
     for (int i = 0; i < 2; i++) {
-        const struct dig_known *const k = &(i == 0 ? b : again)->fit.known;
+        const struct dig_gravel_track *const k = &(i == 0 ? b : again)->fit.known;
         assert_close(k->made.depth, 1.15, 1e-9);
         assert_close(k->made.attack_rad, 0.02, 1e-9);
         assert_close(k->matched.depth, 1.15, 1e-9);

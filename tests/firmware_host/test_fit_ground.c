@@ -1,5 +1,5 @@
-// Tests for firmware_host/fit.c: which digs are of one ground, to be matched together, and when
-// what is known is known no longer.
+// Tests for firmware_host/matching/fit.c: which digs are of one ground, to be matched together, and
+// when what is known is known no longer.
 
 #include "tests/firmware_host/fit_bench.h"
 
@@ -49,7 +49,7 @@ static double friction_width(const struct dig_match *const m)
 // How far factor times a gravel is from what is predicted of it, in floors.
 static double drift_of(struct bench *const b, const int gravel, const double factor)
 {
-    const struct dig_known before = b->fit.known;
+    const struct dig_gravel_track before = b->fit.known;
     bench_dig(b, gravel, 1, factor);
     const double          drift = b->fit.known.drift;
     struct dig_fit_result result;

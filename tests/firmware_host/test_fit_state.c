@@ -1,4 +1,5 @@
-// Tests for firmware_host/fit.c and known.c: what is known outlives the daemon in its file.
+// Tests for firmware_host/matching/fit.c and gravel_track.c: what is known outlives the daemon in
+// its file.
 
 #include "files/identity_json.h"
 #include "tests/firmware_host/fit_bench.h"
@@ -17,12 +18,12 @@ static void what_is_known_survives_in_its_file(void **state)
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("match.json"));
     bench_dig(b, 6, 0, 1.0);
-    const struct dig_known before = b->fit.known;
+    const struct dig_gravel_track before = b->fit.known;
 
     struct bench *const again = bench_create();
     again->config.match_state = b->config.match_state;
     dig_fit_restore(&again->fit);
-    const struct dig_known *const k = &again->fit.known;
+    const struct dig_gravel_track *const k = &again->fit.known;
     assert_true(k->valid && k->restored);
     assert_int_equal(k->match.nearest, 6);
     assert_int_equal(before.match.weighted, 6);
@@ -79,7 +80,7 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
     (void)snprintf(again->config.match_state.text, sizeof again->config.match_state.text, "%s",
                    scratch_path("family.json"));
     bench_dig(b, 5, 0, 1.0);
-    struct dig_known family = b->fit.known;
+    struct dig_gravel_track family = b->fit.known;
 
     const double *const axis                   = b->cube.set.axis[DIG_AXIS_ROLLING];
     family.match.low.value[DIG_AXIS_ROLLING]   = axis[0] + 0.2 * (axis[1] - axis[0]);
@@ -87,9 +88,9 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
     family.match.low.value[DIG_AXIS_FRICTION]  = family.match.gravel.value[DIG_AXIS_FRICTION];
     family.match.high.value[DIG_AXIS_FRICTION] = family.match.gravel.value[DIG_AXIS_FRICTION];
 
-    assert_int_equal(
-        dig_known_write(scratch_path("family.json"), &family, &b->cube.set, &b->fit.pool, NULL),
-        DIG_OK);
+    assert_int_equal(dig_gravel_track_write(scratch_path("family.json"), &family, &b->cube.set,
+                                            &b->fit.pool, NULL),
+                     DIG_OK);
     dig_fit_restore(&again->fit);
     assert_true(again->fit.known.restored);
     assert_true(again->fit.known.match.untold[DIG_AXIS_ROLLING]);
@@ -97,9 +98,9 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
 
     // A file from before there was a noise-weighted entry tells none.
     family.match.weighted = -1;
-    assert_int_equal(
-        dig_known_write(scratch_path("family.json"), &family, &b->cube.set, &b->fit.pool, NULL),
-        DIG_OK);
+    assert_int_equal(dig_gravel_track_write(scratch_path("family.json"), &family, &b->cube.set,
+                                            &b->fit.pool, NULL),
+                     DIG_OK);
     dig_fit_restore(&again->fit);
     assert_int_equal(again->fit.known.match.weighted, -1);
     assert_true(isnan(again->fit.known.match.weighted_distance));

@@ -1,6 +1,6 @@
-// Tests for firmware_host/frame_watch.c
+// Tests for firmware_host/bus/frame_watch.c
 
-#include "firmware_host/frame_watch.h"
+#include "firmware_host/bus/frame_watch.h"
 
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for firmware_host/handoff.c. The threaded ones are what ThreadSanitizer is run on.
+// Tests for firmware_host/threads/handoff.c. The threaded ones are what ThreadSanitizer is run on.
 
-#include "firmware_host/handoff.h"
+#include "firmware_host/threads/handoff.h"
 
 #include "tests/testlib.h"
 

@@ -1,8 +1,8 @@
-// Tests for firmware_host/input_modbus.c and the input thread, against libmodbus' own server on
+// Tests for firmware_host/bus/input_modbus.c and the input thread, against libmodbus' own server on
 // loopback.
 
-#include "firmware_host/input.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/input.h"
+#include "firmware_host/bus/signal_map.h"
 
 #include "tests/scratch.h"
 

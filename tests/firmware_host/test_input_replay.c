@@ -1,7 +1,7 @@
-// Tests for firmware_host/input_replay.c
+// Tests for firmware_host/bus/input_replay.c
 
 #include "core/recording.h"
-#include "firmware_host/input.h"
+#include "firmware_host/bus/input.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
-// Tests for firmware_host/input_modbus.c on a serial line: a pseudo terminal whose other end the
-// test holds. No answer says which question it belongs to, so one that comes too late must not be
-// taken for the next.
+// Tests for firmware_host/bus/input_modbus.c on a serial line: a pseudo terminal whose other end
+// the test holds. No answer says which question it belongs to, so one that comes too late must not
+// be taken for the next.
 
 #define _XOPEN_SOURCE 600 // posix_openpt() and its kin
 
-#include "firmware_host/input.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/input.h"
+#include "firmware_host/bus/signal_map.h"
 
 #include "tests/testlib.h"
 

@@ -1,7 +1,7 @@
-// Tests for firmware_host/load_model.c: what a model adds to a table's curves it adds to those that
-// were dug at another depth or attack, too.
+// Tests for firmware_host/config/load_model.c: what a model adds to a table's curves it adds to
+// those that were dug at another depth or attack, too.
 
-#include "firmware_host/load_model.h"
+#include "firmware_host/config/load_model.h"
 
 #include "core/approach_set.h"
 #include "files/model_json.h"

@@ -1,6 +1,6 @@
-// Tests for firmware_host/loop.c: the tick, with a real estimator and a table of formulas.
+// Tests for firmware_host/tick/loop.c: the tick, with a real estimator and a table of formulas.
 
-#include "firmware_host/loop.h"
+#include "firmware_host/tick/loop.h"
 
 #include "tests/count_allocations.h"
 #include "tests/firmware_host/loop_bench.h"
@@ -336,7 +336,7 @@ static void a_tick_allocates_nothing(void **state)
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
         in_ticks += allocations - before;
 
-        struct dig_raw *raw = NULL;
+        struct dig_recorded_dig *raw = NULL;
         if (dig_ring_pop(&b->wires.digs, &raw)) {
             digs++;
             assert_true(dig_ring_push(&b->wires.spares, &raw));

@@ -1,8 +1,8 @@
-// Tests for firmware_host/loop.c: once it runs, the tick takes no memory and gives none back, takes
-// no lock, says no word, and makes no system call but to sleep and to read the clock. What our code
-// calls of the C library is counted by standing in its place (the Makefile has the linker wrap it);
-// system calls of the thread are trapped by the kernel, so that what libraries do inside is seen,
-// too.
+// Tests for firmware_host/tick/loop.c: once it runs, the tick takes no memory and gives none back,
+// takes no lock, says no word, and makes no system call but to sleep and to read the clock. What
+// our code calls of the C library is counted by standing in its place (the Makefile has the linker
+// wrap it); system calls of the thread are trapped by the kernel, so that what libraries do inside
+// is seen, too.
 
 // The trap's registers are Linux', not POSIX'.
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
@@ -208,7 +208,7 @@ static void the_running_loop_takes_no_memory_no_lock_and_says_nothing(void **sta
         if (i % 700 == 0) {
             bench_offer(b, &b->wires.table, 5, atomic_load(&b->loop.generation) + 1, INT64_MAX);
         }
-        struct dig_raw *raw = NULL;
+        struct dig_recorded_dig *raw = NULL;
         if (dig_ring_pop(&b->wires.digs, &raw)) {
             digs++;
             assert_true(dig_ring_push(&b->wires.spares, &raw));

@@ -1,6 +1,6 @@
-// Tests for firmware_host/loop.c: what the loop makes of ticks that begin late or take too long.
-// The clock is the test's own (the Makefile has the linker put these functions in the library's
-// place).
+// Tests for firmware_host/tick/loop.c: what the loop makes of ticks that begin late or take too
+// long. The clock is the test's own (the Makefile has the linker put these functions in the
+// library's place).
 
 #include "tests/firmware_host/loop_bench.h"
 

@@ -1,6 +1,6 @@
-// Tests for firmware_host/matcher.c
+// Tests for firmware_host/matching/matcher.c
 
-#include "firmware_host/matcher.h"
+#include "firmware_host/matching/matcher.h"
 
 #include "tests/made_table.h"
 #include "tests/testlib.h"

@@ -1,6 +1,6 @@
-// Tests for firmware_host/notify.c
+// Tests for firmware_host/threads/notify.c
 
-#include "firmware_host/notify.h"
+#include "firmware_host/threads/notify.h"
 
 #include "tests/scratch.h"
 

@@ -1,7 +1,7 @@
-// Tests for firmware_host/output_lcm.c: what is published goes into a log by LCM's own file
+// Tests for firmware_host/publish/output_lcm.c: what is published goes into a log by LCM's own file
 // provider and is read back.
 
-#include "firmware_host/output.h"
+#include "firmware_host/publish/output.h"
 
 #include "files/lcm_log.h"
 #include "tests/scratch.h"

@@ -1,6 +1,6 @@
-// Tests for firmware_host/signal_map.c and firmware_host/config_map.c
+// Tests for firmware_host/bus/signal_map.c and firmware_host/config/config_map.c
 
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/signal_map.h"
 
 #include "tests/scratch.h"
 

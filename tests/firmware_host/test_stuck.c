@@ -1,6 +1,6 @@
-// Tests for firmware_host/stuck.c
+// Tests for firmware_host/bus/stuck.c
 
-#include "firmware_host/stuck.h"
+#include "firmware_host/bus/stuck.h"
 
 #include "tests/testlib.h"
 

@@ -7,9 +7,9 @@
 // modbus.txt (replies in hex, a line each). Prints how much was taken and refused. No sample may
 // hold a number that is not finite.
 
-#include "firmware_host/assemble.h"
-#include "firmware_host/input.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/input.h"
+#include "firmware_host/bus/signal_map.h"
+#include "firmware_host/tick/assemble.h"
 #include "tests/fuzz/random.h"
 
 #include <arpa/inet.h>

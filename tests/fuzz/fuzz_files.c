@@ -18,9 +18,9 @@
 #include "files/model_json.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
-#include "firmware_host/config.h"
-#include "firmware_host/dbc.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/dbc.h"
+#include "firmware_host/bus/signal_map.h"
+#include "firmware_host/config/config.h"
 #include "tables/load.h"
 #include "tests/fuzz/random.h"
 

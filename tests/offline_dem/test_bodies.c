@@ -1,11 +1,11 @@
-// Tests for offline_dem/bodies.c and obstacles.c: clumps and rocks in a world of grains, against
-// conservation laws and against a rigid body of the Open Dynamics Engine.
+// Tests for offline_dem/world/bodies.c and obstacles.c: clumps and rocks in a world of grains,
+// against conservation laws and against a rigid body of the Open Dynamics Engine.
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/bodies.h"
-#include "offline_dem/dig.h"
-#include "offline_dem/setup.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/setup.h"
+#include "offline_dem/world/bodies.h"
 
 #include <math.h>
 #include <ode/ode.h>
@@ -61,7 +61,7 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
         }
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct dig_kinds            kinds;
+    struct dig_grain_types      kinds;
     struct dig_world            world;
     struct dig_error            error = { "" };
     assert_non_null(ode);

@@ -1,10 +1,10 @@
-// Tests for offline_dem/clump.c and rigid.h: mass and inertia against closed forms and a Monte
-// Carlo estimate, free flight against conservation laws.
+// Tests for offline_dem/shapes/clump.c and rigid.h: mass and inertia against closed forms and a
+// Monte Carlo estimate, free flight against conservation laws.
 
 #include "core/units.h"
-#include "offline_dem/clump.h"
-#include "offline_dem/random.h"
-#include "offline_dem/rigid.h"
+#include "offline_dem/law/random.h"
+#include "offline_dem/law/rigid.h"
+#include "offline_dem/shapes/clump.h"
 #include "tests/testlib.h"
 
 #include <string.h>

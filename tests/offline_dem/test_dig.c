@@ -2,7 +2,7 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/dig.h"
+#include "offline_dem/dig/dig.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // The reference engine against the kernel on a short dig, and what it refuses.
 
-#include "offline_dem/engine_ode.h"
+#include "offline_dem/reference/engine_ode.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/random.h"
+#include "offline_dem/law/random.h"
 
 #define SIDE   7
 #define HIGH   6

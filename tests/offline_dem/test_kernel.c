@@ -3,7 +3,7 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/random.h"
+#include "offline_dem/law/random.h"
 
 #include <math.h>
 

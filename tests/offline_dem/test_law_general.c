@@ -1,6 +1,6 @@
 // Hertz, CDT, SJKR and unlike grains against closed forms and against the plain law.
 
-#include "offline_dem/law_general.h"
+#include "offline_dem/law/law_general.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>

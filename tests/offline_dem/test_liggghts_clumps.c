@@ -1,6 +1,6 @@
 // Grains of two spheres against LIGGGHTS-PUBLIC 3.8's multisphere bodies.
 
-#include "offline_dem/setup.h"
+#include "offline_dem/dig/setup.h"
 #include "tests/offline_dem/liggghts_fixture.h"
 
 #define CLUMP_STEP_s 5e-6
@@ -41,7 +41,7 @@ static struct dig_world make_world(const struct table *const then, const double 
         bed.clump[i]    = (uint32_t)(i / 2 + 1);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(&scene);
-    struct dig_kinds            kinds;
+    struct dig_grain_types      kinds;
     struct dig_world            world;
     struct dig_error            error = { "" };
     assert_non_null(ode);

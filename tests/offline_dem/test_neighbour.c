@@ -1,7 +1,7 @@
 // The neighbour list against looking at every pair.
 
-#include "offline_dem/neighbour.h"
-#include "offline_dem/random.h"
+#include "offline_dem/kernel/neighbour.h"
+#include "offline_dem/law/random.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -155,13 +155,13 @@ static void no_grains_make_an_empty_list(void **state)
 static void too_many_radii_and_senseless_ones_are_refused(void **state)
 {
     (void)state;
-    double            at[DIG_KINDS_MAX + 1] = { 0.0 };
-    double            r[DIG_KINDS_MAX + 1];
+    double            at[DIG_GRAIN_TYPES_MAX + 1] = { 0.0 };
+    double            r[DIG_GRAIN_TYPES_MAX + 1];
     struct dig_grains untouched = { .n = 77 };
-    for (size_t i = 0; i <= DIG_KINDS_MAX; i++) {
+    for (size_t i = 0; i <= DIG_GRAIN_TYPES_MAX; i++) {
         r[i] = 0.001 * (double)(i + 1);
     }
-    assert_int_equal(dig_grains_create(DIG_KINDS_MAX + 1, at, at, at, r, 2500.0, &untouched),
+    assert_int_equal(dig_grains_create(DIG_GRAIN_TYPES_MAX + 1, at, at, at, r, 2500.0, &untouched),
                      DIG_EINVAL);
     r[1] = -1.0;
     assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);

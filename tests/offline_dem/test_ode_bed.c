@@ -1,9 +1,9 @@
 // The all-ODE reference against the grain kernel: the same motion before rounding has grown.
 
-#include "offline_dem/bodies.h"
-#include "offline_dem/ode_bed.h"
-#include "offline_dem/ode_memory.h"
-#include "offline_dem/random.h"
+#include "offline_dem/law/random.h"
+#include "offline_dem/reference/ode_bed.h"
+#include "offline_dem/reference/ode_memory.h"
+#include "offline_dem/world/bodies.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>

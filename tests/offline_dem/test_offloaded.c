@@ -1,9 +1,9 @@
 // A world that a device steps, the processor standing in for one: digs as the kernel makes them.
 
-#include "offline_dem/device_cuda.h"
-#include "offline_dem/device_host.h"
-#include "offline_dem/engine_cuda.h"
-#include "offline_dem/offloaded.h"
+#include "offline_dem/device/device_cuda.h"
+#include "offline_dem/device/device_host.h"
+#include "offline_dem/device/engine_cuda.h"
+#include "offline_dem/world/offloaded.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/dig.h"
-#include "offline_dem/packing.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/packing.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/period.h"
-#include "offline_dem/random.h"
+#include "offline_dem/law/period.h"
+#include "offline_dem/law/random.h"
 
 #include <math.h>
 

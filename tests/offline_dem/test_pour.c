@@ -3,9 +3,9 @@
 #include "tests/dem_fixture.h"
 
 #include "core/ground.h"
-#include "offline_dem/clump.h"
-#include "offline_dem/dig.h"
-#include "offline_dem/scatter.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/scatter.h"
+#include "offline_dem/shapes/clump.h"
 
 #include <math.h>
 

@@ -13,8 +13,8 @@
 // Clumps are compared at the reference's time step and at half of it. At the whole of it 28 beds of
 // theirs and six of ours had seemed to differ by a quarter, which 73 and 30 do not.
 
-#include "offline_dem/dig.h"
-#include "offline_dem/variant.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/variant.h"
 #include "tests/dem_fixture.h"
 #include "tests/offline_dem/phase_means.h"
 

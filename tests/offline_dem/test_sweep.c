@@ -1,6 +1,6 @@
-// Tests for offline_dem/sweep.c and worker.c, with an engine that takes no time.
+// Tests for offline_dem/sweep/sweep.c and worker.c, with an engine that takes no time.
 
-#include "offline_dem/sweep.h"
+#include "offline_dem/sweep/sweep.h"
 
 #include "tests/tables_fixture.h"
 

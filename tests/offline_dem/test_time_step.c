@@ -1,6 +1,6 @@
 // The bounds on the time step, against collisions and spins that are stepped through.
 
-#include "offline_dem/time_step.h"
+#include "offline_dem/law/time_step.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>

@@ -3,9 +3,9 @@
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/ode_scene.h"
-#include "offline_dem/random.h"
-#include "offline_dem/surfaces.h"
+#include "offline_dem/law/random.h"
+#include "offline_dem/world/ode_scene.h"
+#include "offline_dem/world/surfaces.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
-// Tests for offline_dem/variant.c: what each effect does to the rig's scene.
+// Tests for offline_dem/dig/variant.c: what each effect does to the rig's scene.
 
 #include "core/ground.h"
 #include "core/units.h"
 #include "files/scene_yaml.h"
-#include "offline_dem/variant.h"
+#include "offline_dem/dig/variant.h"
 #include "tests/testlib.h"
 
 #include <string.h>

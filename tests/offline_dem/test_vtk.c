@@ -1,9 +1,9 @@
-// Tests for offline_dem/vtk.c: the numbers in a picture are those of the world.
+// Tests for offline_dem/dig/vtk.c: the numbers in a picture are those of the world.
 
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/bodies.h"
-#include "offline_dem/vtk.h"
+#include "offline_dem/dig/vtk.h"
+#include "offline_dem/world/bodies.h"
 #include "tests/scratch.h"
 
 #include <math.h>

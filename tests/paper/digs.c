@@ -1,6 +1,6 @@
 #include "tests/paper/digs.h"
 
-#include "closed_loop/observe.h"
+#include "closed_loop/recordings/observe.h"
 #include "core/units.h"
 #include "files/recording_csv.h"
 #include "tables/derive.h"

@@ -6,7 +6,7 @@
 
 #include "tests/paper/digs.h"
 
-#include "closed_loop/score.h"
+#include "closed_loop/accuracy/score.h"
 #include "tables/load_effects.h"
 
 #include <math.h>

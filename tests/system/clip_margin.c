@@ -1,8 +1,8 @@
 // clip_margin MACHINE.yaml RECORDING.csv…: for every chamber as recorded, and cut off at nine
 // tenths and at half of its highest reading, whether it is refused and the log10 of the chance that
-// decides (closed_loop/clipped.h).
+// decides (closed_loop/recordings/saturation.h).
 
-#include "closed_loop/clipped.h"
+#include "closed_loop/recordings/saturation.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 
@@ -24,8 +24,8 @@ static double cut_at(const struct dig_machine *const machine, struct dig_machine
         r->row[i].value[signal] = fmin(r->row[i].value[signal], limit_Pa);
     }
     struct dig_clip clip;
-    *refused            = dig_clipped_find(machine, r, &clip) ? 1 : 0;
-    const double chance = dig_clipped_log10_chance(r, (enum dig_signal)signal);
+    *refused            = dig_saturation_find(machine, r, &clip) ? 1 : 0;
+    const double chance = dig_saturation_log10_chance(r, (enum dig_signal)signal);
     memcpy(r->row, whole, r->rows * sizeof *whole);
     free(whole);
     return chance;

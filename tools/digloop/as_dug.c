@@ -1,7 +1,7 @@
 #include "tools/digloop/as_dug.h"
 
-#include "closed_loop/observe.h"
-#include "estimator/approaches.h"
+#include "closed_loop/recordings/observe.h"
+#include "estimator/approach/approaches.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #define DIG_TOOLS_DIGLOOP_AS_DUG_H
 
 #include "core/error.h"
-#include "estimator/approach_slots.h"
+#include "estimator/approach/approach_slots.h"
 
 struct digloop_as_dug {
     const struct dig_curve_set *set;

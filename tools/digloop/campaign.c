@@ -1,6 +1,6 @@
 #include "tools/digloop/campaign.h"
 
-#include "closed_loop/observe.h"
+#include "closed_loop/recordings/observe.h"
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"

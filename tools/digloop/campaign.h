@@ -3,8 +3,8 @@
 #ifndef DIG_TOOLS_DIGLOOP_CAMPAIGN_H
 #define DIG_TOOLS_DIGLOOP_CAMPAIGN_H
 
-#include "closed_loop/machine_side.h"
-#include "closed_loop/measured.h"
+#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/recordings/measured.h"
 #include "core/curve.h"
 #include "core/error.h"
 

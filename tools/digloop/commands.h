@@ -3,7 +3,7 @@
 #ifndef DIG_TOOLS_DIGLOOP_COMMANDS_H
 #define DIG_TOOLS_DIGLOOP_COMMANDS_H
 
-#include "closed_loop/trace.h"
+#include "closed_loop/verdict/trace.h"
 #include "core/approach.h"
 #include "core/curve.h"
 #include "core/effect_set.h"

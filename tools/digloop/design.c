@@ -1,18 +1,18 @@
 // digloop design: which simple dig of the table tells most.
 
-#include "closed_loop/design.h"
+#include "closed_loop/design/design.h"
 
-#include "closed_loop/design_report.h"
+#include "closed_loop/design/design_report.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/commands.h"
 
 #include <stdlib.h>
 
 // What the effects add, where a table of them is given or lies beside the table.
-static enum dig_status make_soil(const struct digloop_options *const options,
-                                 const struct dig_curve_set *const   set,
-                                 const struct dig_surface *const     surface,
-                                 const struct dig_scatter *const     scatter,
+static enum dig_status make_soil(const struct digloop_options *const      options,
+                                 const struct dig_curve_set *const        set,
+                                 const struct dig_response_surface *const surface,
+                                 const struct dig_scatter *const          scatter,
                                  struct dig_soil **const soil, struct dig_error *const error)
 {
     char                   path[DIGLOOP_PATH_SIZE];
@@ -31,14 +31,14 @@ static enum dig_status make_soil(const struct digloop_options *const options,
 enum dig_status digloop_design(const struct digloop_options *const options,
                                const struct dig_curve_set *const set, struct dig_error *const error)
 {
-    const struct dig_design_settings settings = dig_design_settings_default();
-    struct dig_surface *const        surface  = calloc(1, sizeof *surface);
-    struct dig_design *const         design   = calloc(1, sizeof *design);
-    struct dig_scatter              *scatter  = NULL;
-    struct dig_soil                 *soil     = NULL;
+    const struct dig_design_settings   settings = dig_design_settings_default();
+    struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
+    struct dig_design *const           design   = calloc(1, sizeof *design);
+    struct dig_scatter                *scatter  = NULL;
+    struct dig_soil                   *soil     = NULL;
     enum dig_status status = surface != NULL && design != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = dig_surface_fit(set, surface);
+        status = dig_response_surface_fit(set, surface);
     }
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: too few entries for a surface over the gravel",

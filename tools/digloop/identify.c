@@ -1,5 +1,5 @@
 #include "core/units.h"
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "files/identity_json.h"
 #include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"

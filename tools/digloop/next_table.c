@@ -3,7 +3,7 @@
 #include "core/sha256.h"
 #include "files/campaign_yaml.h"
 #include "files/scene_yaml.h"
-#include "offline_dem/variant.h"
+#include "offline_dem/dig/variant.h"
 #include "tables/scene.h"
 
 #include <assert.h>

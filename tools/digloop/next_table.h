@@ -3,7 +3,7 @@
 #ifndef DIG_TOOLS_DIGLOOP_NEXT_TABLE_H
 #define DIG_TOOLS_DIGLOOP_NEXT_TABLE_H
 
-#include "closed_loop/measured.h"
+#include "closed_loop/recordings/measured.h"
 #include "tools/digloop/commands.h"
 
 /// Fills trace->command where the verdict holds effects of the soil that beds can hold: shell lines

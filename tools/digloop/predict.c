@@ -1,6 +1,6 @@
 #include "core/units.h"
-#include "estimator/match.h"
-#include "estimator/whole.h"
+#include "estimator/match/match.h"
+#include "estimator/predict/peak_energy.h"
 #include "files/identity_json.h"
 #include "files/recording_csv.h"
 #include "tools/digloop/as_dug.h"
@@ -83,10 +83,10 @@ static void put_array(FILE *const to, const char *const name, const float curve[
 
 // What is predicted, and how wrong it was.
 struct prediction {
-    struct dig_trajectory trajectory; // as dug
-    struct dig_curve      curve;
-    struct dig_whole      whole;
-    struct digloop_wrong  wrong;
+    struct dig_trajectory  trajectory; // as dug
+    struct dig_curve       curve;
+    struct dig_peak_energy whole;
+    struct digloop_wrong   wrong;
 };
 
 // For people: the result where none goes to a program.
@@ -111,9 +111,9 @@ static void tell(const struct digloop_options *const options, const struct predi
 
 static void print(const struct digloop_options *const options, const struct prediction *const p)
 {
-    const struct dig_whole *const whole = &p->whole;
-    const struct dig_curve *const curve = &p->curve;
-    char                          how[DIG_APPROACH_TEXT_SIZE];
+    const struct dig_peak_energy *const whole = &p->whole;
+    const struct dig_curve *const       curve = &p->curve;
+    char                                how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
         tell(options, p, how);
@@ -155,7 +155,7 @@ static enum dig_status predict(const struct digloop_options *const options,
     p->trajectory = table.set->trajectory[at];
     status        = dig_predict_curve(table.set, match, at, &p->curve);
     if (status == DIG_OK) {
-        status = dig_whole_predict(table.set, match, at, &p->whole);
+        status = dig_peak_energy_predict(table.set, match, at, &p->whole);
     }
     digloop_as_dug_finish(&table);
     return status == DIG_OK

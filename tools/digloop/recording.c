@@ -1,14 +1,14 @@
 #include "tools/digloop/recording.h"
 
-#include "closed_loop/clipped.h"
-#include "closed_loop/observe.h"
+#include "closed_loop/recordings/observe.h"
+#include "closed_loop/recordings/saturation.h"
 #include "core/sample.h"
-#include "estimator/approach_slots.h"
-#include "estimator/doubt.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/track/inertia_error.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
-#include "firmware_host/load_model.h"
+#include "firmware_host/config/load_model.h"
 #include "tools/digloop/scene.h"
 
 #include <assert.h>
@@ -49,7 +49,7 @@ static enum dig_status check_range(const struct dig_machine *const           mac
                                    const char *const file, struct dig_error *const error)
 {
     struct dig_clip clip;
-    return dig_clipped_find(machine, recording, &clip)
+    return dig_saturation_find(machine, recording, &clip)
                ? dig_error_set(error, DIG_EINVAL,
                                "%s: %s stays at its highest value, %.4g Pa, for %.1f s: clipped, "
                                "expected a pressure within the sensor's range",
@@ -183,7 +183,7 @@ static enum dig_status read_samples(const char *const                   path,
     dig_machine_recording_finish(&recording);
     const double lambda = machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; status == DIG_OK && i < digs->digs; i++) {
-        dig_doubt_forces(&machine->machine, lambda, &digs->dig[i]);
+        dig_inertia_error_forces(&machine->machine, lambda, &digs->dig[i]);
     }
     return status;
 }

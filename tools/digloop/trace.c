@@ -1,7 +1,7 @@
 // digloop trace: a campaign folder in, what the model lacks out.
 
-#include "closed_loop/trace.h"
-#include "closed_loop/trace_report.h"
+#include "closed_loop/verdict/trace.h"
+#include "closed_loop/report/trace_report.h"
 #include "files/whole.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"

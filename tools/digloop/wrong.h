@@ -3,10 +3,10 @@
 #ifndef DIG_TOOLS_DIGLOOP_WRONG_H
 #define DIG_TOOLS_DIGLOOP_WRONG_H
 
-#include "closed_loop/coverage.h"
-#include "closed_loop/score.h"
+#include "closed_loop/accuracy/coverage.h"
+#include "closed_loop/accuracy/score.h"
 #include "core/error.h"
-#include "estimator/match.h"
+#include "estimator/match/match.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 

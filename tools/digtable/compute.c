@@ -3,12 +3,12 @@
 #include "files/grid_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
-#include "offline_dem/dig.h"
-#include "offline_dem/engine_cuda.h"
-#include "offline_dem/engine_ode.h"
-#include "offline_dem/refuse.h"
-#include "offline_dem/sweep.h"
-#include "offline_dem/watched_pour.h"
+#include "offline_dem/device/engine_cuda.h"
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/input_checks.h"
+#include "offline_dem/dig/watched_pour.h"
+#include "offline_dem/reference/engine_ode.h"
+#include "offline_dem/sweep/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/plan.h"
@@ -117,7 +117,7 @@ static enum dig_status approach(const struct dig_scene *const     scene,
     enum dig_status       status =
         dig_approach_make(scene, dig_scene_find(scene, a->trajectory), &a->approach, &dug, error);
     if (status == DIG_OK && !dig_approach_is_plain(&a->approach)) {
-        status = dig_refuse_path(scene, &dug, error);
+        status = dig_input_checks_path(scene, &dug, error);
     }
     if (status == DIG_OK) {
         *made = dug;

@@ -1,6 +1,6 @@
 #include "tools/digtable/plan.h"
 
-#include "offline_dem/refuse.h"
+#include "offline_dem/dig/input_checks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -151,7 +151,7 @@ static enum dig_status check_approach(const struct dig_plan *const       plan,
         struct dig_error      why = { "" };
         status = dig_approach_make(scene, &scene->trajectory[plan->trajectory[i]], &point->approach,
                                    &dug, &why);
-        status = status == DIG_OK ? dig_refuse_path(scene, &dug, &why) : status;
+        status = status == DIG_OK ? dig_input_checks_path(scene, &dug, &why) : status;
         if (status != DIG_OK) {
             char how[DIG_APPROACH_TEXT_SIZE];
             dig_approach_text(&point->approach, how);

@@ -4,7 +4,7 @@
 #define DIG_TOOLS_DIGTABLE_PLAN_H
 
 #include "files/grid_yaml.h"
-#include "offline_dem/sweep.h"
+#include "offline_dem/sweep/sweep.h"
 #include "tables/queue.h"
 
 /// The points of a grid, free() them: every gravel of the axes and every single point, plain and in

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/scene.h"
-#include "offline_dem/bed.h"
+#include "offline_dem/kernel/bed.h"
 
 /// DIG_EINVAL where a file cannot hold all of such a bed: one with a rock that may have moved.
 DIG_MUST_CHECK enum dig_status dig_cli_bed_fits_file(const struct dig_scene *scene,

@@ -44,7 +44,7 @@ cohesion_all) pull=1e5 stick=1e5 ;;
 cohesion_2e5) pull=2e5 stick=2e5 ;;
 clump) clump=yes ;;
 clump_fine) clump=yes finer=2 ;; # the same, at half the time step
-obstacle) rock=.015 ;; # radius of a fixed sphere, where offline_dem/variant.h has it
+obstacle) rock=.015 ;; # radius of a fixed sphere, where offline_dem/dig/variant.h has it
 other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
 slope_down) slope_deg=-8 ;;

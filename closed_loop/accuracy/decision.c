@@ -1,0 +1,88 @@
+#include "closed_loop/accuracy/decision.h"
+
+#include "closed_loop/accuracy/judge.h"
+#include "closed_loop/recordings/features.h"
+
+#include <assert.h>
+#include <math.h>
+
+// One dig: <d, d>, and the variance of <d, e>.
+struct products {
+    double change, scatter;
+};
+
+// Rig time that a point of the grid stands for.
+static double time_of_s(const struct dig_curve_set *const set, const size_t trajectory,
+                        const size_t point)
+{
+    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
+    const double                       last = DIG_CURVE_POINTS - 1;
+    const double                       from = fmax((double)point - 0.5, 0.0) / last;
+    const double                       to   = fmin((double)point + 0.5, last) / last;
+    return fmax(dig_trajectory_time_s(t, set->tooth_m, to) -
+                    dig_trajectory_time_s(t, set->tooth_m, from),
+                0.0);
+}
+
+// How two bins of the moment move together.
+static double correlation(const double covariance[DIG_FEATURES][DIG_FEATURES], const size_t a,
+                          const size_t b)
+{
+    const size_t i   = (size_t)DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + a;
+    const size_t j   = (size_t)DIG_CHANNEL_MY_Nm * DIG_FEATURE_BINS + b;
+    const double own = covariance[i][i] * covariance[j][j];
+    return own > 0.0 ? covariance[i][j] / sqrt(own) : (a == b ? 1.0 : 0.0);
+}
+
+static struct products products_of(const struct dig_curve_set *const    set,
+                                   const struct dig_scatter *const      scatter,
+                                   const struct dig_measured *const     dig,
+                                   const struct dig_trace_curves *const curves)
+{
+    const size_t    t                       = (size_t)dig->trajectory;
+    double          moved[DIG_FEATURE_BINS] = { 0.0 }; // d times one sigma of e, over the bin
+    struct products of                      = { 0.0, 0.0 };
+    for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+        size_t from;
+        size_t to;
+        dig_feature_bin(b, &from, &to);
+        for (size_t k = from; k < to; k++) {
+            const double at     = (double)k / (DIG_CURVE_POINTS - 1);
+            const bool   dug    = at >= dig->first && at <= dig->last;
+            const double time_s = dug ? time_of_s(set, t, k) : 0.0;
+            const double change =
+                curves->after[DIG_CHANNEL_MY_Nm][k] - curves->before[DIG_CHANNEL_MY_Nm][k];
+            of.change += time_s * change * change;
+            moved[b] += time_s * change * curves->before_sd[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    for (size_t a = 0; a < DIG_FEATURE_BINS; a++) {
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            of.scatter += moved[a] * moved[b] * correlation(scatter->covariance[t], a, b);
+        }
+    }
+    return of;
+}
+
+double dig_decision_chance_of_worse(const struct dig_curve_set *const set,
+                                    const struct dig_scatter *const scatter, const size_t digs,
+                                    const struct dig_measured     measured[],
+                                    const struct dig_trace_curves curves[])
+{
+    assert(set != NULL && scatter != NULL && digs > 0 && measured != NULL && curves != NULL);
+    double sum = 0.0;
+    for (size_t i = 0; i < digs; i++) {
+        const struct products of = products_of(set, scatter, &measured[i], &curves[i]);
+        sum += of.scatter > 0.0 ? 0.5 * erfc(of.change / sqrt(8.0 * of.scatter)) : 0.5;
+    }
+    return sum / (double)digs;
+}
+
+bool dig_decision_brings_nearer(const struct dig_curve_set *const set, const size_t digs,
+                                const struct dig_measured     measured[],
+                                const struct dig_trace_curves curves[], const bool fit[])
+{
+    enum { SEED = 1 }; // of the interval, which is not asked for
+    return dig_judge_error(set, digs, measured, curves, fit, true, SEED).value <
+           dig_judge_error(set, digs, measured, curves, fit, false, SEED).value;
+}

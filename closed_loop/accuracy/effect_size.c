@@ -1,0 +1,212 @@
+#include "closed_loop/accuracy/effect_size.h"
+
+#include "closed_loop/accuracy/judge.h"
+#include "closed_loop/numeric/levenberg.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    EVERY  = 4, // points of the grid: curves are smoothed over more
+    POINTS = DIG_CURVE_POINTS / EVERY,
+    MOST   = DIG_TRAJECTORY_MAX * POINTS
+};
+
+// 1 sigma of what is known of the floor and of what the effect adds, over the floor.
+static const double unsure = 0.25;
+
+// The moments that a gravel is to explain, group by group.
+struct moments {
+    const struct dig_whitened_digs *batch;
+    double weight[DIG_TRAJECTORY_MAX][POINTS]; // root of digs times rig time
+    double target_Nm[DIG_TRAJECTORY_MAX][POINTS];
+};
+
+static void weigh(const struct dig_curve_set *const           set,
+                  const struct dig_whitened_digs_group *const group, const double first,
+                  const double last, double weight[POINTS])
+{
+    const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
+    for (size_t p = 0; p < POINTS; p++) {
+        const double at     = (double)(p * EVERY) / (DIG_CURVE_POINTS - 1);
+        const double half   = 0.5 * EVERY / (DIG_CURVE_POINTS - 1);
+        const double time_s = dig_trajectory_time_s(t, set->tooth_m, fmin(at + half, 1.0)) -
+                              dig_trajectory_time_s(t, set->tooth_m, fmax(at - half, 0.0));
+        weight[p] = at >= first && at <= last ? sqrt((double)group->digs * fmax(time_s, 0.0)) : 0.0;
+    }
+}
+
+// What of a dig's moment: what the machine adds to it, or what is left without that.
+enum part { ADDED, DUG };
+
+// The mean of that over a group's digs, and where all of them were measured.
+static void mean_of(const struct dig_whitened_digs *const batch,
+                    const struct dig_measured measured[], const size_t g, const enum part part,
+                    double mean_Nm[POINTS], double *const first, double *const last)
+{
+    memset(mean_Nm, 0, POINTS * sizeof mean_Nm[0]);
+    *first = 0.0;
+    *last  = 1.0;
+    for (size_t i = 0; i < batch->digs; i++) {
+        if (batch->dig[i].group != g) {
+            continue;
+        }
+        const struct dig_measured *const dig = &measured[batch->dig[i].measured];
+        *first                               = fmax(*first, dig->first);
+        *last                                = fmin(*last, dig->last);
+        for (size_t p = 0; p < POINTS; p++) {
+            const double added_Nm = dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY];
+            const double own_Nm =
+                part == ADDED ? added_Nm : dig->value[DIG_CHANNEL_MY_Nm][p * EVERY] - added_Nm;
+            mean_Nm[p] += own_Nm / (double)batch->group[g].digs;
+        }
+    }
+}
+
+static void left_of(void *const context, const double x[], double r[])
+{
+    const struct moments *const m = context;
+    for (size_t g = 0; g < m->batch->groups; g++) {
+        double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_response_surface_curve(m->batch->surface, m->batch->group[g].trajectory, x, curve);
+        for (size_t p = 0; p < POINTS; p++) {
+            r[g * POINTS + p] =
+                m->weight[g][p] * (m->target_Nm[g][p] - curve[DIG_CHANNEL_MY_Nm][p * EVERY]);
+        }
+    }
+}
+
+// The least that any gravel of the table leaves of the moments.
+static double least_left(struct moments *const m, const double place[DIG_AXES])
+{
+    static const double from[][DIG_AXES] = {
+        { -0.6, -0.6, 0.0 }, { 0.6, -0.6, 0.0 }, { -0.6, 0.6, 0.0 }, { 0.6, 0.6, 0.0 }
+    };
+    double               memory[MOST * (DIG_AXES + 2)];
+    struct dig_levenberg l     = { .unknowns   = DIG_AXES,
+                                   .residuals  = m->batch->groups * POINTS,
+                                   .step       = 1e-4,
+                                   .iterations = 20,
+                                   .residual   = left_of,
+                                   .context    = m,
+                                   .memory     = memory };
+    double               least = INFINITY;
+    for (int a = 0; a < DIG_AXES; a++) {
+        l.high[a] = m->batch->surface->set->axis_count[a] > 1 ? 1.0 : 0.0;
+        l.low[a]  = -l.high[a];
+    }
+    for (size_t s = 0; s <= sizeof from / sizeof from[0]; s++) {
+        double x[DIG_AXES];
+        double normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
+        double squares = 0.0;
+        memcpy(x, s == 0 ? place : from[s - 1], sizeof x);
+        dig_levenberg_run(&l, x, &squares, normal);
+        least = fmin(least, squares);
+    }
+    return least;
+}
+
+// Weighs a group's rig time and adds what its mean dig is uncertain by to *floor.
+static void begin_group(struct moments *const m, const struct dig_fitted *const fitted,
+                        const size_t g, const double first, const double last, double *const floor)
+{
+    const struct dig_whitened_digs_group *const group = &m->batch->group[g];
+    double                                      sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    weigh(m->batch->surface->set, group, first, last, m->weight[g]);
+    dig_judge_sd(m->batch->surface, m->batch->scatter, group->trajectory, fitted->number, 0.0, sd);
+    for (size_t p = 0; p < POINTS; p++) {
+        const double one = m->weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
+        *floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
+    }
+}
+
+double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
+                                  const struct dig_fitted *const        fitted,
+                                  const struct dig_measured             measured[])
+{
+    assert(batch != NULL && fitted != NULL && measured != NULL);
+    struct moments m     = { .batch = batch };
+    double         floor = 0.0;
+    double         added = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double first;
+        double last;
+        mean_of(batch, measured, g, ADDED, m.target_Nm[g], &first, &last);
+        begin_group(&m, fitted, g, first, last, &floor);
+        dig_response_surface_curve(batch->surface, batch->group[g].trajectory, fitted->number,
+                                   curve);
+        for (size_t p = 0; p < POINTS; p++) {
+            added += pow(m.weight[g][p] * m.target_Nm[g][p], 2.0);
+            m.target_Nm[g][p] += curve[DIG_CHANNEL_MY_Nm][p * EVERY];
+        }
+    }
+    return added > 0.0 && floor > 0.0 ? sqrt(least_left(&m, fitted->number) / floor) : 0.0;
+}
+
+double dig_effect_size_left(const struct dig_whitened_digs *const batch,
+                            const struct dig_fitted *const        fitted)
+{
+    assert(batch != NULL && fitted != NULL);
+    struct moments m     = { .batch = batch };
+    double         floor = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        double first;
+        double last;
+        mean_of(batch, batch->measured, g, DUG, m.target_Nm[g], &first, &last);
+        begin_group(&m, fitted, g, first, last, &floor);
+    }
+    return floor > 0.0 ? sqrt(fmax(least_left(&m, fitted->number) / floor - 1.0, 0.0)) : 0.0;
+}
+
+// The fit without one of its effects, the others as they are.
+static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const size_t e)
+{
+    struct dig_fitted less = *chosen;
+    size_t            n    = 0;
+    for (size_t i = 0; i < chosen->hypothesis.effects; i++) {
+        if (i != e) {
+            less.hypothesis.effect[n] = chosen->hypothesis.effect[i];
+            less.number[DIG_AXES + n] = chosen->number[DIG_AXES + i];
+            n++;
+        }
+    }
+    less.hypothesis.effects = n;
+    return less;
+}
+
+enum dig_status dig_effect_size_of_soil(const struct dig_whitened_digs *const batch,
+                                        const struct dig_soil *const          soil,
+                                        const struct dig_fitted *const chosen, const size_t e,
+                                        const double noise[], double *const size)
+{
+    assert(batch != NULL && soil != NULL && chosen != NULL && noise != NULL && size != NULL);
+    struct dig_measured *const added = calloc(DIG_MEASURED_MAX, sizeof *added);
+    if (added == NULL) {
+        return DIG_ENOMEM;
+    }
+    struct dig_fitted less = leave_out(chosen, e);
+    memcpy(less.noise, noise, sizeof less.noise);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const size_t m = batch->dig[i].measured;
+        double       with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double       without[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        added[m] = batch->measured[m];
+        dig_hypothesis_curve(soil, &chosen->hypothesis, chosen->number, &added[m], with);
+        dig_hypothesis_curve(soil, &less.hypothesis, less.number, &added[m], without);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            added[m].machine[DIG_CHANNEL_MY_Nm][k] =
+                with[DIG_CHANNEL_MY_Nm][k] - without[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    *size = dig_effect_size_of_machine(batch, &less, added);
+    free(added);
+    return DIG_OK;
+}
+
+double dig_effect_size_chance(const double size)
+{
+    return 0.5 * erfc(-(size - 1.0) / (sqrt(2.0) * unsure));
+}

@@ -1,0 +1,169 @@
+#include "closed_loop/accuracy/judge.h"
+
+#include "closed_loop/accuracy/score.h"
+#include "closed_loop/numeric/chance.h"
+#include "closed_loop/recordings/features.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DRAWS = 1000 };
+
+// Mean over the table's entries of (sd / amplitude)^2 at one point.
+static double relative_variance(const struct dig_response_surface *const surface, const size_t t,
+                                const size_t c, const size_t k,
+                                const double amplitude[][DIG_FORCE_CHANNELS])
+{
+    const struct dig_curve_set *const set = surface->set;
+    double                            sum = 0.0;
+    double                            n   = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * set->trajectories + t;
+        const double sd   = (double)set->curve[slot].sd[c][k] / amplitude[e][c];
+        if (set->packings[slot] > 0 && isfinite(sd)) {
+            const double weight = fmax((double)set->packings[slot] - 1.0, 0.5);
+            sum += weight * sd * sd;
+            n += weight;
+        }
+    }
+    return n > 0.0 ? sum / n : 0.0;
+}
+
+void dig_judge_sd(const struct dig_response_surface *const surface,
+                  const struct dig_scatter *const scatter, const size_t trajectory,
+                  const double place[DIG_AXES], const double noise,
+                  double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const struct dig_curve_set *const set = surface->set;
+    double                            feature[DIG_FEATURES];
+    double                            size[DIG_FORCE_CHANNELS];
+    dig_response_surface_features(surface, trajectory, place, feature, size);
+    const struct dig_gravel gravel = dig_response_surface_gravel(surface, place);
+    const double strength = log(size[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    const double factor   = dig_scatter_factor(scatter, trajectory, strength) * (1.0 + noise);
+
+    double(*const amplitude)[DIG_FORCE_CHANNELS] = calloc(set->entries, sizeof *amplitude);
+    memset(sd, 0, DIG_FORCE_CHANNELS * sizeof sd[0]);
+    for (size_t e = 0; amplitude != NULL && e < set->entries; e++) {
+        double at[DIG_AXES];
+        dig_response_surface_place(surface, &set->gravel[e], at);
+        dig_response_surface_features(surface, trajectory, at, feature, amplitude[e]);
+    }
+    for (size_t c = 0; amplitude != NULL && c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[c][k] = size[c] * sqrt(factor * relative_variance(surface, trajectory, c, k,
+                                                                 (const double(*)[3])amplitude));
+        }
+    }
+    free(amplitude);
+}
+
+void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         const double dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         double       sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    double feature[DIG_FEATURES];
+    double alone[DIG_FORCE_CHANNELS];
+    double all[DIG_FORCE_CHANNELS];
+    dig_features_of(plain, feature);
+    dig_features_amplitude(feature, NULL, alone);
+    dig_features_of(dug, feature);
+    dig_features_amplitude(feature, NULL, all);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[c][k] *= all[c] / alone[c];
+        }
+    }
+}
+
+// Adds one dig's moment to a score.
+static void add(const struct dig_curve_set *const set, const struct dig_measured *const dig,
+                const struct dig_trace_curves *const curves, const bool after,
+                struct dig_score *const score)
+{
+    const double(*const predicted)[DIG_CURVE_POINTS] = after ? curves->after : curves->before;
+    const double(*const sigma)[DIG_CURVE_POINTS]     = after ? curves->after_sd : curves->before_sd;
+    dig_score_add(score, &set->trajectory[dig->trajectory], set->tooth_m, dig->first, dig->last,
+                  dig->value[DIG_CHANNEL_MY_Nm], predicted[DIG_CHANNEL_MY_Nm],
+                  sigma[DIG_CHANNEL_MY_Nm]);
+}
+
+static size_t score_each(const struct dig_curve_set *const set, const size_t digs,
+                         const struct dig_measured     measured[],
+                         const struct dig_trace_curves curves[], const bool take[],
+                         const bool after, struct dig_score one[DIG_MEASURED_MAX])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < digs; i++) {
+        if (take[i]) {
+            one[n] = (struct dig_score){ 0 };
+            add(set, &measured[i], &curves[i], after, &one[n++]);
+        }
+    }
+    return n;
+}
+
+static void join(struct dig_score *const sum, const struct dig_score *const one)
+{
+    sum->wrong_N2m2s += one->wrong_N2m2s;
+    sum->floor_N2m2s += one->floor_N2m2s;
+    sum->whole_N2m2s += one->whole_N2m2s;
+}
+
+static int ascending(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, const size_t digs,
+                                       const struct dig_measured     measured[],
+                                       const struct dig_trace_curves curves[], const bool take[],
+                                       const bool after, const uint64_t seed)
+{
+    assert(digs <= DIG_MEASURED_MAX);
+    struct dig_score       one[DIG_MEASURED_MAX];
+    struct dig_score       all   = { 0 };
+    const size_t           n     = score_each(set, digs, measured, curves, take, after, one);
+    struct dig_error_range range = { (double)NAN, (double)NAN, (double)NAN };
+    for (size_t i = 0; i < n; i++) {
+        join(&all, &one[i]);
+    }
+    if (n == 0) {
+        return range;
+    }
+    range.value = dig_score_error(&all);
+    range.low   = range.value;
+    range.high  = range.value;
+    if (n > 1) {
+        uint64_t state = seed;
+        double   drawn[DRAWS];
+        for (size_t d = 0; d < DRAWS; d++) {
+            struct dig_score sum = { 0 };
+            for (size_t i = 0; i < n; i++) {
+                join(&sum, &one[dig_chance_index(&state, n)]);
+            }
+            drawn[d] = dig_score_error(&sum);
+        }
+        qsort(drawn, DRAWS, sizeof drawn[0], ascending);
+        range.low  = drawn[DRAWS / 20];
+        range.high = drawn[DRAWS - 1 - DRAWS / 20];
+    }
+    return range;
+}
+
+double dig_judge_floor(const struct dig_curve_set *const set, const size_t digs,
+                       const struct dig_measured measured[], const struct dig_trace_curves curves[],
+                       const bool take[])
+{
+    struct dig_score one[DIG_MEASURED_MAX];
+    struct dig_score all = { 0 };
+    const size_t     n   = score_each(set, digs, measured, curves, take, true, one);
+    for (size_t i = 0; i < n; i++) {
+        join(&all, &one[i]);
+    }
+    return n > 0 ? dig_score_noise_floor(&all) : (double)NAN;
+}

@@ -1,0 +1,38 @@
+// How wrong curves are against the digs they are for: CONTRACT's error, its interval, its floor.
+
+#ifndef DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
+#define DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
+
+#include "closed_loop/accuracy/before_after.h"
+#include "closed_loop/model/scatter.h"
+#include "closed_loop/recordings/measured.h"
+
+#include <stdint.h>
+
+/// 1 sigma of one dig about a predicted curve: the table's own relative scatter at each point, at
+/// the size and strength of the gravel at place; noise: variance of the prediction itself, in those
+/// of one dig.
+void dig_judge_sd(const struct dig_response_surface *surface, const struct dig_scatter *scatter,
+                  size_t trajectory, const double place[DIG_AXES], double noise,
+                  double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
+/// Of a dig that effects make another than its gravel alone would be: the scatter of digs is
+/// relative to what they are (closed_loop/model/whitened_digs.h), so sd grows as the sizes of the
+/// curves do.
+void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         const double dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         double       sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
+/// The error of the moment before or after over the digs that take[] allows, and its 90 % interval
+/// by drawing recordings: of one recording alone both ends are the value. All NaN without any.
+struct dig_error_range dig_judge_error(const struct dig_curve_set *set, size_t digs,
+                                       const struct dig_measured     measured[],
+                                       const struct dig_trace_curves curves[], const bool take[],
+                                       bool after, uint64_t seed);
+
+/// 1 sigma of what the error after would be of a complete model.
+double dig_judge_floor(const struct dig_curve_set *set, size_t digs,
+                       const struct dig_measured measured[], const struct dig_trace_curves curves[],
+                       const bool take[]);
+
+#endif // DIG_CLOSED_LOOP_ACCURACY_JUDGE_H

@@ -1,0 +1,51 @@
+#include "closed_loop/accuracy/score.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+#define GRID_s 0.005
+
+static double at(const double curve[DIG_CURVE_POINTS], const double progress)
+{
+    const double place = fmin(fmax(progress, 0.0), 1.0) * (DIG_CURVE_POINTS - 1);
+    const size_t i     = (size_t)fmin(floor(place), DIG_CURVE_POINTS - 2);
+    const double f     = place - (double)i;
+    return (1.0 - f) * curve[i] + f * curve[i + 1];
+}
+
+void dig_score_add(struct dig_score *const score, const struct dig_trajectory *const trajectory,
+                   const double tooth_m, const double first, const double last,
+                   const double measured_Nm[DIG_CURVE_POINTS],
+                   const double predicted_Nm[DIG_CURVE_POINTS],
+                   const double sigma_Nm[DIG_CURVE_POINTS])
+{
+    assert(score != NULL && trajectory != NULL);
+
+    const double duration_s = dig_trajectory_duration_s(trajectory);
+    const double whole_m    = dig_trajectory_path_m(trajectory, tooth_m, duration_s);
+    const size_t steps      = (size_t)floor(duration_s / GRID_s);
+    for (size_t i = 0; i <= steps; i++) {
+        const double progress =
+            dig_trajectory_path_m(trajectory, tooth_m, (double)i * GRID_s) / whole_m;
+        if (progress < first || progress > last) {
+            continue;
+        }
+        const double measured = at(measured_Nm, progress);
+        const double wrong    = measured - at(predicted_Nm, progress);
+        const double sigma    = at(sigma_Nm, progress);
+        score->wrong_N2m2s += wrong * wrong * GRID_s;
+        score->floor_N2m2s += sigma * sigma * GRID_s;
+        score->whole_N2m2s += measured * measured * GRID_s;
+    }
+}
+
+double dig_score_error(const struct dig_score *const score)
+{
+    return score->whole_N2m2s > 0.0 ? sqrt(score->wrong_N2m2s / score->whole_N2m2s) : (double)NAN;
+}
+
+double dig_score_noise_floor(const struct dig_score *const score)
+{
+    return score->whole_N2m2s > 0.0 ? sqrt(score->floor_N2m2s / score->whole_N2m2s) : (double)NAN;
+}

@@ -1,0 +1,178 @@
+#include "closed_loop/design/design.h"
+
+#include "closed_loop/design/design_simulate.h"
+#include "closed_loop/design/design_view.h"
+#include "closed_loop/numeric/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct dig_design_settings dig_design_settings_default(void)
+{
+    return (struct dig_design_settings){ .draws = 400, .seed = 1 };
+}
+
+// Gravels to average over, away from the table's edge; an axis of one point has one place.
+static size_t make_places(const struct dig_response_surface *const surface,
+                          double                                   place[][DIG_AXES])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < DIG_DESIGN_PLACES_MAX; i++) {
+        const size_t at[DIG_AXES] = { i / (DIG_DESIGN_PLACES_PER_AXIS * DIG_DESIGN_PLACES_PER_AXIS),
+                                      i / DIG_DESIGN_PLACES_PER_AXIS % DIG_DESIGN_PLACES_PER_AXIS,
+                                      i % DIG_DESIGN_PLACES_PER_AXIS };
+        bool         is_new       = true;
+        for (int a = 0; a < DIG_AXES; a++) {
+            const bool has = surface->set->axis_count[a] > 1;
+            is_new         = is_new && (has || at[a] == 0);
+            place[n][a] =
+                has ? 2.0 * ((double)at[a] + 0.5) / (double)DIG_DESIGN_PLACES_PER_AXIS - 1.0 : 0.0;
+        }
+        n += is_new ? 1 : 0;
+    }
+    return n;
+}
+
+// The gravel: information of one dig by moment and by wrench, what is left of each axis.
+static enum dig_status weigh_gravel(const struct dig_response_surface *const surface,
+                                    const struct dig_scatter *const scatter, const size_t t,
+                                    const size_t places, double place[][DIG_AXES],
+                                    double (*const normal)[DIG_AXES * DIG_AXES],
+                                    struct dig_design_dig *const dig)
+{
+    double left[DIG_AXES][DIG_DESIGN_PLACES_MAX];
+    for (size_t i = 0; i < places; i++) {
+        struct dig_design_view v;
+        enum dig_status        status =
+            dig_design_look(surface, scatter, t, place[i], DIG_DESIGN_WRENCH, &v);
+        if (status == DIG_OK) {
+            dig->bits_wrench += dig_design_bits(v.normal) / (double)places;
+            status = dig_design_look(surface, scatter, t, place[i], DIG_FEATURE_BINS, &v);
+        }
+        if (status != DIG_OK) {
+            return status;
+        }
+        dig->bits += dig_design_bits(v.normal) / (double)places;
+        memcpy(normal[i], v.normal, sizeof v.normal);
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            double unit[DIG_AXES] = { 0.0 };
+            unit[a]               = 1.0;
+            dig_lower_solve(DIG_AXES, v.normal_lower, unit);
+            left[a][i] = sqrt(DIG_DESIGN_PRIOR * dig_design_product(DIG_AXES, unit, unit));
+        }
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        dig->sd[a] = dig_design_median(places, left[a]);
+    }
+    return DIG_OK;
+}
+
+// Two digs: the partner with which they tell most.
+static void find_partners(struct dig_design *const design, const size_t places,
+                          double (*const normal)[DIG_DESIGN_PLACES_MAX][DIG_AXES * DIG_AXES])
+{
+    for (size_t t = 0; t < design->digs; t++) {
+        for (size_t u = 0; u < design->digs; u++) {
+            double bits = 0.0;
+            for (size_t i = 0; i < places; i++) {
+                double both[DIG_AXES * DIG_AXES];
+                for (size_t k = 0; k < DIG_DESIGN_SQUARE; k++) {
+                    both[k] = normal[t][i][k] + normal[u][i][k];
+                }
+                bits += dig_design_bits(both) / (double)places;
+            }
+            if (design->dig[t].known && design->dig[u].known && design->dig[u].simple &&
+                bits > design->dig[t].bits_partner) {
+                design->dig[t].partner      = u;
+                design->dig[t].bits_partner = bits;
+            }
+        }
+    }
+}
+
+// Simple digs by their bits, best first; what they are compared with; what they are for.
+static enum dig_status rank(const struct dig_curve_set *const set, struct dig_design *const design)
+{
+    bool   named = false;
+    size_t most  = 0;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        const struct dig_design_dig *const dig = &design->dig[t];
+        if (dig->known && set->trajectory[t].phases > most) {
+            most           = set->trajectory[t].phases;
+            design->target = t;
+        }
+        if (!dig->known || !dig->simple) {
+            continue;
+        }
+        size_t at = design->ranked++;
+        for (; at > 0 && design->dig[design->rank[at - 1]].bits < dig->bits; at--) {
+            design->rank[at] = design->rank[at - 1];
+        }
+        design->rank[at] = t;
+        if (design->ranked == 1 || (!named && strcmp(set->trajectory[t].name, "simpleA") == 0)) {
+            design->reference = t;
+            named             = strcmp(set->trajectory[t].name, "simpleA") == 0;
+        }
+    }
+    return design->ranked > 0 ? DIG_OK : DIG_EINVAL;
+}
+
+static enum dig_status weigh_all(const struct dig_response_surface *const surface,
+                                 const struct dig_scatter *const          scatter,
+                                 const struct dig_soil *const soil, struct dig_design *const design)
+{
+    const struct dig_curve_set *const set = surface->set;
+    double                            place[DIG_DESIGN_PLACES_MAX + 1][DIG_AXES];
+    const size_t                      places = make_places(surface, place);
+    double(*const normal)[DIG_DESIGN_PLACES_MAX][DIG_AXES * DIG_AXES] =
+        calloc(DIG_TRAJECTORY_MAX, sizeof *normal);
+    if (normal == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status = DIG_OK;
+    design->digs           = set->trajectories;
+    for (size_t t = 0; t < set->trajectories && status == DIG_OK; t++) {
+        struct dig_design_dig *const dig = &design->dig[t];
+        dig->known                       = surface->known[t];
+        dig->simple                      = set->trajectory[t].phases <= DIG_DESIGN_SIMPLE_PHASES;
+        dig->duration_s                  = dig_trajectory_duration_s(&set->trajectory[t]);
+        dig->path_m = dig_trajectory_path_m(&set->trajectory[t], set->tooth_m, dig->duration_s);
+        if (dig->known) {
+            status = weigh_gravel(surface, scatter, t, places, place, normal[t], dig);
+        }
+        if (dig->known && status == DIG_OK && soil != NULL) {
+            status = dig_design_effects(surface, scatter, soil, t, places,
+                                        (const double(*)[DIG_AXES])place, dig);
+        }
+    }
+    if (status == DIG_OK) {
+        find_partners(design, places, normal);
+        status = rank(set, design);
+    }
+    free(normal);
+    return status;
+}
+
+enum dig_status dig_design_run(const struct dig_response_surface *const surface,
+                               const struct dig_scatter *const          scatter,
+                               const struct dig_soil *const             soil,
+                               const struct dig_design_settings *const  settings,
+                               struct dig_design *const                 design)
+{
+    assert(surface != NULL && scatter != NULL && settings != NULL && design != NULL);
+    struct dig_design *const d      = calloc(1, sizeof *d);
+    enum dig_status          status = d != NULL ? DIG_OK : DIG_ENOMEM;
+    if (status == DIG_OK) {
+        status = weigh_all(surface, scatter, soil, d);
+    }
+    if (status == DIG_OK) {
+        status = dig_design_simulate(surface, scatter, settings, d);
+    }
+    if (status == DIG_OK) {
+        *design = *d;
+    }
+    free(d);
+    return status;
+}

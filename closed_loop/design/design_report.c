@@ -1,0 +1,174 @@
+#include "closed_loop/design/design_report.h"
+
+#include <assert.h>
+#include <math.h>
+
+static void put_row(FILE *const to, const struct dig_design *const design,
+                    const struct dig_curve_set *const set, const size_t t)
+{
+    const struct dig_design_dig *const dig = &design->dig[t];
+    (void)fprintf(to, "  %-12s %6.2f %8.2f %6.2f %6.2f %6.2f %8.2f %8.3f", set->trajectory[t].name,
+                  dig->bits, dig->bits_wrench, dig->sd[0], dig->sd[1], dig->sd[2], dig->error,
+                  dig->target_error);
+    if (dig->pairs > 0) {
+        (void)fprintf(to, "   %zu of %zu; hardest %s and %s, %.1f sigma\n", dig->apart, dig->pairs,
+                      dig_effect_name(dig->close[0]), dig_effect_name(dig->close[1]),
+                      dig->close_sigmas);
+    } else {
+        (void)fputs("   -\n", to);
+    }
+}
+
+static void put_effects(FILE *const to, const struct dig_design *const design,
+                        const struct dig_curve_set *const set)
+{
+    bool any = false;
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        for (size_t t = 0; t < design->digs; t++) {
+            any = any || design->dig[t].tells[e];
+        }
+    }
+    if (!any) {
+        return;
+    }
+    (void)fputs(
+        "\nhow far half of an effect's largest magnitude is from every plain gravel, one dig "
+        "with its forces, sigmas\n",
+        to);
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        bool has = false;
+        for (size_t t = 0; t < design->digs; t++) {
+            has = has || design->dig[t].tells[e];
+        }
+        if (has) {
+            (void)fprintf(to, "  %-16s", dig_effect_name((enum dig_effect_id)e));
+            for (size_t t = 0; t < design->digs; t++) {
+                if (design->dig[t].tells[e]) {
+                    (void)fprintf(to, "  %s %.1f", set->trajectory[t].name,
+                                  design->dig[t].sigmas[e]);
+                }
+            }
+            (void)fputs("\n", to);
+        }
+    }
+}
+
+void dig_design_text(const struct dig_design *const design, const struct dig_curve_set *const set,
+                     FILE *const to)
+{
+    assert(design != NULL && set != NULL && to != NULL && design->ranked > 0);
+    (void)fputs("bits on the gravel of one dig, by its moment and with its forces; 1 sigma left of "
+                "friction,\nrolling and density as a share of knowing nothing; the same over all "
+                "three, simulated; error of\nthe predicted target; pairs of effects told apart\n\n",
+                to);
+    (void)fprintf(to, "  %-12s %6s %8s %6s %6s %6s %8s %8s   %s\n", "simple dig", "bits", "+forces",
+                  "fric", "roll", "dens", "left", "target", "effects");
+    for (size_t i = 0; i < design->ranked; i++) {
+        put_row(to, design, set, design->rank[i]);
+    }
+    (void)fputs("  not simple, for comparison:\n", to);
+    for (size_t t = 0; t < design->digs; t++) {
+        if (design->dig[t].known && !design->dig[t].simple) {
+            put_row(to, design, set, t);
+        }
+    }
+    put_effects(to, design, set);
+
+    const size_t best = design->rank[0];
+    (void)fprintf(to, "\nrecommended: %s; a second dig tells most along %s (%.2f bits together)\n",
+                  set->trajectory[best].name, set->trajectory[design->dig[best].partner].name,
+                  design->dig[best].bits_partner);
+    if (best == design->reference) {
+        (void)fputs("which is the dig to compare with\n", to);
+        return;
+    }
+    (void)fprintf(
+        to,
+        "simulated on %zu gravels: squared error of the gravel by %s less that by %s %.4f, "
+        "90 %% interval %.4f to %.4f: %s\n",
+        design->draws, set->trajectory[design->reference].name, set->trajectory[best].name,
+        design->gain, design->gain_low, design->gain_high,
+        design->confirmed ? "it identifies better" : "not shown to identify better");
+}
+
+static void put_number(FILE *const to, const char *const before, const char *const key,
+                       const double value)
+{
+    if (isfinite(value)) {
+        (void)fprintf(to, "%s\"%s\": %.6g", before, key, value);
+    } else {
+        (void)fprintf(to, "%s\"%s\": null", before, key);
+    }
+}
+
+static void put_axes(FILE *const to, const char *const key, const double value[DIG_AXES])
+{
+    (void)fprintf(to, ",\n   \"%s\": {", key);
+    for (int a = 0; a < DIG_AXES; a++) {
+        put_number(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a), value[a]);
+    }
+    (void)fputs("}", to);
+}
+
+static void put_dig(FILE *const to, const struct dig_design *const design,
+                    const struct dig_curve_set *const set, const size_t t)
+{
+    const struct dig_design_dig *const dig = &design->dig[t];
+    (void)fprintf(to, "\n  {\"trajectory\": \"%s\", \"simple\": %s", set->trajectory[t].name,
+                  dig->simple ? "true" : "false");
+    put_number(to, ", ", "duration_s", dig->duration_s);
+    put_number(to, ", ", "path_m", dig->path_m);
+    put_number(to, ",\n   ", "bits", dig->bits);
+    put_number(to, ", ", "bits_with_forces", dig->bits_wrench);
+    (void)fprintf(to, ", \"partner\": \"%s\"", set->trajectory[dig->partner].name);
+    put_number(to, ", ", "bits_with_partner", dig->bits_partner);
+    put_axes(to, "sd_left", dig->sd);
+    put_axes(to, "simulated_left", dig->error_axis);
+    put_number(to, ", ", "simulated_left_all", dig->error);
+    put_number(to, ", ", "simulated_target_error", dig->target_error);
+    (void)fputs(",\n   \"effects\": {", to);
+    bool first = true;
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        if (dig->tells[e]) {
+            put_number(to, first ? "" : ", ", dig_effect_name((enum dig_effect_id)e),
+                       dig->sigmas[e]);
+            first = false;
+        }
+    }
+    (void)fprintf(to, "}, \"pairs\": %zu, \"pairs_apart\": %zu", dig->pairs, dig->apart);
+    if (dig->pairs > 0) {
+        (void)fprintf(to, ", \"hardest\": [\"%s\", \"%s\"]", dig_effect_name(dig->close[0]),
+                      dig_effect_name(dig->close[1]));
+        put_number(to, ", ", "hardest_sigmas", dig->close_sigmas);
+    }
+    (void)fputs("}", to);
+}
+
+void dig_design_json(const struct dig_design *const design, const struct dig_curve_set *const set,
+                     FILE *const to)
+{
+    assert(design != NULL && set != NULL && to != NULL && design->ranked > 0);
+    (void)fprintf(
+        to,
+        "{\"recommended\": \"%s\", \"reference\": \"%s\", \"target\": \"%s\", \"draws\": %zu,\n",
+        set->trajectory[design->rank[0]].name, set->trajectory[design->reference].name,
+        set->trajectory[design->target].name, design->draws);
+    put_number(to, " \"gain\": {", "value", design->gain);
+    put_number(to, ", ", "low", design->gain_low);
+    put_number(to, ", ", "high", design->gain_high);
+    (void)fprintf(to, "}, \"confirmed\": %s,\n \"ranking\": [",
+                  design->confirmed ? "true" : "false");
+    for (size_t i = 0; i < design->ranked; i++) {
+        (void)fprintf(to, "%s\"%s\"", i == 0 ? "" : ", ", set->trajectory[design->rank[i]].name);
+    }
+    (void)fputs("],\n \"digs\": [", to);
+    bool first = true;
+    for (size_t t = 0; t < design->digs; t++) {
+        if (design->dig[t].known) {
+            (void)fputs(first ? "" : ",", to);
+            put_dig(to, design, set, t);
+            first = false;
+        }
+    }
+    (void)fputs("]}\n", to);
+}

@@ -1,0 +1,273 @@
+#include "closed_loop/machine/machine_fit.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// How wide the prior of an effect may be, in its parameters' scales. With one width for all, a weak
+// effect of many parameters would be given to another that has fewer.
+static const double width[] = { 1.0, 0.25, 0.0625, 0.015625 };
+enum { WIDTHS = sizeof width / sizeof width[0] };
+
+enum dig_status dig_fit_make(const struct dig_lines *const lines, struct dig_fit *const fit)
+{
+    assert(lines != NULL && fit != NULL);
+    const size_t   n    = lines->columns;
+    struct dig_fit made = {
+        .lines      = lines,
+        .slope_rest = malloc(n * sizeof(double)),
+        .slope2     = malloc(n * n * sizeof(double)),
+        .work       = malloc((n * n + 3 * n) * sizeof(double)),
+        .s2         = 1.0,
+    };
+    if (made.slope_rest == NULL || made.slope2 == NULL || made.work == NULL) {
+        dig_fit_finish(&made);
+        return DIG_ENOMEM;
+    }
+    *fit = made;
+    return DIG_OK;
+}
+
+void dig_fit_finish(struct dig_fit *const fit)
+{
+    if (fit != NULL) {
+        free(fit->slope_rest);
+        free(fit->slope2);
+        free(fit->work);
+        *fit = (struct dig_fit){ .rows = 0.0 };
+    }
+}
+
+// L of H = L L^T in place of its lower triangle; the log of its determinant.
+static double decompose(const size_t n, double h[])
+{
+    double log_det = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            double sum = h[i * n + j];
+            for (size_t k = 0; k < j; k++) {
+                sum -= h[i * n + k] * h[j * n + k];
+            }
+            if (i == j) {
+                const double root = sqrt(fmax(sum, 1e-12));
+                h[i * n + i]      = root;
+                log_det += 2.0 * log(root);
+            } else {
+                h[i * n + j] = sum / h[j * n + j];
+            }
+        }
+    }
+    return log_det;
+}
+
+static void substitute(const size_t n, const double l[], double x[])
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < i; k++) {
+            x[i] -= l[i * n + k] * x[k];
+        }
+        x[i] /= l[i * n + i];
+    }
+    for (size_t i = n; i-- > 0;) {
+        for (size_t k = i + 1; k < n; k++) {
+            x[i] -= l[k * n + i] * x[k];
+        }
+        x[i] /= l[i * n + i];
+    }
+}
+
+// The columns of a set that are solved for; how many.
+static size_t columns_of(const struct dig_lines *const lines, const unsigned set, size_t column[])
+{
+    size_t n = 0;
+    for (size_t c = 0; c < lines->columns; c++) {
+        if (((set >> lines->column[c].effect) & 1U) != 0 && !dig_lines_is_bent(lines, c)) {
+            column[n++] = c;
+        }
+    }
+    return n;
+}
+
+// As dig_fit_solve(), with priors of one width, not counted.
+static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
+                     struct dig_fit_answer *const answer)
+{
+    enum { MOST = DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + 2 * DIG_MEASURED_MAX };
+    const size_t  all = fit->lines->columns;
+    size_t        column[MOST];
+    double        x[MOST];
+    const size_t  n     = columns_of(fit->lines, set, column);
+    double *const h     = fit->work;
+    const double  share = width[wide];
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            h[i * n + j] = share * share * fit->slope2[column[i] * all + column[j]] / fit->s2;
+        }
+        h[i * n + i] += 1.0;
+        x[i] = -share * fit->slope_rest[column[i]] / fit->s2;
+    }
+    const double log_det = decompose(n, h);
+    substitute(n, h, x);
+
+    double gain  = 0.0;
+    double size2 = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        gain -= x[i] * share * fit->slope_rest[column[i]] / fit->s2;
+        size2 += x[i] * x[i];
+    }
+    answer->log_evidence = 0.5 * (gain - log_det);
+    answer->rest2        = fit->rest2 - fit->s2 * (gain + size2);
+    answer->width        = share;
+    if (answer->at != NULL) {
+        memset(answer->at, 0, all * sizeof(double));
+        for (size_t i = 0; i < n; i++) {
+            answer->at[column[i]] = share * x[i];
+        }
+    }
+    for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
+        double one[MOST];
+        memset(one, 0, n * sizeof one[0]);
+        one[i] = 1.0;
+        substitute(n, h, one);
+        if (answer->sigma != NULL) {
+            answer->sigma[column[i]] = share * sqrt(fmax(one[i], 0.0));
+        }
+        for (size_t j = 0; j < n && answer->covariance != NULL; j++) {
+            answer->covariance[column[i] * all + column[j]] = share * share * one[j];
+        }
+    }
+}
+
+// Moves the equations from where the lines are to all absent; bent columns stay.
+static void move_to_absent(struct dig_fit *const fit)
+{
+    const struct dig_lines *const lines = fit->lines;
+    const size_t                  n     = lines->columns;
+    double *const                 back  = fit->work; // how far each goes
+    for (size_t c = 0; c < n; c++) {
+        back[c] = dig_lines_is_bent(lines, c) ? 0.0 : -lines->at[c];
+    }
+    for (size_t a = 0; a < n; a++) {
+        double sum = 0.0;
+        for (size_t b = 0; b < n; b++) {
+            sum += fit->slope2[a * n + b] * back[b];
+        }
+        fit->rest2 += back[a] * (2.0 * fit->slope_rest[a] + sum);
+        fit->work[n + a] = sum;
+    }
+    for (size_t a = 0; a < n; a++) {
+        fit->slope_rest[a] += fit->work[n + a];
+    }
+}
+
+void dig_fit_sum(struct dig_fit *const fit, const double weight[])
+{
+    assert(fit != NULL && weight != NULL);
+    const size_t n = fit->lines->columns;
+    fit->rows      = 0.0;
+    fit->rest2     = 0.0;
+    memset(fit->slope_rest, 0, n * sizeof(double));
+    memset(fit->slope2, 0, n * n * sizeof(double));
+    for (size_t d = 0; d < fit->lines->digs; d++) {
+        const struct dig_lines_normal *const normal = &fit->lines->normal[d];
+        const double                         w      = weight[d];
+        if (!(w > 0.0)) {
+            continue;
+        }
+        fit->rows += w * (double)normal->rows;
+        fit->rest2 += w * normal->rest2;
+        for (size_t a = 0; a < n; a++) {
+            fit->slope_rest[a] += w * normal->slope_rest[a];
+        }
+        for (size_t i = 0; i < n * n; i++) {
+            fit->slope2[i] += w * normal->slope2[i];
+        }
+    }
+    move_to_absent(fit);
+
+    struct dig_fit_answer best = { .at = NULL };
+    fit->s2                    = 1.0;
+    solve_at(fit, DIG_MACHINE_ALL_EFFECTS, 0, &best);
+    const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);
+    fit->s2                = fmax(1.0, best.rest2 / fmax(free_rows, 1.0));
+}
+
+// The width that gives one effect the most evidence. Of several, none is narrow: a weak one beside
+// another is what the other's formula lacks.
+static size_t width_of(const struct dig_fit *const fit, const unsigned set)
+{
+    struct dig_fit_answer best = { .log_evidence = -INFINITY };
+    size_t                wide = 0;
+    for (size_t w = 0; (set & (set - 1U)) == 0 && w < WIDTHS; w++) {
+        struct dig_fit_answer tried = { .at = NULL };
+        solve_at(fit, set, w, &tried);
+        if (tried.log_evidence > best.log_evidence) {
+            best = tried;
+            wide = w;
+        }
+    }
+    return wide;
+}
+
+void dig_fit_solve(const struct dig_fit *const fit, const unsigned set,
+                   struct dig_fit_answer *const answer)
+{
+    assert(fit != NULL && answer != NULL);
+    solve_at(fit, set, width_of(fit, set), answer);
+    answer->log_evidence -= set != 0 ? log(WIDTHS) : 0.0;
+}
+
+void dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
+                        struct dig_fit_answer *const answer)
+{
+    assert(fit != NULL && answer != NULL);
+    solve_at(fit, set, 0, answer);
+}
+
+double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)
+{
+    assert(fit != NULL);
+    struct dig_fit_answer answer = { .at = NULL };
+    dig_fit_solve(fit, set, &answer);
+    return answer.log_evidence;
+}
+
+// The effect whose change gains most, and the gain.
+static double best_change(const struct dig_fit *const fit, const unsigned set, const bool adds,
+                          unsigned *const changed)
+{
+    const double now  = dig_fit_evidence(fit, set);
+    double       best = -INFINITY;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        const unsigned bit = 1U << e;
+        if (((set & bit) == 0) == adds) {
+            const double gain = dig_fit_evidence(fit, set ^ bit) - now;
+            if (gain > best) {
+                best     = gain;
+                *changed = set ^ bit;
+            }
+        }
+    }
+    return best;
+}
+
+unsigned dig_fit_select(const struct dig_fit *const fit, const double least, unsigned set)
+{
+    assert(fit != NULL);
+    for (int step = 0; step < DIG_MACHINE_EFFECTS; step++) {
+        unsigned more = set;
+        if (!(best_change(fit, set, true, &more) > least)) {
+            break;
+        }
+        set = more;
+        for (int back = 0; back < DIG_MACHINE_EFFECTS && set != 0; back++) {
+            unsigned less = set;
+            if (!(best_change(fit, set, false, &less) > -least)) {
+                break;
+            }
+            set = less;
+        }
+    }
+    return set;
+}

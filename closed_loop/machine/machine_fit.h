@@ -1,0 +1,66 @@
+// Which effects of the machine the equations of free air ask for, and with what values.
+//
+// Linear in theta with independent normal priors (here of unit width), noise of variance s2 (never
+// below the sensors'), the evidence of a set of effects is closed form: with H = I + A / s2 over
+// its columns and b = -g / s2,
+//
+//   log evidence = ( b^T H^-1 b - log det H ) / 2                       against no effect at all
+//
+// so a parameter that the air does not tell costs nothing and earns nothing. How wide the
+// prior of one effect is, is not known before: a few widths are tried, and the best is counted as
+// the share that it has in their mean, at least. Under no effect the evidence ratio has mean 1,
+// hence exceeds K with a chance of at most 1 / K (Ville): an effect joins when the ratio exceeds
+// candidates / false_alarm.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_FIT_H
+#define DIG_CLOSED_LOOP_MACHINE_MACHINE_FIT_H
+
+#include "closed_loop/machine/machine_lines.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// Normal equations summed over digs, at all parameters absent. Free with dig_fit_finish().
+struct dig_fit {
+    const struct dig_lines *lines;
+    double                  rows, rest2;
+    double                 *slope_rest, *slope2; // as struct dig_lines_normal
+    double                  s2;                  // variance of the noise in the rows' sigmas
+    double                 *work;
+};
+
+/// One set of effects, solved.
+struct dig_fit_answer {
+    double  log_evidence;
+    double  rest2; // that remains
+    double  width; // of the prior
+    double *at;    // [columns], 0 where not of the set; owned by the caller
+    double *sigma; // [columns]; may be NULL
+    // [columns * columns], 0 where not of the set; may be NULL
+    double *covariance;
+};
+
+DIG_MUST_CHECK enum dig_status dig_fit_make(const struct dig_lines *lines, struct dig_fit *fit);
+void                           dig_fit_finish(struct dig_fit *fit);
+
+/// Sums the digs with these weights (how often each counts) and takes s2 from what all effects
+/// together leave.
+void dig_fit_sum(struct dig_fit *fit, const double weight[]);
+
+/// Solves for the effects of the set, a bit each of enum dig_effect_id. A bent column stays where
+/// the lines have it. at and sigma of *answer are filled.
+void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
+
+/// The same with priors as wide as the parameters' scales, which hold the more the less the air
+/// tells of a parameter.
+void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
+
+/// The log evidence of a set alone.
+double dig_fit_evidence(const struct dig_fit *fit, unsigned set);
+
+/// Adds effects to the set while the log evidence grows by least at least, the best one each time;
+/// then takes out what it no longer needs.
+unsigned dig_fit_select(const struct dig_fit *fit, double least, unsigned set);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_FIT_H

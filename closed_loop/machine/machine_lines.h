@@ -1,0 +1,77 @@
+// Free air made linear: how its equations change with every parameter of every effect of the
+// machine, around values the parameters have.
+//
+//   rest(theta) = rest + sum over columns of slope * (theta - at)      every row in its own sigmas
+//
+// A column is one parameter in units of its scale, 1 sigma of what is likely before anything is
+// measured. Payload is the same in all segments but the one before the first dig, and besides may
+// be another in each: one column more for every segment.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
+#define DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
+
+#include "closed_loop/machine/machine_air.h"
+#include "core/effect.h"
+#include "core/model.h"
+
+#define DIG_MACHINE_EFFECTS     (DIG_EFFECT_SENSOR_DELAY + 1)
+#define DIG_MACHINE_ALL_EFFECTS ((1U << DIG_MACHINE_EFFECTS) - 1U)
+
+struct dig_lines_column {
+    enum dig_effect_id effect;
+    size_t             parameter;
+    int                segment; // of its own, or -1: all
+    double             scale;
+};
+
+/// Normal equations of one dig: slope^T slope, slope^T rest, rest^T rest over its rows.
+struct dig_lines_normal {
+    size_t  rows;
+    double  rest2;
+    double *slope_rest; // [columns]
+    double *slope2;     // [columns * columns]
+};
+
+/// Free with dig_lines_finish().
+struct dig_lines {
+    struct dig_air          *air;
+    size_t                   columns;
+    struct dig_lines_column *column;
+    double                  *at;     // [columns], in scales from absent
+    size_t                   digs;   // those of the air, in its order
+    size_t                  *dig;    // [segments] which of them a segment is of
+    struct dig_lines_normal *normal; // [digs]
+    double                  *trust;  // [rows] what each row's rest and slopes are multiplied by
+};
+
+/// Adds a payload of one's own, which lies where the common one does; where there is hardly any, in
+/// the bucket's centre of mass.
+void dig_lines_carry(double own_kg, const struct dig_burden *common, struct dig_burden *payload);
+
+/// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);
+
+void dig_lines_finish(struct dig_lines *lines);
+
+/// Makes the equations linear around at, for the effects of the set (a bit each); columns of others
+/// count as without effect. Two evaluations of the air a column: some tenths of a second for all.
+/// DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_update(struct dig_lines *lines, unsigned set);
+
+/// Trusts every row as far as the form of what is explained of it where the lines stand can be
+/// trusted, and tells how much is left in the means of segments: chi-squared, one degree of freedom
+/// for every segment and joint. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_judge(struct dig_lines *lines, double *slow);
+
+/// What is left of every row in its sigmas at other values, not linear, trusted or not: rest[rows].
+/// DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lines_rest(const struct dig_lines *lines, const double at[],
+                                              double rest[]);
+
+/// The sum of rest^2 at other values, as far as rows are trusted. INFINITY when there is no memory.
+double dig_lines_rest2(const struct dig_lines *lines, const double at[]);
+
+/// True for a column that only counts once its effect is in: the speed of a Stribeck friction.
+bool dig_lines_is_bent(const struct dig_lines *lines, size_t column);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H

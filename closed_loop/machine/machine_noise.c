@@ -1,0 +1,88 @@
+#include "closed_loop/machine/machine_noise.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// So many differences of blocks tell their size to a sixth.
+enum { LEAST = 16 };
+
+// Blocks two apart share little noise; neighbours share so much of it that those two apart differ
+// by so much more. What differs by more than that is no noise but goes on: a ripple of seconds.
+static const double more_two_apart = 1.2;
+
+// The median of the size of a normal number, in its sigmas.
+static const double median_size = 0.6745;
+
+// Less than this is within what the rows of white noise differ by.
+static const double least_more = 1.25;
+
+static int ascending(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// What the rows of a joint differ by so many blocks apart, in the sigmas of one; 1 where too few
+// tell. room: [rows].
+static double difference(const struct dig_air *const air, const double rest[],
+                         const enum dig_joint joint, const size_t apart, double room[])
+{
+    size_t n = 0;
+    for (size_t a = 0; a < air->rows; a++) {
+        const struct dig_air_row *const row = &air->row[a];
+        for (size_t b = a + 1;
+             row->joint == joint && b < air->rows && air->row[b].segment == row->segment &&
+             air->row[b].first <= row->first + apart * row->points;
+             b++) {
+            if (air->row[b].joint == joint &&
+                air->row[b].first == row->first + apart * row->points) {
+                room[n++] = fabs(rest[b] - rest[a]);
+            }
+        }
+    }
+    if (n < LEAST) {
+        return 1.0;
+    }
+    qsort(room, n, sizeof room[0], ascending);
+    return room[n / 2] / (median_size * sqrt(2.0));
+}
+
+static double scatter_of(const struct dig_air *const air, const double rest[],
+                         const enum dig_joint joint, double room[])
+{
+    return fmin(difference(air, rest, joint, 2, room),
+                more_two_apart * difference(air, rest, joint, 1, room));
+}
+
+enum dig_status dig_machine_noise_widen(struct dig_lines *const lines, const double at[],
+                                        bool *const widened)
+{
+    assert(lines != NULL && at != NULL && widened != NULL);
+    struct dig_air *const air  = lines->air;
+    const size_t          rows = air->rows + 1;
+
+    double *const   none   = calloc(lines->columns + 1, sizeof *none);
+    double *const   room   = malloc(3 * rows * sizeof *room);
+    enum dig_status status = none != NULL && room != NULL ? DIG_OK : DIG_ENOMEM;
+    if (status == DIG_OK) {
+        status = dig_lines_rest(lines, none, room + rows);
+    }
+    if (status == DIG_OK) {
+        status = dig_lines_rest(lines, at, room + 2 * rows);
+    }
+    *widened = false;
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        const enum dig_joint joint = (enum dig_joint)j;
+        const double         more  = fmin(scatter_of(air, room + rows, joint, room),
+                                          scatter_of(air, room + 2 * rows, joint, room));
+        for (size_t r = 0; r < air->rows && more > least_more; r++) {
+            air->row[r].sigma_N *= air->row[r].joint == joint ? more : 1.0;
+        }
+        *widened = *widened || more > least_more;
+    }
+    free(none);
+    free(room);
+    return status;
+}

@@ -1,0 +1,130 @@
+#include "closed_loop/machine/machine_side.h"
+
+#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/recordings/reading_noise.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "closed_loop/machine/machine_side_private.h"
+
+enum dig_status dig_machine_side_create(const struct dig_machine *const   machine,
+                                        const struct dig_curve_set *const set, const size_t digs,
+                                        const struct dig_machine_recording recording[],
+                                        struct dig_measured                measured[],
+                                        struct dig_machine_side **const    side,
+                                        struct dig_error *const            error)
+{
+    assert(machine != NULL && set != NULL && side != NULL);
+    assert(digs == 0 || (recording != NULL && measured != NULL));
+    struct dig_machine_side *const made = calloc(1, sizeof *made);
+    if (made == NULL || digs > DIG_MEASURED_MAX) {
+        free(made);
+        return dig_error_set(error, made == NULL ? DIG_ENOMEM : DIG_EINVAL,
+                             "%zu machine recordings, expected at most %d", digs, DIG_MEASURED_MAX);
+    }
+    made->machine = *machine;
+    made->set     = set;
+    dig_reading_noise_raise(&made->machine, digs, recording);
+    for (size_t d = 0; d < digs; d++) {
+        struct dig_error why    = { "" };
+        enum dig_status  status = dig_machine_dig_make(&made->machine, set, &recording[d],
+                                                       measured[d].trajectory, &made->dig[d], &why);
+        if (status == DIG_OK) {
+            made->digs = d + 1;
+            status =
+                dig_machine_dig_measure(&made->machine, set, &made->dig[d],
+                                        &(struct dig_correction){ .delay_s = 0.0 }, &measured[d]);
+            (void)dig_error_set(&why, status,
+                                "its moment is not told: a pressure at relief or a "
+                                "drive at its stop for more than a tenth of the dig");
+        }
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: %s", measured[d].name, why.text);
+            dig_machine_side_destroy(made);
+            return status;
+        }
+        made->used[d] = measured[d].use != DIG_USE_HOLDOUT;
+    }
+    *side = made;
+    return DIG_OK;
+}
+
+void dig_machine_side_destroy(struct dig_machine_side *const side)
+{
+    if (side == NULL) {
+        return;
+    }
+    for (size_t d = 0; d < side->digs; d++) {
+        dig_machine_dig_finish(&side->dig[d]);
+    }
+    free(side);
+}
+
+// The common payload, which the first dig lacks, and the dig's own.
+static void carry(const struct dig_machine_side *const side, const double value[], const size_t dig,
+                  struct dig_burden *const payload)
+{
+    struct dig_correction common = { .delay_s = 0.0 };
+    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value, &common);
+    *payload = dig > 0 ? common.payload : (struct dig_burden){ .mass_kg = 0.0 };
+    dig_lines_carry(side->own_payload_kg[dig], &common.payload, payload);
+}
+
+// What the effects of the machine among these say of one dig.
+static enum dig_status correction_of(const struct dig_machine_side *const side,
+                                     const size_t effects, const struct dig_model_effect effect[],
+                                     const size_t dig, struct dig_correction *const correction)
+{
+    struct dig_correction sum = { .delay_s = 0.0 };
+    for (size_t e = 0; e < effects; e++) {
+        const enum dig_effect_id id = effect[e].effect;
+        if (!dig_effect_is_of_machine(id)) {
+            continue;
+        }
+        double                value[DIG_MODEL_PARAMETERS_MAX];
+        const enum dig_status status = dig_effect_values(&effect[e], value);
+        if (status != DIG_OK) {
+            return status;
+        }
+        if (id == DIG_EFFECT_PAYLOAD) {
+            carry(side, value, dig, &sum.payload);
+        } else {
+            dig_effect_of(id)->correct(value, &sum);
+        }
+    }
+    *correction = sum;
+    return DIG_OK;
+}
+
+enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side,
+                                       const size_t effects, const struct dig_model_effect effect[],
+                                       struct dig_measured measured[])
+{
+    assert(side != NULL && (side->digs == 0 || measured != NULL));
+    struct dig_measured *const corrected = malloc(sizeof *corrected);
+    if (corrected == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status = DIG_OK;
+    for (size_t d = 0; d < side->digs && status == DIG_OK; d++) {
+        struct dig_correction correction;
+        status = correction_of(side, effects, effect, d, &correction);
+        if (status == DIG_OK) {
+            *corrected = measured[d];
+            status = dig_machine_dig_values(&side->machine, side->set, &side->dig[d], &correction,
+                                            corrected);
+        }
+        for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
+            const bool both = measured[d].measured[c] && corrected->measured[c];
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                measured[d].machine[c][k] =
+                    both ? measured[d].value[c][k] - corrected->value[c][k] : 0.0;
+            }
+        }
+    }
+    free(corrected);
+    return status;
+}

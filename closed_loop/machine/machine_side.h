@@ -1,0 +1,68 @@
+// The effects of the machine, traced in free air: before contact and after the dump the soil does
+// nothing, so what is left of the bucket's moment is the machine's own.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
+#define DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
+
+#include "closed_loop/model/candidate.h"
+#include "closed_loop/recordings/measured.h"
+#include "core/machine.h"
+#include "core/recording.h"
+
+struct dig_machine_side; // samples of all machine recordings of a campaign
+
+/// Takes machine recordings, one dig each, in the campaign's order, and places each dig on the
+/// table's grid: *measured (all of it but machine, with name, order, use and pass as given) is
+/// filled for each. trajectory says which dig to look for, -1: any of the table's. Froude's scale:
+/// machine's tooth length / table's. DIG_ENOMATCH: a recording holds no dig along its trajectory
+/// (*error names which). Free with dig_machine_side_destroy().
+DIG_MUST_CHECK enum dig_status
+dig_machine_side_create(const struct dig_machine *machine, const struct dig_curve_set *set,
+                        size_t digs, const struct dig_machine_recording recording[],
+                        struct dig_measured measured[], struct dig_machine_side **side,
+                        struct dig_error *error);
+
+void dig_machine_side_destroy(struct dig_machine_side *side);
+
+/// What free air leaves open of an effect's parameters: they are value and, for z of normal
+/// distribution, the sum over k of z[k] step[k]. With priors as wide as their scales: the narrow
+/// one that an effect is weighed with (machine_fit.h) says nothing of what free air does not tell.
+struct dig_machine_doubt {
+    size_t steps; // as many as parameters
+    double value[DIG_MODEL_PARAMETERS_MAX];
+    double step[DIG_MODEL_PARAMETERS_MAX][DIG_MODEL_PARAMETERS_MAX]; // [k][parameter]
+};
+
+/// What free air says.
+struct dig_machine_finding {
+    bool                     significant; // something of the machine is missing
+    double                   p_complete;
+    bool                     no_air;       // in the recordings: nothing was traced
+    double                   residual_air; // rms over the rms expected
+    double                   residual_air_of[DIG_MEASURED_MAX]; // the same dig by dig; NaN: no air
+    size_t                   effects;                           // found, most certain first
+    struct dig_model_effect  effect[DIG_MODEL_EFFECTS_MAX];
+    size_t                   candidates;
+    struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
+    struct dig_machine_doubt doubt[DIG_TRACE_CANDIDATES_MAX];     // of each
+    size_t                   sets;
+    struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
+    bool                     by_digs;     // effect[0] is of free air and the digs together
+    bool                     unexplained; // significant, and no effect of the machine explains it
+    const char *follows; // what pressures that drift then follow, for people; NULL: not told
+};
+
+/// Traces in the air of the fit and identify digs only, at this false-alarm rate, and remembers
+/// what payload each of them carried beyond the one they have in common. Seconds.
+DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *side,
+                                                      double false_alarm, uint64_t seed,
+                                                      struct dig_machine_finding *finding);
+
+/// Writes into measured[].machine what these effects (those of the machine among them) add to the
+/// measured curves of every dig; a payload, in a dig that was traced in, as much as that dig's was.
+DIG_MUST_CHECK enum dig_status dig_machine_side_apply(const struct dig_machine_side *side,
+                                                      size_t                         effects,
+                                                      const struct dig_model_effect  effect[],
+                                                      struct dig_measured            measured[]);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H

@@ -1,0 +1,512 @@
+// The search for what is missing of the machine: effects join one after the other, and after each
+// the equations are made linear again where it has led.
+
+#include "closed_loop/machine/machine_drift.h"
+#include "closed_loop/machine/machine_fit.h"
+#include "closed_loop/machine/machine_noise.h"
+#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/machine/machine_side_private.h"
+#include "closed_loop/numeric/dense.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6, MOST_AT_ONCE = 2 };
+
+// Air that leaves more than this of a row's variance is not understood.
+static const double unclear_rest2 = 1.2;
+
+// Nor is air whose means over segments leave this much more than chi-squared should, in its sigmas.
+static const double unclear_sigmas = 5.0;
+
+// Of noise told by the air itself, that of both may be more: it is known from some dozens of
+// blocks, and may still move from one to the next.
+static const double own_noise = 1.4;
+
+// Two sets of effects whose log evidence differs by less cannot be told apart.
+static const double tie = 5.0;
+
+// 5 % and 95 % of a normal distribution, in its sigmas.
+static const double ninety = 1.645;
+
+// In a parameter's scale squared: as good as none.
+static const double least_variance = 1e-10;
+
+struct search {
+    struct dig_air           air;
+    struct dig_lines         lines;
+    struct dig_fit           fit;
+    double                  *at, *sigma, *covariance;
+    unsigned                 set;
+    double                   noise2;     // variance that rows may have without being unclear
+    double                   least;      // log evidence that an effect must bring
+    double                   rest2_none; // without any effect, not linear
+    double                   rest2; // with the set, not linear, rows as far as they are trusted
+    double                   slow;  // of it, in the means of segments: chi-squared
+    double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
+    struct dig_machine_drift drift;                     // that explains as much as the set, or none
+};
+
+static void search_finish(struct search *const s)
+{
+    dig_fit_finish(&s->fit);
+    dig_lines_finish(&s->lines);
+    dig_air_finish(&s->air);
+    free(s->at);
+    free(s->sigma);
+    free(s->covariance);
+}
+
+static enum dig_status search_make(const struct dig_machine_side *const side,
+                                   struct search *const                 s)
+{
+    enum dig_status status =
+        dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
+    if (status == DIG_OK) {
+        status = dig_lines_make(&s->air, &s->lines);
+    }
+    if (status == DIG_OK) {
+        status = dig_fit_make(&s->lines, &s->fit);
+    }
+    if (status == DIG_OK) {
+        s->at         = calloc(s->lines.columns, sizeof(double));
+        s->sigma      = calloc(s->lines.columns, sizeof(double));
+        s->covariance = calloc(s->lines.columns * s->lines.columns, sizeof(double));
+        status = s->at != NULL && s->sigma != NULL && s->covariance != NULL ? DIG_OK : DIG_ENOMEM;
+    }
+    return status;
+}
+
+static void sum_all(struct search *const s)
+{
+    double weight[DIG_MEASURED_MAX];
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        weight[d] = 1.0;
+    }
+    dig_fit_sum(&s->fit, weight);
+}
+
+static double penalty(const struct search *const s, const double at[], const double width)
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        sum += pow(at[c] / width, 2.0);
+    }
+    return s->fit.s2 * sum;
+}
+
+// Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
+static enum dig_status refine(struct search *const s)
+{
+    const size_t n = s->lines.columns;
+    for (int i = 0; i < REFINEMENTS; i++) {
+        const enum dig_status status = dig_lines_update(&s->lines, s->set);
+        if (status != DIG_OK) {
+            return status;
+        }
+        const double s2 = s->fit.s2;
+        sum_all(s);
+        s->fit.s2                    = s2; // of all effects together, which these are not
+        struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+        dig_fit_solve(&s->fit, s->set, &answer);
+
+        const double now =
+            dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at, answer.width);
+        double moved = 0.0;
+        for (int halved = 0; halved < 6; halved++) {
+            const double share = ldexp(1.0, -halved);
+            for (size_t c = 0; c < n; c++) {
+                s->sigma[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
+            }
+            if (dig_lines_rest2(&s->lines, s->sigma) + penalty(s, s->sigma, answer.width) <= now) {
+                for (size_t c = 0; c < n; c++) {
+                    moved          = fmax(moved, fabs(s->sigma[c] - s->lines.at[c]));
+                    s->lines.at[c] = s->sigma[c];
+                }
+                break;
+            }
+        }
+        if (moved < 0.005) {
+            break;
+        }
+    }
+    enum dig_status status = dig_lines_judge(&s->lines, &s->slow);
+    if (status == DIG_OK) {
+        s->rest2 = dig_lines_rest2(&s->lines, s->lines.at);
+        status   = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    }
+    if (status == DIG_OK) {
+        sum_all(s);
+    }
+    return status;
+}
+
+// The equations without any effect, rows as far as their own scatter lets them be known.
+static enum dig_status begin(struct search *const s)
+{
+    bool            widened = false;
+    enum dig_status status  = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    if (status == DIG_OK) {
+        struct dig_fit_answer all = { .at = s->at };
+        sum_all(s);
+        dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+        status = dig_machine_noise_widen(&s->lines, s->at, &widened);
+    }
+    if (status == DIG_OK && widened) {
+        status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+        sum_all(s);
+    }
+    s->noise2 = widened ? own_noise : 1.0;
+    return status == DIG_OK ? dig_lines_judge(&s->lines, &s->slow) : status;
+}
+
+// What is left of the rows of each dig where the lines stand, for a report.
+static enum dig_status rest_by_dig(struct search *const s)
+{
+    double *const   rest                    = malloc((s->air.rows + 1) * sizeof *rest);
+    double          count[DIG_MEASURED_MAX] = { 0.0 };
+    double          sum[DIG_MEASURED_MAX]   = { 0.0 };
+    enum dig_status status =
+        rest != NULL ? dig_lines_rest(&s->lines, s->lines.at, rest) : DIG_ENOMEM;
+    for (size_t r = 0; r < s->air.rows && status == DIG_OK; r++) {
+        const size_t d = s->air.segment[s->air.row[r].segment].dig;
+        sum[d] += pow(s->lines.trust[r] * rest[r], 2.0);
+        count[d] += 1.0;
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        s->none_of[d] = count[d] > 0.0 ? sqrt(sum[d] / count[d]) : (double)NAN;
+    }
+    free(rest);
+    return status;
+}
+
+// In scales.
+static double common_payload(const struct search *const s)
+{
+    double payload = 0.0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 && column->segment < 0) {
+            payload = s->lines.at[c];
+        }
+    }
+    return payload;
+}
+
+// A first dig that carried more than the others looks like a bucket that is heavier and carries
+// less than nothing.
+static enum dig_status take_weight_for_payload(struct search *const s)
+{
+    static const unsigned weighs = 1U << DIG_EFFECT_BUCKET_WEIGHT;
+    if ((s->set & weighs) == 0 || !(common_payload(s) < 0.0)) {
+        return DIG_OK;
+    }
+    s->set &= ~weighs;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const bool gone = s->lines.column[c].effect == DIG_EFFECT_BUCKET_WEIGHT ||
+                          s->lines.column[c].effect == DIG_EFFECT_PAYLOAD;
+        s->lines.at[c] = gone ? 0.0 : s->lines.at[c];
+    }
+    return refine(s);
+}
+
+// Effects join until none earns its place.
+static enum dig_status select_effects(struct search *const s)
+{
+    static const unsigned rubs   = 1U << DIG_EFFECT_CYLINDER_FRICTION;
+    enum dig_status       status = begin(s);
+    if (status == DIG_OK) {
+        status = rest_by_dig(s);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
+    s->rest2      = s->rest2_none;
+    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+        // Where the first steps have led, others may do better, and some may not be needed.
+        const unsigned before = s->set;
+        const unsigned anew   = dig_fit_select(&s->fit, s->least, 0);
+        const unsigned more   = dig_fit_select(&s->fit, s->least, before);
+        s->set = dig_fit_evidence(&s->fit, anew) >= dig_fit_evidence(&s->fit, more) - s->least
+                     ? anew
+                     : more;
+        // What friction explains tells how far to trust rows of drives that stand: it goes first.
+        s->set = round == 0 && (s->set & rubs) != 0 ? rubs : s->set;
+        if (s->set == before) {
+            break;
+        }
+        status = refine(s);
+    }
+    return status == DIG_OK ? take_weight_for_payload(s) : status;
+}
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+static uint64_t next(uint64_t *const state)
+{
+    *state += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t z = *state;
+    z          = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z          = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+
+// How often each effect is chosen when the digs are drawn anew.
+static void bootstrap(struct search *const s, uint64_t seed, double inclusion[DIG_MACHINE_EFFECTS])
+{
+    memset(inclusion, 0, DIG_MACHINE_EFFECTS * sizeof inclusion[0]);
+    for (int b = 0; b < BOOTSTRAPS; b++) {
+        double weight[DIG_MEASURED_MAX] = { 0.0 };
+        for (size_t d = 0; d < s->lines.digs; d++) {
+            weight[next(&seed) % s->lines.digs] += 1.0;
+        }
+        dig_fit_sum(&s->fit, weight);
+        const unsigned set = dig_fit_select(&s->fit, s->least, 0);
+        for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+            inclusion[e] += (double)((set >> e) & 1U) / BOOTSTRAPS;
+        }
+    }
+    sum_all(s);
+}
+
+static size_t write_parameters(const struct search *const s, const enum dig_effect_id id,
+                               struct dig_model_parameter parameter[])
+{
+    const struct dig_effect *const effect = dig_effect_of(id);
+    size_t                         n      = 0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect != id || column->segment >= 0) {
+            continue;
+        }
+        const struct dig_effect_parameter *const of = &effect->parameter[column->parameter];
+
+        const double                      value = of->absent + of->scale * s->at[c];
+        const double                      wide  = ninety * of->scale * s->sigma[c];
+        struct dig_model_parameter *const p     = &parameter[n++];
+        memcpy(p->name, of->name, strlen(of->name) + 1);
+        p->value = fmin(fmax(value, of->low), of->high);
+        p->low   = value - wide;
+        p->high  = value + wide;
+    }
+    return n;
+}
+
+// Of the parameters as write_parameters() has them: the columns of a square root of their
+// covariance.
+static struct dig_machine_doubt doubt_of(struct search *const s, const enum dig_effect_id id)
+{
+    struct dig_fit_answer    answer = { .at = s->at, .covariance = s->covariance };
+    struct dig_machine_doubt made   = { .steps = 0 };
+    size_t                   column[DIG_MODEL_PARAMETERS_MAX];
+    double                   scale[DIG_MODEL_PARAMETERS_MAX];
+    double                   lower[DIG_MODEL_PARAMETERS_MAX * DIG_MODEL_PARAMETERS_MAX];
+    size_t                   n = 0;
+    memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
+    dig_fit_solve_wide(&s->fit, 1U << (unsigned)id, &answer);
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        if (s->lines.column[c].effect == id && s->lines.column[c].segment < 0) {
+            scale[n]      = s->lines.column[c].scale;
+            made.value[n] = dig_effect_of(id)->parameter[s->lines.column[c].parameter].absent +
+                            scale[n] * s->at[c];
+            column[n++] = c;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            lower[i * n + j] = s->covariance[column[i] * s->lines.columns + column[j]];
+        }
+        lower[i * n + i] += least_variance; // of one that is not fitted
+    }
+    if (dig_cholesky(n, lower) == DIG_OK) {
+        made.steps = n;
+        for (size_t k = 0; k < n; k++) {
+            for (size_t i = k; i < n; i++) {
+                made.step[k][i] = scale[i] * lower[i * n + k];
+            }
+        }
+    }
+    return made;
+}
+
+// Every effect as it competed: by itself, or in the set found.
+static void write_candidates(struct search *const s, const double inclusion[],
+                             struct dig_machine_finding *const finding)
+{
+    finding->candidates = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
+        struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
+        memset(s->sigma, 0, s->lines.columns * sizeof(double));
+        dig_fit_solve(&s->fit, 1U << e, &answer);
+        *out = (struct dig_candidate){
+            .effect       = (enum dig_effect_id)e,
+            .log_evidence = answer.log_evidence,
+            .p_fit        = answer.rest2 > s->noise2 * unclear_rest2 * s->fit.rows ? 0.0 : 1.0,
+            .inclusion    = inclusion[e],
+            .error        = (double)NAN,
+            .seen_in      = DIG_PART_AIR,
+        };
+        out->parameters                         = write_parameters(s, out->effect, out->parameter);
+        finding->doubt[finding->candidates - 1] = doubt_of(s, out->effect);
+    }
+    for (size_t i = 1; i < finding->candidates; i++) {
+        const struct dig_candidate     moved = finding->candidate[i];
+        const struct dig_machine_doubt doubt = finding->doubt[i];
+        size_t                         to    = i;
+        for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
+            finding->candidate[to] = finding->candidate[to - 1];
+            finding->doubt[to]     = finding->doubt[to - 1];
+        }
+        finding->candidate[to] = moved;
+        finding->doubt[to]     = doubt;
+    }
+}
+
+static void write_effects(struct search *const s, const double inclusion[],
+                          struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+    memset(s->sigma, 0, s->lines.columns * sizeof(double));
+    dig_fit_solve(&s->fit, s->set, &answer);
+    memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    finding->effects = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0) {
+            continue;
+        }
+        size_t to = finding->effects++;
+        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
+            finding->effect[to] = finding->effect[to - 1];
+        }
+        finding->effect[to] = (struct dig_model_effect){
+            .effect      = (enum dig_effect_id)e,
+            .probability = inclusion[e],
+        };
+        finding->effect[to].parameters =
+            write_parameters(s, (enum dig_effect_id)e, finding->effect[to].parameter);
+    }
+}
+
+// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
+// by the air before it. With payload alone where the set has none.
+static void write_own_payload(struct search *const s, double own_kg[DIG_MEASURED_MAX])
+{
+    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
+    struct dig_fit_answer alone   = { .at = s->at };
+    if ((s->set & carries) != 0) {
+        memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    } else {
+        dig_fit_solve(&s->fit, carries, &alone);
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        own_kg[d] = 0.0;
+    }
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
+            own_kg[s->air.segment[column->segment].dig] = column->scale * s->at[c];
+        }
+    }
+}
+
+// Effects that would do in the place of one of the set.
+static void write_sets(const struct search *const s, struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer found = { .at = NULL };
+    dig_fit_solve(&s->fit, s->set, &found);
+    finding->sets = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
+            continue;
+        }
+        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
+        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
+            struct dig_fit_answer other = { .at = NULL };
+            if (((s->set >> f) & 1U) == 0) {
+                dig_fit_solve(&s->fit, (s->set & ~(1U << e)) | (1U << f), &other);
+                if (other.log_evidence > found.log_evidence - tie) {
+                    like.effect[like.effects++] = (enum dig_effect_id)f;
+                }
+            }
+        }
+        if (like.effects > 1) {
+            finding->set[finding->sets++] = like;
+        }
+    }
+}
+
+// More effects than one trusts to be there at once share out the form of a cause that has none of
+// theirs; so does a payload that weighs less than nothing.
+static bool is_makeshift(const struct search *const s)
+{
+    int effects = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
+    }
+    return effects > MOST_AT_ONCE || common_payload(s) < 0.0;
+}
+
+// Where pressures that drift explain no less than the effects found, these have no claim to it.
+static enum dig_status doubt_names(struct search *const s)
+{
+    const enum dig_status status = dig_machine_drift_ask(&s->lines, s->fit.s2, &s->drift);
+    if (s->set == 0 || !(s->drift.log_lead > tie) ||
+        s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
+        s->drift.follows = NULL;
+    }
+    return status;
+}
+
+enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
+                                       const double false_alarm, const uint64_t seed,
+                                       struct dig_machine_finding *const finding)
+{
+    assert(side != NULL && finding != NULL && false_alarm > 0.0);
+    struct search   s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
+    enum dig_status status = search_make(side, &s);
+    if (status == DIG_OK && s.air.rows == 0) {
+        *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
+                                                 .no_air       = true,
+                                                 .residual_air = (double)NAN };
+        for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+            finding->residual_air_of[d] = (double)NAN;
+        }
+        search_finish(&s);
+        return DIG_OK;
+    }
+    if (status == DIG_OK) {
+        status = select_effects(&s);
+    }
+    if (status == DIG_OK) {
+        status = doubt_names(&s);
+    }
+    if (status == DIG_OK) {
+        const double rows    = (double)s.air.rows;
+        const double means   = (double)(DIG_JOINTS * s.air.segments);
+        const bool   unclear = s.rest2 > s.noise2 * unclear_rest2 * rows || is_makeshift(&s) ||
+                             s.drift.follows != NULL ||
+                             s.slow > s.noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
+        double inclusion[DIG_MACHINE_EFFECTS];
+
+        *finding =
+            (struct dig_machine_finding){ .unexplained = unclear, .follows = s.drift.follows };
+        finding->residual_air = sqrt(s.rest2_none / rows);
+        memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
+        finding->significant = s.set != 0 || unclear;
+        bootstrap(&s, seed, inclusion);
+        write_candidates(&s, inclusion, finding);
+        write_own_payload(&s, side->own_payload_kg);
+        if (!unclear) {
+            write_effects(&s, inclusion, finding);
+            write_sets(&s, finding);
+        }
+        finding->p_complete =
+            fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
+    }
+    search_finish(&s);
+    return status;
+}

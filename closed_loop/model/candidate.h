@@ -1,0 +1,41 @@
+// An effect as it competed, of the machine or of the soil alike.
+
+#ifndef DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
+#define DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
+
+#include "core/curve.h"
+#include "core/effect.h"
+#include "core/model.h"
+
+#include <stddef.h>
+
+#define DIG_TRACE_CANDIDATES_MAX 64
+#define DIG_TRACE_SETS_MAX       4
+#define DIG_TRACE_PHASES         3
+
+/// Where a residual shows: free air before, in the soil, lifted out.
+enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
+
+/// "air", "soil", "lifted".
+const char *dig_part_name(enum dig_part part);
+
+/// One effect, or the absence of any, as it competed: refitted jointly with the gravel.
+struct dig_candidate {
+    enum dig_effect_id effect;
+    double             log_evidence; // - BIC / 2 less that of no effect
+    double             p_fit;        // chance of a residual this large if this were the whole truth
+    double             inclusion;    // share of bootstrap samples of digs in which it was chosen
+    double             error;        // of the fit digs with it, CONTRACT's metric
+    size_t             parameters;
+    struct dig_model_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
+    enum dig_part              seen_in;
+    struct dig_gravel          gravel; // refitted with it
+};
+
+/// Effects that these digs cannot tell apart.
+struct dig_candidate_set {
+    size_t             effects;
+    enum dig_effect_id effect[DIG_EFFECTS];
+};
+
+#endif // DIG_CLOSED_LOOP_MODEL_CANDIDATE_H

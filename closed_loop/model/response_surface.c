@@ -1,0 +1,279 @@
+#include "closed_loop/model/response_surface.h"
+
+#include "closed_loop/numeric/dense.h"
+#include "estimator/approach/interpolate.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// Of the diagonal: keeps a table with holes from being singular, and moves nothing else.
+static const double ridge = 1e-9;
+
+static void choose_terms(const struct dig_curve_set *const  set,
+                         struct dig_response_surface *const surface)
+{
+    surface->terms = 0;
+    for (unsigned degree = 0; degree <= 2; degree++) {
+        for (unsigned x = 0; x <= degree; x++) {
+            for (unsigned y = 0; x + y <= degree; y++) {
+                const unsigned power[DIG_AXES] = { x, y, degree - x - y };
+                if (power[0] < set->axis_count[0] && power[1] < set->axis_count[1] &&
+                    power[2] < set->axis_count[2]) {
+                    memcpy(surface->power[surface->terms++], power, sizeof power);
+                }
+            }
+        }
+    }
+}
+
+static void terms_at(const struct dig_response_surface *const surface, const double place[DIG_AXES],
+                     double term[DIG_RESPONSE_SURFACE_TERMS])
+{
+    for (size_t j = 0; j < surface->terms; j++) {
+        term[j] = 1.0;
+        for (int a = 0; a < DIG_AXES; a++) {
+            for (unsigned p = 0; p < surface->power[j][a]; p++) {
+                term[j] *= place[a];
+            }
+        }
+    }
+}
+
+void dig_response_surface_place(const struct dig_response_surface *const surface,
+                                const struct dig_gravel *const gravel, double place[DIG_AXES])
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        const enum dig_axis axis = (enum dig_axis)a;
+        place[a]                 = surface->set->axis_count[a] > 1
+                                       ? 2.0 * dig_axis_position(surface->set, axis, gravel->value[a]) - 1.0
+                                       : 0.0;
+    }
+}
+
+struct dig_gravel dig_response_surface_gravel(const struct dig_response_surface *const surface,
+                                              const double place[DIG_AXES])
+{
+    struct dig_gravel gravel;
+    for (int a = 0; a < DIG_AXES; a++) {
+        gravel.value[a] = dig_axis_value(surface->set, (enum dig_axis)a, 0.5 * (place[a] + 1.0));
+    }
+    return gravel;
+}
+
+static void mean_of(const struct dig_curve *const curve,
+                    double                        mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            mean[c][k] = (double)curve->mean[c][k];
+        }
+    }
+}
+
+static void amplitude_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                         double       amplitude[DIG_FORCE_CHANNELS])
+{
+    double feature[DIG_FEATURES];
+    dig_features_of(curve, feature);
+    dig_features_amplitude(feature, NULL, amplitude);
+}
+
+// The inverse of X' W X of one trajectory. False when the table has too few entries for it.
+static bool invert(struct dig_response_surface *const surface, const size_t t)
+{
+    const struct dig_curve_set *const set                                  = surface->set;
+    const size_t                      n                                    = surface->terms;
+    double normal[DIG_RESPONSE_SURFACE_TERMS * DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
+    size_t entries                                                         = 0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const int packings = set->packings[e * set->trajectories + t];
+        if (packings <= 0) {
+            continue;
+        }
+        entries++;
+        double place[DIG_AXES];
+        double term[DIG_RESPONSE_SURFACE_TERMS];
+        dig_response_surface_place(surface, &set->gravel[e], place);
+        terms_at(surface, place, term);
+        for (size_t i = 0; i < n; i++) {
+            for (size_t j = 0; j < n; j++) {
+                normal[i * n + j] += (double)packings * term[i] * term[j];
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        normal[i * n + i] *= 1.0 + ridge;
+    }
+    if (entries < n || dig_cholesky(n, normal) != DIG_OK) {
+        return false;
+    }
+    for (size_t j = 0; j < n; j++) {
+        double column[DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
+        column[j]                                 = 1.0;
+        dig_lower_solve(n, normal, column);
+        dig_lower_transposed_solve(n, normal, column);
+        for (size_t i = 0; i < n; i++) {
+            surface->inverse[t][i][j] = column[i];
+        }
+    }
+    return true;
+}
+
+// What each term's coefficient takes from an entry: a column of (X' W X)^-1 X' W.
+static void share_of(const struct dig_response_surface *const surface, const size_t t,
+                     const size_t entry, double share[DIG_RESPONSE_SURFACE_TERMS])
+{
+    const struct dig_curve_set *const set      = surface->set;
+    const double                      packings = set->packings[entry * set->trajectories + t];
+    double                            place[DIG_AXES];
+    double                            term[DIG_RESPONSE_SURFACE_TERMS];
+    dig_response_surface_place(surface, &set->gravel[entry], place);
+    terms_at(surface, place, term);
+    for (size_t j = 0; j < surface->terms; j++) {
+        share[j] = 0.0;
+        for (size_t i = 0; i < surface->terms; i++) {
+            share[j] += packings * surface->inverse[t][j][i] * term[i];
+        }
+    }
+}
+
+static void amplitude_at(const struct dig_response_surface *const surface, const size_t t,
+                         const double term[DIG_RESPONSE_SURFACE_TERMS],
+                         double       amplitude[DIG_FORCE_CHANNELS])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double sum = 0.0;
+        for (size_t j = 0; j < surface->terms; j++) {
+            sum += surface->log_amplitude[t][j][c] * term[j];
+        }
+        amplitude[c] = exp(sum);
+    }
+}
+
+static void fit_amplitudes(struct dig_response_surface *const surface, const size_t t)
+{
+    const struct dig_curve_set *const set = surface->set;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * set->trajectories + t;
+        if (set->packings[slot] <= 0) {
+            continue;
+        }
+        double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double amplitude[DIG_FORCE_CHANNELS];
+        double share[DIG_RESPONSE_SURFACE_TERMS];
+        mean_of(&set->curve[slot], mean);
+        amplitude_of((const double(*)[DIG_CURVE_POINTS])mean, amplitude);
+        share_of(surface, t, e, share);
+        for (size_t j = 0; j < surface->terms; j++) {
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                surface->log_amplitude[t][j][c] += share[j] * log(amplitude[c]);
+            }
+        }
+    }
+}
+
+static void fit_shapes(struct dig_response_surface *const surface, const size_t t)
+{
+    const struct dig_curve_set *const set = surface->set;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * set->trajectories + t;
+        if (set->packings[slot] <= 0) {
+            continue;
+        }
+        double place[DIG_AXES];
+        double term[DIG_RESPONSE_SURFACE_TERMS];
+        double amplitude[DIG_FORCE_CHANNELS];
+        double share[DIG_RESPONSE_SURFACE_TERMS];
+        dig_response_surface_place(surface, &set->gravel[e], place);
+        terms_at(surface, place, term);
+        amplitude_at(surface, t, term, amplitude);
+        share_of(surface, t, e, share);
+        for (size_t j = 0; j < surface->terms; j++) {
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                    surface->curve[t][j][c][k] +=
+                        share[j] * (double)set->curve[slot].mean[c][k] / amplitude[c];
+                }
+            }
+        }
+    }
+    for (size_t j = 0; j < surface->terms; j++) {
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])surface->curve[t][j],
+                        surface->feature[t][j]);
+    }
+}
+
+enum dig_status dig_response_surface_fit(const struct dig_curve_set *const  set,
+                                         struct dig_response_surface *const surface)
+{
+    assert(set != NULL && surface != NULL);
+    memset(surface, 0, sizeof *surface);
+    surface->set = set;
+    choose_terms(set, surface);
+    bool any = false;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        surface->known[t] = invert(surface, t);
+        if (surface->known[t]) {
+            fit_amplitudes(surface, t);
+            fit_shapes(surface, t);
+            any = true;
+        }
+    }
+    return any ? DIG_OK : DIG_EINVAL;
+}
+
+void dig_response_surface_features(const struct dig_response_surface *const surface,
+                                   const size_t trajectory, const double place[DIG_AXES],
+                                   double feature[DIG_FEATURES],
+                                   double amplitude[DIG_FORCE_CHANNELS])
+{
+    double term[DIG_RESPONSE_SURFACE_TERMS];
+    terms_at(surface, place, term);
+    amplitude_at(surface, trajectory, term, amplitude);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double shape[DIG_FEATURE_BINS] = { 0.0 };
+        for (size_t j = 0; j < surface->terms; j++) {
+            const double *const of = &surface->feature[trajectory][j][c * DIG_FEATURE_BINS];
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                shape[b] += term[j] * of[b];
+            }
+        }
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            feature[c * DIG_FEATURE_BINS + b] = shape[b] * amplitude[c];
+        }
+    }
+}
+
+void dig_response_surface_curve(const struct dig_response_surface *const surface,
+                                const size_t trajectory, const double place[DIG_AXES],
+                                double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    double term[DIG_RESPONSE_SURFACE_TERMS];
+    double amplitude[DIG_FORCE_CHANNELS];
+    terms_at(surface, place, term);
+    amplitude_at(surface, trajectory, term, amplitude);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            double sum = 0.0;
+            for (size_t j = 0; j < surface->terms; j++) {
+                sum += term[j] * surface->curve[trajectory][j][c][k];
+            }
+            curve[c][k] = amplitude[c] * sum;
+        }
+    }
+}
+
+double dig_response_surface_noise(const struct dig_response_surface *const surface,
+                                  const size_t trajectory, const double place[DIG_AXES])
+{
+    double term[DIG_RESPONSE_SURFACE_TERMS];
+    terms_at(surface, place, term);
+    double sum = 0.0;
+    for (size_t i = 0; i < surface->terms; i++) {
+        for (size_t j = 0; j < surface->terms; j++) {
+            sum += term[i] * surface->inverse[trajectory][i][j] * term[j];
+        }
+    }
+    return sum;
+}

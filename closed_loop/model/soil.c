@@ -1,0 +1,205 @@
+#include "closed_loop/model/soil.h"
+
+#include "closed_loop/model/soil_fit.h"
+#include "closed_loop/model/soil_terms.h"
+#include "estimator/effects/effect.h"
+#include "estimator/effects/template.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Of the reduced forms: the exponent of pace, the share a dig adds.
+static const double most_rate = 1.0;
+static const double most_wear = 0.15;
+
+static bool has_factor(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR;
+}
+
+static bool acts_by_weight(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_COHESION || effect == DIG_EFFECT_ADHESION;
+}
+
+static void fill_speeds(struct dig_soil *const soil)
+{
+    const struct dig_curve_set *const set = soil->surface->set;
+    for (size_t t = 0; t < set->trajectories; t++) {
+        double speed[DIG_CURVE_POINTS];
+        dig_effect_speeds(set, t, speed);
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            size_t from;
+            size_t to;
+            dig_feature_bin(b, &from, &to);
+            for (size_t k = from; k < to; k++) {
+                soil->speed[t][k] = log(speed[k]);
+                soil->bin_speed[t][b] += soil->speed[t][k] / (double)(to - from);
+            }
+        }
+    }
+}
+
+enum dig_status dig_soil_create(const struct dig_response_surface *const surface,
+                                const struct dig_effect_set *const       effects,
+                                const struct dig_scatter *const          scatter,
+                                struct dig_soil **const                  soil)
+{
+    assert(surface != NULL && (effects == NULL || scatter != NULL) && soil != NULL);
+    if (effects != NULL && (strcmp(effects->scene_hash, surface->set->scene_hash) != 0 ||
+                            effects->trajectories != surface->set->trajectories)) {
+        return DIG_EINVAL;
+    }
+    struct dig_soil *const made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return DIG_ENOMEM;
+    }
+    made->surface = surface;
+    fill_speeds(made);
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        made->absent[e] = dig_template_absent((enum dig_effect_id)e);
+    }
+    made->scale[DIG_EFFECT_RATE_DEPENDENCE] = 1.0;
+    made->low[DIG_EFFECT_RATE_DEPENDENCE]   = -most_rate;
+    made->high[DIG_EFFECT_RATE_DEPENDENCE]  = most_rate;
+    made->scale[DIG_EFFECT_WEAR]            = 1.0;
+    made->low[DIG_EFFECT_WEAR]              = -most_wear;
+    made->high[DIG_EFFECT_WEAR]             = most_wear;
+    if (effects != NULL && dig_soil_fit(made, effects, scatter) != DIG_OK) {
+        free(made);
+        return DIG_ENOMEM;
+    }
+    *soil = made;
+    return DIG_OK;
+}
+
+bool dig_soil_knows(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                    const size_t trajectory)
+{
+    const bool above = soil->high[effect] > 0.0;
+    const bool below = soil->low[effect] < 0.0;
+    return has_factor(effect) ||
+           ((above || below) &&
+            (!above || dig_soil_template_at(soil, effect, trajectory, 1.0)->known) &&
+            (!below || dig_soil_template_at(soil, effect, trajectory, -1.0)->known));
+}
+
+double dig_soil_share(const enum dig_effect_id effect, const struct dig_measured *const dig)
+{
+    if (effect == DIG_EFFECT_RATE_DEPENDENCE) {
+        return log(dig->pace);
+    }
+    if (effect == DIG_EFFECT_WEAR) {
+        return (double)dig->order;
+    }
+    return effect == DIG_EFFECT_COMPACTION ? (double)dig->pass - 1.0 : 1.0;
+}
+
+// What a reduced form adds, as a share of the plain dig, where the tooth has this speed (its log).
+static double factor_of(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                        const double u, const double share, const double speed)
+{
+    return effect == DIG_EFFECT_RATE_DEPENDENCE ? expm1(u * (share + soil->along * speed))
+                                                : u * share;
+}
+
+// The terms of a template at a place, u scaled to the gravel's density.
+static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                     const size_t t, const double place[DIG_AXES], const double u,
+                     const double amplitude[DIG_FORCE_CHANNELS], double term[DIG_SOIL_TERMS])
+{
+    const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
+    double scaled                                  = u;
+    if (acts_by_weight(effect)) {
+        const struct dig_gravel gravel = dig_response_surface_gravel(soil->surface, place);
+        scaled *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
+    }
+    dig_soil_terms(template, scaled, dig_soil_strength(soil->surface, place, amplitude), term);
+}
+
+void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                  const size_t trajectory, const double place[DIG_AXES], const double u,
+                  const double share, const double plain[DIG_FEATURES],
+                  const double amplitude[DIG_FORCE_CHANNELS], double feature[DIG_FEATURES],
+                  double *const noise)
+{
+    if (has_factor(effect)) {
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            const double factor = factor_of(soil, effect, u, share, soil->bin_speed[trajectory][b]);
+            for (size_t f = b; f < DIG_FEATURES; f += DIG_FEATURE_BINS) {
+                feature[f] += factor * plain[f];
+            }
+        }
+        return;
+    }
+    const struct dig_soil_template *const template =
+        dig_soil_template_at(soil, effect, trajectory, u * share);
+    double term[DIG_SOIL_TERMS];
+    terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
+    // Most hats are nothing at any one magnitude.
+    size_t some[DIG_SOIL_TERMS];
+    size_t n = 0;
+    for (size_t i = 0; i < template->terms; i++) {
+        if (fabs(term[i]) > 0.0) {
+            some[n++] = i;
+        }
+    }
+    double sum = noise != NULL ? *noise : 0.0;
+    for (size_t i = 0; noise != NULL && i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            sum += term[some[i]] * template->inverse[some[i]][some[j]] * term[some[j]];
+        }
+    }
+    if (noise != NULL) {
+        *noise = sum;
+    }
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double shape[DIG_FEATURE_BINS] = { 0.0 };
+        for (size_t i = 0; i < n; i++) {
+            const double *const of = &template->feature[some[i]][c * DIG_FEATURE_BINS];
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                shape[b] += term[some[i]] * of[b];
+            }
+        }
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            feature[c * DIG_FEATURE_BINS + b] += shape[b] * amplitude[c];
+        }
+    }
+}
+
+void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                        const size_t trajectory, const double place[DIG_AXES], const double u,
+                        const double share,
+                        const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                        double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    double term[DIG_SOIL_TERMS] = { 0.0 };
+    double feature[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+    dig_response_surface_features(soil->surface, trajectory, place, feature, amplitude);
+    const struct dig_soil_template *const template =
+        dig_soil_template_at(soil, effect, trajectory, u * share);
+    if (!has_factor(effect)) {
+        terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
+    }
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            double sum =
+                has_factor(effect)
+                    ? factor_of(soil, effect, u, share, soil->speed[trajectory][k]) * plain[c][k]
+                    : 0.0;
+            for (size_t i = 0; !has_factor(effect) && i < template->terms; i++) {
+                sum += term[i] * template->curve[i][c][k] * amplitude[c];
+            }
+            curve[c][k] += sum;
+        }
+    }
+}
+
+double dig_soil_magnitude(const struct dig_soil *const soil, const enum dig_effect_id effect,
+                          const double u)
+{
+    return soil->absent[effect] + u * soil->scale[effect];
+}

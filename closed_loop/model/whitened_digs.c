@@ -1,0 +1,349 @@
+#include "closed_loop/model/whitened_digs.h"
+
+#include "closed_loop/model/same_bed.h"
+#include "closed_loop/numeric/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { LEAST_FEATURES = DIG_FEATURE_BINS / 2 };
+
+// A difference of smoothings that no bin feels.
+static const double least_blur_s = 0.03;
+
+static void features_of(const struct dig_measured *const dig, double feature[DIG_FEATURES])
+{
+    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve[c][k] = dig->value[c][k] - dig->machine[c][k];
+        }
+    }
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
+}
+
+// Ways along a trajectory that one smoothing takes in.
+enum { BLUR_STEPS = 8 };
+
+// The plain dig's curves as another smoothing's half would leave them.
+static void blur(const struct dig_curve_set *const set, const size_t trajectory,
+                 const double half_s, const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                 double blurred[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const struct dig_trajectory *const t       = &set->trajectory[trajectory];
+    const double                       end_s   = dig_trajectory_duration_s(t);
+    const double                       whole_m = dig_trajectory_path_m(t, set->tooth_m, end_s);
+    memset(blurred, 0, DIG_FORCE_CHANNELS * sizeof blurred[0]);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at_s =
+            dig_trajectory_time_s(t, set->tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
+        for (int i = -BLUR_STEPS; i <= BLUR_STEPS; i++) {
+            const double from_s = fmin(fmax(at_s + half_s * (double)i / BLUR_STEPS, 0.0), end_s);
+            const double point =
+                dig_trajectory_path_m(t, set->tooth_m, from_s) / whole_m * (DIG_CURVE_POINTS - 1);
+            const size_t low  = (size_t)fmin(floor(point), DIG_CURVE_POINTS - 2);
+            const double high = point - (double)low;
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                blurred[c][k] += ((1.0 - high) * curve[c][low] + high * curve[c][low + 1]) /
+                                 (2 * BLUR_STEPS + 1);
+            }
+        }
+    }
+}
+
+// All digs are smoothed over the same time: one that is faster than the table's over more of its
+// way. Takes off what that makes of the plain dig; variances of two smoothings add.
+static void take_off_blur(const struct dig_response_surface *const surface,
+                          const struct dig_measured *const dig, const double place[DIG_AXES],
+                          double feature[DIG_FEATURES])
+{
+    const double half_s = DIG_SMOOTH_HALF_s * sqrt(fabs(dig->pace * dig->pace - 1.0));
+    if (place == NULL || !(half_s > least_blur_s)) {
+        return;
+    }
+    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double blurred[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double sharp[DIG_FEATURES];
+    double soft[DIG_FEATURES];
+    dig_response_surface_curve(surface, (size_t)dig->trajectory, place, curve);
+    blur(surface->set, (size_t)dig->trajectory, half_s, (const double(*)[DIG_CURVE_POINTS])curve,
+         blurred);
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, sharp);
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])blurred, soft);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] -= dig->pace > 1.0 ? soft[f] - sharp[f] : sharp[f] - soft[f];
+    }
+}
+
+static size_t group_of(struct dig_whitened_digs *const batch, const size_t trajectory)
+{
+    size_t g = 0;
+    while (g < batch->groups && batch->group[g].trajectory != trajectory) {
+        g++;
+    }
+    if (g == batch->groups) {
+        batch->group[g] = (struct dig_whitened_digs_group){ .trajectory = trajectory };
+        batch->groups++;
+    }
+    return g;
+}
+
+// The features that all digs of a group have.
+static void intersect(const struct dig_whitened_digs *const batch, const size_t g,
+                      bool mask[DIG_FEATURES])
+{
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        mask[f] = true;
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        if (batch->dig[i].group == g) {
+            const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+            bool                             has[DIG_FEATURES];
+            dig_features_mask(dig->measured, dig->first, dig->last, has);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                mask[f] = mask[f] && has[f];
+            }
+        }
+    }
+}
+
+// What effects of the machine add is known to this share of it.
+static const double machine_error = 0.1;
+
+// The variance of the sensors in a bin, where their error does not average down, and of what was
+// taken off for the machine.
+static double sensor_variance(const struct dig_whitened_digs *const batch, const size_t g,
+                              const size_t f)
+{
+    double sum = 0.0;
+    double n   = 0.0;
+    size_t from;
+    size_t to;
+    dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
+    for (size_t i = 0; i < batch->digs; i++) {
+        if (batch->dig[i].group != g) {
+            continue;
+        }
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        for (size_t k = from; k < to; k++) {
+            const double sigma   = dig->sigma[f / DIG_FEATURE_BINS][k];
+            const double machine = machine_error * dig->machine[f / DIG_FEATURE_BINS][k];
+            sum += sigma * sigma + machine * machine;
+            n += 1.0;
+        }
+    }
+    return n > 0.0 ? sum / n : 0.0;
+}
+
+// The size of the group's mean dig, and of its scatter at the gravel it is thought to be of.
+static void measure_size(const struct dig_whitened_digs *const batch, const size_t g,
+                         const double feature[][DIG_FEATURES], const bool mask[DIG_FEATURES],
+                         const double place[DIG_AXES], double amplitude[DIG_FORCE_CHANNELS])
+{
+    const struct dig_whitened_digs_group *const group              = &batch->group[g];
+    double                                      mean[DIG_FEATURES] = { 0.0 };
+    for (size_t i = 0; i < batch->digs; i++) {
+        for (size_t f = 0; batch->dig[i].group == g && f < DIG_FEATURES; f++) {
+            mean[f] += feature[i][f] / (double)group->digs;
+        }
+    }
+    dig_features_amplitude(mean, mask, amplitude);
+    if (place == NULL) {
+        return;
+    }
+    // The whole dig's amplitude follows from the part that was measured as the table's does.
+    const struct dig_gravel gravel = dig_response_surface_gravel(batch->surface, place);
+    double                  table[DIG_FEATURES];
+    double                  whole[DIG_FORCE_CHANNELS];
+    double                  part[DIG_FORCE_CHANNELS];
+    dig_response_surface_features(batch->surface, group->trajectory, place, table, whole);
+    dig_features_amplitude(table, mask, part);
+    const double strength = log(whole[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    const double factor   = sqrt(dig_scatter_factor(batch->scatter, group->trajectory, strength));
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        amplitude[c] *= factor * whole[c] / fmax(part[c], 1e-3 * whole[c]);
+    }
+}
+
+static enum dig_status fill_group(struct dig_whitened_digs *const batch, const size_t g,
+                                  const double feature[][DIG_FEATURES],
+                                  const double place[DIG_AXES])
+{
+    struct dig_whitened_digs_group *const group = &batch->group[g];
+    bool                                  mask[DIG_FEATURES];
+    intersect(batch, g, mask);
+    measure_size(batch, g, feature, mask, place, group->amplitude);
+    group->features = 0;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        if (mask[f]) {
+            group->feature[group->features++] = f;
+        }
+    }
+    const size_t n = group->features;
+    if (n < LEAST_FEATURES) {
+        return DIG_ENOMATCH;
+    }
+    double lower[DIG_FEATURES * DIG_FEATURES];
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            lower[i * n + j] =
+                batch->scatter->covariance[group->trajectory][group->feature[i]][group->feature[j]];
+        }
+        const size_t f = group->feature[i];
+        lower[i * n + i] +=
+            sensor_variance(batch, g, f) / pow(group->amplitude[f / DIG_FEATURE_BINS], 2.0);
+    }
+    if (dig_cholesky(n, lower) != DIG_OK) {
+        return DIG_ENOMATCH;
+    }
+    for (size_t k = 0; k < n; k++) {
+        group->whiten[k][k] = 1.0 / group->amplitude[group->feature[k] / DIG_FEATURE_BINS];
+        dig_lower_solve(n, lower, group->whiten[k]);
+    }
+    return DIG_OK;
+}
+
+// The innermost of all that is fitted to digs: a few sums at a time, which a compiler keeps in
+// registers. whiten[k] adds nothing to y before y[k].
+void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *const group,
+                              const double feature[DIG_FEATURES], double y[DIG_FEATURES])
+{
+    enum { AT_ONCE = 6 };
+    _Static_assert(DIG_FEATURES % AT_ONCE == 0, "no rest");
+    double x[DIG_FEATURES];
+    for (size_t k = 0; k < group->features; k++) {
+        x[k] = feature[group->feature[k]];
+    }
+    for (size_t first = 0; first < DIG_FEATURES; first += AT_ONCE) {
+        const size_t end          = first + AT_ONCE;
+        const size_t last         = group->features < end ? group->features : end;
+        double       sum[AT_ONCE] = { 0.0 };
+        for (size_t k = 0; k < last; k++) {
+            for (size_t i = 0; i < AT_ONCE; i++) {
+                sum[i] += x[k] * group->whiten[k][first + i];
+            }
+        }
+        memcpy(&y[first], sum, sizeof sum);
+    }
+}
+
+void dig_whitened_digs_spread(struct dig_whitened_digs *const batch, const double spread)
+{
+    assert(batch != NULL && spread > 0.0);
+    for (size_t g = 0; g < batch->groups; g++) {
+        struct dig_whitened_digs_group *const group = &batch->group[g];
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            group->amplitude[c] *= spread;
+        }
+        for (size_t k = 0; k < group->features; k++) {
+            for (size_t i = 0; i < group->features; i++) {
+                group->whiten[k][i] /= spread;
+            }
+        }
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        for (size_t k = 0; k < DIG_FEATURES; k++) {
+            batch->dig[i].y[k] /= spread;
+        }
+    }
+    dig_whitened_digs_summarise(batch);
+}
+
+const struct dig_measured *dig_whitened_digs_first(const struct dig_whitened_digs *const batch,
+                                                   const size_t                          group)
+{
+    assert(batch != NULL && group < batch->groups);
+    size_t i = 0;
+    while (batch->dig[i].group != group) {
+        i++;
+    }
+    return &batch->measured[batch->dig[i].measured];
+}
+
+void dig_whitened_digs_summarise(struct dig_whitened_digs *const batch)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        struct dig_whitened_digs_group *const group = &batch->group[g];
+        memset(group->mean, 0, sizeof group->mean);
+        group->about = 0.0;
+        for (size_t i = 0; i < batch->digs; i++) {
+            for (size_t k = 0; batch->dig[i].group == g && k < group->features; k++) {
+                group->mean[k] += batch->dig[i].y[k] / (double)group->digs;
+            }
+        }
+        for (size_t i = 0; i < batch->digs; i++) {
+            for (size_t k = 0; batch->dig[i].group == g && k < group->features; k++) {
+                group->about += pow(batch->dig[i].y[k] - group->mean[k], 2.0);
+            }
+        }
+    }
+}
+
+static void count_beds(struct dig_whitened_digs *const batch)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        struct dig_whitened_digs_group *const group = &batch->group[g];
+        group->repeats = 1.0 / (double)dig_same_bed_count(batch, g) - 1.0 / (double)group->digs;
+    }
+}
+
+enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const surface,
+                                       const struct dig_scatter *const scatter, const size_t digs,
+                                       const struct dig_measured measured[], const bool take[],
+                                       const double                    place[DIG_AXES],
+                                       struct dig_whitened_digs *const batch)
+{
+    assert(surface != NULL && scatter != NULL && measured != NULL && batch != NULL);
+    memset(batch, 0, sizeof *batch);
+    batch->surface                                 = surface;
+    batch->scatter                                 = scatter;
+    batch->measured                                = measured;
+    double feature[DIG_MEASURED_MAX][DIG_FEATURES] = { { 0.0 } };
+    for (size_t i = 0; i < digs && batch->digs < DIG_MEASURED_MAX; i++) {
+        const size_t t = (size_t)measured[i].trajectory;
+        if (!take[i] || !surface->known[t]) {
+            continue;
+        }
+        struct dig_whitened_digs_dig *const dig = &batch->dig[batch->digs];
+        dig->group                              = group_of(batch, t);
+        dig->measured                           = i;
+        batch->group[dig->group].digs++;
+        features_of(&measured[i], feature[batch->digs]);
+        take_off_blur(surface, &measured[i], place, feature[batch->digs++]);
+    }
+    enum dig_status status = batch->digs > 0 ? DIG_OK : DIG_ENOMATCH;
+    for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {
+        status = fill_group(batch, g, (const double(*)[DIG_FEATURES])feature, place);
+    }
+    for (size_t i = 0; i < batch->digs && status == DIG_OK; i++) {
+        dig_whitened_digs_whiten(&batch->group[batch->dig[i].group], feature[i], batch->dig[i].y);
+    }
+    if (status == DIG_OK) {
+        dig_whitened_digs_summarise(batch);
+        count_beds(batch);
+    }
+    return status;
+}
+
+void dig_whitened_digs_leave_out(const struct dig_whitened_digs *const batch, const size_t dig,
+                                 struct dig_whitened_digs *const others)
+{
+    assert(batch != NULL && others != NULL && dig < batch->digs && batch->digs > 1);
+    const size_t group = batch->dig[dig].group;
+    const bool   alone = batch->group[group].digs == 1;
+    *others            = *batch;
+    others->digs--;
+    memmove(&others->dig[dig], &others->dig[dig + 1], (others->digs - dig) * sizeof others->dig[0]);
+    others->group[group].digs--;
+    if (alone) {
+        others->groups--;
+        memmove(&others->group[group], &others->group[group + 1],
+                (others->groups - group) * sizeof others->group[0]);
+        for (size_t i = 0; i < others->digs; i++) {
+            others->dig[i].group -= others->dig[i].group > group ? 1 : 0;
+        }
+    }
+    dig_whitened_digs_summarise(others);
+    count_beds(others);
+}

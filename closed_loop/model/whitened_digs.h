@@ -1,0 +1,73 @@
+// The digs of a campaign as numbers of equal weight: features over the scatter's own size, so that
+// one dig of a known gravel scatters by 1 in every direction, independently.
+//
+// Per trajectory: y = L^-1 (features / amplitude), L L' the scatter's covariance of the features
+// that all digs of the trajectory have. An error that all digs of a trajectory share (of the
+// table, of a template, of the DEM) is counted in multiples of the same covariance.
+
+#ifndef DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H
+#define DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H
+
+#include "closed_loop/model/response_surface.h"
+#include "closed_loop/model/scatter.h"
+#include "closed_loop/recordings/measured.h"
+
+struct dig_whitened_digs_group {
+    size_t trajectory;
+    size_t digs;
+    size_t features;
+    size_t feature[DIG_FEATURES];              // which, ascending
+    double amplitude[DIG_FORCE_CHANNELS];      // of the mean dig, times sqrt(scatter's factor)
+    double whiten[DIG_FEATURES][DIG_FEATURES]; // [k][i]: what a unit of feature[k] adds to y[i]
+    double mean[DIG_FEATURES];                 // of the digs' y
+    double about;                              // sum of squares of the digs' y about the mean
+    double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
+};
+
+struct dig_whitened_digs_dig {
+    size_t group;
+    size_t measured;        // index into the campaign
+    double y[DIG_FEATURES]; // [features]
+};
+
+struct dig_whitened_digs {
+    const struct dig_response_surface *surface;  // not owned
+    const struct dig_scatter          *scatter;  // not owned
+    const struct dig_measured         *measured; // not owned
+    size_t                             groups;
+    struct dig_whitened_digs_group     group[DIG_TRAJECTORY_MAX];
+    size_t                             digs;
+    struct dig_whitened_digs_dig       dig[DIG_MEASURED_MAX];
+};
+
+/// Takes the digs that take[] allows, machine effects off. place: about which gravel it is (NULL:
+/// not known yet), for the scatter's factor. DIG_ENOMATCH: no dig, or a trajectory of which not
+/// half a channel was measured by all digs.
+DIG_MUST_CHECK enum dig_status
+dig_whitened_digs_make(const struct dig_response_surface *surface,
+                       const struct dig_scatter *scatter, size_t digs,
+                       const struct dig_measured measured[], const bool take[],
+                       const double place[DIG_AXES], struct dig_whitened_digs *batch);
+
+/// Writes y of features (units of the table) in a group: the first group->features of it, then 0.
+/// Half a microsecond.
+void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *group,
+                              const double feature[DIG_FEATURES], double y[DIG_FEATURES]);
+
+/// One dig scatters so many times as much as was thought: every y, of digs and of models, shrinks
+/// by it.
+void dig_whitened_digs_spread(struct dig_whitened_digs *batch, double spread);
+
+/// The first dig of a group.
+const struct dig_measured *dig_whitened_digs_first(const struct dig_whitened_digs *batch,
+                                                   size_t                          group);
+
+/// Recomputes the groups' mean and about after the digs' y were changed.
+void dig_whitened_digs_summarise(struct dig_whitened_digs *batch);
+
+/// The batch without one of its two or more digs; without its trajectory where that was the only
+/// one along it.
+void dig_whitened_digs_leave_out(const struct dig_whitened_digs *batch, size_t dig,
+                                 struct dig_whitened_digs *others);
+
+#endif // DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H

@@ -1,0 +1,25 @@
+// Random numbers that a seed repeats, and the tails of distributions.
+
+#ifndef DIG_CLOSED_LOOP_NUMERIC_CHANCE_H
+#define DIG_CLOSED_LOOP_NUMERIC_CHANCE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Uniform in [0, 1) (splitmix64; *state moves on).
+double dig_chance_uniform(uint64_t *state);
+
+/// Standard normal.
+double dig_chance_normal(uint64_t *state);
+
+/// One of n, n > 0.
+size_t dig_chance_index(uint64_t *state, size_t n);
+
+/// P(X > x) of the gamma distribution with this mean and variance; 1 for x <= 0. Regularised
+/// incomplete gamma function by series and continued fraction, relative error below 1e-10.
+double dig_chance_gamma_tail(double mean, double variance, double x);
+
+/// P(X > x) of chi square.
+double dig_chance_chi2_tail(double freedom, double x);
+
+#endif // DIG_CLOSED_LOOP_NUMERIC_CHANCE_H

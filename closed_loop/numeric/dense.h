@@ -1,0 +1,28 @@
+// Small dense linear algebra: symmetric positive definite systems of a few dozen unknowns, row
+// major, lower triangles.
+
+#ifndef DIG_CLOSED_LOOP_NUMERIC_DENSE_H
+#define DIG_CLOSED_LOOP_NUMERIC_DENSE_H
+
+#include "core/status.h"
+
+#include <stddef.h>
+
+/// Overwrites the lower triangle of the n x n matrix a with L of a = L L'; what stands above the
+/// diagonal is neither read nor written. DIG_EINVAL when a is not positive definite; a is then
+/// unspecified. O(n^3 / 3).
+DIG_MUST_CHECK enum dig_status dig_cholesky(size_t n, double a[]);
+
+/// Solves L x = b in place: x takes b's place. O(n^2 / 2).
+void dig_lower_solve(size_t n, const double l[], double b[]);
+
+/// Solves L' x = b in place.
+void dig_lower_transposed_solve(size_t n, const double l[], double b[]);
+
+/// x = L b, in place.
+void dig_lower_multiply(size_t n, const double l[], double b[]);
+
+/// 2 sum log L_ii: the logarithm of the determinant of L L'.
+double dig_lower_log_det(size_t n, const double l[]);
+
+#endif // DIG_CLOSED_LOOP_NUMERIC_DENSE_H

@@ -1,0 +1,160 @@
+#include "closed_loop/recordings/alignment.h"
+
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+
+// Of the tooth's length: what the path's sensors may scatter by.
+static const double vertex_share = 0.01;
+
+// A recording that lies no farther off is whole, bucket lengths.
+static const double whole_off = 0.002;
+
+// Most that either end may lack, or have beyond the trajectory's.
+static const double most_missing = 0.2;
+
+static double step_m(const struct dig_force_row *const a, const struct dig_force_row *const b,
+                     const double tooth_m)
+{
+    return hypot(b->pin_x_m - a->pin_x_m, b->pin_z_m - a->pin_z_m) +
+           tooth_m * fabs(b->theta_deg - a->theta_deg) * DIG_RAD_PER_DEG;
+}
+
+// Lays the rows after one vertex and up to the next along the way between them, by what the steps
+// of each add up to.
+static double lay_between(const struct dig_recording *const recording, const double tooth_m,
+                          const size_t vertex, const size_t next, const double from_m,
+                          double way_m[])
+{
+    const double chord_m = step_m(&recording->row[vertex], &recording->row[next], tooth_m);
+    double       steps_m = 0.0;
+    for (size_t i = vertex + 1; i <= next; i++) {
+        steps_m += step_m(&recording->row[i - 1], &recording->row[i], tooth_m);
+        way_m[i] = steps_m;
+    }
+    for (size_t i = vertex + 1; i <= next; i++) {
+        way_m[i] = from_m + (steps_m > 0.0 ? chord_m * way_m[i] / steps_m : 0.0);
+    }
+    return from_m + chord_m;
+}
+
+double dig_alignment_progress(const struct dig_recording *const recording, const double tooth_m,
+                              double progress[])
+{
+    assert(recording != NULL && recording->rows > 0 && progress != NULL);
+    const size_t last   = recording->rows - 1;
+    size_t       vertex = 0;
+    double       way_m  = 0.0;
+    progress[0]         = 0.0;
+    for (size_t i = 1; i <= last; i++) {
+        if (i == last || step_m(&recording->row[vertex], &recording->row[i], tooth_m) >=
+                             vertex_share * tooth_m) {
+            way_m  = lay_between(recording, tooth_m, vertex, i, way_m, progress);
+            vertex = i;
+        }
+    }
+    for (size_t i = 0; i <= last && way_m > 0.0; i++) {
+        progress[i] /= way_m;
+    }
+    return way_m;
+}
+
+struct dig_alignment_place dig_alignment_place(const size_t rows, const double progress[],
+                                               const double at, const size_t from)
+{
+    assert(rows >= 2);
+    struct dig_alignment_place place = { .row = from };
+    while (place.row + 2 < rows && progress[place.row + 1] <= at) {
+        place.row++;
+    }
+    const double span = progress[place.row + 1] - progress[place.row];
+    place.fraction    = span > 0.0 ? fmin(fmax((at - progress[place.row]) / span, 0.0), 1.0) : 0.0;
+    return place;
+}
+
+double dig_alignment_distance(const struct dig_recording *const recording, const double progress[],
+                              const struct dig_trajectory *const trajectory, const double tooth_m,
+                              const double from, const double to)
+{
+    enum { POINTS = 64 };
+    const double               first = fmax(from, 0.0);
+    const double               last  = fmin(to, 1.0);
+    double                     x_m[POINTS];
+    double                     z_m[POINTS];
+    double                     mean_x_m = 0.0;
+    double                     mean_z_m = 0.0;
+    double                     turn2_m2 = 0.0;
+    struct dig_alignment_place at       = { .row = 0 };
+    for (int k = 0; k < POINTS; k++) {
+        const double along = first + (last - first) * (double)k / (POINTS - 1);
+        at = dig_alignment_place(recording->rows, progress, (along - from) / (to - from), at.row);
+
+        const struct dig_force_row *const a = &recording->row[at.row];
+        const struct dig_force_row *const b = a + 1;
+        const double                      f = at.fraction;
+        const double                      theta_rad =
+            (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
+        const struct dig_pose pose =
+            dig_trajectory_pose(trajectory, dig_trajectory_time_s(trajectory, tooth_m, along));
+        x_m[k] = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
+        z_m[k] = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
+        mean_x_m += x_m[k] / POINTS;
+        mean_z_m += z_m[k] / POINTS;
+        turn2_m2 += pow(tooth_m * (theta_rad - pose.theta_rad), 2.0);
+    }
+    double sum_m2 = turn2_m2;
+    for (int k = 0; k < POINTS; k++) {
+        sum_m2 += pow(x_m[k] - mean_x_m, 2.0) + pow(z_m[k] - mean_z_m, 2.0);
+    }
+    return sqrt(sum_m2 / POINTS) / tooth_m;
+}
+
+// The end of the part, from or to, where it lies nearest, the other as it is: first coarsely all
+// over, then ever finer about the best.
+static void move_end(const struct dig_recording *const recording, const double progress[],
+                     const struct dig_trajectory *const trajectory, const double tooth_m,
+                     const bool is_from, struct dig_alignment_part *const part)
+{
+    enum { STEPS = 40, ROUNDS = 4 };
+    const double whole = is_from ? 0.0 : 1.0;
+    double       low   = whole - most_missing;
+    double       high  = whole + most_missing;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double step = (high - low) / STEPS;
+        double       best = is_from ? part->from : part->to;
+        for (int k = 0; k <= STEPS; k++) {
+            const double at = low + step * k;
+            const double off =
+                dig_alignment_distance(recording, progress, trajectory, tooth_m,
+                                       is_from ? at : part->from, is_from ? part->to : at);
+            if (off < part->off) {
+                part->off = off;
+                best      = at;
+            }
+        }
+        *(is_from ? &part->from : &part->to) = best;
+        low  = fmax(best - step, is_from ? 0.0 : 1.0 - most_missing);
+        high = fmin(best + step, is_from ? most_missing : 1.0);
+    }
+}
+
+struct dig_alignment_part dig_alignment_align(const struct dig_recording *const  recording,
+                                              const double                       progress[],
+                                              const struct dig_trajectory *const trajectory,
+                                              const double                       tooth_m)
+{
+    assert(recording != NULL && progress != NULL && trajectory != NULL);
+    struct dig_alignment_part whole = { .to = 1.0 };
+    whole.off = dig_alignment_distance(recording, progress, trajectory, tooth_m, 0.0, 1.0);
+    if (whole.off <= whole_off) {
+        return whole;
+    }
+    struct dig_alignment_part part = whole;
+    for (int round = 0; round < 3; round++) {
+        move_end(recording, progress, trajectory, tooth_m, false, &part);
+        move_end(recording, progress, trajectory, tooth_m, true, &part);
+    }
+    return part.off < 0.5 * whole.off ? part : whole;
+}

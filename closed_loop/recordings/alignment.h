@@ -1,0 +1,48 @@
+// How far along its trajectory the rows of a force recording are: told by the poses, whatever the
+// pace, how noisy the path sensors are, and whether the recording has all of the dig.
+
+#ifndef DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H
+#define DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H
+
+#include "core/curve.h"
+#include "core/recording.h"
+
+#include <stddef.h>
+
+/// Which part of a trajectory's path, 0 … 1, a recording tells of, and how far it lies off it.
+/// Below 0 and above 1: it goes on beyond the trajectory's ends.
+struct dig_alignment_part {
+    double from, to;
+    double off; // rms, in bucket lengths
+};
+
+/// Writes the path travelled up to each row as a fraction of the recording's whole; returns that
+/// whole, m: the pin's way and the tooth's about it. Motions within a hundredth of the tooth's
+/// length of where the path was last known to be are taken for noise of the path's sensors.
+/// O(rows).
+double dig_alignment_progress(const struct dig_recording *recording, double tooth_m,
+                              double progress[]);
+
+/// The row at or before this progress, and how far towards the next; from: of a call with no more
+/// progress, or 0.
+struct dig_alignment_place {
+    size_t row;
+    double fraction;
+};
+struct dig_alignment_place dig_alignment_place(size_t rows, const double progress[], double at,
+                                               size_t from);
+
+/// The rms distance between recorded and prescribed poses at equal progress of what both have, the
+/// mean offset of the pin taken away (the ground may lie anywhere), in bucket lengths.
+double dig_alignment_distance(const struct dig_recording *recording, const double progress[],
+                              const struct dig_trajectory *trajectory, double tooth_m, double from,
+                              double to);
+
+/// Finds which part of the trajectory's path was recorded, at least six tenths of it, or what of
+/// the recording lies beyond it: all of it and no more, unless that comes twice as near.
+struct dig_alignment_part dig_alignment_align(const struct dig_recording  *recording,
+                                              const double                 progress[],
+                                              const struct dig_trajectory *trajectory,
+                                              double                       tooth_m);
+
+#endif // DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H

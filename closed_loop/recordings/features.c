@@ -1,0 +1,73 @@
+#include "closed_loop/recordings/features.h"
+
+#include <assert.h>
+#include <math.h>
+
+static const double least_amplitude = 1e-12;
+
+void dig_feature_bin(const size_t bin, size_t *const from, size_t *const to)
+{
+    assert(bin < DIG_FEATURE_BINS);
+    *from = bin * DIG_CURVE_POINTS / DIG_FEATURE_BINS;
+    *to   = (bin + 1) * DIG_CURVE_POINTS / DIG_FEATURE_BINS;
+}
+
+void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+                     double       feature[DIG_FEATURES])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            size_t from;
+            size_t to;
+            dig_feature_bin(b, &from, &to);
+            double sum = 0.0;
+            for (size_t k = from; k < to; k++) {
+                sum += curve[c][k];
+            }
+            feature[c * DIG_FEATURE_BINS + b] = sum / (double)(to - from);
+        }
+    }
+}
+
+void dig_features_mask(const bool measured[DIG_FORCE_CHANNELS], const double first,
+                       const double last, bool mask[DIG_FEATURES])
+{
+    // A bin may lack its outermost point: the path of a recording ends between two points.
+    const double slack = 1.0 / (DIG_CURVE_POINTS - 1);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            size_t from;
+            size_t to;
+            dig_feature_bin(b, &from, &to);
+            mask[c * DIG_FEATURE_BINS + b] =
+                measured[c] && (double)from / (DIG_CURVE_POINTS - 1) >= first - slack &&
+                (double)(to - 1) / (DIG_CURVE_POINTS - 1) <= last + slack;
+        }
+    }
+}
+
+static double mean_square(const double feature[DIG_FEATURES], const bool mask[DIG_FEATURES],
+                          const size_t channel)
+{
+    double sum = 0.0;
+    double n   = 0.0;
+    for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+        const size_t f = channel * DIG_FEATURE_BINS + b;
+        if (mask == NULL || mask[f]) {
+            sum += feature[f] * feature[f];
+            n += 1.0;
+        }
+    }
+    return n > 0.0 ? sum / n : 0.0;
+}
+
+void dig_features_amplitude(const double feature[DIG_FEATURES], const bool mask[DIG_FEATURES],
+                            double amplitude[DIG_FORCE_CHANNELS])
+{
+    const double moment          = sqrt(mean_square(feature, mask, DIG_CHANNEL_MY_Nm));
+    const double force           = sqrt(mean_square(feature, mask, DIG_CHANNEL_FX_N) +
+                                        mean_square(feature, mask, DIG_CHANNEL_FZ_N));
+    amplitude[DIG_CHANNEL_MY_Nm] = fmax(moment, least_amplitude);
+    amplitude[DIG_CHANNEL_FX_N]  = fmax(force, least_amplitude);
+    amplitude[DIG_CHANNEL_FZ_N]  = fmax(force, least_amplitude);
+}

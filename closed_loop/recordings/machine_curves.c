@@ -1,0 +1,245 @@
+// The curves of one machine recording: the estimator's wrench, window and resampling, with rates
+// that are centred because the whole dig is at hand.
+
+#include "closed_loop/recordings/machine_dig.h"
+#include "core/units.h"
+#include "estimator/estimator.h"
+#include "estimator/track/window.h"
+#include "estimator/wrench/wrench.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// Of the samples of a dig, so many must tell a channel.
+static const double enough_share = 0.9;
+
+// Kept of the air on either side of the dig, machine time.
+static const double beside_s = 1.0;
+
+struct reading {
+    struct dig_wrench     wrench;
+    struct dig_path_point pose;
+    bool                  solved;
+};
+
+static double value_of(const struct reading *const reading, const enum dig_channel channel,
+                       double *const sigma, double *const slow, bool *const valid)
+{
+    const struct dig_wrench *const w = &reading->wrench;
+    *valid = reading->solved && (channel == DIG_CHANNEL_MY_Nm ? w->moment_valid : w->force_valid);
+    switch (channel) {
+    case DIG_CHANNEL_FX_N: *sigma = w->sigma_Fx_N; break;
+    case DIG_CHANNEL_FZ_N: *sigma = w->sigma_Fz_N; break;
+    case DIG_CHANNEL_MY_Nm:
+    case DIG_CHANNEL_CARRIED_kg:
+    case DIG_CHANNELS:
+    default: *sigma = w->sigma_My_Nm; break;
+    }
+    // What does not average down is a share of the whole, told for the moment only.
+    *slow = w->sigma_My_Nm > 0.0 ? *sigma * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
+    return channel == DIG_CHANNEL_MY_Nm ? w->My_Nm
+                                        : (channel == DIG_CHANNEL_FX_N ? w->Fx_N : w->Fz_N);
+}
+
+// The sample with the angles and rates of delay_s before, straight between the samples there.
+static void put_back(const struct dig_machine_dig *const dig, const size_t at, const double delay_s,
+                     struct dig_sample *const sample, struct dig_rates *const rates)
+{
+    const double time_s = dig->time_s[at] - delay_s;
+    size_t       i      = at;
+    while (i > 0 && dig->time_s[i] > time_s) {
+        i--;
+    }
+    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
+        i++;
+    }
+    const double f =
+        fmin(fmax((time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]), 0.0), 1.0);
+    const struct dig_rates *const a = &dig->rates[i];
+    const struct dig_rates *const b = &dig->rates[i + 1];
+
+    *sample = dig->sample[at];
+    *rates  = *a;
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const size_t q   = (size_t)DIG_SIGNAL_BOOM_rad + j;
+        sample->value[q] = (1.0 - f) * dig->sample[i].value[q] + f * dig->sample[i + 1].value[q];
+        rates->velocity_radps[j] = (1.0 - f) * a->velocity_radps[j] + f * b->velocity_radps[j];
+        rates->acceleration_radps2[j] =
+            (1.0 - f) * a->acceleration_radps2[j] + f * b->acceleration_radps2[j];
+    }
+}
+
+static void solve_all(const struct dig_machine *const     machine,
+                      const struct dig_machine_dig *const dig,
+                      const struct dig_correction *const correction, const bool with_sigma,
+                      const double tooth_m, const size_t from, const size_t to,
+                      struct reading reading[])
+{
+    struct dig_machine corrected = dig_correction_machine(machine, correction);
+    corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
+    for (size_t i = from; i < to; i++) {
+        struct reading    r = { .solved = false };
+        struct dig_front  front;
+        struct dig_sample sample = dig->sample[i];
+        struct dig_rates  rates  = dig->rates[i];
+        if (fabs(correction->delay_s) > 0.0) {
+            put_back(dig, i, correction->delay_s, &sample, &rates);
+        }
+        r.solved = (with_sigma ? dig_wrench_correct(&corrected, correction, &sample, &rates,
+                                                    &r.wrench, &front)
+                               : dig_wrench_without_sigma(&corrected, correction, &sample, &rates,
+                                                          &r.wrench, &front)) == DIG_OK;
+        if (r.solved) {
+            const double phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
+            r.pose               = (struct dig_path_point){
+                              .x_m    = -front.pin_m[DIG_JOINT_BUCKET].x / dig->lambda,
+                              .z_m    = front.pin_m[DIG_JOINT_BUCKET].y / dig->lambda,
+                              .turn_m = tooth_m * remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI),
+            };
+        }
+        reading[i - from] = r;
+    }
+}
+
+// One channel through the estimator's window.
+static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
+                    const size_t from, const size_t to, const struct reading reading[],
+                    const enum dig_channel channel, struct dig_window *const window,
+                    struct dig_observation *const observation)
+{
+    const double scale = pow(dig->lambda, channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
+    size_t       told  = 0;
+    size_t       of    = 0;
+    dig_window_close(window);
+    dig_window_open(window);
+    for (size_t i = from; i < to; i++) {
+        double       sigma;
+        double       slow;
+        bool         valid;
+        const double value  = value_of(&reading[i - from], channel, &sigma, &slow, &valid);
+        const bool   inside = i >= dig->contact && i < dig->end;
+        of += inside ? 1 : 0;
+        told += inside && valid ? 1 : 0;
+        if (valid) {
+            dig_window_add(window, &(struct dig_window_sample){
+                                       .time_s    = dig->time_s[i] / sqrt(dig->lambda),
+                                       .moment_Nm = value / scale,
+                                       .pose      = reading[i - from].pose,
+                                       .sigma_Nm  = (float)(sigma / scale),
+                                       .slow_Nm   = (float)(slow / scale),
+                                   });
+        }
+    }
+    const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
+    return of > 0 && (double)told >= enough_share * (double)of &&
+           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m, set->smooth_half_s,
+                              observation) == DIG_OK;
+}
+
+// Pace between a twentieth and the end less that: the ends are blended and may be cut.
+static double pace_of(const struct dig_curve_set *const   set,
+                      const struct dig_machine_dig *const dig,
+                      const struct dig_window *const      window)
+{
+    const struct dig_trajectory *const t      = &set->trajectory[dig->trajectory];
+    double                             from_s = (double)NAN;
+    double                             to_s   = (double)NAN;
+    for (size_t i = 0; i < window->count && !(to_s >= 0.0 || to_s < 0.0); i++) {
+        if (window->progress[i] >= 0.05 && !(from_s >= 0.0 || from_s < 0.0)) {
+            from_s = window->time_s[i];
+        }
+        if (window->progress[i] >= 0.95) {
+            to_s = window->time_s[i];
+        }
+    }
+    const double table_s =
+        dig_trajectory_time_s(t, set->tooth_m, 0.95) - dig_trajectory_time_s(t, set->tooth_m, 0.05);
+    return to_s > from_s ? table_s / (to_s - from_s) : 1.0;
+}
+
+static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)
+{
+    const double time_s = dig->time_s[at < dig->samples ? at : dig->samples - 1] + by_s;
+    size_t       i      = 0;
+    while (i < dig->samples && dig->time_s[i] < time_s) {
+        i++;
+    }
+    return i;
+}
+
+// How the machine stood while it dug.
+static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measured *const measured)
+{
+    double sum   = 0.0;
+    double count = 0.0;
+    for (size_t i = dig->contact; i < dig->end && i < dig->samples; i++) {
+        if (dig->sample[i].valid[DIG_SIGNAL_PITCH_rad]) {
+            sum += dig->sample[i].value[DIG_SIGNAL_PITCH_rad];
+            count += 1.0;
+        }
+    }
+    measured->pitch_known = count > 0.0;
+    measured->pitch_rad   = count > 0.0 ? sum / count : 0.0;
+}
+
+static enum dig_status measure(const struct dig_machine *const     machine,
+                               const struct dig_curve_set *const   set,
+                               const struct dig_machine_dig *const dig,
+                               const struct dig_correction *const correction, const bool with_sigma,
+                               struct dig_measured *const measured)
+{
+    const size_t             from    = beside(dig, dig->contact, -beside_s);
+    const size_t             to      = beside(dig, dig->end, beside_s);
+    struct dig_window *const window  = calloc(1, sizeof *window);
+    const size_t             rows    = to > from ? to - from : 0;
+    struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
+    if (window == NULL || reading == NULL) {
+        free(window);
+        free(reading);
+        return DIG_ENOMEM;
+    }
+    solve_all(machine, dig, correction, with_sigma, set->tooth_m, from, to, reading);
+
+    enum dig_status status = DIG_OK;
+    for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
+        struct dig_observation o = { .first = 0.0 };
+        measured->measured[c] =
+            observe(set, dig, from, to, reading, (enum dig_channel)c, window, &o);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured->value[c][k] = measured->measured[c] ? o.moment_Nm[k] : 0.0;
+            measured->sigma[c][k] = measured->measured[c] ? o.sigma_Nm[k] : 0.0;
+        }
+        if (c == DIG_CHANNEL_MY_Nm) {
+            status               = measured->measured[c] ? DIG_OK : DIG_ENOMATCH;
+            measured->first      = o.first;
+            measured->last       = o.last;
+            measured->pace       = status == DIG_OK ? pace_of(set, dig, window) : 1.0;
+            measured->trajectory = dig->trajectory;
+            tell_pitch(dig, measured);
+        }
+    }
+    free(window);
+    free(reading);
+    return status;
+}
+
+enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
+                                        const struct dig_curve_set *const   set,
+                                        const struct dig_machine_dig *const dig,
+                                        const struct dig_correction *const  correction,
+                                        struct dig_measured *const          measured)
+{
+    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
+    return measure(machine, set, dig, correction, true, measured);
+}
+
+enum dig_status dig_machine_dig_values(const struct dig_machine *const     machine,
+                                       const struct dig_curve_set *const   set,
+                                       const struct dig_machine_dig *const dig,
+                                       const struct dig_correction *const  correction,
+                                       struct dig_measured *const          measured)
+{
+    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
+    return measure(machine, set, dig, correction, false, measured);
+}

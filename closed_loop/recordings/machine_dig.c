@@ -1,0 +1,384 @@
+#include "closed_loop/recordings/machine_dig.h"
+
+#include "core/units.h"
+#include "estimator/wrench/cylinder.h"
+#include "estimator/wrench/statics.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// Rates from angles within this of a sample.
+static const double rates_half_s = 0.12;
+
+// Kept clear of the soil at both ends of the air: blends of the motion, and the rates' half.
+static const double clear_s = 0.25;
+
+// And after the dump, as pressures may be late.
+static const double dumped_s = 0.6;
+
+// In tooth lengths: spacing of the vertices, how far a path may lie off its trajectory (the
+// estimator's path_limit_m on the rig), and how far off a start may be turned.
+static const double spacing_share = 0.025;
+static const double limit_share   = 0.09;
+static const double turned_share  = 0.12;
+
+// Of the samples that tell the moment: a drive that fewer tell as well is left out.
+static const double told_share = 0.5;
+
+// A dump opens the bucket by this much at least, and is over once it closes again by this, rad.
+static const double dump_rad   = 0.12;
+static const double closed_rad = 0.02;
+
+struct vertices {
+    size_t                 count;
+    struct dig_path_point *point;
+    size_t                *sample; // each vertex's
+};
+
+static struct dig_path_point point_of(const struct dig_machine *const machine,
+                                      const struct dig_sample *const sample, const double lambda,
+                                      const double tooth_m)
+{
+    const struct dig_front front   = dig_front_place(machine, &sample->value[DIG_SIGNAL_BOOM_rad]);
+    const double           phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
+    return (struct dig_path_point){
+        .x_m    = -front.pin_m[DIG_JOINT_BUCKET].x / lambda,
+        .z_m    = front.pin_m[DIG_JOINT_BUCKET].y / lambda,
+        .turn_m = tooth_m * remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI),
+    };
+}
+
+// The path of the whole recording.
+static void lay_out(const struct dig_machine *const     machine,
+                    const struct dig_machine_dig *const dig, const double tooth_m,
+                    struct vertices *const v)
+{
+    const double spacing_m = spacing_share * tooth_m;
+    v->count               = 0;
+    for (size_t i = 0; i < dig->samples; i++) {
+        const struct dig_path_point at = point_of(machine, &dig->sample[i], dig->lambda, tooth_m);
+        if (v->count > 0) {
+            const struct dig_path_point step = dig_path_point_sub(at, v->point[v->count - 1]);
+            if (dig_path_point_dot(step, step) < spacing_m * spacing_m) {
+                continue;
+            }
+        }
+        v->point[v->count]    = at;
+        v->sample[v->count++] = i;
+    }
+}
+
+// How far the path from a vertex on lies off the route begun there: rms, in which what is missing
+// of the route counts whole. end: the vertex at which the route is done.
+static double off_route_m(const struct dig_route *const route, const struct vertices *const v,
+                          const size_t start, const double tooth_m, const double enough_m,
+                          size_t *const end)
+{
+    const double                whole_m = route->at_m[route->corners - 1];
+    const size_t                most    = (size_t)(1.5 * whole_m / (spacing_share * tooth_m)) + 2;
+    const struct dig_path_point from    = v->point[start];
+    const double                dx_m    = from.x_m - route->corner[0].x_m;
+    const double                dz_m    = from.z_m - route->corner[0].z_m;
+
+    double sum_m2 = 0.0;
+    double last   = 0.0;
+    size_t i      = start;
+    for (; i < v->count && i < start + most && last < 0.99; i++) {
+        const struct dig_place place =
+            dig_route_place(route, dx_m, dz_m, &v->point[i], last - 0.02, fmin(last + 0.1, 1.0));
+        sum_m2 += place.distance_m * place.distance_m;
+        last = fmax(last, place.progress);
+        if (sum_m2 > (double)most * enough_m * enough_m) {
+            return INFINITY;
+        }
+    }
+    *end = i;
+    return sqrt(sum_m2 / (double)(i - start)) + (last < 0.99 ? (1.0 - last) * whole_m : 0.0);
+}
+
+struct found {
+    double off_m;
+    int    trajectory;
+    size_t start, end; // vertices
+};
+
+// Tries every vertex as the start of every trajectory asked for.
+static struct found search(const struct dig_curve_set *const set, const struct vertices *const v,
+                           const int asked)
+{
+    struct found best = { .off_m = INFINITY, .trajectory = -1 };
+    for (size_t t = 0; t < set->trajectories; t++) {
+        if (asked >= 0 && (size_t)asked != t) {
+            continue;
+        }
+        const struct dig_route route = dig_route_make(&set->trajectory[t], set->tooth_m);
+        for (size_t s = 0; s + 2 < v->count; s++) {
+            if (fabs(v->point[s].turn_m - route.corner[0].turn_m) > turned_share * set->tooth_m) {
+                continue;
+            }
+            size_t       end   = s;
+            const double off_m = off_route_m(&route, v, s, set->tooth_m, best.off_m, &end);
+            if (off_m < best.off_m) {
+                best = (struct found){ off_m, (int)t, s, end };
+            }
+        }
+    }
+    return best;
+}
+
+// The shift as the estimator fits it, from the vertices of the dig and some before.
+static struct dig_track fit_track(const struct dig_route *const route,
+                                  const struct vertices *const v, const struct found *const found,
+                                  const double tooth_m)
+{
+    struct dig_path path  = { .spacing_m = 0.5 * spacing_share * tooth_m };
+    const size_t    first = found->start > 8 ? found->start - 8 : 0;
+    for (size_t i = first; i < found->end; i++) {
+        if (i == found->start) {
+            dig_path_touch(&path, &v->point[i]);
+        } else {
+            (void)dig_path_add(&path, &v->point[i], i > found->start);
+        }
+    }
+    return dig_track_fit(route, &path, limit_share * tooth_m);
+}
+
+static size_t sample_at(const struct dig_machine_dig *const dig, const double time_s)
+{
+    size_t i = 0;
+    while (i < dig->samples && dig->time_s[i] < time_s) {
+        i++;
+    }
+    return i;
+}
+
+static double phi_at(const struct dig_sample *const sample)
+{
+    return sample->value[DIG_SIGNAL_BOOM_rad] + sample->value[DIG_SIGNAL_ARM_rad] +
+           sample->value[DIG_SIGNAL_BUCKET_rad];
+}
+
+// The load is gone once the bucket has opened and begins to close again.
+static size_t find_dumped(const struct dig_machine_dig *const dig)
+{
+    double least_rad = INFINITY;
+    double most_rad  = -INFINITY;
+    size_t most      = dig->samples;
+    for (size_t i = dig->end; i < dig->samples; i++) {
+        const double phi_rad = phi_at(&dig->sample[i]);
+        least_rad            = fmin(least_rad, phi_rad);
+        if (phi_rad > most_rad) {
+            most_rad = phi_rad;
+            most     = i;
+        }
+        if (most_rad < least_rad + dump_rad) {
+            most_rad = phi_rad; // still closed: the most is counted from where it is least
+        } else if (phi_rad < most_rad - closed_rad) {
+            return sample_at(dig, dig->time_s[most] + dumped_s);
+        }
+    }
+    return dig->samples;
+}
+
+// Where along the recording the trajectory begins and ends.
+static void split(const struct dig_machine *const machine, const struct dig_route *const route,
+                  const struct vertices *const v, const struct found *const found,
+                  const double tooth_m, struct dig_machine_dig *const dig)
+{
+    // The last sample still at the start, and the first at the end.
+    const size_t from = v->sample[found->start > 12 ? found->start - 12 : 0];
+    const size_t to   = found->end < v->count ? v->sample[found->end] : dig->samples;
+    double       last = 0.0;
+    dig->contact      = from;
+    dig->end          = to;
+    for (size_t i = from; i < dig->samples; i++) {
+        const struct dig_path_point at = point_of(machine, &dig->sample[i], dig->lambda, tooth_m);
+        const struct dig_place place = dig_route_place(route, dig->track.dx_m, dig->track.dz_m, &at,
+                                                       last - 0.05, fmin(last + 0.1, 1.0));
+        if (place.distance_m > 2.0 * limit_share * tooth_m) {
+            continue;
+        }
+        last = fmax(last, place.progress);
+        if (last <= 0.0) {
+            dig->contact = i + 1;
+        }
+        if (last >= 1.0 - 1e-9) {
+            dig->end = i;
+            break;
+        }
+    }
+    const double contact_s = dig->time_s[dig->contact < dig->samples ? dig->contact : 0];
+    dig->before_end        = sample_at(dig, contact_s - clear_s);
+    dig->after             = find_dumped(dig);
+}
+
+static enum dig_status place(const struct dig_machine *const   machine,
+                             const struct dig_curve_set *const set, const int asked,
+                             struct vertices *const v, struct dig_machine_dig *const dig,
+                             struct dig_error *const error)
+{
+    lay_out(machine, dig, set->tooth_m, v);
+    const struct found found   = search(set, v, asked);
+    const double       limit_m = limit_share * set->tooth_m;
+    if (found.trajectory < 0) {
+        return dig_error_set(error, DIG_ENOMATCH, "no dig along %s found in it",
+                             asked < 0 ? "any trajectory of the table"
+                                       : set->trajectory[asked].name);
+    }
+    const struct dig_route route = dig_route_make(&set->trajectory[found.trajectory], set->tooth_m);
+    dig->track                   = fit_track(&route, v, &found, set->tooth_m);
+    dig->trajectory              = found.trajectory;
+    if (!(dig->track.rms_m <= limit_m) || !(found.off_m <= 3.0 * limit_m)) {
+        return dig_error_set(
+            error, DIG_ENOMATCH,
+            "no dig along %s in it: the nearest path lies %.3f bucket lengths off, expected at "
+            "most %.2f",
+            asked < 0 ? "any trajectory of the table" : set->trajectory[asked].name,
+            fmax(dig->track.rms_m, found.off_m / 3.0) / set->tooth_m, limit_share);
+    }
+    split(machine, &route, v, &found, set->tooth_m, dig);
+    return DIG_OK;
+}
+
+static bool is_read(const struct dig_sample *const sample, const size_t signal)
+{
+    return sample->valid[signal] && isfinite(sample->value[signal]);
+}
+
+static bool has_drive(const struct dig_sample *const sample, const size_t joint)
+{
+    const size_t head = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * joint;
+    return is_read(sample, head + DIG_CHAMBER_HEAD) && is_read(sample, head + DIG_CHAMBER_ROD);
+}
+
+// The angles and the bucket's drive: less than that tells no moment.
+static bool has_moment(const struct dig_sample *const sample)
+{
+    bool has = has_drive(sample, DIG_JOINT_BUCKET);
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        has = has && is_read(sample, (size_t)DIG_SIGNAL_BOOM_rad + j);
+    }
+    return has;
+}
+
+// Drives that a recording tells by and large: a machine may have its pressures at the bucket alone.
+static void find_drives(const struct dig_machine_recording *const recording, bool told[DIG_JOINTS])
+{
+    double samples         = 0.0;
+    double has[DIG_JOINTS] = { 0.0 };
+    for (size_t i = 0; i < recording->rows; i++) {
+        samples += has_moment(&recording->row[i]) ? 1.0 : 0.0;
+        for (size_t j = 0; j < DIG_JOINTS && has_moment(&recording->row[i]); j++) {
+            has[j] += has_drive(&recording->row[i], j) ? 1.0 : 0.0;
+        }
+    }
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        told[j] = has[j] > told_share * samples;
+    }
+}
+
+// Samples with all that the recording tells, in time; without the rest of it.
+static size_t copy_complete(const struct dig_machine_recording *const recording,
+                            struct dig_sample                         sample[])
+{
+    size_t n = 0;
+    bool   told[DIG_JOINTS];
+    find_drives(recording, told);
+    for (size_t i = 0; i < recording->rows; i++) {
+        bool ok = has_moment(&recording->row[i]);
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            ok = ok && (!told[j] || has_drive(&recording->row[i], j));
+        }
+        if (!ok || (n > 0 && recording->row[i].time_ns <= sample[n - 1].time_ns)) {
+            continue;
+        }
+        sample[n] = recording->row[i];
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            const size_t head = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * j;
+
+            sample[n].valid[head + DIG_CHAMBER_HEAD] = told[j];
+            sample[n].valid[head + DIG_CHAMBER_ROD]  = told[j];
+        }
+        n++;
+    }
+    return n;
+}
+
+static enum dig_status fill_rates(const struct dig_machine *const machine,
+                                  struct dig_machine_dig *const   dig)
+{
+    double *const joint_rad = malloc(DIG_JOINTS * dig->samples * sizeof *joint_rad);
+    if (joint_rad == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < dig->samples; i++) {
+        dig->time_s[i] = 1e-9 * (double)(dig->sample[i].time_ns - dig->sample[0].time_ns);
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            joint_rad[DIG_JOINTS * i + j] = dig->sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
+        }
+    }
+    dig_rates_centred(dig->samples, dig->time_s, joint_rad, rates_half_s,
+                      dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad),
+                      dig->rates);
+    free(joint_rad);
+    return DIG_OK;
+}
+
+enum dig_status dig_machine_dig_make(const struct dig_machine *const           machine,
+                                     const struct dig_curve_set *const         set,
+                                     const struct dig_machine_recording *const recording,
+                                     const int trajectory, struct dig_machine_dig *const dig,
+                                     struct dig_error *const error)
+{
+    assert(machine != NULL && set != NULL && recording != NULL && dig != NULL);
+    const size_t           rows = recording->rows + 1;
+    struct dig_machine_dig made = {
+        .sample = malloc(rows * sizeof *made.sample),
+        .time_s = malloc(rows * sizeof *made.time_s),
+        .rates  = malloc(rows * sizeof *made.rates),
+        .lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m,
+    };
+    struct vertices v = {
+        .point  = malloc(rows * sizeof *v.point),
+        .sample = malloc(rows * sizeof *v.sample),
+    };
+    enum dig_status status = DIG_OK;
+    if (made.sample == NULL || made.time_s == NULL || made.rates == NULL || v.point == NULL ||
+        v.sample == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
+        goto done;
+    }
+    made.samples = copy_complete(recording, made.sample);
+    if (made.samples < 50) {
+        status = dig_error_set(
+            error, DIG_EINVAL,
+            "%zu samples with all angles and the bucket cylinder's pressures, expected 50 at "
+            "least",
+            made.samples);
+        goto done;
+    }
+    status = fill_rates(machine, &made);
+    if (status == DIG_OK) {
+        status = place(machine, set, trajectory, &v, &made, error);
+    }
+done:
+    free(v.point);
+    free(v.sample);
+    if (status != DIG_OK) {
+        dig_machine_dig_finish(&made);
+        return status;
+    }
+    *dig = made;
+    return DIG_OK;
+}
+
+void dig_machine_dig_finish(struct dig_machine_dig *const dig)
+{
+    if (dig != NULL) {
+        free(dig->sample);
+        free(dig->time_s);
+        free(dig->rates);
+        *dig = (struct dig_machine_dig){ .samples = 0 };
+    }
+}

@@ -1,0 +1,63 @@
+// One machine recording, laid along its trajectory: where in it the bucket was in the soil and
+// where in free air, told by the path alone. The soil's moment is not asked: what is wrong with a
+// machine must not decide where its air is.
+//
+//   air before     | dig along the trajectory |  lift, dump  | air after
+//   0 ......... before_end  contact ..... end          after ....... samples
+
+#ifndef DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
+#define DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
+
+#include "closed_loop/recordings/measured.h"
+#include "core/curve.h"
+#include "core/error.h"
+#include "core/machine.h"
+#include "core/recording.h"
+#include "estimator/track/route.h"
+#include "estimator/track/track.h"
+#include "estimator/wrench/correction.h"
+#include "estimator/wrench/rates.h"
+
+/// The samples of one recording that have all angles and the pressures of every drive that it tells
+/// (the bucket at least), and what they say. Owned; free with dig_machine_dig_finish().
+struct dig_machine_dig {
+    size_t             samples;
+    struct dig_sample *sample;
+    double            *time_s; // machine time, 0 at the first
+    struct dig_rates  *rates;  // centred
+    int                trajectory;
+    double             lambda;
+    struct dig_track   track;               // where the route lies, rig scale
+    size_t             before_end, contact; // first samples not in the air before, in the soil
+    size_t             end;                 // first sample past the trajectory
+    size_t             after; // first sample of the air after the dump; samples: there is none
+};
+
+/// Lays a recording along its trajectory (-1: along any of the set's). DIG_ENOMATCH: it holds no
+/// dig along it; DIG_EINVAL: fewer than 50 such samples; DIG_ENOMEM. *error names which.
+DIG_MUST_CHECK enum dig_status dig_machine_dig_make(const struct dig_machine           *machine,
+                                                    const struct dig_curve_set         *set,
+                                                    const struct dig_machine_recording *recording,
+                                                    int trajectory, struct dig_machine_dig *dig,
+                                                    struct dig_error *error);
+
+/// NULL and a zeroed struct are allowed.
+void dig_machine_dig_finish(struct dig_machine_dig *dig);
+
+/// The curves that the machine, corrected (zeroed: as its file says), gives of the dig: trajectory,
+/// pace, first, last, measured, value and sigma of *measured are written. A channel that fewer than
+/// nine samples in ten tell counts as not measured. DIG_ENOMATCH: the moment is not among them.
+DIG_MUST_CHECK enum dig_status dig_machine_dig_measure(const struct dig_machine     *machine,
+                                                       const struct dig_curve_set   *set,
+                                                       const struct dig_machine_dig *dig,
+                                                       const struct dig_correction  *correction,
+                                                       struct dig_measured          *measured);
+
+/// The same without sigma, which is 0: half the work.
+DIG_MUST_CHECK enum dig_status dig_machine_dig_values(const struct dig_machine     *machine,
+                                                      const struct dig_curve_set   *set,
+                                                      const struct dig_machine_dig *dig,
+                                                      const struct dig_correction  *correction,
+                                                      struct dig_measured          *measured);
+
+#endif // DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H

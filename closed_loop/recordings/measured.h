@@ -1,0 +1,36 @@
+// The digs of a campaign as the closed loop compares them: on the table's grid of path progress, at
+// rig scale, smoothed as the table is.
+
+#ifndef DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
+#define DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
+
+#include "core/curve.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// What a recording may be used for (files/campaign_yaml.h has the same, in the same order).
+enum dig_use { DIG_USE_IDENTIFY, DIG_USE_FIT, DIG_USE_HOLDOUT };
+
+#define DIG_MEASURED_MAX 64
+
+struct dig_measured {
+    char         name[64]; // the recording, for people
+    size_t       order;    // place in the campaign, 0 …: digs follow each other in this order
+    int          trajectory;
+    enum dig_use use;
+    unsigned     pass; // how often the place was dug, counted from 1
+    double       pace; // duration of the table's trajectory / of this dig, both at rig scale
+
+    double first, last;                           // progress range from contact to exit
+    bool   measured[DIG_CHANNELS];                // which of the channels there are
+    double value[DIG_CHANNELS][DIG_CURVE_POINTS]; // by the model as it was; 0 where not measured
+    double sigma[DIG_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
+    // What effects of the machine that were found add to value: 0 until any is.
+    double machine[DIG_CHANNELS][DIG_CURVE_POINTS];
+
+    bool   pitch_known; // recorded while it was dug
+    double pitch_rad;   // of the machine, mean over the dig
+};
+
+#endif // DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H

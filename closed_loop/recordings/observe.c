@@ -1,0 +1,385 @@
+#include "closed_loop/recordings/observe.h"
+
+#include "closed_loop/recordings/alignment.h"
+#include "core/units.h"
+#include "estimator/approach/approach_fit.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/approach/approaches.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A recording that ends sooner than its trajectory by less of the smoothing's half width than this
+// goes on as it ended: one of 50 Hz lacks up to 20 ms.
+static const double held_share = 0.25;
+
+// The recording's columns that matter, as plain arrays over its rows.
+struct columns {
+    size_t  rows;
+    double *t_s;
+    double *progress; // path travelled as a fraction of the trajectory's
+    // Of one channel, over the rows that have it, and one more at either end.
+    double *held_t_s;
+    double *held_progress;
+    double *raw;
+    double *smooth;
+};
+
+// The way at equal steps of progress.
+static void lay_out(const struct dig_recording *const recording, const struct columns *const c,
+                    const double tooth_m, struct dig_path_point way[const DIG_APPROACH_FIT_POINTS])
+{
+    struct dig_alignment_place at = { .row = 0 };
+    for (int k = 0; k < DIG_APPROACH_FIT_POINTS; k++) {
+        const double progress = (double)k / (DIG_APPROACH_FIT_POINTS - 1);
+        at                    = dig_alignment_place(c->rows, c->progress, progress, at.row);
+
+        const double                      f = at.fraction;
+        const struct dig_force_row *const a = &recording->row[at.row];
+        const struct dig_force_row *const b = a + 1;
+        way[k]                              = (struct dig_path_point){
+                                         .x_m = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m),
+                                         .z_m = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m),
+                                         .turn_m =
+                                             tooth_m * DIG_RAD_PER_DEG * (a->theta_deg + f * (b->theta_deg - a->theta_deg)),
+        };
+    }
+}
+
+// The rms distance from the trajectory dug as the way was, with what of that the table does not
+// reach in quadrature.
+static double fit_distance(const struct dig_recording *const recording,
+                           const struct columns *const c, const struct dig_curve_set *const set,
+                           const size_t trajectory, struct dig_approach *const made,
+                           struct dig_approach *const reached)
+{
+    struct dig_path_point way[DIG_APPROACH_FIT_POINTS];
+    lay_out(recording, c, set->tooth_m, way);
+    const double off_m = dig_approach_fit(&set->trajectory[trajectory], set->tooth_m,
+                                          set->approaches->depth_m[trajectory], way, made);
+    return hypot(off_m, dig_approach_clamp(set, trajectory, made, reached)) / set->tooth_m;
+}
+
+static double channel_of(const struct dig_force_row *const row, const enum dig_channel channel)
+{
+    if (channel == DIG_CHANNEL_MY_Nm) {
+        return row->My_Nm;
+    }
+    return channel == DIG_CHANNEL_FX_N ? row->Fx_N : row->Fz_N;
+}
+
+// Takes over the rows that have a channel; returns how many.
+static size_t hold_channel(const struct dig_recording *const recording,
+                           const struct columns *const c, const enum dig_channel channel)
+{
+    size_t held = 0;
+    for (size_t i = 0; i < c->rows; i++) {
+        c->raw[held]           = channel_of(&recording->row[i], channel);
+        c->held_t_s[held]      = c->t_s[i];
+        c->held_progress[held] = c->progress[i];
+        held += isfinite(c->raw[held]) ? 1 : 0;
+    }
+    return held;
+}
+
+// The longest time that none of the held rows tells of, from the recording's first row to its last.
+static double longest_gap_s(const struct columns *const c, const size_t held)
+{
+    double gap_s = 0.0;
+    for (size_t i = 0; i <= held; i++) {
+        const double from_s = i == 0 ? c->t_s[0] : c->held_t_s[i - 1];
+        const double to_s   = i == held ? c->t_s[c->rows - 1] : c->held_t_s[i];
+        gap_s               = fmax(gap_s, to_s - from_s);
+    }
+    return gap_s;
+}
+
+// What the recording lacks of the trajectory: seconds of its own pace before and after it, and the
+// progress between which smoothed values are those of a whole dig.
+struct ends {
+    double before_s, after_s;
+    double first, last;
+};
+
+// A value that stays as it was before the first row and after the last, for as long as is missing.
+static size_t extend(const struct ends *const ends, const struct columns *const c, size_t held)
+{
+    if (ends->after_s > 0.0 && ends->last >= 1.0) {
+        c->held_t_s[held]      = c->held_t_s[held - 1] + ends->after_s;
+        c->held_progress[held] = 1.0;
+        c->raw[held]           = c->raw[held - 1];
+        held++;
+    }
+    if (ends->before_s > 0.0 && ends->first <= 0.0) {
+        memmove(c->held_t_s + 1, c->held_t_s, held * sizeof(double));
+        memmove(c->held_progress + 1, c->held_progress, held * sizeof(double));
+        memmove(c->raw + 1, c->raw, held * sizeof(double));
+        c->held_t_s[0] -= ends->before_s;
+        c->held_progress[0] = 0.0;
+        held++;
+    }
+    return held;
+}
+
+// Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
+// lack it for longer than the smoothing reaches to one side.
+static bool read_channel(const struct dig_curve_set *const set,
+                         const struct dig_recording *const recording, const struct columns *const c,
+                         const struct ends *const ends, const enum dig_channel channel,
+                         double value[DIG_CURVE_POINTS])
+{
+    size_t     held = hold_channel(recording, c, channel);
+    const bool told =
+        held == c->rows || (held >= 2 && longest_gap_s(c, held) <= set->smooth_half_s);
+    if (told) {
+        held = extend(ends, c, held);
+        dig_curve_smooth(held, c->held_t_s, c->raw, set->smooth_half_s, c->smooth);
+    }
+    struct dig_alignment_place at = { .row = 0 };
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        value[k]              = 0.0;
+        if (told && progress >= ends->first && progress <= ends->last) {
+            at                  = dig_alignment_place(held, c->held_progress, progress, at.row);
+            const double before = c->smooth[at.row];
+            value[k]            = before + at.fraction * (c->smooth[at.row + 1] - before);
+        }
+    }
+    return told;
+}
+
+static enum dig_status find_trajectory(const struct dig_curve_set *const set,
+                                       const struct dig_recording *const recording,
+                                       const struct columns *const c, const bool as_dug,
+                                       struct dig_observed *const       observed,
+                                       struct dig_alignment_part *const best_part,
+                                       struct dig_error *const          error)
+{
+    int best   = -1;
+    *best_part = (struct dig_alignment_part){ .to = 1.0, .off = (double)INFINITY };
+    for (size_t t = 0; t < set->trajectories; t++) {
+        struct dig_approach       made     = dig_approach_plain();
+        struct dig_approach       approach = dig_approach_plain();
+        struct dig_alignment_part part     = { .to = 1.0 };
+        if (as_dug && dig_approach_varies(set, t)) {
+            part.off = fit_distance(recording, c, set, t, &made, &approach);
+        } else {
+            part = dig_alignment_align(recording, c->progress, &set->trajectory[t], set->tooth_m);
+        }
+        if (part.off < best_part->off) {
+            best               = (int)t;
+            *best_part         = part;
+            observed->made     = made;
+            observed->approach = approach;
+        }
+    }
+    if (best < 0 || !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "the recording's path is none of the table's: nearest is \"%s\", "
+                             "%.3f bucket lengths away, expected at most %.2f",
+                             best < 0 ? "" : set->trajectory[best].name, best_part->off,
+                             DIG_OBSERVE_PATH_LIMIT);
+    }
+    observed->trajectory = best;
+    observed->off_path_m = best_part->off * set->tooth_m;
+    return DIG_OK;
+}
+
+// The rows from where the trajectory begins to where it ends: the bucket may have waited or gone on
+// beyond, and the table's curves are smoothed over the trajectory alone.
+static struct columns along_trajectory(const struct columns *const all)
+{
+    struct columns along = *all;
+    while (along.rows > 2 && along.progress[1] <= 0.0) {
+        along.progress++;
+        along.t_s++;
+        along.rows--;
+    }
+    while (along.rows > 2 && along.progress[along.rows - 2] >= 1.0) {
+        along.rows--;
+    }
+    return along;
+}
+
+// The time of this progress, the recording's.
+static double time_at_s(const struct columns *const c, const double progress)
+{
+    const struct dig_alignment_place at = dig_alignment_place(c->rows, c->progress, progress, 0);
+    return c->t_s[at.row] + at.fraction * (c->t_s[at.row + 1] - c->t_s[at.row]);
+}
+
+// The progress at this time.
+static double progress_at(const struct columns *const c, const double t_s)
+{
+    const struct dig_alignment_place at = dig_alignment_place(c->rows, c->t_s, t_s, 0);
+    return c->progress[at.row] + at.fraction * (c->progress[at.row + 1] - c->progress[at.row]);
+}
+
+// How fast the dig was: without its first and last hundredth, about which it may have rested.
+static double pace_of(const struct dig_curve_set *const set, const size_t trajectory,
+                      const struct columns *const c, const struct dig_alignment_part *const part)
+{
+    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
+    const double                       rim  = 0.01 * (part->to - part->from);
+    const double                       from = fmax(part->from, 0.0) + rim;
+    const double                       to   = fmin(part->to, 1.0) - rim;
+    return (dig_trajectory_time_s(t, set->tooth_m, to) -
+            dig_trajectory_time_s(t, set->tooth_m, from)) /
+           (time_at_s(c, to) - time_at_s(c, from));
+}
+
+static struct ends ends_of(const struct dig_curve_set *const set, const size_t trajectory,
+                           const struct columns *const            c,
+                           const struct dig_alignment_part *const part, const double pace)
+{
+    const struct dig_trajectory *const t      = &set->trajectory[trajectory];
+    const double                       half_s = set->smooth_half_s;
+    struct ends                        ends   = { .last = 1.0 };
+    ends.before_s = dig_trajectory_time_s(t, set->tooth_m, part->from) / pace;
+    ends.after_s =
+        (dig_trajectory_duration_s(t) - dig_trajectory_time_s(t, set->tooth_m, part->to)) / pace;
+    if (ends.before_s > held_share * half_s) {
+        ends.first = progress_at(c, c->t_s[0] + half_s);
+    }
+    if (ends.after_s > held_share * half_s) {
+        ends.last = progress_at(c, c->t_s[c->rows - 1] - half_s);
+    }
+    return ends;
+}
+
+static enum dig_status observe(const struct dig_curve_set *const set,
+                               const struct dig_recording *const recording,
+                               const struct columns *const c, const bool as_dug,
+                               struct dig_observed *const observed, struct dig_error *const error)
+{
+    for (size_t i = 0; i < c->rows; i++) {
+        c->t_s[i] = recording->row[i].t_s;
+    }
+    if (!(dig_alignment_progress(recording, set->tooth_m, c->progress) > 0.1 * set->tooth_m)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the recording's bucket hardly moves, expected a dig");
+    }
+    struct dig_alignment_part part;
+    struct dig_observed       o      = { .trajectory = 0 };
+    const enum dig_status     status = find_trajectory(set, recording, c, as_dug, &o, &part, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < c->rows; i++) {
+        c->progress[i] = part.from + (part.to - part.from) * c->progress[i];
+    }
+    const struct columns       along = along_trajectory(c);
+    const struct dig_recording rows  = { along.rows, recording->row + (along.t_s - c->t_s) };
+    o.pace                           = pace_of(set, (size_t)o.trajectory, &along, &part);
+    const struct ends ends           = ends_of(set, (size_t)o.trajectory, &along, &part, o.pace);
+    o.first                          = ends.first;
+    o.last                           = ends.last;
+    for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+        o.measured[channel] =
+            read_channel(set, &rows, &along, &ends, (enum dig_channel)channel, o.value[channel]);
+    }
+    if (!o.measured[DIG_CHANNEL_MY_Nm]) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "My_Nm is missing for more than %.2f s, expected the moment of the "
+                             "whole dig",
+                             set->smooth_half_s);
+    }
+    *observed = o;
+    return DIG_OK;
+}
+
+static enum dig_status observe_any(const struct dig_curve_set *const set,
+                                   const struct dig_recording *const recording, const bool as_dug,
+                                   struct dig_observed *const observed,
+                                   struct dig_error *const    error)
+{
+    assert(set != NULL && recording != NULL && observed != NULL);
+    if (recording->rows < 2) {
+        return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
+                             recording->rows);
+    }
+    const size_t  n      = recording->rows + 2;
+    double *const memory = calloc(6 * n, sizeof *memory);
+    if (memory == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    const struct columns columns = { recording->rows, memory,         memory + n,    memory + 2 * n,
+                                     memory + 3 * n,  memory + 4 * n, memory + 5 * n };
+    const enum dig_status status = observe(set, recording, &columns, as_dug, observed, error);
+    free(memory);
+    return status;
+}
+
+enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
+                                const struct dig_recording *const recording,
+                                struct dig_observed *const observed, struct dig_error *const error)
+{
+    return observe_any(set, recording, false, observed, error);
+}
+
+enum dig_status dig_observe_as_dug(const struct dig_curve_set *const set,
+                                   const struct dig_recording *const recording,
+                                   struct dig_observed *const        observed,
+                                   struct dig_error *const           error)
+{
+    return observe_any(set, recording, true, observed, error);
+}
+
+enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
+                                      const struct dig_recording *const recording,
+                                      struct dig_observation *const     observation,
+                                      struct dig_error *const           error)
+{
+    assert(observation != NULL);
+    struct dig_observed   o      = { .trajectory = 0 };
+    const enum dig_status status = dig_observe_dig(set, recording, &o, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_observation seen = { .dig_count  = 1,
+                                    .trajectory = o.trajectory,
+                                    .off_path_m = o.off_path_m,
+                                    .first      = o.first,
+                                    .last       = o.last };
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        seen.moment_Nm[k] = o.value[DIG_CHANNEL_MY_Nm][k];
+    }
+    *observation = seen;
+    return DIG_OK;
+}
+
+enum dig_status dig_observe_mean(const size_t n, const struct dig_observation one[],
+                                 struct dig_observation *const mean, struct dig_error *const error)
+{
+    assert(mean != NULL);
+    if (n == 0) {
+        return dig_error_set(error, DIG_EINVAL, "no recording, expected one or more");
+    }
+    struct dig_observation sum = { .dig_count  = one[n - 1].dig_count,
+                                   .trajectory = one[0].trajectory,
+                                   .first      = one[0].first,
+                                   .last       = one[0].last };
+    for (size_t i = 0; i < n; i++) {
+        if (one[i].trajectory != sum.trajectory) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "recordings of different trajectories, expected digs along one");
+        }
+        sum.off_path_m = fmax(sum.off_path_m, one[i].off_path_m);
+        sum.first      = fmax(sum.first, one[i].first);
+        sum.last       = fmin(sum.last, one[i].last);
+    }
+    if (!(sum.last > sum.first)) {
+        return dig_error_set(error, DIG_EINVAL, "the digs have no part of the path in common");
+    }
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        for (size_t i = 0; i < n && at >= sum.first && at <= sum.last; i++) {
+            sum.moment_Nm[k] += one[i].moment_Nm[k] / (double)n;
+            sum.sigma_Nm[k] = hypot(sum.sigma_Nm[k], one[i].sigma_Nm[k] / (double)n);
+        }
+    }
+    *mean = sum;
+    return DIG_OK;
+}

@@ -1,0 +1,96 @@
+#include "closed_loop/recordings/observe_machine.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+static enum dig_status append(struct dig_observed_digs *const     digs,
+                              const struct dig_observation *const observation)
+{
+    struct dig_observation *const grown = realloc(digs->dig, (digs->digs + 1) * sizeof *digs->dig);
+    if (grown == NULL) {
+        return DIG_ENOMEM;
+    }
+    digs->dig               = grown;
+    digs->dig[digs->digs++] = *observation;
+    return DIG_OK;
+}
+
+// Drives the estimator through the recording and collects what it hands out.
+static enum dig_status drive(struct dig_estimator *const               estimator,
+                             const struct dig_machine_recording *const recording,
+                             struct dig_observed_digs *const           digs)
+{
+    struct dig_estimate    estimate = { .dig_count = 0 };
+    struct dig_observation observation;
+    enum dig_status        status = DIG_OK;
+    for (size_t i = 0; i < recording->rows && status == DIG_OK; i++) {
+        // A sample it cannot use is passed over, as in the daemon's tick.
+        if (dig_estimator_step(estimator, &recording->row[i], &estimate) == DIG_OK &&
+            dig_estimator_take_dig(estimator, &observation) &&
+            observation.last - observation.first >= DIG_OBSERVE_LEAST_PATH) {
+            status = append(digs, &observation);
+        }
+    }
+    digs->seen = estimate.dig_count;
+    return status;
+}
+
+static enum dig_status observe(const struct dig_machine *const           machine,
+                               const struct dig_correction *const        correction,
+                               const struct dig_curve_set *const         set,
+                               const struct dig_machine_recording *const recording,
+                               struct dig_estimator *const               estimator,
+                               struct dig_observed_digs *const digs, struct dig_error *const error)
+{
+    const struct dig_estimator_settings settings = dig_estimator_settings_default();
+    enum dig_status status = dig_estimator_init(estimator, machine, set, &settings);
+    if (status == DIG_OK && correction != NULL) {
+        status = dig_estimator_correct(estimator, correction);
+    }
+    if (status != DIG_OK) {
+        return dig_error_set(error, status, "machine %s: %s", machine->name,
+                             dig_status_str(status));
+    }
+    status = drive(estimator, recording, digs);
+    if (status != DIG_OK) {
+        return dig_error_set(error, status, "out of memory");
+    }
+    return digs->digs > 0
+               ? DIG_OK
+               : dig_error_set(error, DIG_ENOMATCH,
+                               "digs in it: %zu, none of them along %.0f %% or more of a "
+                               "trajectory of the table, expected one or more",
+                               digs->seen, 100.0 * DIG_OBSERVE_LEAST_PATH);
+}
+
+enum dig_status dig_observe_machine(const struct dig_machine *const           machine,
+                                    const struct dig_correction *const        correction,
+                                    const struct dig_curve_set *const         set,
+                                    const struct dig_machine_recording *const recording,
+                                    struct dig_observed_digs *const           digs,
+                                    struct dig_error *const                   error)
+{
+    assert(machine != NULL && set != NULL && recording != NULL && digs != NULL);
+    struct dig_estimator *const estimator = malloc(dig_estimator_size());
+    if (estimator == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    struct dig_observed_digs found = { .digs = 0 };
+    const enum dig_status    status =
+        observe(machine, correction, set, recording, estimator, &found, error);
+    free(estimator);
+    if (status != DIG_OK) {
+        dig_observed_digs_finish(&found);
+        return status;
+    }
+    *digs = found;
+    return DIG_OK;
+}
+
+void dig_observed_digs_finish(struct dig_observed_digs *const digs)
+{
+    if (digs != NULL) {
+        free(digs->dig);
+        *digs = (struct dig_observed_digs){ .digs = 0 };
+    }
+}

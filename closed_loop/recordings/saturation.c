@@ -1,0 +1,110 @@
+#include "closed_loop/recordings/saturation.h"
+
+#include <assert.h>
+#include <math.h>
+
+static const double least_s      = 1.0;
+static const double over_below   = 10.0; // samples at the top over samples just below it
+static const double over_back    = 3.0;
+static const double just_below   = 0.01; // of the highest value
+static const double same_to_this = 1e-6;
+static const double least_pairs  = 50.0; // of readings that tell how often one repeats
+
+static double highest(const struct dig_machine_recording *const recording, const int signal)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < recording->rows; i++) {
+        if (recording->row[i].valid[signal]) {
+            most = fmax(most, recording->row[i].value[signal]);
+        }
+    }
+    return most;
+}
+
+// Below this chance readings that stay equal are no accident of noise and steps.
+static const double least_log10 = -3.0;
+
+// Where more readings repeat the one before than this, or some repeat as long elsewhere, noise does
+// not show through the steps, and a load that stands still reads the same for as long as it stands.
+static const double most_repeated = 0.7;
+
+double dig_saturation_log10_chance(const struct dig_machine_recording *const recording,
+                                   const enum dig_signal                     signal)
+{
+    assert(recording != NULL);
+    const double most     = highest(recording, signal);
+    double       readings = 0.0;
+    double       pairs    = 0.0;
+    double       repeated = 0.0;
+    double       run      = 0.0;
+    double       longest  = 0.0;
+    double       same     = 1.0;
+    double       below    = 1.0; // longest run of equal readings that are not the highest
+    double       before   = most;
+    for (size_t i = 0; i < recording->rows; i++) {
+        const double value = recording->row[i].value[signal];
+        if (!recording->row[i].valid[signal]) {
+            continue;
+        }
+        const bool top = value >= most * (1.0 - same_to_this);
+        run            = top ? run + 1.0 : 0.0;
+        longest        = fmax(longest, run);
+        readings += 1.0;
+        if (!top && before < most * (1.0 - same_to_this)) {
+            const bool again = fabs(value - before) <= same_to_this * most;
+
+            same  = again ? same + 1.0 : 1.0;
+            below = fmax(below, same);
+            pairs += 1.0;
+            repeated += again ? 1.0 : 0.0;
+        }
+        before = value;
+    }
+    const double share = (repeated + 1.0) / (pairs + 2.0);
+    const bool   noisy = pairs > least_pairs && share <= most_repeated && longest > below;
+    return most > 0.0 && noisy ? fmin(log10(readings) + (longest - 1.0) * log10(share), 0.0) : 0.0;
+}
+
+static bool is_clipped(const struct dig_machine *const           machine,
+                       const struct dig_machine_recording *const recording, const int signal,
+                       struct dig_clip *const clip)
+{
+    const int    drive  = (signal - DIG_SIGNAL_BOOM_HEAD_Pa) / 2;
+    const double most   = highest(recording, signal);
+    const double near   = fmax(just_below * most, 1.5 * machine->pressure_step_Pa);
+    double       at_top = 0.0;
+    double       below  = 0.0;
+    for (size_t i = 0; i < recording->rows; i++) {
+        const double value = recording->row[i].value[signal];
+        const bool   top   = value >= most * (1.0 - same_to_this);
+        if (recording->row[i].valid[signal] && value > most - near) {
+            at_top += top ? 1.0 : 0.0;
+            below += top ? 0.0 : 1.0;
+        }
+    }
+    const int64_t whole_ns =
+        recording->row[recording->rows - 1].time_ns - recording->row[0].time_ns;
+    const double step_s = 1e-9 * (double)whole_ns / (double)(recording->rows - 1);
+    *clip               = (struct dig_clip){ (enum dig_signal)signal, most, at_top * step_s };
+    const bool piled_up = most > over_back * machine->cylinder[drive].back_Pa &&
+                          clip->time_s >= least_s && at_top > over_below * below;
+    return piled_up ||
+           dig_saturation_log10_chance(recording, (enum dig_signal)signal) < least_log10;
+}
+
+bool dig_saturation_find(const struct dig_machine *const           machine,
+                         const struct dig_machine_recording *const recording,
+                         struct dig_clip *const                    clip)
+{
+    assert(machine != NULL && recording != NULL && clip != NULL);
+    bool found = false;
+    for (int s = DIG_SIGNAL_BOOM_HEAD_Pa; s <= DIG_SIGNAL_BUCKET_ROD_Pa && recording->rows > 1;
+         s++) {
+        struct dig_clip one;
+        if (is_clipped(machine, recording, s, &one) && (!found || one.time_s > clip->time_s)) {
+            *clip = one;
+            found = true;
+        }
+    }
+    return found;
+}

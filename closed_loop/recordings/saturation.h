@@ -1,0 +1,33 @@
+// Pressures that a sensor or a relief valve cut off: what is missing there cannot be traced.
+
+#ifndef DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H
+#define DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H
+
+#include "core/machine.h"
+#include "core/recording.h"
+#include "core/sample.h"
+
+#include <stdbool.h>
+
+struct dig_clip {
+    enum dig_signal signal;
+    double          limit_Pa; // where it ends
+    double          time_s;   // how long it stands there, in all
+};
+
+/// log10 of the chance that noise makes a chamber's readings stand at their own highest value as
+/// often in a row as they do: readings * share^(longest run - 1), share being how often a reading
+/// repeats the one before below the highest value. A load that comes and goes is at its highest for
+/// a moment, and noise moves it from reading to reading. 0 where noise does not show through the
+/// sensor's steps (share above .7, or as long a run elsewhere), and at most 0.
+double dig_saturation_log10_chance(const struct dig_machine_recording *recording,
+                                   enum dig_signal                     signal);
+
+/// True when a chamber's pressure was cut off at its own highest value: that chance is below a
+/// thousandth, or it stands there for a second or more, ten times as long as just below (within a
+/// step, or 1 %) and above three times the return side's pressure, where a chamber may well be
+/// constant. *clip tells the worst; it is untouched otherwise. O(rows).
+bool dig_saturation_find(const struct dig_machine           *machine,
+                         const struct dig_machine_recording *recording, struct dig_clip *clip);
+
+#endif // DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H

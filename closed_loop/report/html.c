@@ -1,0 +1,133 @@
+#include "closed_loop/report/html.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The bytes of the UTF-8 character at text, 0 where there is none; U+0080 to U+009F are controls.
+static size_t utf8_length(const char *const text)
+{
+    const unsigned char *const c = (const unsigned char *)text;
+    const size_t               n = c[0] < 0x80    ? 1
+                                   : c[0] < 0xc2  ? 0
+                                   : c[0] < 0xe0  ? 2
+                                   : c[0] < 0xf0  ? 3
+                                   : c[0] <= 0xf4 ? 4
+                                                  : 0;
+    for (size_t i = 1; i < n; i++) {
+        if ((c[i] & 0xc0) != 0x80) {
+            return 0;
+        }
+    }
+    const bool overlong  = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90);
+    const bool surrogate = c[0] == 0xed && c[1] >= 0xa0;
+    const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
+    const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
+                         (c[0] == 0xc2 && c[1] < 0xa0);
+    return overlong || surrogate || too_large || control ? 0 : n;
+}
+
+void dig_html_text(FILE *const to, const char *const text)
+{
+    assert(to != NULL && text != NULL);
+    for (const char *c = text; *c != '\0';) {
+        const size_t n = utf8_length(c);
+        switch (*c) {
+        case '<': (void)fputs("&lt;", to); break;
+        case '>': (void)fputs("&gt;", to); break;
+        case '&': (void)fputs("&amp;", to); break;
+        case '"': (void)fputs("&quot;", to); break;
+        case '\'': (void)fputs("&#39;", to); break;
+        default:
+            if (n == 0) {
+                (void)fputs("\xef\xbf\xbd", to);
+            } else {
+                (void)fwrite(c, 1, n, to);
+            }
+        }
+        c += n == 0 ? 1 : n;
+    }
+}
+
+static const char style[] =
+    "<style>body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:960px;margin:0 auto;"
+    "padding:1em}h1{font-size:1.5em;overflow-wrap:anywhere}h2{font-size:1.2em;margin-top:2em;"
+    "border-top:1px solid #ddd;"
+    "padding-top:1em}table{border-collapse:collapse;display:block;overflow-x:auto}"
+    "td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #eee;font-weight:normal}"
+    "th:first-child{text-align:left}tr:first-child th{color:#666}figure{margin:1em 0}"
+    "svg{width:100%;height:auto;max-width:900px}.result{background:#f4f7fb;padding:.6em 1em}"
+    ".grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,420px),1fr));"
+    "gap:.5em}.grid figure{margin:.3em 0;min-width:0}.muted{color:#666;font-size:.9em}"
+    ".bar{display:inline-block;height:.7em;background:#1f5fa8;vertical-align:baseline}"
+    "code,pre{font-size:.9em;background:#f5f5f5;overflow-wrap:anywhere;white-space:pre-wrap}"
+    "@media(max-width:500px){td,th{padding:.25em .35em;font-size:.9em}}"
+    "footer{color:#666;font-size:.9em;margin-top:2em}</style>\n";
+
+void dig_html_begin(FILE *const to, const char *const title)
+{
+    assert(to != NULL && title != NULL);
+    (void)fputs("<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
+                "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
+                to);
+    dig_html_text(to, title);
+    (void)fprintf(to, "</title>\n%s</head><body>\n<h1>", style);
+    dig_html_text(to, title);
+    (void)fputs("</h1>\n", to);
+}
+
+void dig_html_end(FILE *const to)
+{
+    assert(to != NULL);
+    (void)fputs("</body></html>\n", to);
+}
+
+// Renaming over the program's own output would be a file named "-".
+static enum dig_status put_out(enum dig_status (*const put)(void *, FILE *, struct dig_error *),
+                               void *const context, struct dig_error *const error)
+{
+    const enum dig_status status  = put(context, stdout, error);
+    const bool            written = fflush(stdout) == 0 && ferror(stdout) == 0;
+    return status != DIG_OK || written
+               ? status
+               : dig_error_set(error, DIG_EIO, "standard output: %s", strerror(errno));
+}
+
+enum dig_status dig_html_save(const char *const path,
+                              enum dig_status (*const put)(void *, FILE *, struct dig_error *),
+                              void *const context, struct dig_error *const error)
+{
+    assert(path != NULL && put != NULL);
+    if (strcmp(path, "-") == 0) {
+        return put_out(put, context, error);
+    }
+    const size_t size = strlen(path) + sizeof ".part";
+    char *const  part = malloc(size);
+    if (part == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    (void)snprintf(part, size, "%s.part", path);
+
+    enum dig_status status = DIG_EIO;
+    FILE *const     to     = fopen(part, "w");
+    if (to == NULL) {
+        (void)dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
+        goto done;
+    }
+    status             = put(context, to, error);
+    const bool written = ferror(to) == 0;
+    if ((fclose(to) != 0 || !written) && status == DIG_OK) {
+        status = dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
+    }
+    if (status == DIG_OK && rename(part, path) != 0) {
+        status = dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    if (status != DIG_OK) {
+        (void)remove(part);
+    }
+done:
+    free(part);
+    return status;
+}

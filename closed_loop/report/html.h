@@ -1,0 +1,26 @@
+// What every page has: escaped text, one style, and a file that appears whole or not at all.
+
+#ifndef DIG_CLOSED_LOOP_REPORT_HTML_H
+#define DIG_CLOSED_LOOP_REPORT_HTML_H
+
+#include "core/error.h"
+
+#include <stdio.h>
+
+/// text as HTML or SVG, between tags or inside a quoted attribute: markup is escaped, a control
+/// character or a byte that is not UTF-8 becomes U+FFFD. Every text on a page goes through here.
+void dig_html_text(FILE *to, const char *text);
+
+/// From the doctype to the <h1>, both with this title. The style makes phones and desktops happy;
+/// it styles table, figure, .result, .grid (plots side by side where there is room), .bar, .muted.
+void dig_html_begin(FILE *to, const char *title);
+
+void dig_html_end(FILE *to);
+
+/// Opens PATH.part, lets put write into it, and renames it to PATH when all went well; removes it
+/// otherwise. "-" is standard output. The status and *error are put's, or DIG_EIO, or DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status
+dig_html_save(const char *path, enum dig_status (*put)(void *context, FILE *to, struct dig_error *),
+              void *context, struct dig_error *error);
+
+#endif // DIG_CLOSED_LOOP_REPORT_HTML_H

@@ -1,0 +1,17 @@
+// The parts of a JSON text that every report writes.
+
+#ifndef DIG_CLOSED_LOOP_REPORT_JSON_H
+#define DIG_CLOSED_LOOP_REPORT_JSON_H
+
+#include <stdio.h>
+
+/// Six digits; what is not finite is null, for JSON knows no NaN.
+void dig_json_number(FILE *to, double value);
+
+/// What stands before it, the name quoted, a colon, the number.
+void dig_json_member(FILE *to, const char *before, const char *name, double value);
+
+/// Quoted, quotes, backslashes and control characters escaped.
+void dig_json_string(FILE *to, const char *text);
+
+#endif // DIG_CLOSED_LOOP_REPORT_JSON_H

@@ -1,0 +1,237 @@
+#include "closed_loop/report/plot.h"
+
+#include "closed_loop/report/html.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ; // NOLINT(readability-redundant-declaration): POSIX leaves it undeclared
+
+// Around gnuplot's picture, in pixels of the whole one.
+enum { LINE = 20, LEFT = 22, SAMPLE = 28, LETTER = 8, GAP = 16 };
+
+static void put_data(FILE *const to, const size_t index, const struct dig_plot_series *const s)
+{
+    (void)fprintf(to, "$s%zu << EOD\n", index);
+    for (size_t i = 0; i < s->n; i++) {
+        const double high = s->style == DIG_PLOT_BAND ? s->high[i] : 0.0;
+        if (isfinite(s->x[i]) && isfinite(s->y[i]) && isfinite(high)) {
+            (void)fprintf(to, "%.6g %.6g %.6g\n", s->x[i], s->y[i], high);
+        } else {
+            (void)fprintf(to, "\n");
+        }
+    }
+    (void)fprintf(to, "EOD\n");
+}
+
+// Nothing of this is a caller's text.
+static void put_script(FILE *const to, const struct dig_plot *const plot, const unsigned width,
+                       const unsigned height)
+{
+    static const char *const how[] = {
+        [DIG_PLOT_LINE]   = "using 1:2 with lines lw 2",
+        [DIG_PLOT_DASHED] = "using 1:2 with lines lw 2 dt (8,5)",
+        [DIG_PLOT_POINTS] = "using 1:2 with points pt 7 ps 0.6",
+        [DIG_PLOT_BAND]   = "using 1:2:3 with filledcurves fs transparent solid 0.25 noborder",
+    };
+    (void)fprintf(to,
+                  "set terminal svg size %u,%u noenhanced font 'sans-serif,14'\n"
+                  "unset key\nset grid lc rgb 0xdddddd\nset border 3 lc rgb 0x666666\n"
+                  "set tics nomirror\n",
+                  width, height);
+    for (size_t i = 0; i < plot->series; i++) {
+        put_data(to, i, &plot->s[i]);
+    }
+    for (size_t i = 0; i < plot->series; i++) {
+        (void)fprintf(to, "%s $s%zu %s lc rgb 0x%06x", i == 0 ? "plot" : ",", i,
+                      how[plot->s[i].style], plot->s[i].rgb & 0xffffffU);
+    }
+    (void)fprintf(to, "\n");
+}
+
+// Runs gnuplot on the script, its standard output going to svg. -d: no start-up file of the user's.
+static enum dig_status run_gnuplot(const char *const script, FILE *const svg,
+                                   struct dig_error *const error)
+{
+    char                       program[] = "gnuplot";
+    char                       option[]  = "-d";
+    char                       path[64];
+    char *const                argv[] = { program, option, path, NULL };
+    posix_spawn_file_actions_t actions;
+    pid_t                      child  = -1;
+    int                        status = -1;
+
+    (void)snprintf(path, sizeof path, "%s", script);
+    (void)posix_spawn_file_actions_init(&actions);
+    (void)posix_spawn_file_actions_adddup2(&actions, fileno(svg), STDOUT_FILENO);
+    (void)posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", 1, 0);
+    const int failed = posix_spawnp(&child, program, &actions, NULL, argv, environ);
+    (void)posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) {
+        return dig_error_set(error, DIG_EIO, "gnuplot: %s, expected in PATH (package gnuplot-nox)",
+                             strerror(failed));
+    }
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        return dig_error_set(error, DIG_EIO, "gnuplot failed with status %d", status);
+    }
+    return DIG_OK;
+}
+
+// What gnuplot drew, without the <svg> element it stands in: a page's style for pictures would
+// scale an inner one anew.
+static enum dig_status copy_drawing(FILE *const from, FILE *const to, struct dig_error *const error)
+{
+    enum { BEFORE, IN_TAG, INSIDE, BEHIND } at = BEFORE;
+    char line[4096];
+    rewind(from);
+    while (at != BEHIND && fgets(line, sizeof line, from) != NULL) {
+        if (at == INSIDE) {
+            at = strncmp(line, "</svg>", 6) == 0 ? BEHIND : INSIDE;
+            if (at == INSIDE && fputs(line, to) == EOF) {
+                return dig_error_set(error, DIG_EIO, "writing a plot: %s", strerror(errno));
+            }
+        } else {
+            const char *const tag = at == BEFORE ? strstr(line, "<svg") : line;
+            if (tag != NULL) {
+                at = strchr(tag, '>') != NULL ? INSIDE : IN_TAG;
+            }
+        }
+    }
+    return at == BEHIND ? DIG_OK : dig_error_set(error, DIG_EIO, "gnuplot wrote no picture");
+}
+
+// About as wide as the text is; letters differ.
+static unsigned width_of(const char *const text)
+{
+    unsigned letters = 0;
+    for (const char *c = text; *c != '\0'; c++) {
+        letters += ((unsigned char)*c & 0xc0U) != 0x80U ? 1U : 0U;
+    }
+    return letters * LETTER;
+}
+
+static void put_text(FILE *const to, const unsigned x, const unsigned y, const char *const more,
+                     const char *const text)
+{
+    (void)fprintf(to, "<text x=\"%u\" y=\"%u\"%s>", x, y, more);
+    dig_html_text(to, text);
+    (void)fputs("</text>\n", to);
+}
+
+static void put_sample(FILE *const to, const struct dig_plot_series *const s, const unsigned x,
+                       const unsigned y)
+{
+    if (s->style == DIG_PLOT_BAND) {
+        (void)fprintf(to,
+                      "<rect x=\"%u\" y=\"%u\" width=\"%d\" height=\"10\" fill=\"#%06x\" "
+                      "fill-opacity=\"0.25\"/>\n",
+                      x, y - 10, SAMPLE - 8, s->rgb);
+    } else if (s->style == DIG_PLOT_POINTS) {
+        (void)fprintf(to, "<circle cx=\"%u\" cy=\"%u\" r=\"3\" fill=\"#%06x\"/>\n", x + 10, y - 5,
+                      s->rgb);
+    } else {
+        (void)fprintf(to, "<path d=\"M%u %uh%d\" stroke=\"#%06x\" stroke-width=\"2\"%s/>\n", x,
+                      y - 5, SAMPLE - 8, s->rgb,
+                      s->style == DIG_PLOT_DASHED ? " stroke-dasharray=\"8 5\"" : "");
+    }
+}
+
+// The key from line y on, as many lines as it takes; to may be NULL, to count them.
+static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const unsigned width,
+                        const unsigned y)
+{
+    unsigned x     = 3 * LEFT;
+    unsigned lines = 0;
+    for (size_t i = 0; i < plot->series; i++) {
+        const struct dig_plot_series *const s = &plot->s[i];
+        if (s->title == NULL) {
+            continue;
+        }
+        const unsigned wide = SAMPLE + width_of(s->title);
+        if (lines == 0 || x + wide > width) {
+            x = 3 * LEFT;
+            lines++;
+        }
+        if (to != NULL) {
+            put_sample(to, s, x, y + (lines - 1) * LINE);
+            put_text(to, x + SAMPLE, y + (lines - 1) * LINE, "", s->title);
+        }
+        x += wide + GAP;
+    }
+    return lines;
+}
+
+static enum dig_status put_picture(const struct dig_plot *const plot, FILE *const drawing,
+                                   const unsigned width, const unsigned height,
+                                   const unsigned above, const unsigned below, FILE *const to,
+                                   struct dig_error *const error)
+{
+    char turned[64];
+    (void)snprintf(turned, sizeof turned, " text-anchor=\"middle\" transform=\"rotate(-90 %d %u)\"",
+                   LINE - 4, height / 2);
+    (void)fprintf(to,
+                  "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+                  "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 %u %u\" "
+                  "font-family=\"sans-serif\" font-size=\"14\">\n"
+                  "<rect width=\"%u\" height=\"%u\" fill=\"#ffffff\"/>\n",
+                  width, height, width, height);
+    put_text(to, width / 2, LINE - 2, " text-anchor=\"middle\"", plot->title);
+    put_text(to, LINE - 4, height / 2, turned, plot->y_label);
+    put_text(to, width / 2, height - below + LINE - 6, " text-anchor=\"middle\"", plot->x_label);
+    (void)put_key(to, plot, width, height - below + 2 * LINE - 2);
+    (void)fprintf(to, "<g transform=\"translate(%d %u)\" fill=\"none\">\n", LEFT, above);
+    const enum dig_status status = copy_drawing(drawing, to, error);
+    (void)fputs("</g>\n</svg>\n", to);
+    return status;
+}
+
+enum dig_status dig_plot_svg(const struct dig_plot *const plot, FILE *const to,
+                             struct dig_error *const error)
+{
+    assert(plot != NULL && to != NULL && plot->series <= DIG_PLOT_SERIES_MAX);
+    const unsigned width  = plot->width == 0 ? 900 : plot->width;
+    const unsigned height = plot->height == 0 ? 420 : plot->height;
+    const unsigned above  = plot->title[0] == '\0' ? 0 : LINE;
+    const unsigned below  = LINE + 4 + LINE * put_key(NULL, plot, width, 0);
+
+    char            path[]  = "/tmp/digsight-plot-XXXXXX";
+    enum dig_status status  = DIG_EIO;
+    const int       fd      = mkstemp(path);
+    FILE *const     script  = fd >= 0 ? fdopen(fd, "w") : NULL;
+    FILE *const     drawing = script != NULL ? tmpfile() : NULL;
+    if (drawing == NULL) {
+        (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
+        goto done;
+    }
+    put_script(script, plot, width - LEFT, height - above - below);
+    if (fflush(script) != 0) {
+        (void)dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+        goto done;
+    }
+    status = run_gnuplot(path, drawing, error);
+    if (status == DIG_OK) {
+        status = put_picture(plot, drawing, width, height, above, below, to, error);
+    }
+done:
+    if (drawing != NULL) {
+        (void)fclose(drawing);
+    }
+    if (script != NULL) {
+        (void)fclose(script);
+    } else if (fd >= 0) {
+        (void)close(fd);
+    }
+    if (fd >= 0) {
+        (void)unlink(path);
+    }
+    return status;
+}

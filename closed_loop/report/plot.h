@@ -1,0 +1,42 @@
+// Curves with bands as an SVG picture. The gnuplot program (found in PATH) draws axes and curves
+// and is given numbers only: its language runs commands that stand in a text. Titles, labels and
+// the key are written around its picture here, escaped.
+
+#ifndef DIG_CLOSED_LOOP_REPORT_PLOT_H
+#define DIG_CLOSED_LOOP_REPORT_PLOT_H
+
+#include "core/error.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+#define DIG_PLOT_SERIES_MAX 8
+
+enum dig_plot_style { DIG_PLOT_LINE, DIG_PLOT_DASHED, DIG_PLOT_POINTS, DIG_PLOT_BAND };
+
+struct dig_plot_series {
+    const char         *title; // in the key; NULL: not in the key
+    enum dig_plot_style style;
+    unsigned            rgb; // 0x1f5fa8
+    size_t              n;
+    const double       *x;
+    const double       *y;    // the lower edge of a band
+    const double       *high; // the upper edge of a band; else unused
+};
+
+struct dig_plot {
+    const char            *title;
+    const char            *x_label;
+    const char            *y_label;
+    unsigned               width, height; // 0: 900 by 420; the text is 14 high whatever the size
+    size_t                 series;        // drawn in this order, later ones on top
+    struct dig_plot_series s[DIG_PLOT_SERIES_MAX];
+};
+
+/// Writes one <svg> element, without an XML header, so that it stands inside an HTML page. Points
+/// that are not finite are gaps. DIG_EIO: gnuplot is missing or failed; nothing useful was written
+/// then. Starts a process; takes some tens of milliseconds.
+DIG_MUST_CHECK enum dig_status dig_plot_svg(const struct dig_plot *plot, FILE *to,
+                                            struct dig_error *error);
+
+#endif // DIG_CLOSED_LOOP_REPORT_PLOT_H

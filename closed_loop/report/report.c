@@ -1,0 +1,192 @@
+#include "closed_loop/report/report.h"
+
+#include "closed_loop/report/html.h"
+#include "closed_loop/report/plot.h"
+
+#include <assert.h>
+#include <math.h>
+
+static const char *const axis_title[DIG_AXES] = {
+    [DIG_AXIS_FRICTION]      = "friction",
+    [DIG_AXIS_ROLLING]       = "rolling friction",
+    [DIG_AXIS_DENSITY_kgpm3] = "density, kg/m³",
+};
+
+// Enough digits to see, no more than are known.
+static int decimals(const int axis)
+{
+    return axis == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
+}
+
+void dig_report_text(const struct dig_report *const report, FILE *const to)
+{
+    assert(report != NULL && to != NULL);
+    for (size_t r = 0; r < report->runs; r++) {
+        const struct dig_report_run *const run = &report->run[r];
+        (void)fprintf(to, "\n  %s: %s\n", run->name, run->dig);
+        (void)fprintf(to, "  %-18s %9s %11s   %s\n", "", "true", "identified", "90 % interval");
+        for (int a = 0; a < DIG_AXES; a++) {
+            const int d = decimals(a);
+            // The multi-byte ³ takes two bytes for one column.
+            (void)fprintf(to, "  %-*s ", a == DIG_AXIS_DENSITY_kgpm3 ? 19 : 18, axis_title[a]);
+            if (run->truth_known) {
+                (void)fprintf(to, "%9.*f ", d, run->truth.value[a]);
+            } else {
+                (void)fprintf(to, "%9s ", "unknown");
+            }
+            (void)fprintf(to, "%11.*f   %.*f to %.*f\n", d, run->gravel.value[a], d,
+                          run->low.value[a], d, run->high.value[a]);
+        }
+        (void)fprintf(to,
+                      "  error of the predicted %s dig: %.3f   (noise floor, one sigma: %.3f)\n",
+                      run->real.trajectory, run->error, run->noise_floor);
+    }
+}
+
+static void put_json_gravel(FILE *const to, const char *const name,
+                            const struct dig_gravel *const gravel, const bool known)
+{
+    (void)fprintf(to, "\"%s\":", name);
+    if (!known) {
+        (void)fprintf(to, "null");
+        return;
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "%s\"%s\":%.6g", a == 0 ? "{" : ",", dig_axis_name((enum dig_axis)a),
+                      gravel->value[a]);
+    }
+    (void)fprintf(to, "}");
+}
+
+void dig_report_json(const struct dig_report *const report, FILE *const to)
+{
+    assert(report != NULL && to != NULL);
+    (void)fprintf(to,
+                  "{\"metric\":\"relative Euclidean norm of the moment, moving average "
+                  "±0.16 s\",\"lambda\":%.6g,\"runs\":[",
+                  report->lambda);
+    for (size_t r = 0; r < report->runs; r++) {
+        const struct dig_report_run *const run = &report->run[r];
+        (void)fprintf(to, "%s{\"name\":\"%s\",", r == 0 ? "" : ",", run->name);
+        put_json_gravel(to, "truth", &run->truth, run->truth_known);
+        (void)fprintf(to, ",");
+        put_json_gravel(to, "identified", &run->gravel, true);
+        (void)fprintf(to, ",");
+        put_json_gravel(to, "low", &run->low, true);
+        (void)fprintf(to, ",");
+        put_json_gravel(to, "high", &run->high, true);
+        (void)fprintf(to, ",");
+        put_json_gravel(to, "nearest", &run->nearest, true);
+        (void)fprintf(to,
+                      ",\"distance\":%.6g,\"predicted\":\"%s\",\"error\":%.6g,"
+                      "\"noise_floor\":%.6g}",
+                      run->distance, run->real.trajectory, run->error, run->noise_floor);
+    }
+    (void)fprintf(to, "]}\n");
+}
+
+static void put_table(FILE *const to, const struct dig_report_run *const run)
+{
+    (void)fputs("<table><tr><th></th><th>true</th><th>identified</th><th>90 % interval</th>"
+                "<th>nearest entry</th></tr>\n",
+                to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        const int d = decimals(a);
+        (void)fprintf(to, "<tr><th>%s</th>", axis_title[a]);
+        if (run->truth_known) {
+            (void)fprintf(to, "<td>%.*f</td>", d, run->truth.value[a]);
+        } else {
+            (void)fputs("<td>unknown</td>", to);
+        }
+        (void)fprintf(to, "<td><b>%.*f</b></td><td>%.*f to %.*f</td><td>%.*f</td></tr>\n", d,
+                      run->gravel.value[a], d, run->low.value[a], d, run->high.value[a], d,
+                      run->nearest.value[a]);
+    }
+    (void)fprintf(to,
+                  "</table>\n<p class=result>Error of the predicted <i>%s</i> dig: <b>%.3f</b>; "
+                  "noise floor (1 σ of what it would be if the model were complete): %.3f.</p>\n",
+                  run->real.trajectory, run->error, run->noise_floor);
+}
+
+// Measured against the model along one dig; what lies outside the measured range is a gap.
+static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *const dig,
+                                const char *const title, const char *const model,
+                                struct dig_error *const error)
+{
+    double x[DIG_CURVE_POINTS];
+    double low[DIG_CURVE_POINTS];
+    double high[DIG_CURVE_POINTS];
+    double measured[DIG_CURVE_POINTS];
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        x[k]        = 100.0 * k / (DIG_CURVE_POINTS - 1);
+        low[k]      = dig->model_Nm[k] - dig->sigma_Nm[k];
+        high[k]     = dig->model_Nm[k] + dig->sigma_Nm[k];
+        measured[k] = x[k] >= 100.0 * dig->first && x[k] <= 100.0 * dig->last ? dig->measured_Nm[k]
+                                                                              : (double)NAN;
+    }
+    const size_t          n    = DIG_CURVE_POINTS;
+    const struct dig_plot plot = {
+        .title   = title,
+        .x_label = "path of the dig done, %",
+        .y_label = "moment about the bucket pin, N·m at rig scale",
+        .series  = 4,
+        .s       = { { "1 σ of one dig", DIG_PLOT_BAND, 0x1f5fa8, n, x, low, high },
+                     { "recording fed to the rig", DIG_PLOT_DASHED, 0x888888, n, x, dig->recording_Nm,
+                       NULL },
+                     { model, DIG_PLOT_LINE, 0x1f5fa8, n, x, dig->model_Nm, NULL },
+                     { "measured through pressures", DIG_PLOT_LINE, 0xc0392b, n, x, measured, NULL } },
+    };
+    (void)fputs("<figure>\n", to);
+    const enum dig_status status = dig_plot_svg(&plot, to, error);
+    (void)fputs("</figure>\n", to);
+    return status;
+}
+
+struct page {
+    const struct dig_report *report;
+};
+
+static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+{
+    const struct dig_report *const report = ((const struct page *)context)->report;
+    dig_html_begin(to, report->title);
+    (void)fputs("<p>Table: ", to);
+    dig_html_text(to, report->table);
+    (void)fprintf(to,
+                  ". The machine is %.3g times the rig; everything below is at rig scale.</p>\n",
+                  report->lambda);
+    for (size_t r = 0; r < report->runs; r++) {
+        const struct dig_report_run *const run = &report->run[r];
+        (void)fputs("<h2>", to);
+        dig_html_text(to, run->name);
+        (void)fputs("</h2>\n<p>", to);
+        dig_html_text(to, run->dig);
+        (void)fputs("</p>\n", to);
+        put_table(to, run);
+        enum dig_status status =
+            put_plot(to, &run->simple, "The simple dig that identified the gravel",
+                     "identified gravel", error);
+        if (status == DIG_OK) {
+            status = put_plot(to, &run->real, "The real dig, predicted before it was dug",
+                              "predicted", error);
+        }
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    (void)fputs(
+        "<footer>Error: relative Euclidean norm of the moment over rig time from contact to "
+        "exit, moving average ±0.16 s. Predictions are advice, not a safety "
+        "function.</footer>\n",
+        to);
+    dig_html_end(to);
+    return DIG_OK;
+}
+
+enum dig_status dig_report_html(const struct dig_report *const report, const char *const path,
+                                struct dig_error *const error)
+{
+    assert(report != NULL && path != NULL);
+    struct page page = { report };
+    return dig_html_save(path, put_page, &page, error);
+}

@@ -1,0 +1,150 @@
+#include "closed_loop/report/residual_report.h"
+
+#include "closed_loop/report/html.h"
+#include "closed_loop/report/plot.h"
+
+#include <assert.h>
+#include <math.h>
+
+static const char *const of_channel[DIG_FORCE_CHANNELS] = { "moment", "Fx", "Fz" };
+
+static void put_cell(FILE *const to, const int digits, const double value)
+{
+    if (isfinite(value)) {
+        (void)fprintf(to, "<td>%.*f</td>", digits, value);
+    } else {
+        (void)fputs("<td>–</td>", to);
+    }
+}
+
+// One line a dig and channel: sigmas by part, and the share of the whole dig before and after.
+static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
+{
+    static const char *const use[] = { "identify", "fit", "holdout" };
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        const struct dig_residual *const soil   = &dig->before[DIG_PART_SOIL][c];
+        const struct dig_residual *const lifted = &dig->before[DIG_PART_LIFTED][c];
+        if (!isfinite(soil->rms) && !isfinite(lifted->rms)) {
+            continue;
+        }
+        (void)fputs("<tr><th>", to);
+        if (c == DIG_CHANNEL_MY_Nm) {
+            dig_html_text(to, dig->name);
+            (void)fprintf(to, "<br><span class=muted>%s</span>", use[dig->use]);
+        }
+        (void)fprintf(to, "</th><td>%s</td>", of_channel[c]);
+        put_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);
+        put_cell(to, 1, soil->sigmas);
+        put_cell(to, 1, lifted->sigmas);
+        put_cell(to, 3, hypot(fmax(soil->relative, 0.0), fmax(lifted->relative, 0.0)));
+        put_cell(to, 3,
+                 hypot(fmax(dig->after[DIG_PART_SOIL][c].relative, 0.0),
+                       fmax(dig->after[DIG_PART_LIFTED][c].relative, 0.0)));
+        (void)fputs("</tr>\n", to);
+    }
+}
+
+static void put_digs(FILE *const to, const struct dig_residuals *const residuals)
+{
+    (void)fputs("<h2>Residual dig by dig</h2>\n<table><tr><th>dig</th><th>of</th>"
+                "<th>air, σ</th><th>soil, σ</th><th>lifted, σ</th><th>before</th><th>after</th>"
+                "</tr>\n",
+                to);
+    for (size_t i = 0; i < residuals->digs; i++) {
+        put_lines(to, &residuals->dig[i]);
+    }
+    (void)fprintf(to,
+                  "</table>\n<p class=muted>Measured minus predicted by the gravel alone, rms over "
+                  "1 σ of one dig, and over the dig's own size before and after what was found. "
+                  "Along the digs it is %s: portmanteau statistic %.1f, %.1f where nothing is "
+                  "missing, chance %.2g; with what was found %.1f, chance %.2g.</p>\n",
+                  residuals->without.p <= 0.05 ? "not white" : "white",
+                  residuals->without.statistic, residuals->without.expected, residuals->without.p,
+                  residuals->with.statistic, residuals->with.p);
+}
+
+static enum dig_status put_plot(FILE *const to, const struct dig_trend *const trend,
+                                const char *const x_label, const double scale,
+                                struct dig_error *const error)
+{
+    double x[DIG_TREND_BINS];
+    double y[DIG_TREND_BINS];
+    double low[DIG_TREND_BINS];
+    double high[DIG_TREND_BINS];
+    double zero[DIG_TREND_BINS] = { 0.0 };
+    for (size_t b = 0; b < trend->bins; b++) {
+        const struct dig_trend_bin *const bin = &trend->bin[b];
+        x[b]                                  = scale * bin->at;
+        y[b]                                  = 100.0 * bin->mean;
+        low[b]                                = 100.0 * (bin->mean - bin->standard_error);
+        high[b]                               = 100.0 * (bin->mean + bin->standard_error);
+    }
+    const struct dig_plot plot = {
+        .title   = "",
+        .x_label = x_label,
+        .y_label = "residual, % of the dig",
+        .width   = 480,
+        .height  = 300,
+        .series  = 4,
+        .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, 0xc77f00, trend->bins, x, low, high },
+               { NULL, DIG_PLOT_LINE, 0x888888, trend->bins, x, zero, NULL },
+               { "mean", DIG_PLOT_LINE, 0xc77f00, trend->bins, x, y, NULL },
+               { NULL, DIG_PLOT_POINTS, 0xc77f00, trend->bins, x, y, NULL } },
+    };
+    (void)fputs("<figure>\n", to);
+    const enum dig_status status = dig_plot_svg(&plot, to, error);
+    (void)fputs("</figure>\n", to);
+    return status;
+}
+
+static void put_slopes(FILE *const to, const struct dig_residuals *const residuals)
+{
+    (void)fputs("<table><tr><th>against</th>", to);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        if (residuals->known[c]) {
+            (void)fprintf(to, "<th>%s: r</th><th>chance</th>", of_channel[c]);
+        }
+    }
+    (void)fputs("</tr>\n", to);
+    for (int s = 0; s < DIG_REGRESSORS; s++) {
+        static const char *const name[DIG_REGRESSORS] = { "path",         "depth", "speed",
+                                                          "acceleration", "fill",  "pass" };
+        (void)fprintf(to, "<tr><th>%s</th>", name[s]);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            if (residuals->known[c]) {
+                put_cell(to, 2, residuals->trend[c][s].correlation);
+                put_cell(to, 3, residuals->trend[c][s].p);
+            }
+        }
+        (void)fputs("</tr>\n", to);
+    }
+    (void)fputs("</table>\n<p class=muted>r: correlation of the residual with the state of the "
+                "dig, over the digs fitted to. Chance: of a slope as steep if there were none, "
+                "whole digs drawn anew. An error of the table is in all digs alike, and shows "
+                "here, too.</p>\n",
+                to);
+}
+
+enum dig_status dig_residuals_html(const struct dig_residuals *const residuals, FILE *const to,
+                                   struct dig_error *const error)
+{
+    assert(to != NULL);
+    if (residuals == NULL) {
+        return DIG_OK;
+    }
+    put_digs(to, residuals);
+    if (!residuals->known[DIG_CHANNEL_MY_Nm]) {
+        return DIG_OK;
+    }
+    const struct dig_trend *const moment = residuals->trend[DIG_CHANNEL_MY_Nm];
+    (void)fputs("<h2>What the residual goes with</h2>\n<div class=grid>\n", to);
+    enum dig_status status =
+        put_plot(to, &moment[DIG_REGRESSOR_PATH], "path of the dig done, %", 100.0, error);
+    if (status == DIG_OK) {
+        status = put_plot(to, &moment[DIG_STATE_DEPTH_m], "depth of the tooth at rig scale, mm",
+                          1e3, error);
+    }
+    (void)fputs("</div>\n", to);
+    put_slopes(to, residuals);
+    return status;
+}

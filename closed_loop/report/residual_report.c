@@ -1,0 +1,115 @@
+#include "closed_loop/report/residual_report.h"
+
+#include "closed_loop/report/json.h"
+
+#include <assert.h>
+
+static const char *use_name(const enum dig_use use)
+{
+    static const char *const name[] = { "identify", "fit", "holdout" };
+    return name[use];
+}
+
+static bool is_known(const struct dig_residuals_dig *const dig, const size_t channel)
+{
+    return dig->before[DIG_PART_SOIL][channel].rms >= 0.0 ||
+           dig->before[DIG_PART_LIFTED][channel].rms >= 0.0;
+}
+
+static void put_residual(FILE *const to, const char *const name,
+                         const struct dig_residual *const residual)
+{
+    (void)fprintf(to, "\"%s\": ", name);
+    dig_json_member(to, "{", "rms", residual->rms);
+    dig_json_member(to, ", ", "relative", residual->relative);
+    dig_json_member(to, ", ", "sigmas", residual->sigmas);
+    (void)fputs("}", to);
+}
+
+static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
+{
+    (void)fputs("{\"file\": ", to);
+    dig_json_string(to, dig->name);
+    (void)fputs(", \"trajectory\": ", to);
+    dig_json_string(to, dig->trajectory);
+    (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", use_name(dig->use), dig->pass);
+    dig_json_member(to, ", \"air\": {", "sigmas", dig->air_sigmas);
+    (void)fputs("}", to);
+    for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {
+        (void)fprintf(to, ",\n   \"%s\": {", dig_part_name((enum dig_part)p));
+        bool any = false;
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            if (!is_known(dig, c)) {
+                continue;
+            }
+            (void)fprintf(to, "%s\"%s\": {", any ? ", " : "",
+                          dig_residual_channel_name((enum dig_channel)c));
+            put_residual(to, "before", &dig->before[p][c]);
+            (void)fputs(", ", to);
+            put_residual(to, "after", &dig->after[p][c]);
+            (void)fputs("}", to);
+            any = true;
+        }
+        (void)fputs("}", to);
+    }
+    (void)fputs("}", to);
+}
+
+static void put_trend(FILE *const to, const char *const channel, const enum dig_regressors state,
+                      const struct dig_trend *const trend)
+{
+    (void)fprintf(to, "{\"of\": \"%s\", \"against\": \"%s\"", channel, dig_regressors_name(state));
+    dig_json_member(to, ", ", "slope", trend->slope);
+    dig_json_member(to, ", ", "low", trend->low);
+    dig_json_member(to, ", ", "high", trend->high);
+    dig_json_member(to, ", ", "correlation", trend->correlation);
+    dig_json_member(to, ", ", "p", trend->p);
+    (void)fputs(", \"bins\": [", to);
+    for (size_t b = 0; b < trend->bins; b++) {
+        dig_json_member(to, b == 0 ? "{" : ", {", "at", trend->bin[b].at);
+        dig_json_member(to, ", ", "mean", trend->bin[b].mean);
+        dig_json_member(to, ", ", "standard_error", trend->bin[b].standard_error);
+        (void)fprintf(to, ", \"digs\": %zu}", trend->bin[b].digs);
+    }
+    (void)fputs("]}", to);
+}
+
+static void put_white(FILE *const to, const char *const before, const char *const name,
+                      const struct dig_whiteness *const white)
+{
+    (void)fprintf(to, "%s\"%s\": ", before, name);
+    dig_json_member(to, "{", "statistic", white->statistic);
+    dig_json_member(to, ", ", "low", white->low);
+    dig_json_member(to, ", ", "high", white->high);
+    dig_json_member(to, ", ", "expected", white->expected);
+    dig_json_member(to, ", ", "p", white->p);
+    (void)fprintf(to, ", \"digs\": %zu}", white->digs);
+}
+
+void dig_residuals_json(const struct dig_residuals *const residuals, FILE *const to)
+{
+    assert(to != NULL);
+    (void)fputs(" \"residuals\": [", to);
+    for (size_t i = 0; residuals != NULL && i < residuals->digs; i++) {
+        (void)fputs(i == 0 ? "\n  " : ",\n  ", to);
+        put_dig(to, &residuals->dig[i]);
+    }
+    (void)fputs("],\n \"residual_against\": [", to);
+    bool any = false;
+    for (size_t c = 0; residuals != NULL && c < DIG_FORCE_CHANNELS; c++) {
+        for (int s = 0; residuals->known[c] && s < DIG_REGRESSORS; s++) {
+            (void)fputs(any ? ",\n  " : "\n  ", to);
+            put_trend(to, dig_residual_channel_name((enum dig_channel)c), (enum dig_regressors)s,
+                      &residuals->trend[c][s]);
+            any = true;
+        }
+    }
+    (void)fputs("],\n \"whiteness\": ", to);
+    if (residuals == NULL) {
+        (void)fputs("null,\n", to);
+        return;
+    }
+    put_white(to, "{", "without", &residuals->without);
+    put_white(to, ", ", "with", &residuals->with);
+    (void)fputs("},\n", to);
+}

@@ -1,0 +1,21 @@
+// What is left of digs (closed_loop/verdict/residuals.h) in a trace's reports:
+// docs/formats/trace.md.
+
+#ifndef DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H
+#define DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H
+
+#include "closed_loop/verdict/residuals.h"
+#include "core/error.h"
+
+#include <stdio.h>
+
+/// The members "residuals", "residual_against" and "whiteness" of the object, each with a comma and
+/// a line feed. NULL: empty lists and null.
+void dig_residuals_json(const struct dig_residuals *residuals, FILE *to);
+
+/// A table dig by dig, one of the slopes, pictures over path and depth. Nothing for NULL. DIG_EIO
+/// as dig_plot_svg().
+DIG_MUST_CHECK enum dig_status dig_residuals_html(const struct dig_residuals *residuals, FILE *to,
+                                                  struct dig_error *error);
+
+#endif // DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H

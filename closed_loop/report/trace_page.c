@@ -1,0 +1,382 @@
+#include "closed_loop/report/html.h"
+#include "closed_loop/report/plot.h"
+#include "closed_loop/report/residual_report.h"
+#include "closed_loop/report/trace_report.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define CANDIDATES_SHOWN 12
+
+struct page {
+    const struct dig_trace         *trace;
+    const struct dig_trace_subject *subject;
+};
+
+// A number in a table cell, or a dash.
+static void put_cell(FILE *const to, const int digits, const double value)
+{
+    if (isfinite(value)) {
+        (void)fprintf(to, "<td>%.*f</td>", digits, value);
+    } else {
+        (void)fputs("<td>–</td>", to);
+    }
+}
+
+// One line of the error picture: the interval as a bar, the value as a dot.
+static void put_range(FILE *const to, const char *const title, const char *const colour,
+                      const double y, const double scale, const struct dig_error_range *const range)
+{
+    (void)fprintf(to,
+                  "<text x=\"0\" y=\"%g\">%s</text>"
+                  "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%g\" y2=\"%g\" stroke=\"%s\" "
+                  "stroke-width=\"6\" stroke-opacity=\".35\"/>"
+                  "<circle cx=\"%.1f\" cy=\"%g\" r=\"6\" fill=\"%s\"/>"
+                  "<text x=\"%.1f\" y=\"%g\">%.3f</text>\n",
+                  y + 5.0, title, 70.0 + scale * range->low, 70.0 + scale * range->high, y, y,
+                  colour, 70.0 + scale * range->value, y, colour, 78.0 + scale * range->high,
+                  y + 5.0, range->value);
+}
+
+static void put_errors(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs("<h2>How wrong the prediction was, before and after</h2>\n", to);
+    if (!isfinite(trace->before.value) || !isfinite(trace->after.value)) {
+        (void)fputs("<p>No dig was held out, so nothing says how wrong the next dig will be. Mark "
+                    "one with <code>role: holdout</code>.</p>\n",
+                    to);
+        return;
+    }
+    const double most =
+        fmax(fmax(trace->before.high, trace->after.high), fmax(trace->noise_floor, 0.01));
+    const double scale = 260.0 / most;
+    (void)fprintf(to,
+                  "<figure><svg viewBox=\"0 0 390 112\" style=\"max-width:560px;font-size:15px\" "
+                  "role=\"img\" aria-label=\"error before and after\">\n");
+    if (isfinite(trace->noise_floor)) {
+        const double x = 70.0 + scale * trace->noise_floor;
+        (void)fprintf(to,
+                      "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"6\" y2=\"82\" stroke=\"#888\" "
+                      "stroke-dasharray=\"4 3\"/><text x=\"%.1f\" y=\"102\" fill=\"#666\" "
+                      "text-anchor=\"middle\">noise floor %.3f</text>\n",
+                      x, x, fmin(fmax(x, 66.0), 320.0), trace->noise_floor);
+    }
+    put_range(to, "before", "#c77f00", 24.0, scale, &trace->before);
+    put_range(to, "after", "#1f5fa8", 62.0, scale, &trace->after);
+    (void)fprintf(
+        to,
+        "</svg></figure>\n<p class=muted>On %zu dig%s that took no part in the fit%s. The "
+        "floor is 1 σ of what the error would be if "
+        "the model were complete. Both use the gravel refitted on the same digs.</p>\n",
+        trace->holdouts, trace->holdouts == 1 ? "" : "s",
+        trace->holdouts == 1 ? " (one dig: no interval)" : ", with 90 % intervals over recordings");
+}
+
+static void put_found(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs("<h2>What was found</h2>\n<table><tr><th></th><th>value</th><th>90 % "
+                "interval</th><th>without it</th></tr>\n",
+                to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        const struct dig_model_effect *const effect = &trace->effect[e];
+        for (size_t p = 0; p < effect->parameters; p++) {
+            const struct dig_model_parameter *const q = &effect->parameter[p];
+            (void)fprintf(to, "<tr><th>%s: ", dig_effect_name(effect->effect));
+            dig_html_text(to, q->name);
+            (void)fprintf(to, "</th><td><b>%.4g</b></td><td>%.4g to %.4g</td><td></td></tr>\n",
+                          q->value, q->low, q->high);
+        }
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        const int digits = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
+        (void)fprintf(to,
+                      "<tr><th>gravel: %s</th><td><b>%.*f</b></td><td>%.*f to %.*f</td>"
+                      "<td>%.*f</td></tr>\n",
+                      dig_axis_name((enum dig_axis)a), digits, trace->gravel.value[a], digits,
+                      trace->low.value[a], digits, trace->high.value[a], digits,
+                      trace->gravel_before.value[a]);
+    }
+    (void)fputs("</table>\n", to);
+}
+
+static void put_sets(FILE *const to, const struct dig_trace *const trace)
+{
+    for (size_t s = 0; s < trace->sets; s++) {
+        (void)fputs("<p>These digs cannot tell apart: <b>", to);
+        for (size_t e = 0; e < trace->set[s].effects; e++) {
+            (void)fprintf(to, "%s%s", e == 0 ? "" : ", ", dig_effect_name(trace->set[s].effect[e]));
+        }
+        (void)fputs("</b>.</p>\n", to);
+    }
+}
+
+static void put_residuals(FILE *const to, const struct dig_trace *const trace)
+{
+    static const char *const title[DIG_TRACE_PHASES] = {
+        [DIG_PART_AIR]    = "in the air, before",
+        [DIG_PART_SOIL]   = "in the soil",
+        [DIG_PART_LIFTED] = "lifted out",
+    };
+    double most = 2.0;
+    for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+        most = isfinite(trace->residual[p]) ? fmax(most, trace->residual[p]) : most;
+    }
+    (void)fputs(
+        "<h2>Where the residual shows</h2>\n<table><tr><th></th><th>rms</th><th></th></tr>\n", to);
+    for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+        (void)fprintf(to, "<tr><th>%s</th>", title[p]);
+        put_cell(to, 2, trace->residual[p]);
+        (void)fprintf(to,
+                      "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\">"
+                      "</span></td></tr>\n",
+                      isfinite(trace->residual[p]) ? 150.0 * trace->residual[p] / most : 0.0);
+    }
+    (void)fprintf(
+        to,
+        "</table>\n<p class=muted>Measured minus predicted without any effect, rms over "
+        "the rms expected: 1 is what noise makes. Effects of the machine show in the air, "
+        "those of the soil do not. The chance of residuals this large if nothing were "
+        "missing is %.2g; it was decided at %.2g.</p>\n",
+        trace->p_complete, trace->false_alarm);
+}
+
+static void put_candidates(FILE *const to, const struct dig_trace *const trace)
+{
+    if (trace->candidates == 0) {
+        return;
+    }
+    (void)fputs("<h2>What competed</h2>\n<table><tr><th>effect</th><th>log evidence</th>"
+                "<th>fits</th><th>chosen</th><th>error</th><th>parameters</th></tr>\n",
+                to);
+    for (size_t i = 0; i < trace->candidates && i < CANDIDATES_SHOWN; i++) {
+        const struct dig_candidate *const c = &trace->candidate[i];
+        (void)fprintf(to, "<tr><th>%s</th>", dig_effect_name(c->effect));
+        put_cell(to, 1, c->log_evidence);
+        put_cell(to, 3, c->p_fit);
+        put_cell(to, 2, c->inclusion);
+        put_cell(to, 3, c->error);
+        (void)fputs("<td style=\"text-align:left;min-width:15em\">", to);
+        for (size_t p = 0; p < c->parameters; p++) {
+            (void)fprintf(to, "%s", p == 0 ? "" : ", ");
+            dig_html_text(to, c->parameter[p].name);
+            (void)fprintf(to, " %.3g", c->parameter[p].value);
+        }
+        (void)fputs("</td></tr>\n", to);
+    }
+    (void)fputs(
+        "</table>\n<p class=muted>Each refitted jointly with the gravel. Log evidence: −BIC / "
+        "2 less that of no effect. Fits: the chance of a residual this large if it were the "
+        "whole truth. Chosen: in this share of resampled sets of digs. Error: of the "
+        "digs fitted.</p>\n",
+        to);
+}
+
+// A channel of one dig over its path, with 1 sigma of one dig about what was predicted.
+struct dig_picture {
+    double x[DIG_CURVE_POINTS], measured[DIG_CURVE_POINTS];
+    double low[2][DIG_CURVE_POINTS], high[2][DIG_CURVE_POINTS]; // before, after
+};
+
+// What lies outside contact to exit is a gap.
+static void fill_picture(const struct dig_trace_curves *const curves,
+                         const struct dig_measured *const dig, const size_t channel,
+                         struct dig_picture *const p)
+{
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        p->x[k]               = 100.0 * progress;
+        p->low[0][k]          = curves->before[channel][k] - curves->before_sd[channel][k];
+        p->high[0][k]         = curves->before[channel][k] + curves->before_sd[channel][k];
+        p->low[1][k]          = curves->after[channel][k] - curves->after_sd[channel][k];
+        p->high[1][k]         = curves->after[channel][k] + curves->after_sd[channel][k];
+        p->measured[k] =
+            progress >= dig->first && progress <= dig->last ? dig->value[channel][k] : (double)NAN;
+    }
+}
+
+static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves *const curves,
+                                   const struct dig_measured *const dig,
+                                   const char *const trajectory, const size_t channel,
+                                   struct dig_error *const error)
+{
+    static const char *const use[]                       = { "identify", "fit", "holdout" };
+    static const char *const y_label[DIG_FORCE_CHANNELS] = { "moment, N·m at rig scale",
+                                                             "Fx, N at rig scale",
+                                                             "Fz, N at rig scale" };
+    static const char *const of[DIG_FORCE_CHANNELS]      = { "", ", Fx", ", Fz" };
+
+    struct dig_picture p;
+    char               title[192];
+    const size_t       n = DIG_CURVE_POINTS;
+    fill_picture(curves, dig, channel, &p);
+    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s", dig->name, trajectory, use[dig->use],
+                   dig->pass > 1 ? ", dug before" : "", of[channel]);
+    // Where nothing was changed before is after, and is drawn once.
+    const bool same =
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
+        memcmp(curves->before[channel], curves->after[channel], sizeof curves->after[channel]) == 0;
+    struct dig_plot plot = {
+        .title   = title,
+        .x_label = "path of the dig done, %",
+        .y_label = y_label[channel],
+        .width   = 480,
+        .height  = 370,
+    };
+    if (!same) {
+        plot.s[plot.series++] =
+            (struct dig_plot_series){ NULL, DIG_PLOT_BAND, 0xe0a030, n, p.x, p.low[0], p.high[0] };
+    }
+    plot.s[plot.series++] = (struct dig_plot_series){
+        same ? "1 σ of one dig" : NULL, DIG_PLOT_BAND, 0x1f5fa8, n, p.x, p.low[1], p.high[1]
+    };
+    if (!same) {
+        plot.s[plot.series++] =
+            (struct dig_plot_series){ "before", DIG_PLOT_DASHED,         0xc77f00, n,
+                                      p.x,      curves->before[channel], NULL };
+    }
+    plot.s[plot.series++] = (struct dig_plot_series){ same ? "before and after" : "after",
+                                                      DIG_PLOT_LINE,
+                                                      0x1f5fa8,
+                                                      n,
+                                                      p.x,
+                                                      curves->after[channel],
+                                                      NULL };
+    plot.s[plot.series++] =
+        (struct dig_plot_series){ "measured", DIG_PLOT_LINE, 0xc0392b, n, p.x, p.measured, NULL };
+    (void)fputs("<figure>\n", to);
+    const enum dig_status status = dig_plot_svg(&plot, to, error);
+    (void)fputs("</figure>\n", to);
+    return status;
+}
+
+static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *const curves,
+                               const struct dig_measured *const dig, const char *const trajectory,
+                               struct dig_error *const error)
+{
+    enum dig_status status = DIG_OK;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
+        if (dig->measured[c]) {
+            status = put_channel(to, curves, dig, trajectory, c, error);
+        }
+    }
+    return status;
+}
+
+static enum dig_status put_digs(FILE *const to, const struct page *const page,
+                                struct dig_error *const error)
+{
+    const struct dig_trace_subject *const subject = page->subject;
+    if (page->trace->curves == NULL || subject->measured == NULL || subject->set == NULL) {
+        return DIG_OK;
+    }
+    (void)fputs("<h2>Dig by dig</h2>\n<div class=grid>\n", to);
+    enum dig_status status = DIG_OK;
+    for (size_t d = 0; d < page->trace->digs && d < subject->digs && status == DIG_OK; d++) {
+        const struct dig_measured *const dig = &subject->measured[d];
+        assert((size_t)dig->trajectory < subject->set->trajectories);
+        status = put_dig(to, &page->trace->curves[d], dig,
+                         subject->set->trajectory[dig->trajectory].name, error);
+    }
+    (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
+                "with what was found. Bands: 1 σ of one dig about each. Forces are drawn where "
+                "every sensor for them was there.</p>\n",
+                to);
+    return status;
+}
+
+static void put_tells(FILE *const to, const struct dig_trace *const trace)
+{
+    if (trace->tells == 0) {
+        return;
+    }
+    (void)fputs("<table><tr><th>to tell apart</th><th style=\"text-align:left\">do</th>"
+                "<th>sigmas</th><th>times</th></tr>\n",
+                to);
+    for (size_t i = 0; i < trace->tells; i++) {
+        const struct dig_tell_apart *const tell = &trace->tell[i];
+        const bool                         told = tell->how[0] != '\0';
+        (void)fprintf(to, "<tr><th>%s<br>%s</th><td style=\"text-align:left;min-width:7em\">",
+                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
+        dig_html_text(to, told ? tell->how : "nothing that was tried");
+        (void)fputs("</td>", to);
+        put_cell(to, 2, told ? tell->sigmas : (double)NAN);
+        put_cell(to, 0, told ? tell->repeats : (double)NAN);
+        (void)fputs("</tr>\n", to);
+    }
+    (void)fputs("</table>\n<p class=muted>What these digs cannot tell apart, as fitted: where they "
+                "differ most, in sigmas of the sensors for a motion in free air, in scatters of "
+                "one dig (rms) for a dig. Times: how many make three.</p>\n",
+                to);
+}
+
+static void put_next(FILE *const to, const struct page *const page)
+{
+    if (page->trace->advice[0] == '\0' && page->trace->command[0] == '\0' &&
+        page->trace->tells == 0) {
+        return;
+    }
+    (void)fputs("<h2>What to do next</h2>\n", to);
+    if (page->trace->advice[0] != '\0') {
+        (void)fputs("<p>", to);
+        dig_html_text(to, page->trace->advice);
+        (void)fputs("</p>\n", to);
+    }
+    put_tells(to, page->trace);
+    if (page->trace->command[0] != '\0') {
+        (void)fputs("<p>A table with it in its beds:</p>\n<pre>", to);
+        dig_html_text(to, page->trace->command);
+        (void)fputs("</pre>\n", to);
+    }
+}
+
+static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+{
+    const struct page *const page = context;
+    char                     sentence[1024];
+    char                     title[256];
+    dig_trace_sentence(page->trace, sizeof sentence, sentence);
+    (void)snprintf(title, sizeof title, "What the model lacks: %s", page->subject->campaign);
+    dig_html_begin(to, title);
+    (void)fputs("<p class=result>", to);
+    dig_html_text(to, sentence);
+    (void)fprintf(to, "</p>\n<p>%zu digs against ", page->trace->digs);
+    dig_html_text(to, page->subject->table);
+    (void)fputs(".</p>\n", to);
+    dig_trace_not_applied(page->trace, sizeof sentence, sentence);
+    if (sentence[0] != '\0') {
+        (void)fputs("<p>", to);
+        dig_html_text(to, sentence);
+        (void)fputs(".</p>\n", to);
+    }
+    put_sets(to, page->trace);
+    put_errors(to, page->trace);
+    put_found(to, page->trace);
+    const enum dig_status status = put_digs(to, page, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    put_residuals(to, page->trace);
+    const enum dig_status left = dig_residuals_html(page->trace->residuals, to, error);
+    if (left != DIG_OK) {
+        return left;
+    }
+    put_candidates(to, page->trace);
+    put_next(to, page);
+    (void)fputs("<footer>Error: relative Euclidean norm of the moment over rig time from contact "
+                "to exit, moving average ±0.16 s. Predictions are advice, not a safety "
+                "function.</footer>\n",
+                to);
+    dig_html_end(to);
+    return DIG_OK;
+}
+
+enum dig_status dig_trace_html(const struct dig_trace *const         trace,
+                               const struct dig_trace_subject *const subject,
+                               const char *const path, struct dig_error *const error)
+{
+    assert(trace != NULL && subject != NULL && path != NULL);
+    assert(subject->campaign != NULL && subject->table != NULL);
+    struct page page = { trace, subject };
+    return dig_html_save(path, put_page, &page, error);
+}

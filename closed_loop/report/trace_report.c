@@ -1,0 +1,286 @@
+#include "closed_loop/report/trace_report.h"
+
+#include "closed_loop/report/json.h"
+#include "closed_loop/report/residual_report.h"
+#include "closed_loop/verdict/tell_apart.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static void put_parameters(FILE *const to, const size_t n,
+                           const struct dig_model_parameter parameter[])
+{
+    (void)fputs("\"parameters\": {", to);
+    for (size_t p = 0; p < n; p++) {
+        (void)fputs(p == 0 ? "" : ", ", to);
+        dig_json_string(to, parameter[p].name);
+        dig_json_member(to, ": {", "value", parameter[p].value);
+        dig_json_member(to, ", ", "low", parameter[p].low);
+        dig_json_member(to, ", ", "high", parameter[p].high);
+        (void)fputs("}", to);
+    }
+    (void)fputs("}", to);
+}
+
+static void put_verdict(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs("\"verdict\": [", to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+    }
+    (void)fputs(trace->effects == 0 ? "\"none\"],\n" : "],\n", to);
+}
+
+static void put_sets(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"indistinguishable\": [", to);
+    for (size_t s = 0; s < trace->sets; s++) {
+        (void)fputs(s == 0 ? "[" : ", [", to);
+        for (size_t e = 0; e < trace->set[s].effects; e++) {
+            (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ",
+                          dig_effect_name(trace->set[s].effect[e]));
+        }
+        (void)fputs("]", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+static void put_effects(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"effects\": [", to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        const struct dig_model_effect *const effect = &trace->effect[e];
+        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", e == 0 ? "" : ",",
+                      dig_effect_name(effect->effect));
+        dig_json_member(to, ", ", "probability", effect->probability);
+        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(trace->seen_in[e]));
+        if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
+            (void)fputs("\"depends_on\": ", to);
+            dig_json_string(to, trace->unlisted->depends_on);
+            (void)fputs(", ", to);
+        }
+        put_parameters(to, effect->parameters, effect->parameter);
+        (void)fputs("}", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+static void put_material(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"material\": {", to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "%s\"%s\": ", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a));
+        dig_json_member(to, "{", "value", trace->gravel.value[a]);
+        dig_json_member(to, ", ", "low", trace->low.value[a]);
+        dig_json_member(to, ", ", "high", trace->high.value[a]);
+        (void)fputs("}", to);
+    }
+    (void)fputs("},\n \"material_before\": {", to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        dig_json_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                        trace->gravel_before.value[a]);
+    }
+    (void)fputs("},\n", to);
+}
+
+static void put_error(FILE *const to, const char *const name,
+                      const struct dig_error_range *const range)
+{
+    (void)fprintf(to, " \"%s\": ", name);
+    dig_json_member(to, "{", "holdout", range->value);
+    dig_json_member(to, ", ", "low", range->low);
+    dig_json_member(to, ", ", "high", range->high);
+    (void)fputs("},\n", to);
+}
+
+static void put_candidates(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(" \"candidates\": [", to);
+    for (size_t i = 0; i < trace->candidates; i++) {
+        const struct dig_candidate *const c = &trace->candidate[i];
+        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", i == 0 ? "" : ",", dig_effect_name(c->effect));
+        dig_json_member(to, ", ", "log_evidence", c->log_evidence);
+        dig_json_member(to, ", ", "p_fit", c->p_fit);
+        dig_json_member(to, ", ", "inclusion", c->inclusion);
+        dig_json_member(to, ", ", "error", c->error);
+        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(c->seen_in));
+        put_parameters(to, c->parameters, c->parameter);
+        (void)fputs("}", to);
+    }
+    (void)fputs("],\n", to);
+}
+
+// Numbers of a pair that nothing tells apart are null.
+static void put_tells(FILE *const to, const struct dig_trace *const trace)
+{
+    (void)fputs(",\n \"tell_apart\": [", to);
+    for (size_t i = 0; i < trace->tells; i++) {
+        const struct dig_tell_apart *const tell = &trace->tell[i];
+        const bool                         told = tell->how[0] != '\0';
+        (void)fprintf(to, "%s\n  {\"effects\": [\"%s\", \"%s\"], \"in\": ", i == 0 ? "" : ",",
+                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
+        (void)fputs(told ? (tell->in_air ? "\"air\"" : "\"soil\"") : "null", to);
+        (void)fputs(", \"how\": ", to);
+        dig_json_string(to, tell->how);
+        dig_json_member(to, ", ", "sigmas", told ? tell->sigmas : (double)NAN);
+        dig_json_member(to, ", ", "repeats", told ? tell->repeats : (double)NAN);
+        (void)fputs("}", to);
+    }
+    (void)fputs("]", to);
+}
+
+void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
+{
+    assert(trace != NULL && to != NULL);
+    (void)fprintf(to, "{\"significant\": %s", trace->significant ? "true" : "false");
+    dig_json_member(to, ", ", "p_complete", trace->p_complete);
+    dig_json_member(to, ", ", "false_alarm", trace->false_alarm);
+    dig_json_member(to, ", ", "noise_floor", trace->noise_floor);
+    (void)fputs(",\n ", to);
+    put_verdict(to, trace);
+    (void)fprintf(to, " \"applied\": %s,\n", trace->applied ? "true" : "false");
+    put_sets(to, trace);
+    put_effects(to, trace);
+    put_material(to, trace);
+    put_error(to, "error_before", &trace->before);
+    put_error(to, "error_after", &trace->after);
+    (void)fprintf(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
+                  trace->holdouts);
+    for (int p = 0; p < DIG_TRACE_PHASES; p++) {
+        dig_json_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p),
+                        trace->residual[p]);
+    }
+    (void)fprintf(to, "}, \"no_air\": %s,\n", trace->no_air ? "true" : "false");
+    put_candidates(to, trace);
+    dig_residuals_json(trace->residuals, to);
+    (void)fputs(" \"advice\": ", to);
+    dig_json_string(to, trace->advice);
+    put_tells(to, trace);
+    (void)fputs(",\n \"command\": ", to);
+    dig_json_string(to, trace->command);
+    (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
+                "±0.16 s\"}\n",
+                to);
+}
+
+// Appends, as far as there is room.
+__attribute__((format(printf, 3, 4))) static void add(char *const text, const size_t size,
+                                                      const char *const format, ...)
+{
+    const size_t used = strlen(text);
+    va_list      arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, char text[])
+{
+    assert(trace != NULL && text != NULL && size > 0);
+    text[0] = '\0';
+    if (trace->effects == 0) {
+        add(text, size, "%s",
+            trace->significant ? "Something is missing, but none of the effects known explains it."
+            : trace->no_air    ? "Nothing is missing in the soil; no free air tells of the machine."
+                               : "Nothing is missing: what is left is within the noise.");
+        return;
+    }
+    add(text, size, "Missing: ");
+    for (size_t e = 0; e < trace->effects; e++) {
+        const struct dig_model_effect *const effect = &trace->effect[e];
+        if (e > 0) {
+            add(text, size, "%s", e + 1 == trace->effects ? " and " : ", ");
+        }
+        if (effect->effect == DIG_EFFECT_UNLISTED) {
+            add(text, size, "an effect that has no name here");
+            if (trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
+                add(text, size, ", which depends on %s", trace->unlisted->depends_on);
+            }
+        } else {
+            add(text, size, "%s", dig_effect_name(effect->effect));
+        }
+        add(text, size, " (probability %.2f, seen in %s)", effect->probability,
+            trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
+                                                 : dig_part_name(trace->seen_in[e]));
+    }
+    add(text, size, ".");
+}
+
+void dig_trace_not_applied(const struct dig_trace *const trace, const size_t size, char text[])
+{
+    assert(trace != NULL && text != NULL && size > 0);
+    text[0] = '\0';
+    if (trace->applied || trace->effects == 0) {
+        return;
+    }
+    add(text, size, "named, not applied: ");
+    for (size_t e = 0; e < trace->effects; e++) {
+        add(text, size, "%s%s", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+    }
+    add(text, size, "; the prediction is not surely better for it, and stays as it was");
+}
+
+// An interval is drawn from recordings: of one there is none.
+static void put_error_line(FILE *const to, const char *const title,
+                           const struct dig_error_range *const range, const size_t holdouts)
+{
+    if (!isfinite(range->value)) {
+        (void)fprintf(to, "  error %s unknown: no holdout dig\n", title);
+    } else if (holdouts == 1) {
+        (void)fprintf(to, "  error %s %.3f   one dig: no interval\n", title, range->value);
+    } else {
+        (void)fprintf(to, "  error %s %.3f   90 %%: %.3f to %.3f\n", title, range->value,
+                      range->low, range->high);
+    }
+}
+
+void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
+{
+    assert(trace != NULL && to != NULL);
+    char sentence[1024];
+    dig_trace_sentence(trace, sizeof sentence, sentence);
+    (void)fprintf(to, "%s\n", sentence);
+    for (size_t e = 0; e < trace->effects; e++) {
+        for (size_t p = 0; p < trace->effect[e].parameters; p++) {
+            const struct dig_model_parameter *const parameter = &trace->effect[e].parameter[p];
+            (void)fprintf(to, "  %s %s %.4g   90 %%: %.4g to %.4g\n",
+                          dig_effect_name(trace->effect[e].effect), parameter->name,
+                          parameter->value, parameter->low, parameter->high);
+        }
+    }
+    dig_trace_not_applied(trace, sizeof sentence, sentence);
+    if (sentence[0] != '\0') {
+        (void)fprintf(to, "  %s\n", sentence);
+    }
+    for (size_t s = 0; s < trace->sets; s++) {
+        (void)fputs("  these digs cannot tell apart:", to);
+        for (size_t e = 0; e < trace->set[s].effects; e++) {
+            (void)fprintf(to, "%s %s", e == 0 ? "" : ",", dig_effect_name(trace->set[s].effect[e]));
+        }
+        (void)fputs("\n", to);
+    }
+    (void)fprintf(to, "  gravel: friction %.3g, rolling %.3g, density %.4g kg/m3\n",
+                  trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
+                  trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    put_error_line(to, "before", &trace->before, trace->holdouts);
+    put_error_line(to, "after ", &trace->after, trace->holdouts);
+    (void)fprintf(to,
+                  "  noise floor  %.3f   chance of such residuals if nothing were missing "
+                  "%.3g, decided at %.3g\n",
+                  trace->noise_floor, trace->p_complete, trace->false_alarm);
+    if (trace->advice[0] != '\0') {
+        (void)fprintf(to, "  next: %s\n", trace->advice);
+    }
+    for (size_t i = 0; i < trace->tells; i++) {
+        dig_tell_apart_say(&trace->tell[i], sizeof sentence, sentence);
+        // The first may be the advice itself.
+        if (strcmp(sentence, trace->advice) != 0) {
+            (void)fprintf(to, "  to tell apart: %s\n", sentence);
+        }
+    }
+    if (trace->command[0] != '\0') {
+        (void)fprintf(to, "\nA table with it in its beds:\n\n%s", trace->command);
+    }
+}

@@ -1,0 +1,59 @@
+#include "closed_loop/search/cross_validation.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+static bool is_possible(const struct dig_whitened_digs *const batch,
+                        const struct dig_soil *const          soil,
+                        const struct dig_hypothesis *const    hypothesis)
+{
+    bool possible = true;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        possible = possible && dig_hypothesis_possible(batch, soil, hypothesis->effect[e]);
+    }
+    return possible;
+}
+
+// How far one dig of a batch is from what a hypothesis makes of it, fitted to others.
+static double miss2(const struct dig_whitened_digs *const batch,
+                    const struct dig_whitened_digs *const others, const size_t dig,
+                    const struct dig_soil *const soil, const struct dig_fitted *const from)
+{
+    const struct dig_whitened_digs_dig *const   left  = &batch->dig[dig];
+    const struct dig_whitened_digs_group *const group = &batch->group[left->group];
+    struct dig_fitted                           fitted;
+    double                                      feature[DIG_FEATURES];
+    double                                      y[DIG_FEATURES];
+    double                                      ignored;
+    dig_hypothesis_fit(others, soil, &from->hypothesis, from->number, DIG_FIT_BARE, &fitted);
+    dig_hypothesis_features(soil, &fitted.hypothesis, fitted.number,
+                            &batch->measured[left->measured], feature, &ignored);
+    dig_whitened_digs_whiten(group, feature, y);
+    double sum = 0.0;
+    for (size_t k = 0; k < group->features; k++) {
+        sum += (left->y[k] - y[k]) * (left->y[k] - y[k]);
+    }
+    return sum;
+}
+
+enum dig_status dig_cross_validation_gain(const struct dig_whitened_digs *const batch,
+                                          const struct dig_soil *const          soil,
+                                          const struct dig_fitted *const        plain,
+                                          const struct dig_fitted *const chosen, double *const gain)
+{
+    assert(batch != NULL && soil != NULL && plain != NULL && chosen != NULL && gain != NULL);
+    struct dig_whitened_digs *const others = malloc(sizeof *others);
+    if (others == NULL) {
+        return DIG_ENOMEM;
+    }
+    double sum = 0.0;
+    for (size_t i = 0; i < batch->digs && batch->digs > 1; i++) {
+        dig_whitened_digs_leave_out(batch, i, others);
+        if (is_possible(others, soil, &chosen->hypothesis)) {
+            sum += miss2(batch, others, i, soil, plain) - miss2(batch, others, i, soil, chosen);
+        }
+    }
+    free(others);
+    *gain = sum;
+    return DIG_OK;
+}

@@ -1,0 +1,136 @@
+#include "closed_loop/search/drift.h"
+
+#include "closed_loop/numeric/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// A constant, the line's and the parabola's term, and one number for every trajectory.
+enum { POLYNOMIAL = 3, UNKNOWNS = POLYNOMIAL + DIG_TRAJECTORY_MAX };
+
+// Digs that tell a parabola from their scatter at all.
+static const size_t least_digs = 5;
+
+// A bend is free to be what it likes.
+static const double wide = 1e3;
+
+struct sizes {
+    size_t digs;
+    double order[DIG_MEASURED_MAX];  // 0 at the first of the batch, 1 at the last
+    double factor[DIG_MEASURED_MAX]; // the dig's size over that of its gravel without wear
+    double weight[DIG_MEASURED_MAX]; // 1 / variance
+    size_t group[DIG_MEASURED_MAX];
+    double shared[DIG_TRAJECTORY_MAX]; // variance of what a trajectory's digs have in common
+};
+
+static int place_of_wear(const struct dig_hypothesis *const hypothesis)
+{
+    int place = -1;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        place = hypothesis->effect[e] == DIG_EFFECT_WEAR ? (int)e : place;
+    }
+    return place;
+}
+
+// A dig's size over that of its group's mean dig, whose scatter is 1: a larger one scatters more.
+static double worn(const struct dig_whitened_digs *const batch, const double share,
+                   const struct dig_whitened_digs_dig *const dig)
+{
+    double mean = 0.0;
+    for (size_t i = 0; i < batch->digs; i++) {
+        if (batch->dig[i].group == dig->group) {
+            mean += (1.0 + share * (double)batch->measured[batch->dig[i].measured].order) /
+                    (double)batch->group[dig->group].digs;
+        }
+    }
+    return (1.0 + share * (double)batch->measured[dig->measured].order) / mean;
+}
+
+static void measure(const struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
+                    const struct dig_fitted *const fitted, const size_t wear,
+                    struct sizes *const sizes)
+{
+    double fresh[DIG_HYPOTHESIS_NUMBERS];
+    double first = INFINITY;
+    double last  = -INFINITY;
+    memcpy(fresh, fitted->number, sizeof fresh);
+    fresh[DIG_AXES + wear] = 0.0;
+    sizes->digs            = batch->digs;
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
+        const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
+        double                                      feature[DIG_FEATURES];
+        double                                      model[DIG_FEATURES];
+        double                                      noise;
+        double                                      both = 0.0;
+        double                                      own  = 0.0;
+        dig_hypothesis_features(soil, &fitted->hypothesis, fresh, &batch->measured[dig->measured],
+                                feature, &noise);
+        dig_whitened_digs_whiten(group, feature, model);
+        for (size_t k = 0; k < group->features; k++) {
+            both += dig->y[k] * model[k];
+            own += model[k] * model[k];
+        }
+        sizes->factor[i] = both / own;
+        sizes->weight[i] = own / pow(worn(batch, fitted->number[DIG_AXES + wear], dig), 2.0);
+        sizes->group[i]  = dig->group;
+
+        sizes->shared[dig->group] = fitted->noise[dig->group] / own;
+        sizes->order[i]           = (double)batch->measured[dig->measured].order;
+        first                     = fmin(first, sizes->order[i]);
+        last                      = fmax(last, sizes->order[i]);
+    }
+    const double span = fmax(last - first, 1.0);
+    for (size_t i = 0; i < sizes->digs; i++) {
+        sizes->order[i] = (sizes->order[i] - first) / span;
+    }
+}
+
+// The parabola's own term over its sigma.
+static double bend(const struct sizes *const sizes, const size_t groups)
+{
+    const size_t n                      = POLYNOMIAL + groups;
+    const size_t last                   = POLYNOMIAL - 1;
+    double       a[UNKNOWNS * UNKNOWNS] = { 0.0 };
+    double       b[UNKNOWNS]            = { 0.0 };
+    double       one[UNKNOWNS]          = { 0.0 };
+    for (size_t i = 0; i < sizes->digs; i++) {
+        double row[UNKNOWNS] = { 0.0 };
+        for (size_t p = 0; p < POLYNOMIAL; p++) {
+            row[p] = pow(sizes->order[i], (double)p);
+        }
+        row[POLYNOMIAL + sizes->group[i]] = 1.0;
+        for (size_t p = 0; p < n; p++) {
+            b[p] += sizes->weight[i] * row[p] * sizes->factor[i];
+            for (size_t q = 0; q <= p; q++) {
+                a[p * n + q] += sizes->weight[i] * row[p] * row[q];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; p++) {
+        a[p * n + p] += p < POLYNOMIAL ? 1.0 / (wide * wide) : 1.0 / sizes->shared[p - POLYNOMIAL];
+    }
+    if (dig_cholesky(n, a) != DIG_OK) {
+        return 0.0;
+    }
+    one[last] = 1.0;
+    dig_lower_solve(n, a, b);
+    dig_lower_transposed_solve(n, a, b);
+    dig_lower_solve(n, a, one);
+    dig_lower_transposed_solve(n, a, one);
+    return b[last] / sqrt(one[last]);
+}
+
+double dig_drift_bend(const struct dig_whitened_digs *const batch,
+                      const struct dig_soil *const soil, const struct dig_fitted *const fitted)
+{
+    assert(batch != NULL && soil != NULL && fitted != NULL);
+    const int    wear  = place_of_wear(&fitted->hypothesis);
+    struct sizes sizes = { .digs = 0 };
+    if (wear < 0 || batch->digs < least_digs) {
+        return 0.0;
+    }
+    measure(batch, soil, fitted, (size_t)wear, &sizes);
+    return bend(&sizes, batch->groups);
+}

@@ -1,0 +1,176 @@
+#include "closed_loop/search/null_simulation.h"
+
+#include "closed_loop/numeric/chance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The misfit of means and of digs about them, without what does not depend on the digs.
+static void split(const struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
+                  const struct dig_fitted *const fitted, struct dig_statistic *const statistic)
+{
+    statistic->about = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        statistic->about += batch->group[g].about;
+    }
+    statistic->misfit = dig_hypothesis_differs(&fitted->hypothesis)
+                            ? dig_hypothesis_squares(batch, soil, fitted, fitted->noise)
+                            : fitted->squares - statistic->about;
+}
+
+// Fits base with one effect more. What an effect adds need not grow evenly with it, so that a fit
+// may end near none: several magnitudes are started from.
+static void fit_rival(const struct dig_whitened_digs *const batch,
+                      const struct dig_soil *const soil, const struct dig_hypothesis *const base,
+                      const struct dig_hypothesis *const rival, const struct dig_fitted *const from,
+                      const enum dig_fit_care care, struct dig_fitted *const fitted)
+{
+    static const double starts[] = { 0.3, 0.6, -0.5 };
+    const size_t        last     = DIG_AXES + rival->effects - 1;
+    const size_t      added = rival->effects > base->effects ? sizeof starts / sizeof starts[0] : 1;
+    struct dig_fitted best  = { .misfit = INFINITY };
+    for (size_t s = 0; s < added; s++) {
+        double                   at[DIG_HYPOTHESIS_NUMBERS];
+        struct dig_fitted        tried;
+        const enum dig_effect_id effect = rival->effect[rival->effects - 1];
+        memcpy(at, from->number, sizeof at);
+        if (rival->effects > base->effects) {
+            at[last] = starts[s] * (starts[s] > 0.0 ? soil->high[effect] : -soil->low[effect]);
+        }
+        if (s > 0 && fabs(at[last]) <= 0.0) {
+            continue;
+        }
+        dig_hypothesis_fit(batch, soil, rival, at, care, &tried);
+        if (tried.misfit < best.misfit) {
+            best = tried;
+        }
+    }
+    *fitted = best;
+}
+
+void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
+                             const struct dig_soil *const          soil,
+                             const struct dig_hypothesis *const base, const size_t rivals,
+                             const struct dig_hypothesis rival[], const double start[],
+                             const enum dig_fit_care care, struct dig_fitted fitted[],
+                             struct dig_statistic *const statistic)
+{
+    assert(rivals <= DIG_RIVALS_MAX);
+    dig_hypothesis_fit(batch, soil, base, start, care, &fitted[0]);
+    split(batch, soil, &fitted[0], statistic);
+    statistic->gain = 0.0;
+    statistic->best = rivals;
+    for (size_t i = 0; i < rivals; i++) {
+        fit_rival(batch, soil, base, &rival[i], &fitted[0], care, &fitted[1 + i]);
+        const double gain = fitted[0].misfit - fitted[1 + i].misfit;
+        if (gain > statistic->gain) {
+            statistic->gain = gain;
+            statistic->best = i;
+        }
+    }
+}
+
+// One dig's scatter, whitened: a residual of the table, or normal numbers.
+static void draw_scatter(const struct dig_whitened_digs *const batch, const size_t g,
+                         uint64_t *const seed, double y[DIG_FEATURES])
+{
+    const struct dig_whitened_digs_group *const group = &batch->group[g];
+    const size_t                                n = batch->scatter->residuals[group->trajectory];
+    if (n == 0) {
+        for (size_t k = 0; k < group->features; k++) {
+            y[k] = dig_chance_normal(seed);
+        }
+        return;
+    }
+    // In the group's units a residual of the table is one of its amplitude.
+    const double *const residual =
+        batch->scatter->residual[group->trajectory][dig_chance_index(seed, n)];
+    const double sign = dig_chance_uniform(seed) < 0.5 ? -1.0 : 1.0;
+    double       feature[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] = sign * residual[f] * group->amplitude[f / DIG_FEATURE_BINS];
+    }
+    dig_whitened_digs_whiten(group, feature, y);
+}
+
+void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
+                              const struct dig_soil *const          soil,
+                              const struct dig_fitted *const fitted, uint64_t *const seed,
+                              struct dig_whitened_digs *const drawn)
+{
+    assert(batch != NULL && fitted != NULL && seed != NULL && drawn != NULL);
+    double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    for (size_t g = 0; g < batch->groups; g++) {
+        draw_scatter(batch, g, seed, common[g]);
+        for (size_t k = 0; k < batch->group[g].features; k++) {
+            common[g][k] *= sqrt(fitted->noise[g]);
+        }
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        const size_t g = batch->dig[i].group;
+        double       feature[DIG_FEATURES];
+        double       model[DIG_FEATURES];
+        double       own[DIG_FEATURES];
+        double       noise;
+        dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
+                                &batch->measured[batch->dig[i].measured], feature, &noise);
+        dig_whitened_digs_whiten(&batch->group[g], feature, model);
+        draw_scatter(batch, g, seed, own);
+        for (size_t k = 0; k < batch->group[g].features; k++) {
+            drawn->dig[i].y[k] = model[k] + common[g][k] + own[k];
+        }
+    }
+    dig_whitened_digs_summarise(drawn);
+}
+
+enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
+                                         const struct dig_soil *const          soil,
+                                         const struct dig_fitted *const fitted, const size_t rivals,
+                                         const struct dig_hypothesis rival[], const size_t draws,
+                                         uint64_t *const                   seed,
+                                         struct dig_null_simulation *const null)
+{
+    assert(draws > 1 && rivals <= DIG_RIVALS_MAX);
+    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
+    struct dig_fitted *const        again = malloc((rivals + 1) * sizeof *again);
+    if (drawn == NULL || again == NULL) {
+        free(drawn);
+        free(again);
+        return DIG_ENOMEM;
+    }
+    *drawn                                = *batch;
+    struct dig_null_simulation made       = { .draws = draws };
+    double                     squares[3] = { 0.0 };
+    for (size_t d = 0; d < draws; d++) {
+        struct dig_statistic s;
+        dig_null_simulation_digs(batch, soil, fitted, seed, drawn);
+        dig_null_simulation_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number,
+                                DIG_FIT_BARE, again, &s);
+        const double value[3] = { s.misfit, s.about, s.gain };
+        for (size_t i = 0; i < 3; i++) {
+            const double off = value[i] - made.mean[i];
+            made.mean[i] += off / (double)(d + 1);
+            squares[i] += off * (value[i] - made.mean[i]);
+        }
+        made.chosen[s.best] += 1.0 / (double)draws;
+    }
+    for (size_t i = 0; i < 3; i++) {
+        made.variance[i] = squares[i] / (double)(draws - 1);
+    }
+    free(drawn);
+    free(again);
+    *null = made;
+    return DIG_OK;
+}
+
+double dig_null_simulation_p(const struct dig_null_simulation *const null, const size_t index,
+                             const double value)
+{
+    assert(index < 3);
+    if (!(null->mean[index] > 0.0) || !(null->variance[index] > 0.0)) {
+        return 1.0;
+    }
+    return dig_chance_gamma_tail(null->mean[index], null->variance[index], value);
+}

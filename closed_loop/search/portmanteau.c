@@ -1,0 +1,111 @@
+#include "closed_loop/search/portmanteau.h"
+
+#include "closed_loop/numeric/chance.h"
+#include "closed_loop/search/null_simulation.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { BOOTSTRAPS = 1000 };
+
+double dig_portmanteau(const size_t n, const double z[])
+{
+    assert(n == 0 || z != NULL);
+    double squares = 0.0;
+    double sum     = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        squares += z[k] * z[k];
+    }
+    for (size_t lag = 1; squares > 0.0 && lag <= DIG_PORTMANTEAU_LAGS && lag < n; lag++) {
+        double r = 0.0;
+        for (size_t k = 0; k + lag < n; k++) {
+            r += z[k] * z[k + lag] / squares;
+        }
+        sum += r * r / (double)(n - lag);
+    }
+    return (double)n * ((double)n + 2.0) * sum;
+}
+
+// Q of every dig; returns their mean.
+static double all_digs(const struct dig_whitened_digs *const batch,
+                       const struct dig_soil *const soil, const struct dig_fitted *const fitted,
+                       double q[DIG_MEASURED_MAX])
+{
+    double mean = 0.0;
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
+        const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
+        double                                      feature[DIG_FEATURES];
+        double                                      model[DIG_FEATURES];
+        double                                      z[DIG_FEATURES];
+        double                                      noise;
+        dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
+                                &batch->measured[dig->measured], feature, &noise);
+        dig_whitened_digs_whiten(group, feature, model);
+        q[i]         = 0.0;
+        size_t first = 0;
+        for (size_t k = 0; k < group->features; k++) {
+            const size_t channel = group->feature[k] / DIG_FEATURE_BINS;
+            z[k]                 = dig->y[k] - model[k];
+            if (k + 1 == group->features || group->feature[k + 1] / DIG_FEATURE_BINS != channel) {
+                q[i] += dig_portmanteau(k + 1 - first, z + first);
+                first = k + 1;
+            }
+        }
+        mean += q[i] / (double)batch->digs;
+    }
+    return mean;
+}
+
+static int ascending(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void draw_digs(const size_t digs, const double q[], uint64_t *const seed,
+                      struct dig_whiteness *const whiteness)
+{
+    double drawn[BOOTSTRAPS];
+    for (size_t b = 0; b < BOOTSTRAPS; b++) {
+        drawn[b] = 0.0;
+        for (size_t i = 0; i < digs; i++) {
+            drawn[b] += q[dig_chance_index(seed, digs)] / (double)digs;
+        }
+    }
+    qsort(drawn, BOOTSTRAPS, sizeof drawn[0], ascending);
+    whiteness->low  = drawn[BOOTSTRAPS / 20];
+    whiteness->high = drawn[BOOTSTRAPS - 1 - BOOTSTRAPS / 20];
+}
+
+enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *const batch,
+                                      const struct dig_soil *const          soil,
+                                      const struct dig_fitted *const fitted, const size_t draws,
+                                      uint64_t seed, struct dig_whiteness *const whiteness)
+{
+    assert(batch != NULL && fitted != NULL && draws > 0 && whiteness != NULL);
+    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
+    if (drawn == NULL) {
+        return DIG_ENOMEM;
+    }
+    double               q[DIG_MEASURED_MAX];
+    struct dig_whiteness made = { .digs = batch->digs };
+    made.statistic            = all_digs(batch, soil, fitted, q);
+    draw_digs(batch->digs, q, &seed, &made);
+    double as_large = 0.0;
+    *drawn          = *batch;
+    for (size_t d = 0; d < draws; d++) {
+        struct dig_fitted again;
+        dig_null_simulation_digs(batch, soil, fitted, &seed, drawn);
+        dig_hypothesis_fit(drawn, soil, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
+        const double mean = all_digs(drawn, soil, &again, q);
+        made.expected += mean / (double)draws;
+        as_large += mean >= made.statistic ? 1.0 : 0.0;
+    }
+    made.p = (as_large + 1.0) / ((double)draws + 1.0);
+    free(drawn);
+    *whiteness = made;
+    return DIG_OK;
+}

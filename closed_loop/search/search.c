@@ -1,0 +1,222 @@
+#include "closed_loop/search/search_work.h"
+
+#include "closed_loop/numeric/chance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What is significant and that nothing explains, with a name or without, is taken for chance unless
+// it is so much rarer than the level.
+static const double rarer = 0.01;
+
+// Log evidence beyond which digs that differ as an effect says are not put down to scatter.
+static const double lead = 3.0;
+
+static void list_rivals(struct dig_search_work *const c)
+{
+    c->s->rivals = 0;
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        const enum dig_effect_id effect = (enum dig_effect_id)e;
+        if (!dig_effect_is_of_machine(effect) && effect != DIG_EFFECT_UNLISTED &&
+            c->s->rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(c->batch, c->soil, effect)) {
+            c->single[c->s->rivals++] = (struct dig_hypothesis){ 1, { effect }, false };
+        }
+    }
+}
+
+// Fits everything once, thoroughly, from the middle of the table.
+static void fit_all(struct dig_search_work *const c, struct dig_statistic *const statistic)
+{
+    static const struct dig_hypothesis plain   = { .effects = 0 };
+    static const struct dig_hypothesis outside = { .effects = 0, .outside = true };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_fitted                  fitted[DIG_RIVALS_MAX + 1];
+    dig_null_simulation_fit(c->batch, c->soil, &plain, c->s->rivals, c->single, middle,
+                            DIG_FIT_THOROUGH, fitted, statistic);
+    c->s->plain = fitted[0];
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        c->s->rival[i]        = fitted[1 + i];
+        c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 1);
+    }
+    dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
+                       &c->s->beyond);
+}
+
+// The digs differ as an effect says that differs from dig to dig: no mere scatter.
+static bool is_told_by_order(const struct dig_search_work *const c)
+{
+    bool told = false;
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        const enum dig_effect_id effect = c->single[i].effect[0];
+        const bool by_dig = effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
+                            effect == DIG_EFFECT_COMPACTION;
+        told = told || (by_dig && c->s->log_evidence[i] > lead);
+    }
+    return told;
+}
+
+// Digs that scatter more about their means than the table's: all is weighed by their own scatter.
+static void allow_for_scatter(struct dig_search_work *const c,
+                              struct dig_statistic *const   statistic)
+{
+    c->s->spread = 1.0;
+    if (c->plain_null.mean[1] > 0.0 && !is_told_by_order(c) &&
+        dig_null_simulation_p(&c->plain_null, 1, statistic->about) < c->false_alarm) {
+        c->s->spread = sqrt(statistic->about / c->plain_null.mean[1]);
+        dig_whitened_digs_spread(c->batch, c->s->spread);
+        fit_all(c, statistic);
+    }
+}
+
+// The smaller chance of two tests, as if there were but one.
+static double chance_of_either(const double p)
+{
+    return 1.0 - (1.0 - p) * (1.0 - p);
+}
+
+// Surely significant: no second thought about chance comes after it.
+static bool is_sure(const struct dig_search_work *const c)
+{
+    return c->s->p_complete <= rarer * c->false_alarm;
+}
+
+// By the misfit, and by the gain where that could still change the answer: a draw that rivals are
+// fitted to costs as much as thirty that none are.
+static enum dig_status decide_whether(struct dig_search_work *const c)
+{
+    struct dig_statistic            statistic;
+    uint64_t                        seed  = c->seed;
+    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
+    if (drawn == NULL) {
+        return DIG_ENOMEM;
+    }
+    *drawn = *c->batch;
+    fit_all(c, &statistic);
+    const struct dig_fitted plain = c->s->plain;
+    enum dig_status status = dig_null_simulation_draw(drawn, c->soil, &plain, 0, NULL, c->draws,
+                                                      &c->seed, &c->plain_null);
+    if (status == DIG_OK) {
+        allow_for_scatter(c, &statistic);
+        const double p     = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
+        c->s->p_complete   = chance_of_either(p);
+        const bool decided = c->s->p_complete <= 0.0 || (c->whether_only && is_sure(c));
+        if (!decided) {
+            status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
+                                              c->draws, &seed, &c->plain_null);
+            c->s->p_complete =
+                chance_of_either(fmin(p, dig_null_simulation_p(&c->plain_null, 2, statistic.gain)));
+        }
+    }
+    free(drawn);
+    c->s->significant = c->s->p_complete < c->false_alarm;
+    c->s->plain_fit   = dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->plain));
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        c->s->rival_fit[i] =
+            dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->rival[i]));
+    }
+    return status;
+}
+
+// Resamples the digs of each trajectory.
+static void resample(const struct dig_whitened_digs *const batch, uint64_t *const seed,
+                     struct dig_whitened_digs *const drawn)
+{
+    for (size_t i = 0; i < batch->digs; i++) {
+        const size_t g    = batch->dig[i].group;
+        size_t       pick = dig_chance_index(seed, batch->group[g].digs);
+        for (size_t j = 0; j < batch->digs; j++) {
+            if (batch->dig[j].group == g && pick-- == 0) {
+                drawn->dig[i] = batch->dig[j];
+                break;
+            }
+        }
+    }
+    dig_whitened_digs_summarise(drawn);
+}
+
+// How often each single effect is best when the campaign is drawn from its own digs.
+static enum dig_status bootstrap(struct dig_search_work *const c, const size_t times)
+{
+    struct dig_fitted               fitted[DIG_RIVALS_MAX + 1];
+    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
+    if (drawn == NULL) {
+        return DIG_ENOMEM;
+    }
+    *drawn = *c->batch;
+    for (size_t i = 0; i < times; i++) {
+        struct dig_statistic statistic;
+        resample(c->batch, &c->seed, drawn);
+        dig_null_simulation_fit(drawn, c->soil, &c->s->plain.hypothesis, c->s->rivals, c->single,
+                                c->s->plain.number, DIG_FIT_BARE, fitted, &statistic);
+        if (statistic.best < c->s->rivals) {
+            c->s->inclusion[statistic.best] += 1.0 / (double)times;
+        }
+    }
+    free(drawn);
+    return DIG_OK;
+}
+
+static enum dig_status run(struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
+                           const double false_alarm, const size_t draws, const uint64_t seed,
+                           const bool whether_only, struct dig_search *const search)
+{
+    assert(batch != NULL && soil != NULL && search != NULL && draws >= 4);
+    memset(search, 0, sizeof *search);
+    search->unnamed          = 1.0;
+    struct dig_search_work c = { .batch        = batch,
+                                 .soil         = soil,
+                                 .false_alarm  = false_alarm,
+                                 .draws        = draws,
+                                 .whether_only = whether_only,
+                                 .seed         = seed,
+                                 .s            = search };
+    list_rivals(&c);
+    enum dig_status status = decide_whether(&c);
+    search->chosen         = search->plain;
+    if (status != DIG_OK || (whether_only && is_sure(&c))) {
+        return status;
+    }
+    status = bootstrap(&c, draws / 4);
+    if (status == DIG_OK && search->significant) {
+        status = dig_search_which(&c);
+    }
+    if (status != DIG_OK || !search->significant) {
+        return status;
+    }
+    search->outside = !search->is_rock && dig_search_is_outside(&c);
+    if (search->unlisted && !search->is_rock && !search->outside &&
+        search->without_name.functions == 0 &&
+        dig_search_best_evidence(search) < DIG_SEARCH_TOLD_APART &&
+        search->p_complete > rarer * false_alarm) {
+        search->unlisted    = false;
+        search->significant = false;
+        return DIG_OK;
+    }
+    if (search->outside) {
+        search->chosen   = search->beyond;
+        search->unlisted = false;
+    }
+    if (search->chosen.hypothesis.effects == 1) {
+        dig_search_find_set(&c);
+    }
+    dig_search_set_probabilities(&c);
+    return DIG_OK;
+}
+
+enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
+                               const struct dig_soil *const soil, const double false_alarm,
+                               const size_t draws, const uint64_t seed,
+                               struct dig_search *const search)
+{
+    return run(batch, soil, false_alarm, draws, seed, false, search);
+}
+
+enum dig_status dig_search_whether(struct dig_whitened_digs *const batch,
+                                   const struct dig_soil *const soil, const double false_alarm,
+                                   const size_t draws, const uint64_t seed,
+                                   struct dig_search *const search)
+{
+    return run(batch, soil, false_alarm, draws, seed, true, search);
+}

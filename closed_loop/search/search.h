@@ -1,0 +1,59 @@
+// Whether something is missing, and what: all hypotheses against each other on one batch.
+//
+// Whether: the plain hypothesis' misfit, and the most that any one effect takes off it, each
+// against its distribution by simulation (closed_loop/search/null_simulation.h); the smaller chance
+// of the two, doubled. Which: - BIC / 2 of each effect beside the plain hypothesis, of pairs when a
+// second effect is significant beside the first, of a gravel outside the grid, and of a residual
+// without a name.
+
+#ifndef DIG_CLOSED_LOOP_SEARCH_SEARCH_H
+#define DIG_CLOSED_LOOP_SEARCH_SEARCH_H
+
+#include "closed_loop/model/candidate.h"
+#include "closed_loop/search/null_simulation.h"
+#include "closed_loop/search/rock.h"
+#include "closed_loop/search/unlisted.h"
+
+struct dig_search {
+    bool              significant;
+    double            p_complete;
+    double            spread;   // of the digs about their means over what the table leads to expect
+    bool              outside;  // explained by a gravel beyond the grid
+    bool              unlisted; // by nothing that has a name
+    struct dig_fitted plain, beyond, chosen; // beyond: gravel outside the grid; chosen: in the end
+    double            p_fit;                 // of chosen
+    double            confirmed;             // dig_cross_validation_gain() of chosen, 0: not asked
+    struct dig_unlisted without_name;
+    double              unnamed; // share that its probability keeps: 1 until it is weighed
+    bool                is_rock; // unlisted, but for a rock where the table has none
+    struct dig_rock     rock;
+
+    size_t            rivals; // single effects, as they competed
+    struct dig_fitted rival[DIG_RIVALS_MAX];
+    double            log_evidence[DIG_RIVALS_MAX];
+    double            rival_fit[DIG_RIVALS_MAX]; // p
+    double            plain_fit;                 // p of plain
+    double            inclusion[DIG_RIVALS_MAX];
+    double            probability[DIG_HYPOTHESIS_EFFECTS]; // of chosen's effects
+
+    // What the digs cannot tell from chosen's effects, each set with the chosen one first.
+    size_t                   sets;
+    struct dig_candidate_set set[DIG_TRACE_SETS_MAX];
+};
+
+/// Searches. The batch's amplitudes grow by spread when the campaign's digs scatter more than the
+/// table's. Some seconds. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_search_run(struct dig_whitened_digs *batch,
+                                              const struct dig_soil *soil, double false_alarm,
+                                              size_t draws, uint64_t seed,
+                                              struct dig_search *search);
+
+/// The same where it matters only whether something is missing. Where it surely is, what it is is
+/// not looked for, a tenth of the work: of *search only significant, spread and plain are as
+/// dig_search_run() has them then, and of p_complete that it is no larger.
+DIG_MUST_CHECK enum dig_status dig_search_whether(struct dig_whitened_digs *batch,
+                                                  const struct dig_soil *soil, double false_alarm,
+                                                  size_t draws, uint64_t seed,
+                                                  struct dig_search *search);
+
+#endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_H

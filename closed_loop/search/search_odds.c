@@ -1,0 +1,86 @@
+// What is said about the answer: a gravel outside the grid, what cannot be told apart, odds.
+
+#include "closed_loop/search/search_work.h"
+
+#include <math.h>
+
+// Evidence is tempered: covariance and templates are known from a few packings only.
+static const double temper = 0.5;
+
+// A gravel that the grid does not hold explains the digs at least as well as what was chosen.
+bool dig_search_is_outside(const struct dig_search_work *const c)
+{
+    const struct dig_fitted *const chosen = &c->s->chosen;
+    const double p = dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->beyond));
+    const double by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    const double by_effect = c->s->unlisted
+                                 ? dig_search_best_evidence(c->s)
+                                 : dig_search_evidence(c, chosen, chosen->hypothesis.effects);
+    return by_gravel > 0.0 && by_gravel >= by_effect &&
+           (p >= DIG_SEARCH_LEAST_FIT ||
+            dig_search_share(c, &c->s->beyond) >= DIG_SEARCH_LEAST_SHARE);
+}
+
+static bool is_near_chosen(const struct dig_search_work *const c, const size_t rival)
+{
+    const double evidence = dig_search_evidence(c, &c->s->chosen, 1);
+    return c->s->log_evidence[rival] > fmax(evidence - DIG_SEARCH_TOLD_APART, 0.0) &&
+           !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
+}
+
+// Where evidence is not decisive: fits at least half as likely, and has less evidence only for the
+// noise that few beds of it bring along.
+static bool is_as_likely(const struct dig_search_work *const c, const size_t rival)
+{
+    const double fit = dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->chosen));
+    return dig_search_evidence(c, &c->s->chosen, 1) < 2.0 * DIG_SEARCH_TOLD_APART &&
+           c->s->plain_fit < DIG_SEARCH_LEAST_FIT &&
+           c->s->rival_fit[rival] >= fmax(0.5 * fit, DIG_SEARCH_LEAST_FIT) &&
+           !is_near_chosen(c, rival) &&
+           !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
+}
+
+// Single effects that the digs cannot tell from the one chosen, in the order of their evidence.
+void dig_search_find_set(struct dig_search_work *const c)
+{
+    struct dig_candidate_set *const set = &c->s->set[0];
+    set->effects                        = 0;
+    set->effect[set->effects++]         = c->s->chosen.hypothesis.effect[0];
+    bool taken[DIG_RIVALS_MAX]          = { false };
+    for (size_t turn = 0; turn < 2; turn++) {
+        size_t next = c->s->rivals;
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            if ((is_near_chosen(c, i) || is_as_likely(c, i)) && !taken[i] &&
+                (next == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[next])) {
+                next = i;
+            }
+        }
+        if (next < c->s->rivals) {
+            taken[next]                 = true;
+            set->effect[set->effects++] = c->single[next].effect[0];
+        }
+    }
+    c->s->sets = set->effects > 1 ? 1 : 0;
+}
+
+// The weight of each answer among all that were tried: Bayes, tempered.
+void dig_search_set_probabilities(struct dig_search_work *const c)
+{
+    const struct dig_fitted *const chosen = &c->s->chosen;
+    const double evidence  = dig_search_evidence(c, chosen, chosen->hypothesis.effects);
+    const bool   single    = chosen->hypothesis.effects == 1;
+    const double by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    for (size_t e = 0; e < chosen->hypothesis.effects; e++) {
+        double with    = exp(0.0);
+        double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            // What fits as well may be what is there, whatever its noise costs.
+            const double ahead  = c->s->log_evidence[i] - evidence;
+            const double weight = exp(temper * (single && is_as_likely(c, i) ? 0.0 : ahead));
+            const bool   same   = c->single[i].effect[0] == chosen->hypothesis.effect[e];
+            with += same && !single ? weight : 0.0;
+            without += same ? 0.0 : weight;
+        }
+        c->s->probability[e] = with / (with + without);
+    }
+}

@@ -1,0 +1,238 @@
+// Which effect, or which two: the best single effect, pairs beside it, and whether to believe them.
+
+#include "closed_loop/search/cross_validation.h"
+#include "closed_loop/search/drift.h"
+#include "closed_loop/search/search_work.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
+
+// An effect that misfits more than digs of its own would may leave at most so many times what they
+// would; where the plain hypothesis leaves so many times what is expected, its curves must explain
+// this share of it, see is_matched(), and those of a rock elsewhere half.
+static const double most_left = 2.5;
+static const double much_left = 4.0;
+static const double matched   = 0.65;
+static const double half      = 0.5;
+
+// Of a normal distribution, exceeded either way once in a hundred.
+static const double most_bent = 2.576;
+
+// Below this chance of its own misfit the plain hypothesis is refuted by itself.
+static const double refuted = 0.001;
+
+// The chosen hypothesis with each other effect beside it.
+static size_t list_additions(const struct dig_search_work *const c,
+                             const struct dig_hypothesis *const  base,
+                             struct dig_hypothesis               added[DIG_RIVALS_MAX])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        if (!dig_search_holds(base, c->single[i].effect[0])) {
+            added[n]                            = *base;
+            added[n].effect[added[n].effects++] = c->single[i].effect[0];
+            n++;
+        }
+    }
+    return n;
+}
+
+// The best pair made with one of the best single effects. False when none is better than single.
+static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const pair)
+{
+    bool   tried[DIG_RIVALS_MAX] = { false };
+    bool   any                   = false;
+    double best                  = INFINITY;
+    for (size_t p = 0; p < PARTNERS && p < c->s->rivals; p++) {
+        size_t first = c->s->rivals;
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            if (!tried[i] &&
+                (first == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[first])) {
+                first = i;
+            }
+        }
+        tried[first] = true;
+        struct dig_hypothesis added[DIG_RIVALS_MAX];
+        struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
+        struct dig_statistic  statistic;
+        const size_t          n = list_additions(c, &c->single[first], added);
+        dig_null_simulation_fit(c->batch, c->soil, &c->single[first], n, added,
+                                c->s->rival[first].number, DIG_FIT_ONCE, fitted, &statistic);
+        if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
+            best  = fitted[1 + statistic.best].misfit;
+            *pair = fitted[1 + statistic.best];
+            any   = true;
+        }
+    }
+    return any;
+}
+
+// What digs of the chosen hypothesis would show; whether a second effect is significant beside it,
+// if that is asked (more not NULL): most of the work.
+static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const more)
+{
+    struct dig_hypothesis      added[DIG_RIVALS_MAX];
+    struct dig_fitted          fitted[DIG_RIVALS_MAX + 1];
+    struct dig_statistic       statistic;
+    struct dig_null_simulation null;
+    const bool   room = more != NULL && c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
+    const size_t n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
+    // Digs that differ cost as many times more as there are of them.
+    const size_t draws =
+        dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
+    dig_null_simulation_fit(c->batch, c->soil, &c->s->chosen.hypothesis, n, added,
+                            c->s->chosen.number, DIG_FIT_BARE, fitted, &statistic);
+    const enum dig_status status = dig_null_simulation_draw(c->batch, c->soil, &c->s->chosen, n,
+                                                            added, draws, &c->seed, &null);
+    if (status == DIG_OK) {
+        c->s->p_fit = dig_null_simulation_p(&null, 0, statistic.misfit);
+        c->left     = statistic.misfit;
+        c->expected = null.mean[0];
+        if (more != NULL) {
+            *more = n > 0 && dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
+        }
+    }
+    return status;
+}
+
+// Where much is left of the plain hypothesis, the effect's own curves must explain it: not only the
+// noise that an effect of this size, known from few beds, brings along.
+static bool is_matched(const struct dig_search_work *const c)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
+    const double after =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, c->s->plain.noise);
+    return before < much_left * expected || before - after >= matched * (before - expected);
+}
+
+static bool is_believable(const struct dig_search_work *const c)
+{
+    return is_matched(c) && (c->s->p_fit >= DIG_SEARCH_LEAST_FIT ||
+                             (dig_search_share(c, &c->s->chosen) >= DIG_SEARCH_LEAST_SHARE &&
+                              c->left <= most_left * c->expected));
+}
+
+// A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
+// campaigns a drift that is one comes out as bent.
+static bool drifts_otherwise(struct dig_search_work *const c)
+{
+    const bool does = fabs(dig_drift_bend(c->batch, c->soil, &c->s->chosen)) > most_bent;
+    if (does) {
+        (void)snprintf(c->s->without_name.depends_on, sizeof c->s->without_name.depends_on,
+                       "the order of the digs");
+    }
+    return does;
+}
+
+// Beside a plain hypothesis that could be true an effect must be decisive. Where it cannot, an
+// effect need only be the likelier.
+static bool is_decisive(const struct dig_search_work *const c, const double evidence)
+{
+    return evidence >= DIG_SEARCH_TOLD_APART || (evidence > 0.0 && c->s->plain_fit < refuted);
+}
+
+// The best single effect again, from where a pair that holds it has led: a pair must not lead for
+// having been fitted better.
+static void fit_again(struct dig_search_work *const c, const size_t best,
+                      const struct dig_fitted *const pair)
+{
+    double start[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(start, pair->number, sizeof start);
+    for (size_t e = 0; e < pair->hypothesis.effects; e++) {
+        if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
+            struct dig_fitted again;
+            start[DIG_AXES] = pair->number[DIG_AXES + e];
+            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_ONCE, &again);
+            if (again.misfit < c->s->rival[best].misfit) {
+                c->s->rival[best]        = again;
+                c->s->log_evidence[best] = dig_search_evidence(c, &again, 1);
+            }
+        }
+    }
+}
+
+// The pair, where it leads the best single effect and predicts digs left out better than that;
+// where no dig can be left out for want of more, a second effect is not confirmed and not named.
+static enum dig_status choose_pair(struct dig_search_work *const c, const size_t best,
+                                   const struct dig_fitted *const pair)
+{
+    double gain  = 0.0;
+    c->s->chosen = c->s->rival[best];
+    if (dig_search_evidence(c, pair, 2) <= c->s->log_evidence[best] + DIG_SEARCH_TOLD_APART) {
+        return DIG_OK;
+    }
+    const enum dig_status status =
+        dig_cross_validation_gain(c->batch, c->soil, &c->s->rival[best], pair, &gain);
+    c->s->chosen = gain > 0.0 ? *pair : c->s->rival[best];
+    return status;
+}
+
+static void give_up(struct dig_search_work *const c)
+{
+    c->s->unlisted = true;
+    c->s->chosen   = c->s->plain;
+}
+
+// What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
+// explain half of what is left; another depth gives it another shape.
+static enum dig_status look_for_rock(struct dig_search_work *const c)
+{
+    struct dig_rock *const rock   = &c->s->rock;
+    const enum dig_status  status = dig_rock_fit(c->batch, c->soil, &c->s->plain, rock);
+    if (status != DIG_OK || !rock->known) {
+        return status;
+    }
+    const double before =
+        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
+    rock->log_evidence = dig_search_evidence(c, &rock->plain, rock->numbers);
+    rock->p_fit        = dig_null_simulation_p(&c->plain_null, 0, rock->plain.squares);
+    const double lead =
+        rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
+    c->s->is_rock = lead >= DIG_SEARCH_TOLD_APART &&
+                    before - rock->squares >= half * (before - c->plain_null.mean[0]);
+    if (c->s->is_rock) {
+        c->s->chosen = rock->plain;
+    }
+    return status;
+}
+
+enum dig_status dig_search_which(struct dig_search_work *const c)
+{
+    enum dig_status status =
+        dig_unlisted_find(c->batch, c->soil, &c->s->plain, &c->s->without_name);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (c->s->rivals == 0) {
+        give_up(c);
+        return DIG_OK;
+    }
+    const size_t best = dig_search_best_rival(c->s);
+    c->s->chosen      = c->s->rival[best];
+    bool more         = false;
+    status            = weigh_chosen(c, &more);
+    struct dig_fitted pair;
+    if (status == DIG_OK && more && find_pair(c, &pair)) {
+        fit_again(c, best, &pair);
+        status = choose_pair(c, best, &pair);
+        if (status == DIG_OK) {
+            status = weigh_chosen(c, NULL);
+        }
+    }
+    const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
+    if (status == DIG_OK) {
+        status = dig_cross_validation_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen,
+                                           &c->s->confirmed);
+    }
+    if (status == DIG_OK && (!is_decisive(c, evidence) || c->s->confirmed < 0.0 ||
+                             !is_believable(c) || drifts_otherwise(c))) {
+        give_up(c);
+        status = look_for_rock(c);
+    }
+    return status;
+}

@@ -1,0 +1,70 @@
+#include "closed_loop/search/search_work.h"
+
+#include <math.h>
+
+static double penalty(const struct dig_search_work *const c, const size_t numbers)
+{
+    double observations = 0.0;
+    for (size_t g = 0; g < c->batch->groups; g++) {
+        observations += (double)c->batch->group[g].features;
+    }
+    return 0.5 * (double)numbers * log(observations);
+}
+
+// Of a fit with more numbers than the plain hypothesis has.
+double dig_search_evidence(const struct dig_search_work *const c,
+                           const struct dig_fitted *const fitted, const size_t numbers)
+{
+    return 0.5 * (c->s->plain.misfit - fitted->misfit) - penalty(c, numbers);
+}
+
+static double about_of(const struct dig_whitened_digs *const batch)
+{
+    double about = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        about += batch->group[g].about;
+    }
+    return about;
+}
+
+// What a fit leaves of the digs' means.
+double dig_search_left(const struct dig_search_work *const c, const struct dig_fitted *const fitted)
+{
+    return dig_hypothesis_differs(&fitted->hypothesis)
+               ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted->noise)
+               : fitted->squares - about_of(c->batch);
+}
+
+// Share of the plain hypothesis' excess misfit that a fit takes away.
+double dig_search_share(const struct dig_search_work *const c,
+                        const struct dig_fitted *const      fitted)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before   = dig_search_left(c, &c->s->plain) - expected;
+    const double after    = dig_search_left(c, fitted) - expected;
+    return before > 0.0 ? 1.0 - after / before : 1.0;
+}
+
+bool dig_search_holds(const struct dig_hypothesis *const hypothesis,
+                      const enum dig_effect_id           effect)
+{
+    bool found = false;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        found = found || hypothesis->effect[e] == effect;
+    }
+    return found;
+}
+
+size_t dig_search_best_rival(const struct dig_search *const s)
+{
+    size_t best = 0;
+    for (size_t i = 1; i < s->rivals; i++) {
+        best = s->log_evidence[i] > s->log_evidence[best] ? i : best;
+    }
+    return best;
+}
+
+double dig_search_best_evidence(const struct dig_search *const s)
+{
+    return s->rivals > 0 ? fmax(s->log_evidence[dig_search_best_rival(s)], 0.0) : 0.0;
+}

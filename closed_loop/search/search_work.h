@@ -1,0 +1,59 @@
+// What the rooms of a search work on together. Internal to search.c, search_which.c, search_odds.c.
+
+#ifndef DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
+#define DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
+
+#include "closed_loop/search/search.h"
+
+/// Log evidence within which two answers are not told apart: an effect from another, from none, or
+/// from two.
+#define DIG_SEARCH_TOLD_APART 6.0
+
+/// An effect is believed to be the whole truth when digs of its own would misfit as much in one
+/// campaign of a hundred, or when it takes away this share of what the plain hypothesis leaves.
+#define DIG_SEARCH_LEAST_FIT   0.01
+#define DIG_SEARCH_LEAST_SHARE 0.75
+
+struct dig_search_work {
+    struct dig_whitened_digs  *batch;
+    const struct dig_soil     *soil;
+    double                     false_alarm;
+    size_t                     draws;
+    bool                       whether_only; // what it is, is not asked
+    uint64_t                   seed;
+    struct dig_hypothesis      single[DIG_RIVALS_MAX];
+    struct dig_null_simulation plain_null;
+    double                     left, expected; // misfit of chosen, and of digs that it made
+    struct dig_search         *s;
+};
+
+/// Log evidence of a fit with so many numbers more than the plain hypothesis, beside that.
+double dig_search_evidence(const struct dig_search_work *c, const struct dig_fitted *fitted,
+                           size_t numbers);
+
+/// What a fit leaves of the digs' means.
+double dig_search_left(const struct dig_search_work *c, const struct dig_fitted *fitted);
+
+/// Share of the plain hypothesis' excess misfit that a fit takes away.
+double dig_search_share(const struct dig_search_work *c, const struct dig_fitted *fitted);
+
+bool dig_search_holds(const struct dig_hypothesis *hypothesis, enum dig_effect_id effect);
+
+/// The single effect of the most evidence; that evidence, or 0 when none has any.
+size_t dig_search_best_rival(const struct dig_search *s);
+double dig_search_best_evidence(const struct dig_search *s);
+
+/// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.
+DIG_MUST_CHECK enum dig_status dig_search_which(struct dig_search_work *c);
+
+/// True when a gravel that the grid does not hold explains the digs at least as well as what was
+/// chosen.
+bool dig_search_is_outside(const struct dig_search_work *c);
+
+/// Fills s->set with the single effects that the digs cannot tell from the one chosen.
+void dig_search_find_set(struct dig_search_work *c);
+
+/// Fills s->probability: the weight of each answer among all that were tried.
+void dig_search_set_probabilities(struct dig_search_work *c);
+
+#endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H

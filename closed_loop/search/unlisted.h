@@ -1,0 +1,33 @@
+// What is missing where no effect of the list explains it: what the residual depends on, and what
+// to add all the same.
+//
+// The residual of each channel is regressed on functions of the bucket's state
+// (closed_loop/search/unlisted_regression.h): on those of the trajectory it decides, and beside
+// them on acceleration, pass and pitch, dig by dig, it tells what the residual depends on. The
+// correction itself is the mean residual of each trajectory, drawn towards none by what is known of
+// its noise.
+
+#ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_H
+#define DIG_CLOSED_LOOP_SEARCH_UNLISTED_H
+
+#include "closed_loop/model/hypothesis.h"
+#include "core/model.h"
+
+struct dig_unlisted {
+    double log_evidence;    // - BIC / 2 less that of the plain hypothesis
+    size_t functions;       // of the trajectory, chosen
+    char   depends_on[128]; // for people; "": nothing that was tried
+};
+
+/// Regresses what a fitted plain hypothesis leaves. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_unlisted_find(const struct dig_whitened_digs *batch,
+                                                 const struct dig_soil          *soil,
+                                                 const struct dig_fitted        *plain,
+                                                 struct dig_unlisted            *unlisted);
+
+/// What to add to the fitted curves, as shares of the rms of the fitted plain curve of each
+/// channel. Trajectories without digs in the batch get none. *share is the caller's.
+void dig_unlisted_correct(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+                          const struct dig_fitted *fitted, struct dig_model_unlisted *share);
+
+#endif // DIG_CLOSED_LOOP_SEARCH_UNLISTED_H

@@ -1,0 +1,299 @@
+#include "closed_loop/search/unlisted_regression.h"
+
+#include "closed_loop/numeric/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    COMMON      = DIG_BASIS_ACCELERATION, // functions that the trajectory alone tells
+    COLUMNS_MAX = DIG_AXES + DIG_UNLISTED_MOST * DIG_FORCE_CHANNELS,
+    ROWS_MAX    = (DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES,
+};
+
+// Rows are the whitened features of the groups' means and, where digs differ in what the functions
+// tell, of each dig less its group's mean.
+struct regression {
+    size_t rows;
+    double y[ROWS_MAX];
+    double gravel[DIG_AXES][ROWS_MAX];
+    double function[DIG_BASES][DIG_FORCE_CHANNELS][ROWS_MAX];
+};
+
+// Functions by bin, of one dig.
+struct states {
+    double value[DIG_BASES][DIG_FEATURE_BINS];
+};
+
+static double weight_of(const struct dig_whitened_digs *const batch,
+                        const struct dig_fitted *const fitted, const size_t g)
+{
+    return 1.0 / sqrt(1.0 / (double)batch->group[g].digs + fitted->noise[g]);
+}
+
+static void put_rows(const struct dig_whitened_digs_group *const group,
+                     const double feature[DIG_FEATURES], const double weight, double row[])
+{
+    double y[DIG_FEATURES];
+    dig_whitened_digs_whiten(group, feature, y);
+    for (size_t k = 0; k < group->features; k++) {
+        row[k] = weight * y[k];
+    }
+}
+
+static void fill_gravel(const struct dig_whitened_digs *const batch,
+                        const struct dig_soil *const soil, const struct dig_fitted *const plain,
+                        const size_t g, const double weight, const double model[DIG_FEATURES],
+                        struct regression *const r)
+{
+    const double step = 0.02;
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        double moved[DIG_HYPOTHESIS_NUMBERS];
+        double feature[DIG_FEATURES];
+        double noise;
+        memcpy(moved, plain->number, sizeof moved);
+        moved[a] += soil->surface->set->axis_count[a] > 1 ? step : 0.0;
+        dig_hypothesis_features(soil, &plain->hypothesis, moved, dig_whitened_digs_first(batch, g),
+                                feature, &noise);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            feature[f] = (feature[f] - model[f]) / step;
+        }
+        put_rows(&batch->group[g], feature, weight, r->gravel[a] + r->rows);
+    }
+}
+
+static void fill_functions(const struct dig_whitened_digs_group *const group,
+                           const struct states *const states, const double weight,
+                           const double amplitude[DIG_FORCE_CHANNELS], struct regression *const r)
+{
+    for (size_t f = 0; f < DIG_BASES; f++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            double feature[DIG_FEATURES] = { 0.0 };
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                feature[c * DIG_FEATURE_BINS + b] = amplitude[c] * states->value[f][b];
+            }
+            put_rows(group, feature, weight, r->function[f][c] + r->rows);
+        }
+    }
+}
+
+static void fill_mean(const struct dig_whitened_digs *const batch,
+                      const struct dig_soil *const soil, const struct dig_fitted *const plain,
+                      const size_t g, const struct states *const mean,
+                      double amplitude[DIG_FORCE_CHANNELS], struct regression *const r)
+{
+    const struct dig_whitened_digs_group *const group  = &batch->group[g];
+    const double                                weight = weight_of(batch, plain, g);
+    double                                      model[DIG_FEATURES];
+    double                                      noise;
+    dig_hypothesis_features(soil, &plain->hypothesis, plain->number,
+                            dig_whitened_digs_first(batch, g), model, &noise);
+    put_rows(group, model, weight, r->y + r->rows);
+    for (size_t k = 0; k < group->features; k++) {
+        r->y[r->rows + k] = weight * group->mean[k] - r->y[r->rows + k];
+    }
+    dig_features_amplitude(model, NULL, amplitude);
+    fill_gravel(batch, soil, plain, g, weight, model, r);
+    fill_functions(group, mean, weight, amplitude, r);
+    r->rows += group->features;
+}
+
+// Squares that the gravel and the chosen functions take off, and how many numbers that took.
+static double explain(const struct regression *const r, const size_t functions,
+                      const enum dig_basis chosen[], size_t *const columns)
+{
+    const double *column[COLUMNS_MAX];
+    size_t        n = 0;
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        column[n++] = r->gravel[a];
+    }
+    for (size_t i = 0; i < functions; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            column[n++] = r->function[chosen[i]][c];
+        }
+    }
+    double normal[COLUMNS_MAX * COLUMNS_MAX];
+    double right[COLUMNS_MAX];
+    *columns = 0;
+    for (size_t i = 0; i < n; i++) {
+        right[i] = 0.0;
+        for (size_t k = 0; k < r->rows; k++) {
+            right[i] += column[i][k] * r->y[k];
+        }
+        for (size_t j = 0; j <= i; j++) {
+            normal[i * n + j] = 0.0;
+            for (size_t k = 0; k < r->rows; k++) {
+                normal[i * n + j] += column[i][k] * column[j][k];
+            }
+        }
+        *columns += normal[i * n + i] > 1e-9 ? 1 : 0;
+        normal[i * n + i] = normal[i * n + i] * (1.0 + 1e-9) + 1e-9;
+    }
+    if (dig_cholesky(n, normal) != DIG_OK) {
+        return 0.0;
+    }
+    dig_lower_solve(n, normal, right);
+    double taken = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        taken += right[i] * right[i];
+    }
+    return taken;
+}
+
+// The best functions of so many, one after the other.
+static struct dig_regressed choose(const struct regression *const r, const size_t candidates,
+                                   const enum dig_basis candidate[])
+{
+    const double         price                         = log((double)candidates / COMMON);
+    struct dig_regressed found                         = { .log_evidence = 0.0 };
+    enum dig_basis       chosen[DIG_UNLISTED_MOST + 1] = { DIG_BASIS_AMPLITUDE };
+    size_t               of_gravel;
+    const double         alone = explain(r, 0, chosen, &of_gravel);
+    for (bool better = true; better && found.functions < DIG_UNLISTED_MOST;) {
+        better              = false;
+        enum dig_basis best = DIG_BASIS_AMPLITUDE;
+        for (size_t i = 0; i < candidates; i++) {
+            size_t columns;
+            chosen[found.functions] = candidate[i];
+            const double taken      = explain(r, found.functions + 1, chosen, &columns);
+            const double evidence   = 0.5 * (taken - alone) -
+                                    0.5 * (double)(columns - of_gravel) * log((double)r->rows) -
+                                    (double)(found.functions + 1) * price;
+            if (evidence > found.log_evidence) {
+                found.log_evidence = evidence;
+                best               = candidate[i];
+                better             = true;
+            }
+        }
+        if (better) {
+            chosen[found.functions]           = best;
+            found.function[found.functions++] = best;
+        }
+    }
+    return found;
+}
+
+enum dig_status dig_regress_means(const struct dig_whitened_digs *const batch,
+                                  const struct dig_soil *const          soil,
+                                  const struct dig_fitted *const        plain,
+                                  struct dig_regressed *const           regressed)
+{
+    assert(batch != NULL && soil != NULL && plain != NULL && regressed != NULL);
+    struct regression *const r = malloc(sizeof *r);
+    if (r == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_basis common[COMMON];
+    r->rows = 0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_measured nominal = { .trajectory = (int)batch->group[g].trajectory,
+                                              .pass       = 1,
+                                              .pace       = 1.0 };
+        struct states             states;
+        double                    amplitude[DIG_FORCE_CHANNELS];
+        dig_basis_along(batch->surface->set, &nominal, states.value);
+        fill_mean(batch, soil, plain, g, &states, amplitude, r);
+    }
+    for (int b = 0; b < COMMON; b++) {
+        common[b] = (enum dig_basis)b;
+    }
+    *regressed = choose(r, COMMON, common);
+    free(r);
+    return DIG_OK;
+}
+
+// The functions along every dig of a batch, and their means over each group.
+struct told {
+    struct states dig[DIG_MEASURED_MAX];
+    struct states mean[DIG_TRAJECTORY_MAX];
+};
+
+static void tell(const struct dig_whitened_digs *const batch, struct told *const told)
+{
+    const bool paced = dig_basis_paces_differ(batch);
+    memset(told->mean, 0, sizeof told->mean);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        const size_t                     g   = batch->dig[i].group;
+        const struct dig_measured        dug = { .trajectory  = dig->trajectory,
+                                                 .pass        = dig->pass,
+                                                 .pace        = paced ? dig->pace : 1.0,
+                                                 .pitch_known = dig->pitch_known,
+                                                 .pitch_rad   = dig->pitch_rad };
+        dig_basis_along(batch->surface->set, &dug, told->dig[i].value);
+        for (size_t f = 0; f < DIG_BASES; f++) {
+            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+                told->mean[g].value[f][b] +=
+                    told->dig[i].value[f][b] / (double)batch->group[g].digs;
+            }
+        }
+    }
+}
+
+// What dig i has that its group's mean has not; false where that is nothing of the candidates.
+static bool differ(const struct dig_whitened_digs *const batch, const struct told *const told,
+                   const size_t i, const size_t candidates, const enum dig_basis candidate[],
+                   struct states *const less)
+{
+    bool any = false;
+    memset(less, 0, sizeof *less);
+    for (size_t n = 0; n < candidates; n++) {
+        const enum dig_basis f = candidate[n];
+        for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
+            less->value[f][b] =
+                told->dig[i].value[f][b] - told->mean[batch->dig[i].group].value[f][b];
+            any = any || fabs(less->value[f][b]) > 1e-6;
+        }
+    }
+    return any;
+}
+
+static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i,
+                     const struct states *const less, const double amplitude[DIG_FORCE_CHANNELS],
+                     struct regression *const r)
+{
+    const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
+    for (size_t k = 0; k < group->features; k++) {
+        r->y[r->rows + k] = batch->dig[i].y[k] - group->mean[k];
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            r->gravel[a][r->rows + k] = 0.0; // one gravel for all digs
+        }
+    }
+    fill_functions(group, less, 1.0, amplitude, r);
+    r->rows += group->features;
+}
+
+enum dig_status dig_regress_digs(const struct dig_whitened_digs *const batch,
+                                 const struct dig_soil *const          soil,
+                                 const struct dig_fitted *const        plain,
+                                 struct dig_regressed *const           regressed)
+{
+    assert(batch != NULL && soil != NULL && plain != NULL && regressed != NULL);
+    struct regression *const r    = malloc(sizeof *r);
+    struct told *const       told = malloc(sizeof *told);
+    if (r == NULL || told == NULL) {
+        free(r);
+        free(told);
+        return DIG_ENOMEM;
+    }
+    enum dig_basis candidate[DIG_BASES];
+    const size_t   candidates = dig_basis_told(batch, candidate);
+    double         amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
+    tell(batch, told);
+    r->rows = 0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        fill_mean(batch, soil, plain, g, &told->mean[g], amplitude[g], r);
+    }
+    for (size_t i = 0; i < batch->digs; i++) {
+        struct states less;
+        if (differ(batch, told, i, candidates, candidate, &less)) {
+            fill_dig(batch, i, &less, amplitude[batch->dig[i].group], r);
+        }
+    }
+    *regressed = choose(r, candidates, candidate);
+    free(r);
+    free(told);
+    return DIG_OK;
+}

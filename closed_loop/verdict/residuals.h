@@ -1,0 +1,47 @@
+// What is left of a campaign's digs, for people and programs: dig by dig, against the state of the
+// dig, and whether it is white. Nothing is decided by it.
+
+#ifndef DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
+#define DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
+
+#include "closed_loop/accuracy/trend.h"
+#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/recordings/regressors.h"
+#include "closed_loop/search/portmanteau.h"
+#include "closed_loop/verdict/residual.h"
+#include "closed_loop/verdict/trace_parts.h"
+
+struct dig_residuals_dig {
+    char         name[64];
+    char         trajectory[DIG_NAME_SIZE];
+    enum dig_use use;
+    unsigned     pass;
+    // In free air, rms over the rms expected, machine as its file says; NaN: none, or a holdout.
+    double              air_sigmas;
+    struct dig_residual before[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
+    struct dig_residual after[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
+};
+
+struct dig_residuals {
+    size_t                   digs;
+    struct dig_residuals_dig dig[DIG_MEASURED_MAX];
+    // Before, of the digs fitted to that measure the channel, over the rms of what was predicted
+    // (of forces: of their resultant). known: any dig does.
+    bool             known[DIG_FORCE_CHANNELS];
+    struct dig_trend trend[DIG_FORCE_CHANNELS][DIG_REGRESSORS];
+    // Of the digs fitted to, machine effects taken off: by the gravel alone, and with what was
+    // named of the soil.
+    struct dig_whiteness without, with;
+};
+
+/// "moment_Nm", "fx_N", "fz_N".
+const char *dig_residual_channel_name(enum dig_channel channel);
+
+/// From what a trace has worked out; curves as in the trace. air: NULL where no machine measured.
+/// Some tens of milliseconds. DIG_ENOMEM. Writes on success only.
+DIG_MUST_CHECK enum dig_status dig_residuals_make(const struct dig_tracing         *t,
+                                                  const struct dig_machine_finding *air,
+                                                  const struct dig_trace_curves     curves[],
+                                                  struct dig_residuals             *residuals);
+
+#endif // DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H

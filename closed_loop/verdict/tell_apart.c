@@ -1,0 +1,303 @@
+#include "closed_loop/verdict/tell_apart.h"
+
+#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_motion.h"
+#include "closed_loop/machine/machine_side_private.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ENOUGH = 3, MORE_DIGS = 10 };
+
+// Below this no number of repeats is worth the name.
+static const double least_sigmas = 0.05;
+
+static double repeats_of(const double sigmas)
+{
+    return fmax(ceil(pow(ENOUGH / fmax(sigmas, least_sigmas), 2.0)), 1.0);
+}
+
+// Takes it where it tells more than what was found before.
+static void offer(struct dig_tell_apart *const tell, const bool in_air, const double sigmas,
+                  const char *const how, const char *const which, const char *const more)
+{
+    const bool better =
+        sigmas >= least_sigmas && (tell->how[0] == '\0' || repeats_of(sigmas) < tell->repeats ||
+                                   (tell->in_air == in_air && sigmas > tell->sigmas));
+    if (!better) {
+        return;
+    }
+    tell->in_air  = in_air;
+    tell->sigmas  = sigmas;
+    tell->repeats = repeats_of(sigmas);
+    (void)snprintf(tell->how, sizeof tell->how, "%s%s%s", how, which, more);
+}
+
+// What the next dig will be measured by: what those before were.
+static bool is_measured(const struct dig_tracing *const t, const size_t channel)
+{
+    bool any = false;
+    for (size_t i = 0; i < t->digs; i++) {
+        any = any || t->measured[i].measured[channel];
+    }
+    return any;
+}
+
+// Root mean square over the features that are measured, each over its scatter in one dig.
+static double in_scatters(const struct dig_tracing *const t, const size_t trajectory,
+                          const double difference[DIG_FEATURES],
+                          const double size[DIG_FORCE_CHANNELS])
+{
+    double sum   = 0.0;
+    double count = 0.0;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const size_t channel = f / DIG_FEATURE_BINS;
+        const double off     = difference[f] / size[channel];
+        if (is_measured(t, channel)) {
+            sum += off * off / t->scatter->covariance[trajectory][f][f];
+            count += 1.0;
+        }
+    }
+    return count > 0.0 ? sqrt(sum / count) : 0.0;
+}
+
+// How far apart two fitted hypotheses are in one dig.
+static double apart(const struct dig_tracing *const t, const struct dig_fitted *const a,
+                    const struct dig_fitted *const b, const struct dig_measured *const dig)
+{
+    double x[DIG_FEATURES];
+    double y[DIG_FEATURES];
+    double size[DIG_FORCE_CHANNELS];
+    double noise;
+    dig_hypothesis_features(t->soil, &a->hypothesis, a->number, dig, x, &noise);
+    dig_hypothesis_features(t->soil, &b->hypothesis, b->number, dig, y, &noise);
+    dig_features_amplitude(x, NULL, size);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        y[f] = x[f] - y[f];
+    }
+    return in_scatters(t, (size_t)dig->trajectory, y, size);
+}
+
+static const struct dig_fitted *rival_of(const struct dig_search *const s,
+                                         const enum dig_effect_id       effect)
+{
+    for (size_t i = 0; i < s->rivals; i++) {
+        if (s->rival[i].hypothesis.effect[0] == effect) {
+            return &s->rival[i];
+        }
+    }
+    return NULL;
+}
+
+// The plain dig comes first: what another way of digging does not change is told by it.
+static void tell_soil(const struct dig_tracing *const t, struct dig_tell_apart *const tell)
+{
+    static const struct {
+        const char *how;
+        unsigned    pass;
+        double      pace;
+        size_t      more;
+    } way[] = { { "", 1, 1.0, 0 },
+                { " at twice the pace", 1, 2.0, 0 },
+                { " where it was dug before", 2, 1.0, 0 },
+                { " after ten more digs", 1, 1.0, MORE_DIGS } };
+
+    const struct dig_fitted *const a = rival_of(t->search, tell->effect[0]);
+    const struct dig_fitted *const b = rival_of(t->search, tell->effect[1]);
+    for (size_t w = 0; a != NULL && b != NULL && w < sizeof way / sizeof way[0]; w++) {
+        for (size_t k = 0; k < t->set->trajectories; k++) {
+            const struct dig_measured dig = { .trajectory = (int)k,
+                                              .order      = t->digs + way[w].more,
+                                              .pass       = way[w].pass,
+                                              .pace       = way[w].pace };
+            if (t->surface->known[k] && dig_soil_knows(t->soil, tell->effect[0], k) &&
+                dig_soil_knows(t->soil, tell->effect[1], k)) {
+                offer(tell, false, apart(t, a, b, &dig), "a dig along ", t->set->trajectory[k].name,
+                      way[w].how);
+            }
+        }
+    }
+}
+
+// A candidate of the machine: what it corrects, and what that does to the recorded digs.
+struct of_machine {
+    bool                    known;
+    struct dig_model_effect effect;
+    struct dig_correction   correction;
+    double                  feature[DIG_MEASURED_MAX][DIG_FEATURES];
+};
+
+static enum dig_status work_out(const struct dig_tracing *const         t,
+                                const struct dig_machine_side *const    side,
+                                const struct dig_machine_finding *const air,
+                                const enum dig_effect_id id, struct dig_measured scratch[],
+                                struct of_machine *const made)
+{
+    memset(made, 0, sizeof *made);
+    for (size_t i = 0; i < air->candidates; i++) {
+        if (air->candidate[i].effect == id) {
+            made->known             = true;
+            made->effect.effect     = id;
+            made->effect.parameters = air->candidate[i].parameters;
+            memcpy(made->effect.parameter, air->candidate[i].parameter,
+                   sizeof made->effect.parameter);
+        }
+    }
+    double value[DIG_MODEL_PARAMETERS_MAX];
+    if (!made->known || dig_effect_values(&made->effect, value) != DIG_OK) {
+        made->known = false;
+        return DIG_OK;
+    }
+    dig_effect_of(id)->correct(value, &made->correction);
+    memcpy(scratch, t->measured, t->digs * sizeof *scratch);
+    const enum dig_status status = dig_machine_side_apply(side, 1, &made->effect, scratch);
+    for (size_t i = 0; i < t->digs && status == DIG_OK; i++) {
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])scratch[i].machine, made->feature[i]);
+    }
+    // One that leaves a dig untold is compared in free air alone.
+    return status == DIG_ENOMATCH ? DIG_OK : status;
+}
+
+// The motion in which two corrections differ most; beside: how else it is to be made.
+static enum dig_status offer_motion(const struct dig_machine_side *const side,
+                                    const struct dig_correction *const   a,
+                                    const struct dig_correction *const b, const char *const beside,
+                                    struct dig_tell_apart *const tell)
+{
+    struct dig_motion     motion;
+    double                sigmas = 0.0;
+    char                  how[64];
+    const enum dig_status status = dig_motion_best(&side->machine, a, b, &motion, &sigmas);
+    if (status == DIG_OK) {
+        (void)snprintf(how, sizeof how, " to and fro %s in free air%s, %.0f s",
+                       motion.fast ? "fast" : "slowly", beside, DIG_MOTION_s);
+        offer(tell, true, sigmas, "moving the ", dig_joint_name(motion.joint), how);
+    }
+    return status;
+}
+
+// What a bucket carries over from the dig before can be shaken out of it; nothing else can.
+static enum dig_status offer_clean_bucket(const struct dig_machine_side *const side,
+                                          const struct of_machine *const       a,
+                                          const struct of_machine *const       b,
+                                          struct dig_tell_apart *const         tell)
+{
+    static const struct dig_correction none = { .delay_s = 0.0 };
+
+    const bool of_a = tell->effect[0] == DIG_EFFECT_PAYLOAD;
+    const bool of_b = tell->effect[1] == DIG_EFFECT_PAYLOAD;
+    return of_a || of_b ? offer_motion(side, of_a ? &none : &a->correction,
+                                       of_b ? &none : &b->correction, ", the bucket clean", tell)
+                        : DIG_OK;
+}
+
+static enum dig_status tell_machine(const struct dig_tracing *const      t,
+                                    const struct dig_machine_side *const side,
+                                    const struct of_machine *const       a,
+                                    const struct of_machine *const       b,
+                                    struct dig_tell_apart *const         tell)
+{
+    if (!a->known || !b->known) {
+        return DIG_OK;
+    }
+    enum dig_status status = offer_motion(side, &a->correction, &b->correction, "", tell);
+    if (status == DIG_OK) {
+        status = offer_clean_bucket(side, a, b, tell);
+    }
+    for (size_t i = 0; i < t->digs && status == DIG_OK; i++) {
+        const size_t k = (size_t)t->measured[i].trajectory;
+        double       plain[DIG_FEATURES];
+        double       size[DIG_FORCE_CHANNELS];
+        double       difference[DIG_FEATURES];
+        if (t->measured[i].use == DIG_USE_HOLDOUT) {
+            continue;
+        }
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])t->measured[i].value, plain);
+        dig_features_amplitude(plain, NULL, size);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            difference[f] = a->feature[i][f] - b->feature[i][f];
+        }
+        offer(tell, false, in_scatters(t, k, difference, size), "a dig along ",
+              t->set->trajectory[k].name, "");
+    }
+    return status;
+}
+
+// Pairs in the order of the sets, those with what was chosen first.
+static void list_pairs(struct dig_trace *const trace)
+{
+    trace->tells = 0;
+    for (size_t s = 0; s < trace->sets; s++) {
+        const struct dig_candidate_set *const set = &trace->set[s];
+        for (size_t a = 0; a < set->effects; a++) {
+            for (size_t b = a + 1; b < set->effects && trace->tells < DIG_TRACE_TELLS_MAX; b++) {
+                trace->tell[trace->tells++] =
+                    (struct dig_tell_apart){ .effect = { set->effect[a], set->effect[b] } };
+            }
+        }
+    }
+}
+
+static enum dig_status tell_machines(const struct dig_tracing *const         t,
+                                     const struct dig_machine_side *const    side,
+                                     const struct dig_machine_finding *const air,
+                                     struct dig_trace *const                 trace)
+{
+    struct of_machine *const   made    = calloc(DIG_MACHINE_EFFECTS, sizeof *made);
+    struct dig_measured *const scratch = malloc((t->digs + 1) * sizeof *scratch);
+    enum dig_status            status  = made != NULL && scratch != NULL ? DIG_OK : DIG_ENOMEM;
+    bool                       done[DIG_MACHINE_EFFECTS] = { false };
+    for (size_t i = 0; i < trace->tells && status == DIG_OK; i++) {
+        struct dig_tell_apart *const tell = &trace->tell[i];
+        for (size_t e = 0; e < 2 && dig_effect_is_of_machine(tell->effect[0]); e++) {
+            const enum dig_effect_id id = tell->effect[e];
+            if (status == DIG_OK && !done[id]) {
+                status   = work_out(t, side, air, id, scratch, &made[id]);
+                done[id] = true;
+            }
+        }
+        if (status == DIG_OK && dig_effect_is_of_machine(tell->effect[0])) {
+            status = tell_machine(t, side, &made[tell->effect[0]], &made[tell->effect[1]], tell);
+        }
+    }
+    free(made);
+    free(scratch);
+    return status;
+}
+
+enum dig_status dig_tell_apart(const struct dig_tracing *const         t,
+                               const struct dig_machine_side *const    side,
+                               const struct dig_machine_finding *const air,
+                               struct dig_trace *const                 trace)
+{
+    assert(t != NULL && air != NULL && trace != NULL);
+    list_pairs(trace);
+    for (size_t i = 0; i < trace->tells; i++) {
+        if (!dig_effect_is_of_machine(trace->tell[i].effect[0])) {
+            tell_soil(t, &trace->tell[i]);
+        }
+    }
+    return side != NULL ? tell_machines(t, side, air, trace) : DIG_OK;
+}
+
+void dig_tell_apart_say(const struct dig_tell_apart *const tell, const size_t size, char text[])
+{
+    assert(tell != NULL && text != NULL && size > 0);
+    const char *const a = dig_effect_name(tell->effect[0]);
+    const char *const b = dig_effect_name(tell->effect[1]);
+    if (tell->how[0] == '\0') {
+        (void)snprintf(text, size, "%s and %s: nothing that was tried tells them apart", a, b);
+        return;
+    }
+    char times[24] = "one";
+    if (tell->repeats > 1.5) {
+        (void)snprintf(times, sizeof times, "%.0f of them", tell->repeats);
+    }
+    (void)snprintf(text, size, "%s and %s differ most by %s: %.2g %s; %s would tell them apart", a,
+                   b, tell->how, tell->sigmas,
+                   tell->in_air ? "sigmas of the sensors" : "scatters of one dig", times);
+}

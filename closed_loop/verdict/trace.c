@@ -1,0 +1,347 @@
+#include "closed_loop/verdict/trace.h"
+
+#include "closed_loop/accuracy/decision.h"
+#include "closed_loop/accuracy/effect_size.h"
+#include "closed_loop/accuracy/judge.h"
+#include "closed_loop/verdict/residuals.h"
+#include "closed_loop/verdict/tell_apart.h"
+#include "closed_loop/verdict/trace_parts.h"
+#include "closed_loop/verdict/trace_verdict.h"
+#include "closed_loop/verdict/trace_work.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A prediction is changed where this chance that the next dig comes out worse for it is not
+// exceeded: a change 1.7 times as large as what one dig scatters by in its direction. On the
+// split for development .25 makes the holdout worse in 4 of 204 campaigns of one effect, .2 in 2,
+// and .15 costs what the effect is worth: 5 of 77 more than 1.15 times from the oracle, not 2.
+static const double most_chance_of_worse = 0.2;
+
+struct dig_trace_settings dig_trace_settings_default(void)
+{
+    return (struct dig_trace_settings){ .false_alarm = 0.01, .seed = 1, .bootstraps = 200 };
+}
+
+void dig_trace_finish(struct dig_trace *const trace)
+{
+    if (trace != NULL) {
+        free(trace->unlisted);
+        free(trace->curves);
+        free(trace->residuals);
+        memset(trace, 0, sizeof *trace);
+    }
+}
+
+static void finish(struct dig_trace_work *const w)
+{
+    free(w->surface);
+    dig_scatter_destroy(w->scatter);
+    free(w->soil);
+    free(w->batch);
+    free(w->search);
+    free(w->air);
+}
+
+static enum dig_status out_of_memory(struct dig_error *const error)
+{
+    return dig_error_set(error, DIG_ENOMEM, "out of memory");
+}
+
+static enum dig_status prepare(const struct dig_curve_set *const set, const char *const table,
+                               const struct dig_effect_set *const effects,
+                               struct dig_trace_work *const w, struct dig_error *const error)
+{
+    w->surface = calloc(1, sizeof *w->surface);
+    w->batch   = calloc(1, sizeof *w->batch);
+    w->search  = calloc(1, sizeof *w->search);
+    w->air     = calloc(1, sizeof *w->air);
+    if (w->surface == NULL || w->batch == NULL || w->search == NULL || w->air == NULL) {
+        return out_of_memory(error);
+    }
+    if (dig_response_surface_fit(set, w->surface) != DIG_OK) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the table holds too few gravels to trace with, expected %d or more",
+                             DIG_RESPONSE_SURFACE_TERMS);
+    }
+    enum dig_status status = table != NULL
+                                 ? dig_scatter_measure(table, w->surface, &w->scatter, error)
+                                 : dig_scatter_pool(w->surface, 0, NULL, &w->scatter);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_soil_create(w->surface, effects, w->scatter, &w->soil);
+    return status == DIG_EINVAL
+               ? dig_error_set(error, status,
+                               "the table of effects is of another scene, expected "
+                               "that of the table")
+               : status;
+}
+
+static enum dig_status check_digs(const struct dig_curve_set *const set, const size_t digs,
+                                  const struct dig_measured    measured[],
+                                  struct dig_trace_work *const w, struct dig_error *const error)
+{
+    size_t fits = 0;
+    if (digs > DIG_MEASURED_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%zu digs, expected at most %d", digs,
+                             DIG_MEASURED_MAX);
+    }
+    for (size_t i = 0; i < digs; i++) {
+        const int t = measured[i].trajectory;
+        if (t < 0 || (size_t)t >= set->trajectories || !w->surface->known[t]) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: along a trajectory whose curves the table lacks",
+                                 measured[i].name);
+        }
+        w->holdout[i] = measured[i].use == DIG_USE_HOLDOUT;
+        w->fit[i]     = !w->holdout[i];
+        fits += w->fit[i] ? 1 : 0;
+    }
+    return fits >= 2 ? DIG_OK
+                     : dig_error_set(error, DIG_EINVAL,
+                                     "%zu identify and fit recordings, expected two or more: one "
+                                     "dig alone cannot tell a gravel from an effect",
+                                     fits);
+}
+
+static struct dig_gravel gravel_at(const struct dig_response_surface *const surface,
+                                   const double                             number[])
+{
+    return dig_response_surface_gravel(surface, number);
+}
+
+static void fill_decision(const struct dig_tracing *const t, const struct dig_machine_side *const m,
+                          const struct dig_machine_finding *const air,
+                          struct dig_trace *const                 trace)
+{
+    const struct dig_search *const s = t->search;
+    trace->false_alarm               = t->settings->false_alarm;
+    trace->no_air                    = air->no_air;
+    trace->significant               = air->significant || (s->significant && !s->outside);
+    trace->p_complete =
+        m != NULL ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;
+    dig_trace_fill_residuals(t, trace->residual);
+    trace->residual[DIG_PART_AIR] = m != NULL ? air->residual_air : (double)NAN;
+    for (size_t i = 0; i < air->candidates && trace->candidates < DIG_TRACE_CANDIDATES_MAX; i++) {
+        trace->candidate[trace->candidates++] = air->candidate[i];
+    }
+    trace->gravel_before = gravel_at(t->surface, t->before->number);
+    trace->low_before    = gravel_at(t->surface, t->before->low);
+    trace->high_before   = gravel_at(t->surface, t->before->high);
+    trace->gravel        = gravel_at(t->surface, s->chosen.number);
+    trace->low           = gravel_at(t->surface, s->chosen.low);
+    trace->high          = gravel_at(t->surface, s->chosen.high);
+}
+
+// A change is named, but not made, that is likely to make the next dig's error worse, or that has
+// made it worse already: forces may ask for what the moment does not.
+static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
+                                      const struct dig_trace_work *const w,
+                                      struct dig_trace *const            trace)
+{
+    trace->applied =
+        w->confirmed &&
+        dig_decision_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
+        dig_decision_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
+            most_chance_of_worse;
+    if (trace->applied) {
+        return;
+    }
+    for (size_t i = 0; i < t->digs; i++) {
+        struct dig_trace_curves *const c = &trace->curves[i];
+        memcpy(c->after, c->before, sizeof c->after);
+        memcpy(c->after_sd, c->before_sd, sizeof c->after_sd);
+    }
+}
+
+static void fill_errors(const struct dig_tracing *const t, const struct dig_trace_work *const w,
+                        struct dig_trace *const trace)
+{
+    bool any = false;
+    for (size_t i = 0; i < t->digs; i++) {
+        any = any || w->holdout[i];
+        trace->holdouts += w->holdout[i] ? 1 : 0;
+    }
+    trace->before = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, false,
+                                    t->settings->seed);
+    trace->after  = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, true,
+                                    t->settings->seed);
+    trace->noise_floor =
+        dig_judge_floor(t->set, t->digs, t->measured, trace->curves, any ? w->holdout : w->fit);
+}
+
+// Where nothing better is to be said: why a probability stops at one half.
+static void advise_on_size(const struct dig_trace_work *const w, struct dig_trace *const trace)
+{
+    for (size_t e = 0; e < w->air->effects && trace->advice[0] == '\0'; e++) {
+        if (w->size[e] < 1.0) {
+            (void)snprintf(trace->advice, sizeof trace->advice,
+                           "%s shows in %s; in the soil a gravel of the table leaves %.1f of "
+                           "the noise floor of it, so the digs themselves do not confirm it",
+                           dig_effect_name(w->air->effect[e].effect),
+                           w->air->by_digs ? "the forces of the digs" : "free air", w->size[e]);
+        }
+    }
+}
+
+static enum dig_status report(const struct dig_tracing *const      t,
+                              const struct dig_trace_work *const   w,
+                              const struct dig_machine_side *const machine,
+                              struct dig_trace *const              trace)
+{
+    trace->curves          = calloc(t->digs + 1, sizeof *trace->curves);
+    trace->digs            = t->digs;
+    enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
+    if (status == DIG_OK) {
+        fill_decision(t, machine, w->air, trace);
+        status = dig_trace_fill_verdict(t, w->air, trace);
+
+        trace->significant = trace->significant || trace->effects > 0;
+    }
+    if (status == DIG_OK) {
+        dig_trace_fill_candidates(t, trace);
+        dig_trace_fill_curves(t, trace->unlisted, trace->curves);
+        drop_what_is_not_worth_it(t, w, trace);
+        fill_errors(t, w, trace);
+        trace->residuals = malloc(sizeof *trace->residuals);
+        status = trace->residuals != NULL ? dig_residuals_make(t, machine != NULL ? w->air : NULL,
+                                                               trace->curves, trace->residuals)
+                                          : DIG_ENOMEM;
+    }
+    if (status == DIG_OK) {
+        status = dig_tell_apart(t, machine, w->air, trace);
+    }
+    if (status == DIG_OK) {
+        dig_trace_advise(t, trace);
+        advise_on_size(w, trace);
+        dig_trace_advise_on_air(w, trace);
+    }
+    return status;
+}
+
+// Whether ground that depends on the rate feels the speed of the tooth or the pace of the dig: what
+// the digs are liker to, refitted with either.
+static void choose_rate(struct dig_trace_work *const w)
+{
+    static const struct dig_hypothesis rate = { .effects = 1,
+                                                .effect  = { DIG_EFFECT_RATE_DEPENDENCE } };
+    assert(w->soil != NULL);
+    if (!dig_hypothesis_possible(w->batch, w->soil, DIG_EFFECT_RATE_DEPENDENCE)) {
+        return;
+    }
+    double misfit[2];
+    for (int along = 0; along < 2; along++) {
+        struct dig_fitted fitted;
+        double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        memcpy(start, w->before.number, DIG_AXES * sizeof start[0]);
+        w->soil->along = (double)along;
+        dig_hypothesis_fit(w->batch, w->soil, &rate, start, DIG_FIT_THOROUGH, &fitted);
+        misfit[along] = fitted.misfit;
+    }
+    w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;
+}
+
+// An effect of the soil that another gravel of the table could stand in for: see
+// dig_trace_weigh_air().
+// So with what has no name, of the soil or of the machine.
+static enum dig_status weigh_soil(struct dig_trace_work *const w)
+{
+    struct dig_search *const s      = w->search;
+    enum dig_status          status = DIG_OK;
+    const double             left   = dig_effect_size_left(w->batch, &s->plain);
+    s->unnamed                      = fmax(dig_effect_size_chance(left), DIG_TRACE_UNCONFIRMED);
+    for (size_t e = 0;
+         s->significant && !s->unlisted && e < s->chosen.hypothesis.effects && status == DIG_OK;
+         e++) {
+        double size = 0.0;
+        status = dig_effect_size_of_soil(w->batch, w->soil, &s->chosen, e, s->plain.noise, &size);
+        s->probability[e] *= fmax(dig_effect_size_chance(size), DIG_TRACE_UNCONFIRMED);
+    }
+    return status;
+}
+
+static enum dig_status run(const struct dig_curve_set *const set, const char *const table,
+                           const struct dig_effect_set *const     effects,
+                           const struct dig_trace_settings *const settings,
+                           struct dig_machine_side *const machine, const size_t digs,
+                           struct dig_measured measured[], struct dig_trace_work *const w,
+                           struct dig_trace *const trace, struct dig_error *const error)
+{
+    enum dig_status status = prepare(set, table, effects, w, error);
+    if (status == DIG_OK) {
+        status = check_digs(set, digs, measured, w, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_trace_batch(w, digs, measured, &w->before, error);
+    }
+    struct dig_fitted plain = w->before;
+    if (status == DIG_OK && machine != NULL) {
+        status = dig_trace_air(machine, settings, digs, measured, w, &plain, error);
+    }
+    if (status == DIG_OK) {
+        choose_rate(w);
+        const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
+        status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
+                                w->search);
+    }
+    bool blamed  = false;
+    bool settled = false;
+    if (status == DIG_OK && machine != NULL && !w->air->no_air && !w->air->unexplained &&
+        w->search->significant && w->search->unlisted) {
+        status = dig_trace_blame_machine(machine, settings, digs, measured, w, &blamed, error);
+    }
+    if (status == DIG_OK && machine != NULL && !blamed && w->air->effects == 1 &&
+        w->search->significant && w->search->unlisted) {
+        status = dig_trace_settle_air(machine, settings, digs, measured, w, &settled, error);
+    }
+    if (status == DIG_OK && !blamed && !settled && w->air->effects > 0 && w->search->significant &&
+        w->search->unlisted) {
+        status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
+    }
+    if (status == DIG_OK) {
+        dig_trace_doubt_soil(w->air, w->search);
+        status = weigh_soil(w);
+    }
+    if (status == DIG_OK) {
+        status = dig_trace_confirm_without_air(w);
+    }
+    // Nothing was found that is corrected: nothing changes.
+    if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
+        w->search->chosen = w->before;
+    }
+    const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
+                                   digs, measured,   w->batch,   &w->before, w->search };
+    return status == DIG_OK ? report(&t, w, machine, trace) : status;
+}
+
+enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char *const table,
+                              const struct dig_effect_set *const     effects,
+                              const struct dig_trace_settings *const settings,
+                              struct dig_machine_side *const machine, const size_t digs,
+                              struct dig_measured measured[], struct dig_trace *const trace,
+                              struct dig_error *const error)
+{
+    assert(set != NULL && settings != NULL && measured != NULL && trace != NULL);
+    struct dig_error      why  = { "" };
+    struct dig_trace_work w    = { .surface = NULL };
+    struct dig_trace     *made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return out_of_memory(error);
+    }
+    const enum dig_status status =
+        run(set, table, effects, settings, machine, digs, measured, &w, made, &why);
+    if (status == DIG_OK) {
+        *trace = *made;
+    } else {
+        dig_trace_finish(made);
+        (void)dig_error_set(error, status, "%s",
+                            why.text[0] != '\0' ? why.text : dig_status_str(status));
+    }
+    free(made);
+    finish(&w);
+    return status;
+}

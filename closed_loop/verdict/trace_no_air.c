@@ -1,0 +1,54 @@
+// A machine's digs without free air: nothing tells its effects from those of the soil.
+
+#include "closed_loop/search/cross_validation.h"
+#include "closed_loop/verdict/trace_work.h"
+
+#include <assert.h>
+#include <stdio.h>
+
+static const char *const advice =
+    "no free air in the recordings: effects of the machine cannot be told, and what is said of the "
+    "soil and its gravel may be theirs; record two seconds or more before contact and after the "
+    "dump";
+
+// A correction without a name was tried on the digs of each trajectory in turn
+// (closed_loop/search/unlisted.h): that says nothing where every trajectory was dug once.
+static bool was_tried(const struct dig_whitened_digs *const batch)
+{
+    bool tried = false;
+    for (size_t g = 0; g < batch->groups; g++) {
+        tried = tried || batch->group[g].digs > 1;
+    }
+    return tried;
+}
+
+enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *const w)
+{
+    assert(w != NULL);
+    const struct dig_search *const s      = w->search;
+    double                         gain   = 0.0;
+    enum dig_status                status = DIG_OK;
+    w->confirmed                          = true;
+    if (!w->air->no_air || !s->significant) {
+        return status;
+    }
+    if (s->unlisted) {
+        w->confirmed = was_tried(w->batch);
+        return status;
+    }
+    status       = dig_cross_validation_gain(w->batch, w->soil, &s->plain, &s->chosen, &gain);
+    w->confirmed = gain > 0.0;
+    return status;
+}
+
+void dig_trace_advise_on_air(const struct dig_trace_work *const w, struct dig_trace *const trace)
+{
+    assert(w != NULL && trace != NULL);
+    if (!w->air->no_air) {
+        return;
+    }
+    char more[sizeof trace->advice];
+    (void)snprintf(more, sizeof more, "%s", trace->advice);
+    (void)snprintf(trace->advice, sizeof trace->advice, "%s%s%.280s", advice,
+                   more[0] != '\0' ? ". Of the digs alone: " : "", more);
+}

@@ -1,0 +1,300 @@
+#include "closed_loop/verdict/trace_parts.h"
+
+#include "closed_loop/accuracy/judge.h"
+#include "closed_loop/recordings/regressors.h"
+#include "closed_loop/verdict/tell_apart.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
+                                         const struct dig_fitted *const fitted, const size_t effect,
+                                         const double probability)
+{
+    const enum dig_effect_id       id    = fitted->hypothesis.effect[effect];
+    const size_t                   n     = DIG_AXES + effect;
+    const struct dig_effect *const known = dig_effect_of(id);
+    struct dig_model_effect made = { .effect = id, .probability = probability, .parameters = 1 };
+    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
+                   known != NULL ? known->parameter[0].name : "magnitude");
+    made.parameter[0].value = dig_soil_magnitude(soil, id, fitted->number[n]);
+    made.parameter[0].low   = dig_soil_magnitude(soil, id, fitted->low[n]);
+    made.parameter[0].high  = dig_soil_magnitude(soil, id, fitted->high[n]);
+    if (known != NULL && id == DIG_EFFECT_RATE_DEPENDENCE) {
+        struct dig_model_parameter *const along = &made.parameter[made.parameters++];
+        (void)snprintf(along->name, sizeof along->name, "%s", known->parameter[1].name);
+        along->value = soil->along;
+        along->low   = soil->along;
+        along->high  = soil->along;
+    }
+    return made;
+}
+
+static bool is_lifting(const struct dig_curve_set *const set, const size_t trajectory,
+                       const size_t bin)
+{
+    size_t from;
+    size_t to;
+    dig_feature_bin(bin, &from, &to);
+    return dig_regressors_is_lifted(set, trajectory,
+                                    0.5 * (double)(from + to - 1) / (DIG_CURVE_POINTS - 1));
+}
+
+// Sums squares over the scatter's by part: what[] is in units of the table.
+static void sum_by_part(const struct dig_tracing *const             t,
+                        const struct dig_whitened_digs_group *const group,
+                        const double what[DIG_FEATURES], const double variance,
+                        double sum[DIG_TRACE_PHASES], double count[DIG_TRACE_PHASES])
+{
+    for (size_t i = 0; i < group->features; i++) {
+        const size_t        f        = group->feature[i];
+        const enum dig_part part     = is_lifting(t->set, group->trajectory, f % DIG_FEATURE_BINS)
+                                           ? DIG_PART_LIFTED
+                                           : DIG_PART_SOIL;
+        const double        relative = what[f] / group->amplitude[f / DIG_FEATURE_BINS];
+        sum[part] +=
+            relative * relative / (t->scatter->covariance[group->trajectory][f][f] * variance);
+        count[part] += 1.0;
+    }
+}
+
+struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const double probability)
+{
+    const struct dig_effect *const known = dig_effect_of(DIG_EFFECT_OBSTACLE);
+    struct dig_model_effect        made  = { .effect      = DIG_EFFECT_OBSTACLE,
+                                             .probability = probability,
+                                             .parameters  = 1 };
+    made.parameter[0]                    = (struct dig_model_parameter){ .value = rock->ahead_m,
+                                                                         .low   = rock->low_m,
+                                                                         .high  = rock->high_m };
+    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
+                   known->parameter[1].name);
+    return made;
+}
+
+enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
+                                const struct dig_fitted *const fitted, const size_t effect)
+{
+    double sum[DIG_TRACE_PHASES]   = { 0.0 };
+    double count[DIG_TRACE_PHASES] = { 0.0 };
+    double without[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(without, fitted->number, sizeof without);
+    without[DIG_AXES + effect] = 0.0;
+    for (size_t i = 0; i < t->batch->digs; i++) {
+        const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+        double                           with[DIG_FEATURES];
+        double                           plain[DIG_FEATURES];
+        double                           noise;
+        dig_hypothesis_features(t->soil, &fitted->hypothesis, fitted->number, dig, with, &noise);
+        dig_hypothesis_features(t->soil, &fitted->hypothesis, without, dig, plain, &noise);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            with[f] -= plain[f];
+        }
+        sum_by_part(t, &t->batch->group[t->batch->dig[i].group], with, 1.0, sum, count);
+    }
+    return sum[DIG_PART_LIFTED] > sum[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
+}
+
+void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual[DIG_TRACE_PHASES])
+{
+    double sum[DIG_TRACE_PHASES]   = { 0.0 };
+    double count[DIG_TRACE_PHASES] = { 0.0 };
+    for (size_t g = 0; g < t->batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &t->batch->group[g];
+        double                                      model[DIG_FEATURES];
+        double                                      mean[DIG_FEATURES] = { 0.0 };
+        double                                      noise;
+        dig_hypothesis_features(t->soil, &t->search->plain.hypothesis, t->search->plain.number,
+                                dig_whitened_digs_first(t->batch, g), model, &noise);
+        for (size_t i = 0; i < t->batch->digs; i++) {
+            if (t->batch->dig[i].group != g) {
+                continue;
+            }
+            double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+            double                           feature[DIG_FEATURES];
+            const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                    curve[c][k] = dig->value[c][k] - dig->machine[c][k];
+                }
+            }
+            dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                mean[f] += feature[f] / (double)group->digs;
+            }
+        }
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            mean[f] -= model[f];
+        }
+        sum_by_part(t, group, mean, 1.0 / (double)group->digs + t->search->plain.noise[g], sum,
+                    count);
+    }
+    for (size_t p = 0; p < DIG_TRACE_PHASES; p++) {
+        residual[p] = count[p] > 0.0 ? sqrt(sum[p] / count[p]) : (double)NAN;
+    }
+}
+
+// v of a trajectory at a fitted hypothesis; of one that no dig was fitted along, the surface's.
+static double noise_along(const struct dig_tracing *const t, const struct dig_fitted *const fitted,
+                          const size_t trajectory)
+{
+    for (size_t g = 0; g < t->batch->groups; g++) {
+        if (t->batch->group[g].trajectory == trajectory) {
+            return fitted->noise[g];
+        }
+    }
+    return dig_response_surface_noise(t->surface, trajectory, fitted->number);
+}
+
+static void add_unlisted(const struct dig_model_unlisted *const unlisted, const size_t trajectory,
+                         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double squares = 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            squares += curve[c][k] * curve[c][k] / DIG_CURVE_POINTS;
+        }
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve[c][k] += sqrt(squares) * (double)unlisted->share[trajectory][c][k];
+        }
+    }
+}
+
+void dig_trace_fill_curves(const struct dig_tracing *const        t,
+                           const struct dig_model_unlisted *const unlisted,
+                           struct dig_trace_curves                curves[])
+{
+    const struct dig_fitted *const before = t->before;
+    const struct dig_fitted *const after  = &t->search->chosen;
+    for (size_t i = 0; i < t->digs; i++) {
+        const struct dig_measured *const dig        = &t->measured[i];
+        const size_t                     trajectory = (size_t)dig->trajectory;
+        struct dig_trace_curves *const   c          = &curves[i];
+        memset(c, 0, sizeof *c);
+        if (!t->surface->known[trajectory]) {
+            continue;
+        }
+        dig_hypothesis_curve(t->soil, &before->hypothesis, before->number, dig, c->before);
+        dig_judge_sd(t->surface, t->scatter, trajectory, before->number,
+                     noise_along(t, before, trajectory), c->before_sd);
+        dig_hypothesis_curve(t->soil, &after->hypothesis, after->number, dig, c->after);
+        dig_judge_sd(t->surface, t->scatter, trajectory, after->number,
+                     noise_along(t, after, trajectory), c->after_sd);
+        if (unlisted != NULL) {
+            add_unlisted(unlisted, trajectory, c->after);
+        }
+        double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_response_surface_curve(t->surface, trajectory, after->number, plain);
+        dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
+                            (const double(*)[DIG_CURVE_POINTS])c->after, c->after_sd);
+        for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                c->after[channel][k] += dig->machine[channel][k];
+            }
+        }
+    }
+}
+
+// CONTRACT's error of the digs fitted to, by one candidate.
+static double fit_error(const struct dig_tracing *const t, const struct dig_fitted *const fitted)
+{
+    bool                           take[DIG_MEASURED_MAX] = { false };
+    struct dig_trace_curves *const curves                 = calloc(t->digs, sizeof *curves);
+    if (curves == NULL) {
+        return (double)NAN;
+    }
+    for (size_t i = 0; i < t->batch->digs; i++) {
+        const size_t m = t->batch->dig[i].measured;
+        take[m]        = true;
+        dig_hypothesis_curve(t->soil, &fitted->hypothesis, fitted->number, &t->measured[m],
+                             curves[m].after);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curves[m].after[DIG_CHANNEL_MY_Nm][k] += t->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    const double error = dig_judge_error(t->set, t->digs, t->measured, curves, take, true, 1).value;
+    free(curves);
+    return error;
+}
+
+// It is looked for when all else has failed, and was in no bootstrap.
+static void list_rock(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_rock *const  rock = &t->search->rock;
+    struct dig_candidate *const   c    = &trace->candidate[trace->candidates++];
+    const struct dig_model_effect made = dig_trace_rock(rock, 0.0);
+    *c                                 = (struct dig_candidate){ .effect       = made.effect,
+                                                                 .log_evidence = rock->log_evidence,
+                                                                 .p_fit        = rock->p_fit,
+                                                                 .inclusion    = (double)NAN,
+                                                                 .error        = (double)NAN,
+                                                                 .parameters   = made.parameters,
+                                                                 .seen_in      = DIG_PART_SOIL,
+                                                                 .gravel =
+                                                                     dig_response_surface_gravel(t->surface, rock->plain.number) };
+    memcpy(c->parameter, made.parameter, sizeof c->parameter);
+}
+
+void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_search *const s                     = t->search;
+    bool                           taken[DIG_RIVALS_MAX] = { false };
+    if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
+        list_rock(t, trace);
+    }
+    for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
+         turn++) {
+        size_t next = s->rivals;
+        for (size_t i = 0; i < s->rivals; i++) {
+            if (!taken[i] && (next == s->rivals || s->log_evidence[i] > s->log_evidence[next])) {
+                next = i;
+            }
+        }
+        taken[next]                         = true;
+        const struct dig_fitted *const f    = &s->rival[next];
+        const struct dig_model_effect  made = dig_trace_effect(t->soil, f, 0, 0.0);
+        struct dig_candidate *const    c    = &trace->candidate[trace->candidates++];
+        *c                                  = (struct dig_candidate){ .effect       = made.effect,
+                                                                      .log_evidence = s->log_evidence[next],
+                                                                      .p_fit        = s->rival_fit[next],
+                                                                      .inclusion    = s->inclusion[next],
+                                                                      .error        = fit_error(t, f),
+                                                                      .parameters   = made.parameters,
+                                                                      .seen_in      = dig_trace_seen_in(t, f, 0),
+                                                                      .gravel = dig_response_surface_gravel(t->surface, f->number) };
+        memcpy(c->parameter, made.parameter, sizeof c->parameter);
+    }
+}
+
+void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const trace)
+{
+    const struct dig_search *const s = t->search;
+    if (s->outside) {
+        const struct dig_gravel g = dig_response_surface_gravel(t->surface, s->chosen.number);
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "no effect: the gravel lies beyond the table's grid, near friction %.2f, "
+                       "rolling %.2f, %.0f kg/m3; compute a table that holds it",
+                       g.value[DIG_AXIS_FRICTION], g.value[DIG_AXIS_ROLLING],
+                       g.value[DIG_AXIS_DENSITY_kgpm3]);
+    } else if (s->is_rock) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "a rock, felt %.0f mm (rig scale) from where the table's is; what it adds "
+                       "is corrected as measured, and holds while it lies there",
+                       1e3 * s->rock.ahead_m);
+    } else if (s->unlisted) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "no effect of the list explains the digs; what is left depends on %s",
+                       s->without_name.depends_on[0] != '\0' ? s->without_name.depends_on
+                                                             : "nothing that was tried");
+    } else if (trace->tells > 0 && trace->tell[0].how[0] != '\0') {
+        dig_tell_apart_say(&trace->tell[0], sizeof trace->advice, trace->advice);
+    } else if (s->significant && s->chosen.hypothesis.effects > 0) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "a table computed with %s in its beds would serve better than a correction",
+                       dig_effect_name(s->chosen.hypothesis.effect[0]));
+    }
+}

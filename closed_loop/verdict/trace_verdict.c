@@ -1,0 +1,90 @@
+#include "closed_loop/verdict/trace_verdict.h"
+
+#include "closed_loop/search/unlisted.h"
+#include "closed_loop/verdict/trace_work.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void fill_sets(const struct dig_search *const s, const struct dig_machine_finding *const air,
+                      struct dig_trace *const trace)
+{
+    for (size_t i = 0; i < air->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
+        trace->set[trace->sets++] = air->set[i];
+    }
+    for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
+        trace->set[trace->sets++] = s->set[i];
+    }
+}
+
+// Without free air what the digs show may be the machine's: no more than even odds are claimed.
+static double claimed(const struct dig_machine_finding *const air, const double probability)
+{
+    return air->no_air ? fmin(probability, DIG_TRACE_UNCONFIRMED) : probability;
+}
+
+// What has no name is seen where the digs' residual is largest.
+static enum dig_part largest_part(const double residual[DIG_TRACE_PHASES])
+{
+    return residual[DIG_PART_LIFTED] > residual[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
+}
+
+void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
+                          struct dig_search *const                search)
+{
+    assert(air != NULL && search != NULL);
+    if (air->unexplained && search->significant && !search->outside) {
+        search->unlisted = true;
+        search->is_rock  = false;
+        search->sets     = 0;
+    }
+}
+
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one step after another
+enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t,
+                                       const struct dig_machine_finding *const air,
+                                       struct dig_trace *const                 trace)
+{
+    assert(t != NULL && air != NULL && trace != NULL);
+    const struct dig_search *const s = t->search;
+    fill_sets(s, air, trace);
+    for (size_t e = 0; e < air->effects; e++) {
+        trace->seen_in[trace->effects]  = air->by_digs ? DIG_PART_SOIL : DIG_PART_AIR;
+        trace->effect[trace->effects++] = air->effect[e];
+    }
+    for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects &&
+                       trace->effects < DIG_MODEL_EFFECTS_MAX;
+         e++) {
+        trace->seen_in[trace->effects] = dig_trace_seen_in(t, &s->chosen, e);
+        trace->effect[trace->effects++] =
+            dig_trace_effect(t->soil, &s->chosen, e, claimed(air, s->probability[e]));
+    }
+    const bool of_soil = s->significant && s->unlisted;
+    if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
+        trace->unlisted = calloc(1, sizeof *trace->unlisted);
+        if (trace->unlisted == NULL) {
+            return DIG_ENOMEM;
+        }
+        if (of_soil) {
+            dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
+        }
+        (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
+                       s->is_rock             ? "where the rock lies"
+                       : of_soil              ? s->without_name.depends_on
+                       : air->follows != NULL ? air->follows
+                                              : "the machine's motion in free air");
+        const double in_soil = claimed(air, s->unnamed * (1.0 - s->p_complete));
+        trace->seen_in[trace->effects] =
+            !of_soil ? DIG_PART_AIR : (s->is_rock ? DIG_PART_SOIL : largest_part(trace->residual));
+        const struct dig_model_effect unnamed = {
+            .effect = DIG_EFFECT_UNLISTED,
+            .probability =
+                of_soil ? in_soil
+                        : s->unnamed * fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
+        };
+        trace->effect[trace->effects++] = s->is_rock ? dig_trace_rock(&s->rock, in_soil) : unnamed;
+    }
+    return DIG_OK;
+}

@@ -1,0 +1,36 @@
+// How much the curves of a gravel change when it is dug deeper or with the bucket turned: what was
+// dug, less the plain curve, at equal times (a phase lasts as long however deep it goes).
+
+#ifndef DIG_ESTIMATOR_APPROACH_APPROACH_RESPONSE_H
+#define DIG_ESTIMATOR_APPROACH_APPROACH_RESPONSE_H
+
+#include "core/approach.h"
+#include "core/curve.h"
+
+#include <stdbool.h>
+
+/// Over the path of the trajectory dug so; relative to the rms of each channel's plain curve.
+struct dig_response {
+    double change[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double plain[DIG_CHANNELS][DIG_CURVE_POINTS]; // the plain curve at the same times, in its unit
+    double scatter2[DIG_CHANNELS];                // of the means the change is made of, squared
+    double rms[DIG_CHANNELS];                     // of the plain curve, in its unit
+    double inverse_packings;                      // of the curve that comes of it
+};
+
+/// By the entry's own digs, weighed as dig_approach_weigh() does, over the path of the trajectory
+/// dug `along` (mostly the same). False when they do not reach so far.
+bool dig_response_own(const struct dig_curve_set *set, size_t entry, size_t trajectory,
+                      const struct dig_approach *approach, const struct dig_approach *along,
+                      struct dig_response *response);
+
+/// By the digs of all other entries that reach so far, the nearest gravels most: 1 / distance^2 on
+/// axes from 0 to 1. False when there is none. O(entries).
+bool dig_response_borrowed(const struct dig_curve_set *set, size_t entry, size_t trajectory,
+                           const struct dig_approach *approach, struct dig_response *response);
+
+/// The trajectory of the set dug so; the plain one where that cannot be.
+struct dig_trajectory dig_response_trajectory(const struct dig_curve_set *set, size_t trajectory,
+                                              const struct dig_approach *approach);
+
+#endif // DIG_ESTIMATOR_APPROACH_APPROACH_RESPONSE_H

@@ -1,0 +1,76 @@
+// Between the points of a table: multilinear in friction, rolling friction and log density.
+
+#ifndef DIG_ESTIMATOR_APPROACH_INTERPOLATE_H
+#define DIG_ESTIMATOR_APPROACH_INTERPOLATE_H
+
+#include "core/curve.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define DIG_CELL_CORNERS (1 << DIG_AXES)
+
+/// The entries around a gravel, and what each weighs; corners without weight are left out.
+struct dig_cell {
+    size_t                  corners;
+    const struct dig_curve *curve[DIG_CELL_CORNERS];
+    double                  weight[DIG_CELL_CORNERS];
+    double                  inverse_packings; // weighted mean of 1 / packings
+    double mean_variance; // what the mean is off by: sum of weight^2 / packings, of one dig's
+};
+
+/// Position of a value on an axis of the set, 0 … 1 from its first to its last point, linear in the
+/// value, of density in its logarithm; 0 on an axis of one point. And back.
+double dig_axis_position(const struct dig_curve_set *set, enum dig_axis axis, double value);
+double dig_axis_value(const struct dig_curve_set *set, enum dig_axis axis, double position);
+
+/// Where a value lies on an axis of the set: behind which of its points, and how far along to the
+/// next.
+struct dig_axis_place {
+    size_t index;
+    double fraction; // 0 … 1
+};
+
+/// DIG_ENOMATCH when the value is outside the axis; one within 1e-9 of its end counts as on it.
+DIG_MUST_CHECK enum dig_status dig_axis_locate(const struct dig_curve_set *set, enum dig_axis axis,
+                                               double value, struct dig_axis_place *place);
+
+/// The cell at a place on each axis, which must have points. DIG_ENOMATCH when a corner with weight
+/// is missing or lacks the trajectory.
+DIG_MUST_CHECK enum dig_status dig_cell_at(const struct dig_curve_set *set,
+                                           const struct dig_axis_place place[DIG_AXES],
+                                           size_t trajectory, struct dig_cell *cell);
+
+/// The cell around a gravel. DIG_ENOMATCH when the gravel is outside the grid or a corner with
+/// weight is missing or lacks the trajectory. A value within 1e-9 of the grid's end counts as on
+/// it. Constant time but for the search along the axes.
+DIG_MUST_CHECK enum dig_status dig_cell_find(const struct dig_curve_set *set,
+                                             const struct dig_gravel *gravel, size_t trajectory,
+                                             struct dig_cell *cell);
+
+/// Mean and standard deviation of one channel at one point of the curve.
+static inline double dig_cell_mean(const struct dig_cell *const cell,
+                                   const enum dig_channel channel, const size_t point)
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < cell->corners; c++) {
+        sum += cell->weight[c] * (double)cell->curve[c]->mean[channel][point];
+    }
+    return sum;
+}
+
+static inline double dig_cell_sd(const struct dig_cell *const cell, const enum dig_channel channel,
+                                 const size_t point)
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < cell->corners; c++) {
+        sum += cell->weight[c] * (double)cell->curve[c]->sd[channel][point];
+    }
+    return sum;
+}
+
+/// The same of all points at once, several times faster.
+void dig_cell_blend(const struct dig_cell *cell, enum dig_channel channel,
+                    double mean[DIG_CURVE_POINTS], double sd[DIG_CURVE_POINTS]);
+
+#endif // DIG_ESTIMATOR_APPROACH_INTERPOLATE_H

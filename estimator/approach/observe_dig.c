@@ -1,0 +1,141 @@
+#include "estimator/approach/observe_dig.h"
+
+#include "estimator/approach/approach_route.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/approach/approaches.h"
+#include "estimator/track/abort_detection.h"
+#include "estimator/track/ending.h"
+#include "estimator/track/followed.h"
+#include "estimator/track/window.h"
+
+#include <assert.h>
+#include <math.h>
+
+// The soil is looked for from so much deeper than the table was dug, to see what is off it.
+static const double probe_deeper = 1.5;
+
+// A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
+// the depth is told by where the soil began to resist, looked for along the way of the deepest dig.
+// What of the two lies beyond the table counts as distance.
+static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
+                                      const struct dig_track *const  track,
+                                      struct dig_recorded_dig *const raw,
+                                      struct dig_observation *const  out)
+{
+    const size_t t = (size_t)out->trajectory;
+    const double deepest =
+        fmin(probe_deeper * dig_approach_deepest(set, t), DIG_APPROACH_DEPTH_MOST);
+    const struct dig_route deep = dig_approach_route_deep(set, t, deepest);
+    struct dig_observation seen = *out;
+    enum dig_status        status =
+        dig_window_observe(&raw->window, &deep, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_approach made = {
+        .depth      = dig_approach_depth(set, t, deepest, track->turn_m / set->tooth_m, seen.first,
+                                         seen.last, seen.moment_Nm),
+        .attack_rad = track->turn_m / set->tooth_m,
+    };
+    seen.made                       = made;
+    const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
+    const struct dig_route route    = dig_approach_route_deep(set, t, seen.approach.depth);
+    const double           off_m    = hypot(track->rms_m, beyond_m);
+    if (!(off_m <= limit_m)) {
+        return DIG_ENOMATCH;
+    }
+    status =
+        dig_window_observe(&raw->window, &route, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    if (status == DIG_OK) {
+        seen.off_path_m = off_m;
+        *out            = seen;
+    }
+    return status;
+}
+
+// Once the path has left the trajectory, no way out near a later leg of it counts as dug.
+static enum dig_status observe_plain(const struct dig_curve_set *const set, const double limit_m,
+                                     const struct dig_route route[], const struct dig_track whole[],
+                                     struct dig_recorded_dig *const raw,
+                                     struct dig_observation *const  out)
+{
+    const int                  t = out->trajectory;
+    struct dig_abort_detection departure;
+    const bool                 left =
+        !raw->followed.missing &&
+        dig_abort_detection_choose(set->trajectories, route, &raw->path, limit_m,
+                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &departure) == t;
+    const struct dig_track *const track  = left ? &departure.track : &whole[t];
+    const enum dig_status         status = dig_window_observe(
+                &raw->window, &route[t], track, left ? limit_m : 2.0 * limit_m, set->smooth_half_s, out);
+    if (status == DIG_OK && out->ending == DIG_ENDING_ABORTED &&
+        !dig_ending_is_known(&route[t], track, &raw->path, limit_m)) {
+        out->ending = DIG_ENDING_OPEN;
+    }
+    return status;
+}
+
+// The whole path decides which trajectory it was; an observation is made if it was one.
+static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
+                               const struct dig_route route[], struct dig_recorded_dig *const raw,
+                               struct dig_observation *const observation)
+{
+    const size_t            tracks = set->trajectories;
+    struct dig_track        fitted[DIG_TRAJECTORY_MAX];
+    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < tracks; t++) {
+        fitted[t]   = dig_track_fit(&route[t], &raw->path, limit_m);
+        track_of[t] = &fitted[t];
+    }
+    const int chosen =
+        dig_track_choose(tracks, track_of, limit_m, DIG_TRACK_TIE_SHARE * limit_m, -1);
+    if (chosen < 0) {
+        return DIG_ENOMATCH;
+    }
+    struct dig_observation out    = { .dig_count = raw->dig_count, .trajectory = chosen };
+    const enum dig_status  status = dig_approach_varies(set, (size_t)chosen)
+                                        ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
+                                        : observe_plain(set, limit_m, route, fitted, raw, &out);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (!(out.last - out.first >= DIG_ENDING_LEAST)) {
+        return DIG_ENOMATCH;
+    }
+    *observation = out;
+    return DIG_OK;
+}
+
+enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const          set,
+                                         const struct dig_estimator_settings *const settings,
+                                         struct dig_recorded_dig *const             raw,
+                                         struct dig_observation *const              observation)
+{
+    assert(set != NULL && settings != NULL && raw != NULL && observation != NULL);
+    struct dig_route route[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < set->trajectories; t++) {
+        route[t] = dig_approach_route(set, t);
+    }
+    return observe(set, settings->path_limit_m, route, raw, observation);
+}
+
+bool dig_recorded_dig_gave_up(const struct dig_curve_set *const          set,
+                              const struct dig_estimator_settings *const settings,
+                              const struct dig_recorded_dig *const raw, int *const trajectory,
+                              double *const progress)
+{
+    assert(set != NULL && settings != NULL && raw != NULL && trajectory != NULL &&
+           progress != NULL);
+    struct dig_route route[DIG_TRAJECTORY_MAX];
+    for (size_t t = 0; t < set->trajectories; t++) {
+        route[t] = dig_approach_route(set, t);
+    }
+    const double limit_m = settings->path_limit_m;
+    if (!dig_followed_gave_up(&raw->followed, set->trajectories, route, &raw->path, limit_m,
+                              DIG_TRACK_TIE_SHARE * limit_m)) {
+        return false;
+    }
+    *trajectory = raw->followed.trajectory;
+    *progress   = raw->followed.progress;
+    return true;
+}

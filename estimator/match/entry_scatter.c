@@ -1,0 +1,96 @@
+#include "estimator/match/entry_scatter.h"
+
+#include "core/units.h"
+#include "estimator/match/posterior.h"
+
+#include <assert.h>
+#include <math.h>
+
+static double uniform(uint64_t *const state) // splitmix64
+{
+    *state += 0x9E3779B97F4A7C15U;
+    uint64_t z = *state;
+    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+}
+
+static double normal(uint64_t *const state)
+{
+    const double u = 1.0 - uniform(state);
+    return sqrt(-2.0 * log(u)) * cos(2.0 * DIG_PI * uniform(state));
+}
+
+// What each point feels of the knots around it; the squares sum to 1.
+void dig_entry_scatter_make(const struct dig_trajectory *const trajectory, const double tooth_m,
+                            struct dig_entry_scatter *const spread)
+{
+    assert(trajectory != NULL && spread != NULL);
+    const double whole_m =
+        dig_trajectory_path_m(trajectory, tooth_m, dig_trajectory_duration_s(trajectory));
+    const double own_m = DIG_ENTRY_SCATTER_WIDTH * tooth_m / sqrt(2.0 * DIG_PI);
+    // In points. Errors of a path so long that they change within a point are independent.
+    const double spacing = fmax(own_m / whole_m * (DIG_CURVE_POINTS - 1), 1.0);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at =
+            (double)k / spacing; // knot 0 lies DIG_ENTRY_SCATTER_REACH before the path
+        double norm2     = 0.0;
+        spread->first[k] = (size_t)at;
+        for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
+            const double off   = (double)(spread->first[k] + i) - DIG_ENTRY_SCATTER_REACH - at;
+            spread->felt[k][i] = exp(-off * off);
+            norm2 += spread->felt[k][i] * spread->felt[k][i];
+        }
+        for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
+            spread->felt[k][i] /= sqrt(norm2);
+        }
+    }
+    spread->knots = spread->first[DIG_CURVE_POINTS - 1] + DIG_ENTRY_SCATTER_WIDE;
+    assert(spread->knots <= DIG_ENTRY_SCATTER_KNOTS);
+}
+
+void dig_entry_scatter_draw(const struct dig_entry_scatter *const spread, uint64_t *const seed,
+                            double error[const DIG_CURVE_POINTS])
+{
+    assert(spread != NULL && seed != NULL && error != NULL);
+    double       knot[DIG_ENTRY_SCATTER_KNOTS];
+    const double whole = sqrt(DIG_ENTRY_SCATTER_SHARED) * normal(seed);
+    for (size_t j = 0; j < spread->knots; j++) {
+        knot[j] = sqrt(1.0 - DIG_ENTRY_SCATTER_SHARED) * normal(seed);
+    }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        double sum = whole;
+        for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
+            sum += spread->felt[k][i] * knot[spread->first[k] + i];
+        }
+        error[k] = sum;
+    }
+}
+
+static double of_channels(const double v[const DIG_FORCE_CHANNELS])
+{
+    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] +
+           2.0 * (DIG_POSTERIOR_MY_FX * v[0] * v[1] + DIG_POSTERIOR_MY_FZ * v[0] * v[2] +
+                  DIG_POSTERIOR_FX_FZ * v[1] * v[2]);
+}
+
+double dig_entry_scatter_variance(const struct dig_entry_scatter *const spread,
+                                  const struct dig_channels *const      weight)
+{
+    assert(spread != NULL && weight != NULL);
+    double knot[DIG_ENTRY_SCATTER_KNOTS][DIG_FORCE_CHANNELS] = { { 0.0 } };
+    double whole[DIG_FORCE_CHANNELS]                         = { 0.0 };
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            whole[c] += weight->of[c][k];
+            for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
+                knot[spread->first[k] + i][c] += spread->felt[k][i] * weight->of[c][k];
+            }
+        }
+    }
+    double own = 0.0;
+    for (size_t j = 0; j < spread->knots; j++) {
+        own += of_channels(knot[j]);
+    }
+    return (1.0 - DIG_ENTRY_SCATTER_SHARED) * own + DIG_ENTRY_SCATTER_SHARED * of_channels(whole);
+}

@@ -1,0 +1,361 @@
+#include "estimator/match/gaussian.h"
+
+#include "core/units.h"
+#include "estimator/match/entry_scatter.h"
+#include "estimator/match/posterior.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+
+enum {
+    BLOCKS   = DIG_COVARIANCE_BLOCKS,
+    NUMBERS  = DIG_COVARIANCE_NUMBERS,
+    CHANNELS = DIG_FORCE_CHANNELS,
+    HALVES   = DIG_OUTLINE_BLOCKS,
+    POINTS   = DIG_OUTLINE_POINTS
+};
+_Static_assert(HALVES == 2 * BLOCKS, "a block is two of an outline's");
+
+// How far C is drawn towards correlations that depend on the distance of two blocks alone, and how
+// much smaller those are made, so that it stays positive definite.
+static const double towards_even   = 0.25;
+static const double even_reduction = 0.95;
+
+// Share of a number's variance that goes with no other.
+static const double own_share = 0.05;
+
+// Keeps variances apart from 0.
+static const double least_u2 = 1e-80;
+
+static const double ln_2 = 0.69314718055994530942;
+
+struct matrix {
+    double of[NUMBERS][NUMBERS];
+};
+
+// Mean correlation of all pairs of blocks of two channels that are lag apart.
+static double mean_at_lag(const struct matrix *const c, const size_t one, const size_t other,
+                          const int lag)
+{
+    double sum = 0.0;
+    double n   = 0.0;
+    for (int b = 0; b < BLOCKS; b++) {
+        if (b + lag >= 0 && b + lag < BLOCKS) {
+            sum += c->of[one * BLOCKS + (size_t)b][other * BLOCKS + (size_t)(b + lag)];
+            n += 1.0;
+        }
+    }
+    return sum / n;
+}
+
+// Correlations of the table's packings.
+static void take_correlation(const struct dig_covariance *const covariance, struct matrix *const c)
+{
+    struct matrix plain;
+    for (size_t i = 0; i < NUMBERS; i++) {
+        for (size_t j = 0; j < NUMBERS; j++) {
+            const double product = covariance->of[i][i] * covariance->of[j][j];
+            plain.of[i][j]       = product > 0.0 ? covariance->of[i][j] / sqrt(product) : 0.0;
+        }
+    }
+    for (size_t i = 0; i < NUMBERS; i++) {
+        for (size_t j = 0; j < NUMBERS; j++) {
+            const int    lag  = (int)(j % BLOCKS) - (int)(i % BLOCKS);
+            const double even = mean_at_lag(&plain, i / BLOCKS, j / BLOCKS, lag);
+            c->of[i][j] =
+                (1.0 - towards_even) * plain.of[i][j] + towards_even * even_reduction * even;
+        }
+    }
+}
+
+// Covariance of block means of errors of variance 1, lag blocks apart, by entry_scatter.h.
+static double between(const double point_m, const double width_m, const int lag)
+{
+    enum { WIDE = 2 * POINTS };
+    double sum = 0.0;
+    for (int u = 1 - WIDE; u < WIDE; u++) {
+        const double off = point_m * (lag * WIDE + u) / width_m;
+        sum += (WIDE - fabs((double)u)) * exp(-DIG_PI * off * off);
+    }
+    return (1.0 - DIG_ENTRY_SCATTER_SHARED) * sum / (WIDE * WIDE) + DIG_ENTRY_SCATTER_SHARED;
+}
+
+// The same as entry_scatter.h has it, where too few packings are known; the variances into
+// *variance.
+static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
+                               const struct dig_prefilter *const summary, struct matrix *const c,
+                               double variance[NUMBERS])
+{
+    const double across[CHANNELS][CHANNELS] = {
+        { 1.0, DIG_POSTERIOR_MY_FX, DIG_POSTERIOR_MY_FZ },
+        { DIG_POSTERIOR_MY_FX, 1.0, DIG_POSTERIOR_FX_FZ },
+        { DIG_POSTERIOR_MY_FZ, DIG_POSTERIOR_FX_FZ, 1.0 },
+    };
+    const struct dig_trajectory *const t = &set->trajectory[trajectory];
+    const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
+    const double point_m = whole_m / (DIG_CURVE_POINTS - 1);
+    const double width_m = DIG_ENTRY_SCATTER_WIDTH * set->tooth_m;
+    double       lag_of[BLOCKS];
+    for (int lag = 0; lag < BLOCKS; lag++) {
+        lag_of[lag] = between(point_m, width_m, lag);
+    }
+    for (size_t i = 0; i < NUMBERS; i++) {
+        const enum dig_channel channel = (enum dig_channel)(i / BLOCKS);
+        variance[i] =
+            lag_of[0] * (summary != NULL ? summary->relative2[trajectory][channel]
+                                         : dig_prefilter_relative2(set, trajectory, channel));
+        for (size_t j = 0; j < NUMBERS; j++) {
+            const size_t one   = i % BLOCKS;
+            const size_t other = j % BLOCKS;
+            c->of[i][j]        = across[i / BLOCKS][j / BLOCKS] *
+                          lag_of[one > other ? one - other : other - one] / lag_of[0];
+        }
+    }
+}
+
+// The share of each number's standard deviation that is the digs' own and goes together, beside
+// what the measurement is off by; of digs as large as those measured.
+static void tell_shares(const struct dig_gaussian *const g, double share[NUMBERS])
+{
+    double size2[CHANNELS] = { 0.0 };
+    double count[CHANNELS] = { 0.0 };
+    for (size_t i = 0; i < g->numbers; i++) {
+        const struct dig_compared *const n = &g->compared[i];
+        size2[n->channel] += n->mean * n->mean;
+        count[n->channel] += 1.0;
+    }
+    for (size_t i = 0; i < g->numbers; i++) {
+        const struct dig_compared *const n = &g->compared[i];
+        const double                     own =
+            size2[n->channel] / count[n->channel] * n->spread * n->spread * n->inverse_digs;
+        share[i] = sqrt(own / (own + n->sigma2 + least_u2));
+    }
+}
+
+// L of the numbers that are compared. False where the matrix is not positive definite.
+static bool factor(const struct matrix *const c, struct dig_gaussian *const g)
+{
+    size_t at[NUMBERS];
+    double share[NUMBERS];
+    tell_shares(g, share);
+    for (size_t i = 0; i < g->numbers; i++) {
+        at[i] = g->compared[i].channel * BLOCKS + g->compared[i].block;
+    }
+    for (size_t i = 0; i < g->numbers; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            double sum =
+                i == j ? 1.0 : (1.0 - own_share) * share[i] * share[j] * c->of[at[i]][at[j]];
+            for (size_t k = 0; k < j; k++) {
+                sum -= g->lower[i][k] * g->lower[j][k];
+            }
+            if (i == j && !(sum > 1e-6)) {
+                return false;
+            }
+            g->lower[i][j] = i == j ? 1.0 / sqrt(sum) : sum * g->lower[j][j];
+        }
+    }
+    return true;
+}
+
+// Over one block of an outline; count is 0 where a point was not measured.
+struct half {
+    bool   whole;
+    double mean, sigma2, inverse_digs;
+};
+
+static struct half half_of(const struct dig_pooled *const group, const size_t channel,
+                           const size_t half)
+{
+    const double *const mean = channel == 0 ? group->mean_Nm : group->force_N[channel - 1];
+    const double *const sigma2 =
+        channel == 0 ? group->sigma2_Nm2 : group->force_sigma2_N2[channel - 1];
+    struct half h = { .whole = true };
+    for (size_t k = half * POINTS; k < (half + 1) * POINTS; k++) {
+        h.whole = h.whole && group->count[k] > 0.0;
+        h.mean += mean[k] / POINTS;
+        h.sigma2 += sigma2[k] / POINTS;
+        h.inverse_digs += 1.0 / group->count[k] / POINTS;
+    }
+    return h;
+}
+
+// The order in which blocks are looked at: those inside the path, which tell most, first.
+static const size_t telling[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
+
+static void measure(const struct dig_pooled *const group, const double variance[NUMBERS],
+                    struct dig_gaussian *const g)
+{
+    for (size_t next = 0; next < BLOCKS * g->channels; next++) {
+        const size_t      block   = telling[next % BLOCKS];
+        const size_t      channel = next / BLOCKS;
+        const struct half first   = half_of(group, channel, 2 * block);
+        const struct half second  = half_of(group, channel, 2 * block + 1);
+        const double      halves  = (first.whole ? 1.0 : 0.0) + (second.whole ? 1.0 : 0.0);
+        if (!(halves > 0.0)) {
+            continue;
+        }
+        const double               one = first.whole ? 1.0 / halves : 0.0;
+        const double               two = second.whole ? 1.0 / halves : 0.0;
+        struct dig_compared *const to  = &g->compared[g->numbers++];
+        *to                            = (struct dig_compared){ .channel = channel,
+                                                                .block   = block,
+                                                                .first   = first.whole,
+                                                                .second  = second.whole,
+                                                                .spread  = sqrt(variance[channel * BLOCKS + block]) };
+        if (first.whole) {
+            to->mean += one * first.mean;
+            to->sigma2 += one * first.sigma2 * first.inverse_digs;
+            to->inverse_digs += one * first.inverse_digs;
+        }
+        if (second.whole) {
+            to->mean += two * second.mean;
+            to->sigma2 += two * second.sigma2 * second.inverse_digs;
+            to->inverse_digs += two * second.inverse_digs;
+        }
+    }
+}
+
+static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const summary,
+                 const struct dig_pooled *const group, const bool assume,
+                 struct dig_gaussian *const g)
+{
+    assert(set != NULL && (summary == NULL || summary->set == set) && group != NULL && g != NULL);
+    *g = (struct dig_gaussian){ .summary    = summary,
+                                .trajectory = group->trajectory,
+                                .channels   = group->forces ? CHANNELS : 1 };
+    struct matrix c;
+    double        variance[NUMBERS];
+    if (set->covariance != NULL &&
+        set->covariance[group->trajectory].freedom >= DIG_GAUSSIAN_FREEDOM) {
+        take_correlation(&set->covariance[group->trajectory], &c);
+        for (size_t i = 0; i < NUMBERS; i++) {
+            variance[i] = set->covariance[group->trajectory].of[i][i];
+        }
+    } else if (assume) {
+        assume_correlation(set, group->trajectory, summary, &c, variance);
+    } else {
+        return false;
+    }
+    measure(group, variance, g);
+    if (g->numbers > 0 && !factor(&c, g)) {
+        g->numbers = 0;
+    }
+    return g->numbers > 0;
+}
+
+bool dig_gaussian_make(const struct dig_curve_set *const set,
+                       const struct dig_prefilter *const summary,
+                       const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
+{
+    return make(set, summary, group, false, gaussian);
+}
+
+bool dig_gaussian_assume(const struct dig_curve_set *const set,
+                         const struct dig_prefilter *const summary,
+                         const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
+{
+    return make(set, summary, group, true, gaussian);
+}
+
+// Means of the cell over an outline's blocks.
+static void blend(const struct dig_gaussian *const g, const struct dig_cell *const cell,
+                  double mean[CHANNELS][HALVES])
+{
+    for (size_t c = 0; c < g->channels; c++) {
+        for (size_t h = 0; h < HALVES; h++) {
+            mean[c][h] = 0.0;
+        }
+    }
+    for (size_t i = 0; i < cell->corners; i++) {
+        const double weight = cell->weight[i];
+        for (size_t c = 0; c < g->channels; c++) {
+            struct dig_outline drawn;
+            const float       *of = drawn.block;
+            if (g->summary != NULL) {
+                of = dig_outline_mean(g->summary, c,
+                                      (size_t)(cell->curve[i] - g->summary->set->curve));
+            } else {
+                dig_outline_draw(cell->curve[i]->mean[c], &drawn);
+            }
+            for (size_t h = 0; h < HALVES; h++) {
+                mean[c][h] += weight * (double)of[h];
+            }
+        }
+    }
+}
+
+// Squared root mean square of the blocks' means.
+static double size2_of(const double mean[HALVES])
+{
+    double sum = 0.0;
+    for (size_t b = 0; b < BLOCKS; b++) {
+        const double block = 0.5 * (mean[2 * b] + mean[2 * b + 1]);
+        sum += block * block;
+    }
+    return sum / BLOCKS;
+}
+
+// What is compared with the i-th number, and its u^2, of a cell.
+struct there {
+    double mean, u2;
+};
+
+static void look(const struct dig_gaussian *const g, const struct dig_cell *const cell,
+                 struct there there[NUMBERS])
+{
+    double mean[CHANNELS][HALVES];
+    double size2[CHANNELS];
+    blend(g, cell, mean);
+    for (size_t c = 0; c < g->channels; c++) {
+        size2[c] = size2_of(mean[c]);
+    }
+    for (size_t i = 0; i < g->numbers; i++) {
+        const struct dig_compared *const n = &g->compared[i];
+        const double *const              t = &mean[n->channel][2 * n->block];
+        there[i].mean = n->first && n->second ? 0.5 * (t[0] + t[1]) : n->first ? t[0] : t[1];
+        there[i].u2 =
+            size2[n->channel] * n->spread * n->spread * (n->inverse_digs + cell->inverse_packings) +
+            n->sigma2 + least_u2;
+    }
+}
+
+struct dig_misses dig_gaussian_misses(const struct dig_gaussian *const g,
+                                      const struct dig_cell *const     cell)
+{
+    assert(g != NULL && g->numbers > 0 && cell != NULL);
+    struct there there[NUMBERS];
+    double       miss[NUMBERS];
+    double       mantissa = 1.0;
+    int          exponent = 0;
+    look(g, cell, there);
+    for (size_t i = 0; i < g->numbers; i++) {
+        miss[i] = (g->compared[i].mean - there[i].mean) / sqrt(there[i].u2);
+        mantissa *= there[i].u2;
+        if (!(mantissa > 1e-60 && mantissa < 1e60)) {
+            int more = 0;
+            mantissa = frexp(mantissa, &more);
+            exponent += more;
+        }
+    }
+    struct dig_misses misses = { .log_det = log(mantissa) + (double)exponent * ln_2 };
+    for (size_t i = 0; i < g->numbers; i++) {
+        for (size_t j = 0; j < i; j++) {
+            miss[i] -= g->lower[i][j] * miss[j];
+        }
+        miss[i] *= g->lower[i][i];
+        misses.square += miss[i] * miss[i];
+    }
+    return misses;
+}
+
+void dig_gaussian_scale(const struct dig_gaussian *const g, const struct dig_cell *const cell,
+                        double u[const NUMBERS])
+{
+    assert(g != NULL && cell != NULL && u != NULL);
+    struct there there[NUMBERS];
+    look(g, cell, there);
+    for (size_t i = 0; i < g->numbers; i++) {
+        u[i] = sqrt(there[i].u2);
+    }
+}

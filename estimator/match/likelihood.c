@@ -1,0 +1,297 @@
+#include "estimator/match/likelihood.h"
+
+#include "estimator/match/posterior.h"
+
+#include <assert.h>
+#include <math.h>
+
+// Loops over points go by strides of this length, counted from 0 and over arrays that are restrict:
+// then compilers work on several points at once.
+enum { STRIDE = 16 };
+_Static_assert(DIG_CURVE_POINTS % STRIDE == 0 && DIG_OUTLINE_BLOCKS % STRIDE == 0, "whole strides");
+
+// How many packings the pooled spread is worth against an entry's own.
+static const double pooled_weight = 4.0;
+
+// Share of the table's pooled spread below which no point of a curve is believed.
+static const double least_spread = 0.25;
+
+// Keeps variances apart from 0, and products of six of them from the end of the numbers.
+static const double least_d = 1e-40;
+
+static const double ln_2 = 0.69314718055994530942;
+
+// Mean and variance of one dig, point by point or block by block, of one channel at one gravel.
+struct channel_curve {
+    double mean[DIG_CURVE_POINTS];
+    double spread2[DIG_CURVE_POINTS];
+};
+
+static void blend_outlines(const struct dig_prefilter *const summary,
+                           const struct dig_cell *const cell, const size_t channel, double mean[],
+                           double sd[])
+{
+    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+        mean[b] = 0.0;
+        sd[b]   = 0.0;
+    }
+    for (size_t c = 0; c < cell->corners; c++) {
+        const size_t       slot    = (size_t)(cell->curve[c] - summary->set->curve);
+        const double       weight  = cell->weight[c];
+        const float *const mean_of = dig_outline_mean(summary, channel, slot);
+        const float *const sd_of   = dig_outline_sd(summary, channel, slot);
+        for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+            mean[b] += weight * (double)mean_of[b];
+        }
+        for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+            sd[b] += weight * (double)sd_of[b];
+        }
+    }
+}
+
+static void make_curve(const struct dig_likelihood *const restrict l,
+                       const struct dig_cell *const cell, const size_t channel,
+                       struct channel_curve *const restrict curve)
+{
+    const double own    = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
+    const double shared = pooled_weight / (pooled_weight + own);
+    if (l->rough != NULL) {
+        blend_outlines(l->rough, cell, channel, curve->mean, curve->spread2);
+    } else {
+        dig_cell_blend(cell, (enum dig_channel)channel, curve->mean, curve->spread2);
+    }
+
+    double mean2 = 0.0;
+    for (size_t k = 0; k < l->count; k += 4) {
+        double four[4];
+        for (size_t i = 0; i < 4; i++) {
+            four[i] = l->measured[k + i] * curve->mean[k + i] * curve->mean[k + i];
+        }
+        mean2 += (four[0] + four[1]) + (four[2] + four[3]);
+    }
+    const double relative2 = l->relative2[channel];
+    const double floor2    = least_spread * least_spread * relative2 * mean2 / l->measured_count;
+    for (size_t from = 0; from < l->count; from += STRIDE) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k       = from + i;
+            const double sd      = curve->spread2[k];
+            const double pooled2 = relative2 * curve->mean[k] * curve->mean[k];
+            curve->spread2[k]    = (1.0 - shared) * sd * sd + shared * pooled2 + floor2;
+        }
+    }
+}
+
+// A product as mantissa and exponent: it never leaves the range of the numbers, and a logarithm,
+// which is dear, is drawn once.
+struct product {
+    double mantissa;
+    int    exponent;
+};
+
+static inline void multiply(struct product *const product, const double factor)
+{
+    product->mantissa *= factor;
+    if (!(product->mantissa > 1e-60 && product->mantissa < 1e60)) {
+        int exponent      = 0;
+        product->mantissa = frexp(product->mantissa, &exponent);
+        product->exponent += exponent;
+    }
+}
+
+static double log_of(const struct product *const product)
+{
+    return log(product->mantissa) + (double)product->exponent * ln_2;
+}
+
+// Sum of the misses and of the logarithms of the variances.
+static double sum_up(const size_t count, const double miss2[], const double d[])
+{
+    double         sum     = 0.0;
+    struct product product = { 1.0, 0 };
+    for (size_t k = 0; k < count; k += 4) {
+        sum += (miss2[k] + miss2[k + 1]) + (miss2[k + 2] + miss2[k + 3]);
+        multiply(&product, d[k] * d[k + 1]);
+        multiply(&product, d[k + 2] * d[k + 3]);
+    }
+    return sum + log_of(&product);
+}
+
+// Normalised misses squared and determinants, point by point or block by block. Where nothing was
+// measured the miss is 0 and the variance 1.
+struct misses {
+    double miss2[DIG_CURVE_POINTS];
+    double d[DIG_CURVE_POINTS];
+};
+
+static void miss_moment(const struct dig_likelihood *const restrict l,
+                        const struct dig_cell *const cell, struct misses *const restrict misses)
+{
+    struct channel_curve moment;
+    make_curve(l, cell, DIG_CHANNEL_MY_Nm, &moment);
+    for (size_t from = 0; from < l->count; from += STRIDE) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k       = from + i;
+            const double widened = l->inverse_digs[k] + cell->inverse_packings;
+            const double d_there = moment.spread2[k] * widened + l->sigma2[0][k] + least_d;
+            const double miss    = l->mean[0][k] - moment.mean[k];
+            misses->miss2[k]     = l->measured[k] * miss * miss / d_there;
+            misses->d[k]         = l->measured[k] * d_there + (1.0 - l->measured[k]);
+        }
+    }
+}
+
+// miss' D^-1 miss and det D of moment and forces at one point, D of the digs' spread and of the
+// measurement, about a mean. By Cholesky's square-free form, D = L diag(e) L'.
+static inline double joint2(const double miss[DIG_FORCE_CHANNELS], const double spread2[],
+                            const double sigma2[], double *const determinant)
+{
+    const double s0  = sqrt(spread2[0]);
+    const double s1  = sqrt(spread2[1]);
+    const double s2  = sqrt(spread2[2]);
+    const double d01 = DIG_POSTERIOR_MY_FX * s0 * s1;
+    const double d02 = DIG_POSTERIOR_MY_FZ * s0 * s2;
+    const double d12 = DIG_POSTERIOR_FX_FZ * s1 * s2;
+
+    const double e0  = spread2[0] + sigma2[0];
+    const double l10 = d01 / e0;
+    const double l20 = d02 / e0;
+    const double e1  = spread2[1] + sigma2[1] - l10 * d01;
+    const double l21 = (d12 - l20 * d01) / e1;
+    const double e2  = spread2[2] + sigma2[2] - l20 * d02 - l21 * l21 * e1;
+    const double y1  = miss[1] - l10 * miss[0];
+    const double y2  = miss[2] - l20 * miss[0] - l21 * y1;
+    *determinant     = e0 * e1 * e2;
+    return miss[0] * miss[0] / e0 + y1 * y1 / e1 + y2 * y2 / e2;
+}
+
+static void miss_all(const struct dig_likelihood *const restrict l,
+                     const struct dig_cell *const cell, struct misses *const restrict misses)
+{
+    struct channel_curve curve[DIG_FORCE_CHANNELS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        make_curve(l, cell, c, &curve[c]);
+    }
+    for (size_t from = 0; from < l->count; from += STRIDE) {
+        for (size_t i = 0; i < STRIDE; i++) {
+            const size_t k         = from + i;
+            const double widened   = l->inverse_digs[k] + cell->inverse_packings;
+            const double miss[]    = { l->mean[0][k] - curve[0].mean[k],
+                                       l->mean[1][k] - curve[1].mean[k],
+                                       l->mean[2][k] - curve[2].mean[k] };
+            const double spread2[] = { widened * curve[0].spread2[k] + least_d,
+                                       widened * curve[1].spread2[k] + least_d,
+                                       widened * curve[2].spread2[k] + least_d };
+            const double sigma2[]  = { l->sigma2[0][k], l->sigma2[1][k], l->sigma2[2][k] };
+            double       determinant;
+            misses->miss2[k] = l->measured[k] * joint2(miss, spread2, sigma2, &determinant);
+            misses->d[k]     = l->measured[k] * determinant + (1.0 - l->measured[k]);
+        }
+    }
+}
+
+static void miss_by(const struct dig_likelihood *const l, const struct dig_cell *const cell,
+                    struct misses *const misses)
+{
+    if (l->channels == 1) {
+        miss_moment(l, cell, misses);
+    } else {
+        miss_all(l, cell, misses);
+    }
+}
+
+double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+{
+    assert(l != NULL && cell != NULL);
+    if (l->is_gaussian) {
+        const struct dig_misses all = dig_gaussian_misses(&l->gaussian, cell);
+        return -0.5 * DIG_POSTERIOR_TRUST * (all.square + all.log_det);
+    }
+    struct misses misses;
+    miss_by(l, cell, &misses);
+    const double sum = sum_up(l->count, misses.miss2, misses.d);
+    return -0.5 * l->effective * sum / l->measured_count;
+}
+
+double dig_likelihood_miss2(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+{
+    assert(l != NULL && cell != NULL);
+    struct misses misses;
+    miss_by(l, cell, &misses);
+    double sum = 0.0;
+    for (size_t k = 0; k < l->count; k++) {
+        sum += misses.miss2[k];
+    }
+    return sum / (l->measured_count * (double)l->channels);
+}
+
+void dig_likelihood_make(const struct dig_curve_set *const set,
+                         const struct dig_prefilter *const summary,
+                         const struct dig_pooled *const group, struct dig_likelihood *const l)
+{
+    assert(set != NULL && group != NULL && l != NULL);
+    *l             = (struct dig_likelihood){ .trajectory = group->trajectory,
+                                              .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
+                                              .count      = DIG_CURVE_POINTS };
+    l->is_gaussian = dig_gaussian_make(set, summary, group, &l->gaussian);
+    for (size_t c = 0; c < l->channels; c++) {
+        l->relative2[c] =
+            summary != NULL ? summary->relative2[group->trajectory][c]
+                            : dig_prefilter_relative2(set, group->trajectory, (enum dig_channel)c);
+    }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double n = group->count[k];
+        if (!(n > 0.0)) {
+            continue;
+        }
+        l->measured_count += 1.0;
+        l->measured[k]     = 1.0;
+        l->inverse_digs[k] = 1.0 / n;
+        l->mean[0][k]      = group->mean_Nm[k];
+        l->sigma2[0][k]    = group->sigma2_Nm2[k] / n;
+        for (size_t c = 1; c < DIG_FORCE_CHANNELS; c++) {
+            l->mean[c][k]   = group->force_N[c - 1][k];
+            l->sigma2[c][k] = group->force_sigma2_N2[c - 1][k] / n;
+        }
+    }
+    const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
+    const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
+    const double correlation_m = DIG_POSTERIOR_CORRELATION * set->tooth_m;
+    const double share         = (l->measured_count - 1.0) / (DIG_CURVE_POINTS - 1);
+    l->effective               = fmax(share * whole_m / correlation_m, 1.0);
+}
+
+static double mean_of_block(const double of[], const size_t block)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < DIG_OUTLINE_POINTS; i++) {
+        sum += of[block * DIG_OUTLINE_POINTS + i];
+    }
+    return sum / DIG_OUTLINE_POINTS;
+}
+
+bool dig_likelihood_outline(const struct dig_prefilter *const summary,
+                            struct dig_likelihood *const      l)
+{
+    assert(summary != NULL && l != NULL && l->rough == NULL);
+    double whole = 0.0;
+    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+        whole += mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
+    }
+    if (whole * DIG_OUTLINE_POINTS < 0.5 * l->measured_count) {
+        return false;
+    }
+
+    // In place: a block's points lie behind all blocks before it.
+    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
+        l->inverse_digs[b] = mean_of_block(l->inverse_digs, b);
+        for (size_t c = 0; c < l->channels; c++) {
+            l->mean[c][b]   = mean_of_block(l->mean[c], b);
+            l->sigma2[c][b] = mean_of_block(l->sigma2[c], b);
+        }
+        l->measured[b] = mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
+    }
+    l->rough          = summary;
+    l->count          = DIG_OUTLINE_BLOCKS;
+    l->measured_count = whole;
+    return true;
+}

@@ -1,0 +1,236 @@
+#include "estimator/match/match.h"
+
+#include "estimator/approach/interpolate.h"
+#include "estimator/match/nearest.h"
+#include "estimator/match/pool.h"
+#include "estimator/match/weighted.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+void dig_match_tell_family(const struct dig_curve_set *const set, struct dig_match *const match)
+{
+    assert(set != NULL && match != NULL);
+    for (int a = 0; a < DIG_AXES; a++) {
+        const enum dig_axis axis  = (enum dig_axis)a;
+        const double        width = dig_axis_position(set, axis, match->high.value[a]) -
+                             dig_axis_position(set, axis, match->low.value[a]);
+        match->untold[a] = match->samples > 0 && width > DIG_MATCH_TOLD;
+    }
+}
+
+bool dig_match_is_family(const struct dig_match *const match)
+{
+    assert(match != NULL);
+    return match->untold[0] || match->untold[1] || match->untold[2];
+}
+
+void dig_match_untold(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
+{
+    assert(match != NULL && text != NULL);
+    int at  = 0;
+    text[0] = '\0';
+    for (int a = 0; a < DIG_AXES; a++) {
+        if (match->untold[a]) {
+            at += snprintf(text + at, (size_t)(DIG_UNTOLD_SIZE - at), "%s%s", at > 0 ? ", " : "",
+                           dig_axis_name((enum dig_axis)a));
+        }
+    }
+}
+
+static bool is_measured(const struct dig_observation *const o, const size_t point)
+{
+    const double at = (double)point / (DIG_CURVE_POINTS - 1);
+    return at >= o->first && at <= o->last;
+}
+
+enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
+                                      const struct dig_observation *const observation)
+{
+    assert(set != NULL && observation != NULL);
+    if (observation->trajectory < 0 || (size_t)observation->trajectory >= set->trajectories ||
+        !(observation->first >= 0.0 && observation->last <= 1.0)) {
+        return DIG_EINVAL;
+    }
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        if (!isfinite(observation->moment_Nm[k]) ||
+            !(observation->sigma_Nm[k] >= 0.0 && isfinite(observation->sigma_Nm[k]))) {
+            return DIG_EINVAL;
+        }
+        for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+            if (!isfinite(observation->force_N[c][k]) ||
+                !(observation->force_sigma_N[c][k] >= 0.0 &&
+                  isfinite(observation->force_sigma_N[c][k]))) {
+                return DIG_EINVAL;
+            }
+        }
+        sum += is_measured(observation, k) ? pow(observation->moment_Nm[k], 2.0) : 0.0;
+    }
+    return sum > 0.0 && isfinite(sum) ? DIG_OK : DIG_EINVAL;
+}
+
+struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
+                                  const struct dig_pooled *const group)
+{
+    double mean_Nm[DIG_CURVE_POINTS];
+    double sd_Nm[DIG_CURVE_POINTS];
+    dig_cell_blend(cell, DIG_CHANNEL_MY_Nm, mean_Nm, sd_Nm);
+
+    const double widened = 1.0 + cell->inverse_packings;
+    double       miss2   = 0.0;
+    double       floor2  = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double n    = group->count[k]; // 0 where nothing was measured
+        const double miss = group->mean_Nm[k] - mean_Nm[k];
+        miss2 += n * miss * miss;
+        floor2 += n * (sd_Nm[k] * sd_Nm[k] * widened + group->sigma2_Nm2[k]);
+    }
+    return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
+                                .floor2_Nm2 = floor2,
+                                .whole2_Nm2 = group->whole_Nm2 };
+}
+
+enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
+                                      const struct dig_gravel *const    gravel,
+                                      const size_t trajectory, struct dig_curve *const curve)
+{
+    assert(set != NULL && gravel != NULL && curve != NULL);
+    if (trajectory >= set->trajectories) {
+        return DIG_EINVAL;
+    }
+    struct dig_cell       cell;
+    const enum dig_status status = dig_cell_find(set, gravel, trajectory, &cell);
+    if (status != DIG_OK) {
+        return status;
+    }
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve->mean[c][k] = (float)dig_cell_mean(&cell, (enum dig_channel)c, k);
+            curve->sd[c][k]   = (float)dig_cell_sd(&cell, (enum dig_channel)c, k);
+        }
+    }
+    return DIG_OK;
+}
+
+// Distance of an entry from all digs; infinite when it lacks one of their trajectories.
+static struct dig_distance entry_distance(const struct dig_curve_set *const set, const size_t entry,
+                                          const struct dig_pool_sums *const sums)
+{
+    struct dig_misfit all = { .miss2_Nm2 = 0.0 };
+    for (size_t g = 0; g < sums->groups; g++) {
+        const size_t slot = entry * set->trajectories + sums->group[g].trajectory;
+        if (set->packings[slot] <= 0) {
+            return (struct dig_distance){ .distance = INFINITY };
+        }
+        const struct dig_cell cell = {
+            .corners          = 1,
+            .curve            = { &set->curve[slot] },
+            .weight           = { 1.0 },
+            .inverse_packings = 1.0 / (double)set->packings[slot],
+            .mean_variance    = 1.0 / (double)set->packings[slot],
+        };
+        dig_misfit_add(&all, dig_cell_misfit(&cell, &sums->group[g]));
+    }
+    return dig_misfit_distance(&all);
+}
+
+// The entry nearest to all digs, the first of several; -1: none.
+static int look_at_all(const struct dig_curve_set *const set,
+                       const struct dig_pool_sums *const sums)
+{
+    int    nearest = -1;
+    double least   = INFINITY;
+    for (size_t e = 0; e < set->entries; e++) {
+        const double distance = entry_distance(set, e, sums).distance;
+        if (distance < least) {
+            least   = distance;
+            nearest = (int)e;
+        }
+    }
+    return nearest;
+}
+
+// By the summary, if there is one.
+static enum dig_status find(const struct dig_curve_set *const set,
+                            const struct dig_prefilter *const summary, const size_t digs,
+                            const struct dig_observation dig[], const double outside_floors,
+                            struct dig_match *const match)
+{
+    if (digs < 1 || !(outside_floors > 0.0)) {
+        return DIG_EINVAL;
+    }
+    for (size_t d = 0; d < digs; d++) {
+        if (dig_observation_check(set, &dig[d]) != DIG_OK) {
+            return DIG_EINVAL;
+        }
+    }
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+
+    const int nearest =
+        summary != NULL ? dig_nearest_find(summary, &sums) : look_at_all(set, &sums);
+    if (nearest < 0) {
+        return DIG_ENOMATCH;
+    }
+    const struct dig_distance best = entry_distance(set, (size_t)nearest, &sums);
+
+    *match = (struct dig_match){
+        .valid            = true,
+        .dig_count        = sums.dig_count,
+        .digs             = digs,
+        .nearest          = nearest,
+        .nearest_distance = best.distance,
+        .weighted         = -1,
+
+        .weighted_distance = (double)NAN,
+        .gravel            = set->gravel[nearest],
+        .distance          = best.distance,
+        .mean              = set->gravel[nearest],
+        .mode              = set->gravel[nearest],
+        .low               = set->gravel[nearest],
+        .high              = set->gravel[nearest],
+        .noise_floor       = best.noise_floor,
+        .outside           = best.distance > outside_floors * best.noise_floor,
+        .outside_floors    = outside_floors,
+    };
+    return DIG_OK;
+}
+
+void dig_match_weigh(const struct dig_curve_set *const set,
+                     const struct dig_prefilter *const summary, const size_t digs,
+                     const struct dig_observation dig[], struct dig_match *const match)
+{
+    assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+    const struct dig_weighted best = dig_weighted_find(set, summary, &sums, (size_t)match->nearest);
+    match->weighted                = best.entry;
+    match->weighted_distance       = best.entry >= 0 ? best.distance : (double)NAN;
+}
+
+enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,
+                                       const struct dig_observation dig[],
+                                       const double outside_floors, struct dig_match *const match)
+{
+    assert(set != NULL && dig != NULL && match != NULL);
+    return find(set, NULL, digs, dig, outside_floors, match);
+}
+
+enum dig_status dig_match_nearest_by(const struct dig_prefilter *const summary, const size_t digs,
+                                     const struct dig_observation dig[],
+                                     const double outside_floors, struct dig_match *const match)
+{
+    assert(summary != NULL && dig != NULL && match != NULL);
+    return find(summary->set, summary, digs, dig, outside_floors, match);
+}
+
+enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
+                                  const struct dig_observation *const observation,
+                                  const double outside_floors, struct dig_match *const match)
+{
+    return dig_match_nearest_pool(set, 1, observation, outside_floors, match);
+}

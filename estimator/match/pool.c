@@ -1,0 +1,67 @@
+#include "estimator/match/pool.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+void dig_pool_add(struct dig_pool *const pool, const struct dig_observation *const dig)
+{
+    assert(pool != NULL && dig != NULL);
+    if (pool->digs == DIG_POOL_MAX) {
+        memmove(&pool->dig[0], &pool->dig[1], (DIG_POOL_MAX - 1) * sizeof pool->dig[0]);
+        pool->digs--;
+    }
+    pool->dig[pool->digs++] = *dig;
+}
+
+static struct dig_pooled *group_of(struct dig_pool_sums *const sums, const size_t trajectory)
+{
+    size_t g = 0;
+    while (g < sums->groups && sums->group[g].trajectory != trajectory) {
+        g++;
+    }
+    if (g == sums->groups) {
+        assert(g < DIG_TRAJECTORY_MAX);
+        sums->group[g] = (struct dig_pooled){ .trajectory = trajectory, .forces = true };
+        sums->groups++;
+    }
+    return &sums->group[g];
+}
+
+// Mean and sum of squares about it, updated by one value (Welford 1962).
+static void add(struct dig_pooled *const group, const struct dig_observation *const dig)
+{
+    group->forces = group->forces && dig->forces;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        if (at < dig->first || at > dig->last) {
+            continue;
+        }
+        const double value  = dig->moment_Nm[k];
+        const double sigma2 = dig->sigma_Nm[k] * dig->sigma_Nm[k];
+        const double off    = value - group->mean_Nm[k];
+        group->count[k] += 1.0;
+        group->mean_Nm[k] += off / group->count[k];
+        group->sigma2_Nm2[k] += (sigma2 - group->sigma2_Nm2[k]) / group->count[k];
+        group->scatter_Nm2 += off * (value - group->mean_Nm[k]);
+        group->whole_Nm2 += value * value;
+        for (size_t c = 0; group->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+            const double share  = 1.0 / group->count[k];
+            const double force2 = dig->force_sigma_N[c][k] * dig->force_sigma_N[c][k];
+            group->force_N[c][k] += share * (dig->force_N[c][k] - group->force_N[c][k]);
+            group->force_sigma2_N2[c][k] += share * (force2 - group->force_sigma2_N2[c][k]);
+        }
+    }
+}
+
+void dig_pool_sum(const size_t digs, const struct dig_observation dig[],
+                  struct dig_pool_sums *const sums)
+{
+    assert(digs > 0 && dig != NULL && sums != NULL);
+    sums->digs      = digs;
+    sums->dig_count = dig[digs - 1].dig_count;
+    sums->groups    = 0;
+    for (size_t d = 0; d < digs; d++) {
+        add(group_of(sums, (size_t)dig[d].trajectory), &dig[d]);
+    }
+}

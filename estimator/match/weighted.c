@@ -1,0 +1,140 @@
+#include "estimator/match/weighted.h"
+
+#include "estimator/match/gaussian.h"
+
+#include <assert.h>
+#include <math.h>
+
+enum { NUMBERS = DIG_COVARIANCE_NUMBERS };
+
+// Every so many entries one is looked at first, for a good entry to begin with: the nearest by the
+// Euclidean norm can be a hundred times as far by this distance. A prime, so that the look goes
+// along every axis of the table's grid.
+enum { FIRST_LOOK = 17 };
+
+// One trajectory, made white: q is the sum of (white_i - sum_j by_ij t_j)^2.
+struct along {
+    struct dig_gaussian gaussian;
+    double              by[NUMBERS][NUMBERS]; // below the diagonal and on it
+    double              white[NUMBERS];
+};
+
+struct search {
+    const struct dig_curve_set *set;
+    const struct dig_prefilter *summary;
+    size_t                      groups;
+    struct along                along[DIG_TRAJECTORY_MAX];
+    size_t                      entry; // the nearest so far
+    double                      least; // its q
+};
+
+// by = L^-1 U^-1.
+static void whiten(const struct dig_curve_set *const set, const size_t nearest,
+                   struct along *const a)
+{
+    const struct dig_gaussian *const g    = &a->gaussian;
+    const size_t                     slot = nearest * set->trajectories + g->trajectory;
+    assert(set->packings[slot] > 0);
+    const struct dig_cell cell = { .corners          = 1,
+                                   .curve            = { &set->curve[slot] },
+                                   .weight           = { 1.0 },
+                                   .inverse_packings = 1.0 / (double)set->packings[slot] };
+    double                u[NUMBERS];
+    dig_gaussian_scale(g, &cell, u);
+    for (size_t i = 0; i < g->numbers; i++) {
+        a->white[i] = 0.0;
+        for (size_t j = 0; j <= i; j++) {
+            double sum = i == j ? 1.0 / u[j] : 0.0;
+            for (size_t k = j; k < i; k++) {
+                sum -= g->lower[i][k] * a->by[k][j];
+            }
+            a->by[i][j] = sum * g->lower[i][i];
+            a->white[i] += a->by[i][j] * g->compared[j].mean;
+        }
+    }
+}
+
+// What of an entry's outline is compared with a number.
+static double there(const struct dig_compared *const n, const float outline[])
+{
+    const double first  = (double)outline[2 * n->block];
+    const double second = (double)outline[2 * n->block + 1];
+    return n->first && n->second ? 0.5 * (first + second) : n->first ? first : second;
+}
+
+// q of one trajectory and what was summed up before; above the limit not to its end. NaN of a curve
+// that is none.
+static double square(const struct along *const a, const float *const outline[], const double limit,
+                     double sum)
+{
+    double t[NUMBERS];
+    for (size_t i = 0; i < a->gaussian.numbers && sum <= limit; i++) {
+        const struct dig_compared *const n   = &a->gaussian.compared[i];
+        double                           own = a->white[i];
+        t[i]                                 = there(n, outline[n->channel]);
+        for (size_t j = 0; j <= i; j++) {
+            own -= a->by[i][j] * t[j];
+        }
+        sum += own * own;
+    }
+    return sum;
+}
+
+// Above the limit at once for an entry that lacks a trajectory.
+static double square_of(const struct search *const s, const size_t entry, const double limit)
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < s->groups && sum <= limit; g++) {
+        const struct along *const a    = &s->along[g];
+        const size_t              slot = entry * s->set->trajectories + a->gaussian.trajectory;
+        struct dig_outline        drawn[DIG_FORCE_CHANNELS];
+        const float              *outline[DIG_FORCE_CHANNELS];
+        if (s->set->packings[slot] <= 0) {
+            return INFINITY;
+        }
+        for (size_t c = 0; c < a->gaussian.channels; c++) {
+            if (s->summary != NULL) {
+                outline[c] = dig_outline_mean(s->summary, c, slot);
+            } else {
+                dig_outline_draw(s->set->curve[slot].mean[c], &drawn[c]);
+                outline[c] = drawn[c].block;
+            }
+        }
+        sum = square(a, outline, limit, sum);
+    }
+    return sum;
+}
+
+static void look_at(struct search *const s, const size_t entry)
+{
+    const double sum = square_of(s, entry, s->least);
+    if (sum < s->least || (sum <= s->least && entry < s->entry)) {
+        s->least = sum;
+        s->entry = entry;
+    }
+}
+
+struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
+                                      const struct dig_prefilter *const summary,
+                                      const struct dig_pool_sums *const sums, const size_t nearest)
+{
+    assert(set != NULL && sums != NULL && nearest < set->entries);
+    struct search s       = { .set = set, .summary = summary, .groups = sums->groups };
+    double        numbers = 0.0;
+    for (size_t g = 0; g < sums->groups; g++) {
+        if (!dig_gaussian_assume(set, summary, &sums->group[g], &s.along[g].gaussian)) {
+            return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
+        }
+        whiten(set, nearest, &s.along[g]);
+        numbers += (double)s.along[g].gaussian.numbers;
+    }
+    s.entry = nearest;
+    s.least = square_of(&s, nearest, INFINITY);
+    for (size_t e = 0; e < set->entries; e += FIRST_LOOK) {
+        look_at(&s, e);
+    }
+    for (size_t e = 0; e < set->entries; e++) {
+        look_at(&s, e);
+    }
+    return (struct dig_weighted){ .entry = (int)s.entry, .distance = sqrt(s.least / numbers) };
+}

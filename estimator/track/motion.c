@@ -1,0 +1,82 @@
+#include "estimator/track/motion.h"
+
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+// The rope's length, of the tooth's.
+static const double rope_share = 1.0 / 30.0;
+
+// Noise of the angles averages out over this: else, in a long pause, its rarest would turn the
+// rope.
+static const double settle_s = 0.03;
+
+// A tooth that goes up or down more steeply than this is not dragged; a bucket whose turn is more
+// of its way than the pin's, at 45 degrees between the two, curls. And by how much either border
+// lies farther from what was told last.
+static const double steep_rad = 30.0 * DIG_RAD_PER_DEG;
+static const double turns_rad = 45.0 * DIG_RAD_PER_DEG;
+static const double more_rad  = 5.0 * DIG_RAD_PER_DEG;
+
+// Tows the tail; false: the rope is slack, and its direction says nothing.
+static bool tow(struct dig_motion_state *const state, const double rope_m, const double share,
+                const struct dig_path_point *const point, struct dig_path_point *const way)
+{
+    if (!state->towed) {
+        *state = (struct dig_motion_state){ .towed = true, .point = *point, .tail = *point };
+        return false;
+    }
+    state->point =
+        dig_path_point_add_scaled(state->point, share, dig_path_point_sub(*point, state->point));
+    const struct dig_path_point off   = dig_path_point_sub(state->point, state->tail);
+    const double                far_m = sqrt(dig_path_point_dot(off, off));
+    if (!(far_m > rope_m)) {
+        return false;
+    }
+    state->tail = dig_path_point_add_scaled(state->tail, (far_m - rope_m) / far_m, off);
+    *way        = off;
+    return true;
+}
+
+static enum dig_motion classify(const enum dig_motion now, const double theta_rad,
+                                const struct dig_path_point *const way)
+{
+    const double turned_rad  = atan2(fabs(way->turn_m), hypot(way->x_m, way->z_m));
+    const double to_turn_rad = now == DIG_MOTION_NONE   ? 0.0
+                               : now == DIG_MOTION_CURL ? -more_rad
+                                                        : more_rad;
+    if (turned_rad > turns_rad + to_turn_rad) {
+        return way->turn_m > 0.0 ? DIG_MOTION_CURL : now;
+    }
+
+    // The tooth is at pin + L (sin theta, -cos theta).
+    const double forth_m      = way->x_m + way->turn_m * cos(theta_rad);
+    const double up_m         = way->z_m + way->turn_m * sin(theta_rad);
+    const double up_rad       = atan2(up_m, fabs(forth_m));
+    const bool   steep        = now == DIG_MOTION_PENETRATION || now == DIG_MOTION_LIFT;
+    const double to_steep_rad = steep ? -more_rad : now == DIG_MOTION_DRAG ? more_rad : 0.0;
+    if (fabs(up_rad) > steep_rad + to_steep_rad) {
+        return up_rad < 0.0 ? DIG_MOTION_PENETRATION : DIG_MOTION_LIFT;
+    }
+    return forth_m > 0.0 ? DIG_MOTION_DRAG : now;
+}
+
+enum dig_motion dig_motion_step(struct dig_motion_state *const state, const double tooth_m,
+                                const double dt_s, const enum dig_dig_phase phase,
+                                const struct dig_path_point *const point)
+{
+    assert(state != NULL && tooth_m > 0.0 && point != NULL);
+    struct dig_path_point way   = { 0.0, 0.0, 0.0 };
+    const double          share = dt_s / (settle_s + dt_s);
+    const bool            moved = tow(state, rope_share * tooth_m, share, point, &way);
+    if (phase == DIG_PHASE_AIR) {
+        state->motion = DIG_MOTION_NONE;
+        return DIG_MOTION_NONE;
+    }
+    if (moved) {
+        state->motion = classify(state->motion, state->point.turn_m / tooth_m, &way);
+    }
+    return phase == DIG_PHASE_EXIT ? DIG_MOTION_NONE : state->motion;
+}

@@ -1,0 +1,74 @@
+#include "estimator/track/recorded_dig.h"
+
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+
+// Vertices this far apart, rig scale: several times what a bus's steps of angle move the pin.
+static double vertex_spacing_m(const struct dig_curve_set *const set)
+{
+    return 0.025 * set->tooth_m;
+}
+
+void dig_recorded_dig_forget(struct dig_recorded_dig *const    raw,
+                             const struct dig_curve_set *const set)
+{
+    assert(raw != NULL && set != NULL);
+    dig_window_close(&raw->window);
+    raw->followed = (struct dig_followed){ .last_ns = raw->followed.last_ns };
+    raw->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
+}
+
+void dig_recorded_dig_touch(struct dig_recorded_dig *const     raw,
+                            const struct dig_path_point *const point)
+{
+    assert(raw != NULL && point != NULL);
+    dig_window_open(&raw->window);
+    for (size_t i = 0; i < raw->window.count; i++) {
+        (void)dig_path_add(&raw->path, &raw->window.sample[i].pose, false);
+    }
+    dig_path_touch(&raw->path, point);
+}
+
+struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const set,
+                                             const double lambda, const double pin_X_m,
+                                             const double pin_Z_m, const double phi_rad)
+{
+    assert(set != NULL);
+    const double theta_rad = remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI);
+    return (struct dig_path_point){
+        .x_m    = -pin_X_m / lambda,
+        .z_m    = pin_Z_m / lambda,
+        .turn_m = set->tooth_m * theta_rad,
+    };
+}
+
+void dig_recorded_dig_add(struct dig_recorded_dig *const raw, const double lambda,
+                          const int64_t time_ns, const struct dig_wrench *const wrench,
+                          const double bias_Nm, const struct dig_path_point *const point)
+{
+    assert(raw != NULL && wrench != NULL && point != NULL);
+    const double                   lambda3 = lambda * lambda * lambda;
+    const double                   lambda4 = lambda * lambda3;
+    const struct dig_window_sample sample  = {
+         .time_s    = 1e-9 * (double)time_ns / sqrt(lambda),
+         .moment_Nm = (wrench->My_Nm - bias_Nm) / lambda4,
+         .pose      = *point,
+         .sigma_Nm  = (float)(wrench->sigma_My_Nm / lambda4),
+         .slow_Nm   = (float)(wrench->slow_sigma_My_Nm / lambda4),
+
+         .has_forces    = wrench->force_valid,
+         .force_N       = { (float)(wrench->Fx_N / lambda3), (float)(wrench->Fz_N / lambda3) },
+         .force_sigma_N = { (float)(wrench->sigma_Fx_N / lambda3),
+                            (float)(wrench->sigma_Fz_N / lambda3) },
+         .force_slow_N  = { (float)(wrench->slow_sigma_Fx_N / lambda3),
+                            (float)(wrench->slow_sigma_Fz_N / lambda3) },
+    };
+    dig_window_add(&raw->window, &sample);
+}
+
+size_t dig_recorded_dig_size(void)
+{
+    return sizeof(struct dig_recorded_dig);
+}

@@ -1,0 +1,301 @@
+#include "estimator/track/window.h"
+
+#include "estimator/track/ending.h"
+
+#include <assert.h>
+#include <math.h>
+
+// Between two samples the bucket moves less than this share of the route.
+#define LOOK 0.10
+
+// Steps forward smaller than this are noise of the angles.
+#define STANDING 0.004
+
+// Where the next sample goes once the window is full. Doubling number g drops, of what is there,
+// the slots whose bit g - 1 is set; within each residue of the lower bits slots ascend in time, and
+// so do the residues. Slots are filled in that order, each dropped one giving way when its turn
+// comes.
+static size_t next_slot(struct dig_window *const window)
+{
+    const size_t half = DIG_WINDOW_MAX / 2;
+    if (window->stride == 1 || window->replaced == half) {
+        window->stride *= 2;
+        window->replaced = 0;
+    }
+    const size_t bit     = window->stride / 2;
+    const size_t in_each = half / bit;
+    const size_t slot = window->replaced / in_each + bit + 2 * bit * (window->replaced % in_each);
+    window->replaced++;
+    return slot;
+}
+
+void dig_window_add(struct dig_window *const window, const struct dig_window_sample *const sample)
+{
+    assert(window != NULL && sample != NULL);
+    if (!window->open) {
+        window->ring[window->before % DIG_WINDOW_BEFORE] = *sample;
+        window->before++;
+        return;
+    }
+    if (++window->skipped < window->stride) {
+        return;
+    }
+    window->skipped   = 0;
+    const size_t slot = window->count < DIG_WINDOW_MAX ? window->count++ : next_slot(window);
+
+    window->sample[slot] = *sample;
+}
+
+void dig_window_open(struct dig_window *const window)
+{
+    assert(window != NULL && !window->open);
+    const size_t have = window->before < DIG_WINDOW_BEFORE ? window->before : DIG_WINDOW_BEFORE;
+    for (size_t i = 0; i < have; i++) {
+        window->sample[i] = window->ring[(window->before - have + i) % DIG_WINDOW_BEFORE];
+    }
+    window->open     = true;
+    window->count    = have;
+    window->stride   = 1;
+    window->skipped  = 0;
+    window->replaced = 0;
+    window->before   = 0;
+}
+
+void dig_window_close(struct dig_window *const window)
+{
+    assert(window != NULL);
+    window->open   = false;
+    window->count  = 0;
+    window->before = 0;
+}
+
+// Shell's sort with Ciura's gaps: in place, and qsort() allocates.
+static void sort_by_time(const size_t count, struct dig_window_sample sample[])
+{
+    static const size_t gaps[] = { 8929, 3937, 1750, 701, 301, 132, 57, 23, 10, 4, 1 };
+    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
+        const size_t gap = gaps[g];
+        for (size_t i = gap; i < count; i++) {
+            const struct dig_window_sample moved = sample[i];
+            size_t                         to    = i;
+            for (; to >= gap && sample[to - gap].time_s > moved.time_s; to -= gap) {
+                sample[to] = sample[to - gap];
+            }
+            sample[to] = moved;
+        }
+    }
+}
+
+// In the order of time.
+static void settle(struct dig_window *const window)
+{
+    if (window->stride > 1) {
+        sort_by_time(window->count, window->sample);
+    }
+    for (size_t i = 0; i < window->count; i++) {
+        window->time_s[i] = window->sample[i].time_s;
+    }
+}
+
+// A range of samples.
+struct range {
+    size_t first, end;
+};
+
+// Furthest progress up to each sample, and the samples from the last one still at the start to the
+// first one at the end.
+static struct range follow(struct dig_window *const window, const struct dig_route *const route,
+                           const struct dig_track *const track, const double limit_m)
+{
+    struct range range    = { 0, 0 };
+    double       last     = 0.0;
+    double       furthest = 0.0;
+    for (size_t i = 0; i < window->count && furthest < 1.0; i++) {
+        const struct dig_path_point at    = dig_track_turned(track, &window->sample[i].pose);
+        const struct dig_place      place = dig_route_place(route, track->dx_m, track->dz_m, &at,
+                                                            last - LOOK, fmin(last + LOOK, 1.0));
+        if (place.distance_m <= limit_m) {
+            last     = place.progress;
+            furthest = fmax(furthest, place.progress);
+        }
+        window->progress[i] = furthest;
+        range.first         = furthest > 0.0 ? range.first : i;
+        range.end           = i + 1;
+    }
+
+    // Broken off: what came after the bucket's last step forward is the way out.
+    while (furthest < 1.0 && range.end > range.first + 1 &&
+           window->progress[range.end - 2] > furthest - STANDING) {
+        range.end--;
+    }
+    return range;
+}
+
+// The progress told of the range: of a dig that goes on, no more than is smoothed from both sides.
+static double told_until(const struct dig_window *const window, const struct range range,
+                         const double half_s)
+{
+    size_t i = range.end - 1;
+    if (window->goes_on && window->progress[i] < 1.0) {
+        const double until_s = window->time_s[i] - half_s;
+        while (i > range.first && window->time_s[i] > until_s) {
+            i--;
+        }
+    }
+    return window->progress[i];
+}
+
+// Samples of the range within half_s of sample i, at least 1: what white noise averages over.
+static double samples_within(const struct dig_window *const window, const struct range range,
+                             const size_t i, const double half_s)
+{
+    const double span_s = window->time_s[range.end - 1] - window->time_s[range.first];
+    const double per_s  = (double)(range.end - range.first - 1) / span_s;
+    const double from_s = fmax(window->time_s[i] - half_s, window->time_s[range.first]);
+    const double to_s   = fmin(window->time_s[i] + half_s, window->time_s[range.end - 1]);
+    return fmax((to_s - from_s) * per_s, 1.0);
+}
+
+// Where samples are missing for longer than is smoothed over, no one knows what the moment was.
+double dig_window_hole_s(const double half_s)
+{
+    return fmax(half_s, 0.02);
+}
+
+static bool has_hole(const struct dig_window *const window, const struct range range,
+                     const double half_s)
+{
+    const double longest_s = dig_window_hole_s(half_s);
+    for (size_t i = range.first + 1; i < range.end; i++) {
+        const double step_s = window->time_s[i] - window->time_s[i - 1];
+        if (step_s > longest_s * (double)window->stride) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Where on the path a point of the grid was first reached: between a sample and the next.
+struct spot {
+    bool   measured;
+    size_t sample;
+    double share; // of the next
+};
+
+static size_t find_spots(const struct dig_window *const window, const struct range range,
+                         const double first, const double last, struct spot spot[])
+{
+    size_t i      = range.first;
+    size_t points = 0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        spot[k]         = (struct spot){ .measured = false };
+        if (at < first || at > last) {
+            continue;
+        }
+        while (i + 2 < range.end && window->progress[i + 1] < at) {
+            i++;
+        }
+        const double span = window->progress[i + 1] - window->progress[i];
+        const double f = span > 0.0 ? fmin(fmax((at - window->progress[i]) / span, 0.0), 1.0) : 0.0;
+        spot[k]        = (struct spot){ true, i, f };
+        points++;
+    }
+    return points;
+}
+
+// Smooths what lies in window->value and reads it off.
+static void read_off(struct dig_window *const window, const struct range range, const double half_s,
+                     const struct spot spot[], double out[DIG_CURVE_POINTS])
+{
+    dig_curve_smooth(range.end - range.first, &window->time_s[range.first],
+                     &window->value[range.first], half_s, &window->smooth[range.first]);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const size_t i = spot[k].sample;
+        out[k]         = spot[k].measured ? window->smooth[i] +
+                                        spot[k].share * (window->smooth[i + 1] - window->smooth[i])
+                                          : 0.0;
+    }
+}
+
+// Of a sample's sigma, what smoothing leaves: white noise averages, the slow part does not.
+static double smoothed_sigma(const struct dig_window *const window, const struct range range,
+                             const size_t i, const double half_s, const double sigma,
+                             const double slow)
+{
+    const double fast = fmax(sigma * sigma - slow * slow, 0.0);
+    return sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
+}
+
+static void read_moment(struct dig_window *const window, const struct range range,
+                        const double half_s, const struct spot spot[],
+                        struct dig_observation *const observation)
+{
+    for (size_t i = range.first; i < range.end; i++) {
+        window->value[i] = window->sample[i].moment_Nm;
+    }
+    read_off(window, range, half_s, spot, observation->moment_Nm);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const struct dig_window_sample *const at = &window->sample[spot[k].sample];
+
+        observation->sigma_Nm[k] = spot[k].measured
+                                       ? smoothed_sigma(window, range, spot[k].sample, half_s,
+                                                        (double)at->sigma_Nm, (double)at->slow_Nm)
+                                       : 0.0;
+    }
+}
+
+static void read_forces(struct dig_window *const window, const struct range range,
+                        const double half_s, const struct spot spot[],
+                        struct dig_observation *const observation)
+{
+    observation->forces = true;
+    for (size_t i = range.first; i < range.end; i++) {
+        observation->forces = observation->forces && window->sample[i].has_forces;
+    }
+    for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
+        for (size_t i = range.first; i < range.end; i++) {
+            window->value[i] = (double)window->sample[i].force_N[c];
+        }
+        read_off(window, range, half_s, spot, observation->force_N[c]);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const struct dig_window_sample *const at = &window->sample[spot[k].sample];
+
+            observation->force_sigma_N[c][k] =
+                spot[k].measured
+                    ? smoothed_sigma(window, range, spot[k].sample, half_s,
+                                     (double)at->force_sigma_N[c], (double)at->force_slow_N[c])
+                    : 0.0;
+        }
+    }
+}
+
+enum dig_status dig_window_observe(struct dig_window *const      window,
+                                   const struct dig_route *const route,
+                                   const struct dig_track *const track, const double limit_m,
+                                   const double half_s, struct dig_observation *const observation)
+{
+    assert(window != NULL && route != NULL && track != NULL && observation != NULL);
+
+    settle(window);
+    const struct range range = follow(window, route, track, limit_m);
+    if (range.end < range.first + 3 || has_hole(window, range, half_s)) {
+        return DIG_ENOMATCH;
+    }
+    const double first = window->progress[range.first];
+    const double last  = told_until(window, range, half_s);
+    struct spot  spot[DIG_CURVE_POINTS];
+    if (find_spots(window, range, first, last, spot) < 2) {
+        return DIG_ENOMATCH;
+    }
+    read_moment(window, range, half_s, spot, observation);
+    read_forces(window, range, half_s, spot, observation);
+    const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
+
+    observation->ending =
+        window->goes_on ? DIG_ENDING_OPEN : dig_ending_of(route, track, last, left, 0.5 * limit_m);
+    observation->first      = first;
+    observation->last       = last;
+    observation->off_path_m = track->rms_m;
+    return DIG_OK;
+}

@@ -1,0 +1,58 @@
+// The balance of moments about the three pins, solved at one instant: what wrench.c makes a wrench
+// of, and what must be nothing in free air.
+
+#ifndef DIG_ESTIMATOR_WRENCH_BALANCE_H
+#define DIG_ESTIMATOR_WRENCH_BALANCE_H
+
+#include "core/linkage.h"
+#include "core/machine.h"
+#include "core/sample.h"
+#include "core/status.h"
+#include "estimator/wrench/correction.h"
+#include "estimator/wrench/cylinder.h"
+#include "estimator/wrench/rates.h"
+#include "estimator/wrench/statics.h"
+
+/// What a sample says, by joint. friction and rates may be NULL: none.
+struct dig_readings {
+    double                     joint_rad[DIG_JOINTS];
+    double                     pitch_rad;
+    struct dig_push            push[DIG_JOINTS];
+    const struct dig_friction *friction; // [DIG_JOINTS]
+    const struct dig_rates    *rates;
+};
+
+enum dig_part_of_wrench { DIG_PART_MY, DIG_PART_FX, DIG_PART_FZ, DIG_PARTS };
+
+/// One solution. rest_Nm: drive, weight and inertia about each pin; minus the soil's moment there.
+/// Partials by the drives' moments. What could not be solved is 0.
+struct dig_balance {
+    double           part[DIG_PARTS]; // My, Fx, Fz of the soil, rig axes
+    double           by_moment[DIG_PARTS][DIG_JOINTS];
+    double           rest_Nm[DIG_JOINTS];
+    struct dig_lever lever[DIG_JOINTS];
+    bool             lever_ok[DIG_JOINTS];
+    bool             moment_ok, force_ok;
+};
+
+/// Reads a sample: with a correction (NULL: none) its pressures are put right first. A drive that
+/// lacks a pressure pushes by 0 and is not valid. DIG_ESTALE, DIG_EINVAL as dig_wrench_solve().
+/// rates: NULL only without correction.
+DIG_MUST_CHECK enum dig_status dig_readings_take(const struct dig_machine    *machine,
+                                                 const struct dig_correction *correction,
+                                                 const struct dig_sample     *sample,
+                                                 const struct dig_rates      *rates,
+                                                 struct dig_readings         *readings);
+
+/// What a drive loses of its push at this speed of the rod, N; drives against the motion.
+double dig_friction_loss_N(const struct dig_friction *friction, double push_N, double rod_mps);
+
+/// Solves. Constant time.
+struct dig_balance dig_balance_solve(const struct dig_machine  *machine,
+                                     const struct dig_readings *readings,
+                                     const struct dig_front    *front);
+
+/// Whether the force can be told where the front stands: boom and arm not in one line.
+bool dig_balance_tells_force(const struct dig_front *front);
+
+#endif // DIG_ESTIMATOR_WRENCH_BALANCE_H

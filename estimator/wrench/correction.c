@@ -1,0 +1,131 @@
+#include "estimator/wrench/correction.h"
+
+#include "core/linkage.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+// The struct holds nothing but doubles: it is read as an array of them.
+enum { NUMBERS = sizeof(struct dig_correction) / sizeof(double) };
+_Static_assert(sizeof(struct dig_correction) % sizeof(double) == 0, "doubles only");
+
+bool dig_correction_is_none(const struct dig_correction *const correction)
+{
+    assert(correction != NULL);
+    const double *const number = (const double *)(const void *)correction;
+    bool                none   = true;
+    for (size_t i = 0; i < NUMBERS; i++) {
+        none = none && fpclassify(number[i]) == FP_ZERO;
+    }
+    return none;
+}
+
+// The centre of mass moves; the inertia about it is the file's and what the burden says.
+static void add_burden(struct dig_link *const link, const struct dig_burden *const burden)
+{
+    const double mass_kg = link->mass_kg + burden->mass_kg;
+    link->com_m          = dig_vec2_add_scaled(link->com_m, 1.0 / mass_kg, burden->moment_kgm);
+    link->mass_kg        = mass_kg;
+    link->inertia_kgm2 += burden->inertia_kgm2;
+}
+
+// sign 1: as it is; -1: as the file has it.
+static void move_pins(struct dig_machine *const machine, const double sign,
+                      const struct dig_correction *const by)
+{
+    struct dig_four_bar *const bar = &machine->four_bar;
+    bar->rocker_m += sign * by->rocker_m;
+    bar->link_m += sign * by->link_m;
+    bar->rocker_pin_m = dig_vec2_add_scaled(bar->rocker_pin_m, sign, by->rocker_pin_m);
+    bar->ear_m        = dig_vec2_add_scaled(bar->ear_m, sign, by->ear_m);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_cylinder *const cylinder = &machine->cylinder[j];
+        cylinder->base_m = dig_vec2_add_scaled(cylinder->base_m, sign, by->base_m[j]);
+        cylinder->eye_m  = dig_vec2_add_scaled(cylinder->eye_m, sign, by->eye_m[j]);
+    }
+}
+
+struct dig_machine dig_correction_machine(const struct dig_machine *const    machine,
+                                          const struct dig_correction *const correction)
+{
+    assert(machine != NULL && correction != NULL);
+    struct dig_machine made = *machine;
+    add_burden(&made.link[DIG_JOINT_BUCKET], &correction->bucket);
+    add_burden(&made.link[DIG_JOINT_BUCKET], &correction->payload);
+    move_pins(&made, 1.0, correction);
+    return made;
+}
+
+bool dig_correction_is_geometric(const struct dig_correction *const correction)
+{
+    assert(correction != NULL);
+    double moved_m = fabs(correction->rocker_m) + fabs(correction->link_m) +
+                     dig_vec2_norm(correction->rocker_pin_m) + dig_vec2_norm(correction->ear_m);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        moved_m += dig_vec2_norm(correction->base_m[j]) + dig_vec2_norm(correction->eye_m[j]);
+    }
+    return moved_m > 0.0;
+}
+
+struct dig_machine dig_correction_drawn(const struct dig_machine *const    corrected,
+                                        const struct dig_correction *const correction)
+{
+    assert(corrected != NULL && correction != NULL);
+    struct dig_machine drawn = *corrected;
+    move_pins(&drawn, -1.0, correction);
+    return drawn;
+}
+
+enum dig_status dig_correction_check(const struct dig_machine *const    machine,
+                                     const struct dig_correction *const correction)
+{
+    assert(machine != NULL && correction != NULL);
+    if (machine->sensor.fitted && !dig_correction_is_none(correction)) {
+        return DIG_EINVAL;
+    }
+    const double *const number = (const double *)(const void *)correction;
+    for (size_t i = 0; i < NUMBERS; i++) {
+        if (!isfinite(number[i])) {
+            return DIG_EINVAL;
+        }
+    }
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        for (int c = 0; c < DIG_CHAMBERS; c++) {
+            if (!(correction->gain[j][c] > -1.0)) {
+                return DIG_EINVAL;
+            }
+        }
+        if (!(correction->friction[j].stribeck_mps >= 0.0)) {
+            return DIG_EINVAL;
+        }
+    }
+    const struct dig_machine made   = dig_correction_machine(machine, correction);
+    enum dig_status          status = dig_machine_check(&made, NULL);
+    if (status == DIG_OK) {
+        status = dig_linkage_check(&made, NULL);
+    }
+    return status;
+}
+
+enum dig_status dig_correction_take(const struct dig_machine *const    machine,
+                                    const struct dig_correction *const correction,
+                                    struct dig_taken *const            taken)
+{
+    assert(machine != NULL && taken != NULL);
+    struct dig_taken made = { .corrects = false };
+    if (correction != NULL) {
+        const enum dig_status status = dig_correction_check(machine, correction);
+        if (status != DIG_OK) {
+            return status;
+        }
+        // Of a force sensor's rig there is nothing to correct, or it was refused.
+        made.corrects = !machine->sensor.fitted;
+    }
+    if (made.corrects) {
+        made.correction = *correction;
+        made.machine    = dig_correction_machine(machine, correction);
+    }
+    *taken = made;
+    return DIG_OK;
+}

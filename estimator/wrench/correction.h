@@ -1,0 +1,89 @@
+// Everything in which a machine may differ from its file. Zeroed it is the machine as the file
+// says.
+//
+// The closed loop finds these in free air (closed_loop/machine/machine_side.h), a model file
+// carries them, dig_wrench_correct() takes them off. Signs are those of the truth: what is added to
+// the file's value gives the machine's own, and what a sensor reads is offset + (1 + gain) *
+// pressure.
+
+#ifndef DIG_ESTIMATOR_WRENCH_CORRECTION_H
+#define DIG_ESTIMATOR_WRENCH_CORRECTION_H
+
+#include "core/machine.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+
+enum dig_chamber { DIG_CHAMBER_HEAD, DIG_CHAMBER_ROD, DIG_CHAMBERS };
+
+/// Between piston and bore of one whole drive: what is lost of the push, against the rod's motion.
+///
+///   loss = [ coulomb + stribeck exp(-|v| / stribeck_mps) + load_share |push| ] tanh(v / still_mps)
+///          + viscous v
+struct dig_friction {
+    double coulomb_N;
+    double viscous_Nspm;
+    double stribeck_N; // more at a crawl; 0 with stribeck_mps 0
+    double stribeck_mps;
+    double load_share; // of the push that the pressures make
+};
+
+/// Below this speed of the rod the direction of friction is not told, m/s.
+#define DIG_FRICTION_STILL_mps 0.003
+
+/// What is more in or on the bucket than the file says. Alone, mass_kg lies in the file's centre of
+/// mass and leaves the inertia about the centre as it is.
+struct dig_burden {
+    double          mass_kg;
+    struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, bucket frame
+    double          inertia_kgm2; // about the centre of mass of all
+};
+
+struct dig_correction {
+    struct dig_friction friction[DIG_JOINTS];
+    double              offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
+    double              gain[DIG_JOINTS][DIG_CHAMBERS];
+    struct dig_burden   bucket;  // of the bucket itself: every dig
+    struct dig_burden   payload; // carried over from the dig before: this dig only
+    // Geometry: added to the file's lengths and places.
+    double          rocker_m, link_m;
+    struct dig_vec2 rocker_pin_m, ear_m;
+    struct dig_vec2 base_m[DIG_JOINTS], eye_m[DIG_JOINTS]; // eye: boom and arm only
+    double          delay_s; // by which pressures are later than the angles beside them
+};
+
+/// True when it changes nothing.
+bool dig_correction_is_none(const struct dig_correction *correction);
+
+/// DIG_EINVAL: a number that is not finite, a gain of -1 or less, or a machine that is none any
+/// more with it (dig_machine_check() and the linkage's closing over its range), or a force sensor's
+/// rig, whose corrections would be its sensor's own: none is known here. About a millisecond.
+DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    *machine,
+                                                    const struct dig_correction *correction);
+
+/// The machine with its geometry and its bucket corrected; a payload is part of its bucket.
+struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
+                                          const struct dig_correction *correction);
+
+/// True when it moves a pin or makes a bar longer or shorter.
+bool dig_correction_is_geometric(const struct dig_correction *correction);
+
+/// Of a machine that dig_correction_machine() made: with the geometry of its file again, for the
+/// file's lengths of a cylinder at its stops hold there.
+struct dig_machine dig_correction_drawn(const struct dig_machine    *corrected,
+                                        const struct dig_correction *correction);
+
+/// A machine as it is taken to be: made where there is time, copied where there is none.
+struct dig_taken {
+    bool                  corrects; // false: as its file says; then the rest is zero
+    struct dig_correction correction;
+    struct dig_machine    machine; // with it
+};
+
+/// correction NULL, or of a rig with a force sensor: as its file says. Errors and cost as
+/// dig_correction_check(); then nothing is written.
+DIG_MUST_CHECK enum dig_status dig_correction_take(const struct dig_machine    *machine,
+                                                   const struct dig_correction *correction,
+                                                   struct dig_taken            *taken);
+
+#endif // DIG_ESTIMATOR_WRENCH_CORRECTION_H

@@ -1,0 +1,245 @@
+#include "estimator/wrench/wrench.h"
+
+#include "estimator/wrench/balance.h"
+#include "estimator/wrench/dynamics.h"
+#include "estimator/wrench/tolerance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+// Variances of the parts, all of it and what does not average down.
+struct variance {
+    double all[DIG_PARTS], slow[DIG_PARTS];
+};
+
+static void add_push_variance(const struct dig_readings *const readings,
+                              const struct dig_balance *const  balance,
+                              struct variance *const           variance)
+{
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        for (int p = 0; p < DIG_PARTS; p++) {
+            const double by_push = balance->by_moment[p][j] * balance->lever[j].arm_m;
+            variance->all[p] += pow(by_push * readings->push[j].sigma_N, 2.0);
+            variance->slow[p] += pow(by_push * readings->push[j].slow_N, 2.0);
+        }
+    }
+}
+
+// Adds what an error of one joint's angle does to every part. A pose that cannot be solved a sigma
+// away is too near a singularity to be told.
+static void add_angle_variance(const struct dig_machine *const  machine,
+                               const struct dig_readings *const readings, const int joint,
+                               struct dig_balance *const balance, struct variance *const variance)
+{
+    const double sigma_rad = dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad);
+    const double slow_rad  = dig_reading_slow(machine->angle_step_rad, machine->angle_sigma_rad);
+    const double h_rad     = fmax(sigma_rad, 1e-6);
+
+    struct dig_readings more = *readings;
+    struct dig_readings less = *readings;
+    more.joint_rad[joint] += h_rad;
+    less.joint_rad[joint] -= h_rad;
+    const struct dig_front   front_more = dig_front_place(machine, more.joint_rad);
+    const struct dig_front   front_less = dig_front_place(machine, less.joint_rad);
+    const struct dig_balance high       = dig_balance_solve(machine, &more, &front_more);
+    const struct dig_balance low        = dig_balance_solve(machine, &less, &front_less);
+
+    balance->moment_ok = balance->moment_ok && high.moment_ok && low.moment_ok;
+    balance->force_ok  = balance->force_ok && high.force_ok && low.force_ok;
+    for (int p = 0; p < DIG_PARTS; p++) {
+        const double by_rad = (high.part[p] - low.part[p]) / (2.0 * h_rad);
+        variance->all[p] += by_rad * by_rad * sigma_rad * sigma_rad;
+        variance->slow[p] += by_rad * by_rad * slow_rad * slow_rad;
+    }
+}
+
+// The same of whether it can be solved, alone: an angle changes its own joint's lever and no other,
+// and the bucket's moves no pin.
+static void check_angle(const struct dig_machine *const  machine,
+                        const struct dig_readings *const readings, const int joint,
+                        struct dig_balance *const balance)
+{
+    const double sigma_rad = dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad);
+    const double h_rad     = fmax(sigma_rad, 1e-6);
+    for (int side = -1; side <= 1; side += 2) {
+        struct dig_readings near = *readings;
+        struct dig_lever    lever;
+        near.joint_rad[joint] += side * h_rad;
+        const bool solved = dig_lever_solve(machine, (enum dig_joint)joint, near.joint_rad[joint],
+                                            &lever) == DIG_OK;
+
+        balance->force_ok = balance->force_ok && solved;
+        if (joint == DIG_JOINT_BUCKET) {
+            balance->moment_ok = balance->moment_ok && solved;
+        } else if (balance->force_ok) {
+            const struct dig_front front = dig_front_place(machine, near.joint_rad);
+            balance->force_ok            = dig_balance_tells_force(&front);
+        }
+    }
+}
+
+// Adds what errors of the rates do through inertia and friction.
+static void add_rate_variance(const struct dig_machine *const  machine,
+                              const struct dig_front *const    front,
+                              const struct dig_readings *const readings,
+                              const struct dig_balance *const  balance,
+                              struct variance *const           variance)
+{
+    const struct dig_rates *const rates = readings->rates;
+    double                        inertia_kgm2[DIG_JOINTS][DIG_JOINTS];
+    dig_dynamics_inertia_kgm2(machine, front, inertia_kgm2);
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        const double arm_m  = balance->lever[k].arm_m;
+        const double rod    = arm_m * rates->velocity_radps[k];
+        const double by_rod = fabs(arm_m) * rates->velocity_sigma;
+        const double push_N = readings->push[k].push_N;
+        double       rubs_N = 0.0;
+        if (readings->friction != NULL) {
+            const struct dig_friction *const friction = &readings->friction[k];
+            rubs_N = 0.5 * (dig_friction_loss_N(friction, push_N, rod + by_rod) -
+                            dig_friction_loss_N(friction, push_N, rod - by_rod));
+        }
+        for (int p = 0; p < DIG_PARTS; p++) {
+            double by_turn = 0.0;
+            for (int j = 0; j < DIG_JOINTS; j++) {
+                by_turn -= balance->by_moment[p][j] * inertia_kgm2[j][k];
+            }
+            variance->all[p] += pow(by_turn * rates->acceleration_sigma, 2.0) +
+                                pow(balance->by_moment[p][k] * arm_m * rubs_N, 2.0);
+        }
+    }
+}
+
+// Pin to pin as the file draws the linkages: its lengths at the stops were taken there, and pins
+// that are elsewhere leave the angles of the stops where they are.
+static void draw_lengths(const struct dig_machine *const    corrected,
+                         const struct dig_correction *const correction,
+                         const struct dig_readings *const readings, struct dig_balance *const b)
+{
+    const struct dig_machine drawn = dig_correction_drawn(corrected, correction);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_lever lever;
+        if (dig_lever_solve(&drawn, (enum dig_joint)j, readings->joint_rad[j], &lever) == DIG_OK) {
+            b->lever[j].length_m = lever.length_m;
+        }
+    }
+}
+
+// A stop carries load past the pressures; a valve lets oil past them.
+static bool is_trusted(const struct dig_machine *const  machine,
+                       const struct dig_readings *const readings,
+                       const struct dig_balance *const balance, const int j)
+{
+    return readings->push[j].valid &&
+           dig_cylinder_is_clear(&machine->cylinder[j], balance->lever[j].length_m);
+}
+
+static struct dig_wrench finish(const struct dig_balance *const balance,
+                                const struct variance *const    variance,
+                                const double geometry[const DIG_PARTS], const bool moment_valid,
+                                const bool force_valid)
+{
+    struct dig_wrench w = { .moment_valid = moment_valid, .force_valid = force_valid };
+    if (moment_valid) {
+        w.My_Nm            = balance->part[DIG_PART_MY];
+        w.sigma_My_Nm      = sqrt(variance->all[DIG_PART_MY]);
+        w.slow_sigma_My_Nm = sqrt(variance->slow[DIG_PART_MY]);
+
+        w.geometry_sigma_My_Nm = sqrt(geometry[DIG_PART_MY]);
+    }
+    if (force_valid) {
+        w.Fx_N       = balance->part[DIG_PART_FX];
+        w.Fz_N       = balance->part[DIG_PART_FZ];
+        w.sigma_Fx_N = sqrt(variance->all[DIG_PART_FX]);
+        w.sigma_Fz_N = sqrt(variance->all[DIG_PART_FZ]);
+
+        w.slow_sigma_Fx_N = sqrt(variance->slow[DIG_PART_FX]);
+        w.slow_sigma_Fz_N = sqrt(variance->slow[DIG_PART_FZ]);
+
+        w.geometry_sigma_Fx_N = sqrt(geometry[DIG_PART_FX]);
+        w.geometry_sigma_Fz_N = sqrt(geometry[DIG_PART_FZ]);
+    }
+    return w;
+}
+
+// All variances, and whether what errs a little can still be solved.
+static void add_variances(const struct dig_machine *const  machine,
+                          const struct dig_readings *const readings,
+                          const struct dig_front *const placed, struct dig_balance *const balance,
+                          struct variance *const variance, double geometry[DIG_PARTS])
+{
+    add_push_variance(readings, balance, variance);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        add_angle_variance(machine, readings, j, balance, variance);
+    }
+    if (readings->rates != NULL) {
+        add_rate_variance(machine, placed, readings, balance, variance);
+    }
+    dig_tolerance_variance(machine, readings, placed, balance, geometry);
+}
+
+static enum dig_status solve(const struct dig_machine *const    machine,
+                             const struct dig_correction *const correction,
+                             const struct dig_sample *const     sample,
+                             const struct dig_rates *const rates, const bool with_sigma,
+                             struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    struct dig_readings   readings;
+    const enum dig_status status = dig_readings_take(machine, correction, sample, rates, &readings);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_front placed  = dig_front_place(machine, readings.joint_rad);
+    struct dig_balance     balance = dig_balance_solve(machine, &readings, &placed);
+
+    struct variance variance            = { .all = { 0.0 } };
+    double          geometry[DIG_PARTS] = { 0.0 };
+    if (with_sigma) {
+        add_variances(machine, &readings, &placed, &balance, &variance, geometry);
+    }
+    for (int j = 0; j < DIG_JOINTS && !with_sigma; j++) {
+        check_angle(machine, &readings, j, &balance);
+    }
+    if (correction != NULL && dig_correction_is_geometric(correction)) {
+        draw_lengths(machine, correction, &readings, &balance);
+    }
+    const bool bucket = is_trusted(machine, &readings, &balance, DIG_JOINT_BUCKET);
+    const bool others = is_trusted(machine, &readings, &balance, DIG_JOINT_BOOM) &&
+                        is_trusted(machine, &readings, &balance, DIG_JOINT_ARM);
+    *wrench = finish(&balance, &variance, geometry, balance.moment_ok && bucket,
+                     balance.force_ok && bucket && others);
+    *front  = placed;
+    return DIG_OK;
+}
+
+enum dig_status dig_wrench_solve(const struct dig_machine *const machine,
+                                 const struct dig_sample *const  sample,
+                                 struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    assert(machine != NULL && sample != NULL && wrench != NULL && front != NULL);
+    return solve(machine, NULL, sample, NULL, true, wrench, front);
+}
+
+enum dig_status dig_wrench_correct(const struct dig_machine *const    corrected,
+                                   const struct dig_correction *const correction,
+                                   const struct dig_sample *const     sample,
+                                   const struct dig_rates *const      rates,
+                                   struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
+    assert(wrench != NULL && front != NULL);
+    return solve(corrected, correction, sample, rates, true, wrench, front);
+}
+
+enum dig_status dig_wrench_without_sigma(const struct dig_machine *const    corrected,
+                                         const struct dig_correction *const correction,
+                                         const struct dig_sample *const     sample,
+                                         const struct dig_rates *const      rates,
+                                         struct dig_wrench *const           wrench,
+                                         struct dig_front *const            front)
+{
+    assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
+    assert(wrench != NULL && front != NULL);
+    return solve(corrected, correction, sample, rates, false, wrench, front);
+}

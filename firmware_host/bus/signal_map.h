@@ -1,0 +1,108 @@
+// Which raw value on the bus is which of our signals: from a YAML map (docs/formats.md) over a
+// DBC's signals or over Modbus registers, to SI in the machine's frames.
+//
+//   SI value = sign * (scale * physical + offset)
+//
+// where physical is the DBC's factor * raw + DBC offset, or the raw register. Raw values listed as
+// not_available, and values outside min … max, never become a number. Nor do, where the map says
+// j1939, the values that SAE J1939-71 sets apart: the topmost raw value ("not available") and the
+// one below ("error"), of 8 bits all from 0xFB on, of more the top bytes 0xFB to 0xFF.
+
+#ifndef DIG_FIRMWARE_HOST_BUS_SIGNAL_MAP_H
+#define DIG_FIRMWARE_HOST_BUS_SIGNAL_MAP_H
+
+#include "core/error.h"
+#include "firmware_host/bus/checksum.h"
+#include "firmware_host/bus/dbc.h"
+#include "firmware_host/bus/frame_watch.h"
+#include "firmware_host/bus/reading.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define DIG_NOT_AVAILABLE_MAX 4
+#define DIG_REGISTERS_MAX     125 // of one Modbus request
+
+enum dig_map_kind { DIG_MAP_CAN, DIG_MAP_MODBUS };
+
+enum dig_register_type {
+    DIG_REGISTER_UINT16,
+    DIG_REGISTER_INT16,
+    DIG_REGISTER_UINT32,
+    DIG_REGISTER_INT32,
+    DIG_REGISTER_FLOAT32,
+};
+
+struct dig_map_entry {
+    bool                   used;
+    unsigned               group; // index into dig_signal_map.group
+    struct dig_dbc_signal  can;
+    unsigned               reg; // Modbus: first register
+    enum dig_register_type type;
+    double                 sign, scale, offset, min, max;
+    double                 max_rate;      // SI per second; 0: any
+    size_t                 not_available; // raw values listed
+    uint64_t               not_available_raw[DIG_NOT_AVAILABLE_MAX];
+};
+
+/// What comes together: a CAN message that is listened to, or a block of Modbus registers that is
+/// asked for.
+struct dig_map_group {
+    bool                      needed; // carries a signal that force or moment need
+    bool                      spared; // and none that the moment needs
+    struct dig_frame_settings frame;
+    // CAN
+    uint32_t              id;
+    bool                  extended;
+    unsigned              bytes;
+    char                  name[DIG_DBC_NAME_SIZE];
+    struct dig_dbc_signal counter; // where frame.counter_mod > 0
+    enum dig_checksum     checksum;
+    struct dig_dbc_signal checksum_at;
+    // Modbus
+    unsigned first_register, registers;
+    unsigned function; // 4 input registers, 3 holding
+    double   poll_s;   // between two requests; 0: as the input says
+};
+
+struct dig_signal_map {
+    enum dig_map_kind    kind;
+    struct dig_map_entry entry[DIG_SIGNALS];
+    bool                 has_alive;
+    struct dig_map_entry alive;
+    double               frozen_s;   // the alive counter may stand still this long
+    double               coherent_s; // signals of one sample may lie this far apart
+    double               stuck_s;    // values may stand this long; 0: for ever
+    bool                 j1939;
+    size_t               groups;
+    struct dig_map_group group[DIG_GROUPS_MAX];
+    bool                 low_word_first; // Modbus: of 32-bit values
+};
+
+/// Reads and checks. dbc is needed for kind: can and ignored otherwise; NULL refuses such a map.
+/// DIG_EINVAL names file, line, key and what was expected: also a message or signal the DBC does
+/// not have, a unit the scale cannot be right for, a needed signal without an entry, the same
+/// signal twice.
+DIG_MUST_CHECK enum dig_status dig_signal_map_read(const char *path, const struct dig_dbc *dbc,
+                                                   struct dig_signal_map *map,
+                                                   struct dig_error      *error);
+
+/// Of which kind of machine the map's signals are.
+enum dig_sensing dig_signal_map_sensing(const struct dig_signal_map *map);
+
+/// The group (in map->group) of a CAN id, or -1.
+int dig_signal_map_group(const struct dig_signal_map *map, uint32_t id, bool extended);
+
+/// Decodes one frame of a group. DIG_EINVAL: shorter than the DBC says; DIG_ESTALE: its checksum is
+/// wrong. Then *reading is untouched.
+DIG_MUST_CHECK enum dig_status dig_signal_map_frame(const struct dig_signal_map *map,
+                                                    unsigned group, size_t bytes,
+                                                    const uint8_t data[], int64_t time_ns,
+                                                    struct dig_reading *reading);
+
+/// Decodes one block of a Modbus map: what a request for its registers brought.
+void dig_signal_map_registers(const struct dig_signal_map *map, unsigned group,
+                              const uint16_t registers[], int64_t time_ns,
+                              struct dig_reading *reading);
+
+#endif // DIG_FIRMWARE_HOST_BUS_SIGNAL_MAP_H

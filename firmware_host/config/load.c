@@ -1,0 +1,173 @@
+#include "firmware_host/config/load.h"
+
+#include "files/lcm_log.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "files/yaml.h"
+#include "firmware_host/config/load_model.h"
+#include "tables/load.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// The table asked for by name or hash, and a bucket of the machine's shape: else its curves say
+// nothing about this machine.
+static enum dig_status check_scene(const char *const path, const struct dig_config *const config,
+                                   const struct dig_machine *const   machine_read,
+                                   const struct dig_curve_set *const set,
+                                   struct dig_error *const           error)
+{
+    const char *const want = config->scene;
+    if (want[0] != '\0' && strcmp(want, set->scene_name) != 0 &&
+        strcmp(want, set->scene_hash) != 0) {
+        return dig_yaml_refuse(path, "scene", error,
+                               "\"%s\", but %s is of scene \"%s\" (%s); expected the same", want,
+                               config->table.text, set->scene_name, set->scene_hash);
+    }
+    const double machine =
+        machine_read->bucket_width_m / machine_read->link[DIG_JOINT_BUCKET].length_m;
+    const double scene = set->bucket_width_m / set->tooth_m;
+    if (!(fabs(machine / scene - 1.0) <= DIG_SHAPE_TOLERANCE)) {
+        return dig_yaml_refuse(
+            path, "table", error,
+            "scene \"%s\" has a bucket %.3f times as wide as long, machine \"%s\" "
+            "one %.3f times; expected the same shape within %.0f %%",
+            set->scene_name, scene, machine_read->name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
+    }
+    for (size_t i = 0; i < config->identify_trajectories; i++) {
+        bool found = false;
+        for (size_t t = 0; t < set->trajectories; t++) {
+            found |= strcmp(config->identify_trajectory[i], set->trajectory[t].name) == 0;
+        }
+        if (!found) {
+            return dig_yaml_refuse(path, "identify.trajectories", error,
+                                   "\"%s\", expected a trajectory of the table",
+                                   config->identify_trajectory[i]);
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status load_map(struct dig_loaded *const l, struct dig_error *const error)
+{
+    struct dig_dbc  dbc    = { 0 };
+    const bool      can    = l->config.kind == DIG_INPUT_CAN;
+    enum dig_status status = can ? dig_dbc_read(l->config.dbc.text, &dbc, error) : DIG_OK;
+    if (status == DIG_OK) {
+        status = dig_signal_map_read(l->config.map.text, can ? &dbc : NULL, &l->map, error);
+    }
+    if (status == DIG_OK && can != (l->map.kind == DIG_MAP_CAN)) {
+        status =
+            dig_yaml_refuse(l->config.map.text, "kind", error, "%s, expected %s for this input",
+                            can ? "modbus" : "can", can ? "can" : "modbus");
+    }
+    dig_dbc_finish(&dbc);
+    return status;
+}
+
+static enum dig_status load_recording(struct dig_loaded *const l, struct dig_error *const error)
+{
+    const char *const path = l->config.replay.text;
+    return dig_lcm_log_is(path) ? dig_lcm_log_read(path, &l->recording, error)
+                                : dig_machine_recording_read(path, &l->recording, error);
+}
+
+// What has an entry in the map, or a value anywhere in the recording.
+static void find_measured(struct dig_loaded *const l)
+{
+    for (size_t s = 0; s < DIG_SIGNALS; s++) {
+        l->measured[s] = l->config.kind != DIG_INPUT_REPLAY && l->map.entry[s].used;
+        for (size_t i = 0; i < l->recording.rows && !l->measured[s]; i++) {
+            l->measured[s] = l->recording.row[i].valid[s];
+        }
+    }
+}
+
+// What tells the forces must be what the machine has.
+static enum dig_status check_sensing(const char *const path, const struct dig_loaded *const l,
+                                     struct dig_error *const error)
+{
+    const bool senses = dig_signals_sensing(l->measured) == DIG_SENSING_SENSOR;
+    if (senses == l->machine.sensor.fitted) {
+        return DIG_OK;
+    }
+    return dig_yaml_refuse(path, "machine", error,
+                           "%s has %s, but the input brings %s; expected the same", l->machine.name,
+                           senses ? "cylinders" : "a force sensor that carries its bucket",
+                           senses ? "signals of a force sensor" : "none of its signals");
+}
+
+enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,
+                         struct dig_error *const error)
+{
+    assert(path != NULL && loaded != NULL);
+    struct dig_loaded l      = { 0 };
+    enum dig_status   status = dig_config_read(path, &l.config, error);
+    if (status == DIG_OK) {
+        status = dig_machine_read(l.config.machine.text, &l.machine, error);
+    }
+    if (status == DIG_OK) {
+        status =
+            l.config.kind == DIG_INPUT_REPLAY ? load_recording(&l, error) : load_map(&l, error);
+    }
+    if (status == DIG_OK) {
+        find_measured(&l);
+        status = check_sensing(path, &l, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_table_load(l.config.table.text, &l.set, error);
+    }
+    if (status == DIG_OK) {
+        status = check_scene(path, &l.config, &l.machine, l.set, error);
+    }
+    if (status == DIG_OK && l.config.model.text[0] != '\0') {
+        status = dig_load_model(l.config.model.text, l.config.table.text, &l.machine, l.set,
+                                &l.correction, &l.corrects, error);
+    }
+    if (status != DIG_OK) {
+        dig_loaded_finish(&l);
+        return status;
+    }
+    *loaded = l;
+    return DIG_OK;
+}
+
+enum dig_status dig_load_table(const char *const path, const struct dig_machine *const machine,
+                               struct dig_curve_set **const set, struct dig_taken *const taken,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && machine != NULL && set != NULL && taken != NULL);
+    struct dig_config     config;
+    struct dig_correction correction;
+    struct dig_taken      made;
+    bool                  corrects = false;
+    struct dig_curve_set *loaded   = NULL;
+    enum dig_status       status   = dig_config_read(path, &config, error);
+    status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
+    status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
+    if (status == DIG_OK && config.model.text[0] != '\0') {
+        status = dig_load_model(config.model.text, config.table.text, machine, loaded, &correction,
+                                &corrects, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_correction_take(machine, corrects ? &correction : NULL, &made);
+    }
+    if (status != DIG_OK) {
+        dig_curve_set_destroy(loaded);
+        return status;
+    }
+    *set   = loaded;
+    *taken = made;
+    return DIG_OK;
+}
+
+void dig_loaded_finish(struct dig_loaded *const loaded)
+{
+    if (loaded != NULL) {
+        dig_curve_set_destroy(loaded->set);
+        dig_machine_recording_finish(&loaded->recording);
+        *loaded = (struct dig_loaded){ 0 };
+    }
+}

@@ -1,0 +1,169 @@
+#include "firmware_host/config/load_model.h"
+
+#include "core/approach_set.h"
+#include "estimator/effects/effect.h"
+#include "files/model_json.h"
+#include "files/yaml.h"
+#include "tables/load.h"
+#include "tables/load_effects.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// The file of that name beside another, when there is one; else the name as it stands.
+static void look_beside(const char *const beside, const char *const name, const size_t size,
+                        char path[])
+{
+    const char *const slash  = strrchr(beside, '/');
+    const char *const last   = strrchr(name, '/');
+    const int         folder = slash == NULL ? 0 : (int)(slash - beside) + 1;
+    const int         length =
+        snprintf(path, size, "%.*s%s", folder, beside, last == NULL ? name : last + 1);
+    if (length < 0 || (size_t)length >= size || access(path, R_OK) != 0) {
+        (void)snprintf(path, size, "%s", name);
+    }
+}
+
+static bool needs_curves(const struct dig_model *const model)
+{
+    bool needs = model->unlisted != NULL;
+    for (size_t e = 0; e < model->effects; e++) {
+        needs = needs || !dig_effect_is_of_machine(model->effect[e].effect);
+    }
+    return needs;
+}
+
+static double rms(const float y[const DIG_CURVE_POINTS])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += (double)y[k] * (double)y[k];
+    }
+    return sqrt(sum / DIG_CURVE_POINTS);
+}
+
+// What the effects did to the plain curve is done to one dug otherwise, in proportion to its size.
+static void follow(const struct dig_curve *const before, const struct dig_curve *const after,
+                   struct dig_curve *const curve)
+{
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        const double plain = rms(before->mean[c]);
+        const double scale = plain > 0.0 ? rms(curve->mean[c]) / plain : 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double change = (double)after->mean[c][k] - (double)before->mean[c][k];
+            curve->mean[c][k] += (float)(scale * change);
+        }
+    }
+}
+
+static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
+{
+    bool same = true;
+    for (int i = 0; i < DIG_AXES; i++) {
+        same = same && fabs(a->value[i] - b->value[i]) <= 0.0;
+    }
+    return same;
+}
+
+static void change_approaches(const struct dig_curve_set *const before,
+                              const struct dig_curve_set *const after)
+{
+    const struct dig_approach_set *const other = after->approaches;
+    for (size_t i = 0; other != NULL && i < other->entries; i++) {
+        size_t e = 0;
+        while (e < after->entries && !is_same(&after->gravel[e], &other->entry[i].gravel)) {
+            e++;
+        }
+        for (size_t t = 0; e < after->entries && t < after->trajectories; t++) {
+            const size_t slot = e * after->trajectories + t;
+            follow(&before->curve[slot], &after->curve[slot],
+                   &other->curve[i * other->trajectories + t]);
+        }
+    }
+}
+
+// Every curve of *set with the model's effects in it; the table is read once more, as it is.
+static enum dig_status change_curves(const char *const model_path, const char *const table_path,
+                                     const struct dig_model *const model,
+                                     struct dig_curve_set *const set, struct dig_error *const error)
+{
+    struct dig_curve_set  *plain   = NULL;
+    struct dig_effect_set *effects = NULL;
+    enum dig_status        status  = dig_table_load(table_path, &plain, error);
+    if (status == DIG_OK &&
+        (plain->entries != set->entries || strcmp(plain->scene_hash, set->scene_hash) != 0)) {
+        status = dig_error_set(error, DIG_EINVAL, "%s: it changed while it was read", table_path);
+    }
+    if (status == DIG_OK && model->effects_table[0] != '\0') {
+        char path[DIG_MODEL_PATH_SIZE];
+        look_beside(table_path, model->effects_table, sizeof path, path);
+        status = dig_effects_load(path, plain, &effects, error);
+    }
+    if (status == DIG_OK && dig_effects_apply(plain, effects, model, set) != DIG_OK) {
+        status =
+            dig_yaml_refuse(model_path, "effects", error,
+                            "an effect of the soil that no table at hand tells, or a parameter "
+                            "it does not have; expected those of the table of effects");
+    }
+    if (status == DIG_OK) {
+        // Curves with effects are off by more than digs scatter: what they are off by is in their
+        // sd.
+        free(set->covariance);
+        set->covariance = NULL;
+    }
+    if (status == DIG_OK && plain != NULL) {
+        change_approaches(plain, set);
+    }
+    dig_effect_set_destroy(effects);
+    dig_curve_set_destroy(plain);
+    return status;
+}
+
+static enum dig_status check(const char *const path, const char *const table_path,
+                             const struct dig_model *const     model,
+                             const struct dig_machine *const   machine,
+                             const struct dig_curve_set *const set,
+                             struct dig_correction *const correction, struct dig_error *const error)
+{
+    if (strcmp(model->scene_hash, set->scene_hash) != 0) {
+        return dig_yaml_refuse(path, "scene_hash", error, "%.12s…, but %s is of scene %.12s…",
+                               model->scene_hash, table_path, set->scene_hash);
+    }
+    if (dig_effects_correction(model, correction) != DIG_OK ||
+        (machine != NULL && dig_correction_check(machine, correction) != DIG_OK)) {
+        return dig_yaml_refuse(path, "effects", error,
+                               "the machine %s cannot be so, expected parameters of the catalogue "
+                               "with which its linkages still close",
+                               machine != NULL ? machine->name : "of the model");
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_load_model(const char *const model_path, const char *const table_path,
+                               const struct dig_machine *const machine,
+                               struct dig_curve_set *const     set,
+                               struct dig_correction *const correction, bool *const corrects,
+                               struct dig_error *const error)
+{
+    assert(model_path != NULL && table_path != NULL && set != NULL);
+    assert(correction != NULL && corrects != NULL);
+    struct dig_model      model  = { .effects = 0 };
+    struct dig_correction found  = { .delay_s = 0.0 };
+    enum dig_status       status = dig_model_read(model_path, &model, error);
+    if (status == DIG_OK) {
+        status = check(model_path, table_path, &model, machine, set, &found, error);
+    }
+    if (status == DIG_OK && needs_curves(&model)) {
+        status = change_curves(model_path, table_path, &model, set, error);
+    }
+    if (status == DIG_OK) {
+        *corrects   = !dig_correction_is_none(&found);
+        *correction = found;
+    }
+    dig_model_finish(&model);
+    return status;
+}

@@ -1,0 +1,122 @@
+#include "firmware_host/matching/matcher.h"
+
+#include "estimator/approach/approach_slots.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+void dig_matcher_take_up(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
+{
+    assert(matcher != NULL && set != NULL);
+    dig_matcher_finish(matcher);
+    matcher->outline = calloc(dig_prefilter_outlines(set) + 1, sizeof *matcher->outline);
+    if (matcher->outline != NULL) {
+        dig_prefilter_make(set, matcher->outline, &matcher->summary);
+    }
+    matcher->varies = dig_approach_varies_any(set);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        if (dig_approach_varies(set, t)) {
+            dig_approach_error_measure(set, t, &matcher->error[t]);
+        }
+    }
+}
+
+static bool make_room(struct dig_matcher *const matcher, const size_t bytes)
+{
+    if (bytes > matcher->bytes) {
+        void *const grown = realloc(matcher->memory, bytes);
+        if (grown == NULL) {
+            return false;
+        }
+        matcher->memory = grown;
+        matcher->bytes  = bytes;
+    }
+    return true;
+}
+
+// The table at the depths and attacks of the digs, and the digs along its trajectories in
+// matcher->dig; NULL without the memory.
+static const struct dig_curve_set *as_dug(struct dig_matcher *const         matcher,
+                                          const struct dig_curve_set *const set, const size_t digs,
+                                          const struct dig_observation dig[])
+{
+    assert(digs >= 1 && digs <= DIG_POOL_MAX);
+    _Static_assert(DIG_POOL_MAX <= DIG_TRAJECTORY_MAX, "each dig of a pool finds a slot");
+    struct dig_approach_slots slots = { .slots = 0 };
+    memcpy(matcher->dig, dig, digs * sizeof *dig);
+    for (size_t d = 0; d < digs; d++) {
+        matcher->dig[d].trajectory =
+            dig_approach_slot(set, (size_t)dig[d].trajectory, &dig[d].approach, &slots);
+    }
+    return make_room(matcher, dig_approached_size(set, slots.slots))
+               ? dig_approached_make(set, slots.slots, slots.slot, matcher->error, matcher->memory)
+               : NULL;
+}
+
+enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
+                                    const struct dig_curve_set *const set, const size_t digs,
+                                    const struct dig_observation dig[], const double outside_floors,
+                                    struct dig_match *const match)
+{
+    assert(matcher != NULL && (matcher->outline == NULL || matcher->summary.set == set));
+    if (matcher->varies) {
+        const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
+        if (dug == NULL) {
+            return DIG_ENOMEM;
+        }
+        const enum dig_status status =
+            dig_match_nearest_pool(dug, digs, matcher->dig, outside_floors, match);
+        if (status == DIG_OK) {
+            dig_match_weigh(dug, NULL, digs, matcher->dig, match);
+        }
+        return status;
+    }
+    const struct dig_prefilter *const summary = matcher->outline != NULL ? &matcher->summary : NULL;
+    const enum dig_status             status =
+        summary != NULL ? dig_match_nearest_by(summary, digs, dig, outside_floors, match)
+                                    : dig_match_nearest_pool(set, digs, dig, outside_floors, match);
+    if (status == DIG_OK) {
+        dig_match_weigh(set, summary, digs, dig, match);
+    }
+    return status;
+}
+
+enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
+                                   const struct dig_curve_set *const set, const size_t digs,
+                                   const struct dig_observation dig[], const int max_evaluations,
+                                   struct dig_match *const match)
+{
+    assert(matcher != NULL && (matcher->outline == NULL || matcher->summary.set == set));
+    if (matcher->varies) {
+        const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
+        return dug != NULL ? dig_fit_refine_pool(dug, digs, matcher->dig, max_evaluations, match)
+                           : DIG_ENOMEM;
+    }
+    return matcher->outline != NULL
+               ? dig_fit_refine_by(&matcher->summary, digs, dig, max_evaluations, match)
+               : dig_fit_refine_pool(set, digs, dig, max_evaluations, match);
+}
+
+void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curve_set *const set,
+                        const double lambda, const struct dig_match *const match,
+                        const size_t trajectory, const struct dig_approach *const approach,
+                        struct dig_expected *const expected)
+{
+    assert(matcher != NULL && expected != NULL);
+    expected->valid     = false;
+    expected->off_table = false;
+    if (make_room(matcher, dig_approached_size(set, 1))) {
+        dig_forecast_as_dug(set, lambda, match, trajectory, approach, matcher->error,
+                            matcher->memory, expected);
+    }
+}
+
+void dig_matcher_finish(struct dig_matcher *const matcher)
+{
+    if (matcher != NULL) {
+        free(matcher->outline);
+        free(matcher->memory);
+        *matcher = (struct dig_matcher){ .outline = NULL };
+    }
+}

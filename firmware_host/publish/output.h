@@ -1,0 +1,68 @@
+// What the daemon tells the world: its five LCM channels. LCM itself is known to output_lcm.c only.
+
+#ifndef DIG_FIRMWARE_HOST_PUBLISH_OUTPUT_H
+#define DIG_FIRMWARE_HOST_PUBLISH_OUTPUT_H
+
+#include "core/curve.h"
+#include "core/error.h"
+#include "firmware_host/matching/fit.h"
+#include "firmware_host/tick/loop.h"
+
+/// What every message says of itself.
+#define DIG_ADVICE "advice, not a safety function"
+
+/// How long samples took from their last frame's stamp to LCM: counts over bins a quarter of an
+/// octave wide, from 16 us on.
+#define DIG_LATENCY_BINS 80
+struct dig_latency {
+    int64_t count[DIG_LATENCY_BINS]; // the last one holds all that was later
+    int64_t samples;
+};
+
+/// Upper end of a bin, us.
+double dig_latency_to_us(int bin);
+
+void dig_latency_add(struct dig_latency *latency, int64_t took_ns);
+
+/// Upper end of the bin below which the share of all samples lies; 0 before the first.
+double dig_latency_quantile_us(const struct dig_latency *latency, double share);
+
+/// HEALTH in plain words; the fields are those of messages/health_t.lcm.
+struct dig_health {
+    int64_t             time_ns; // CLOCK_MONOTONIC
+    const char         *state, *input, *note;
+    struct dig_rt_grant rt;
+    double              tick_s;
+    struct dig_pulse    pulse;
+    int64_t             frames, malformed, reconnects, lost;
+    int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
+    int32_t             matches;
+    int32_t             whole, aborted, unknown; // digs, by how they ended
+    struct dig_latency  latency;
+    const char         *table;                          // scene hash
+    char                missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
+};
+
+struct dig_output;
+
+/// Joins an LCM network. DIG_EIO: it is not there (no multicast route, a bad URL); try again later.
+DIG_MUST_CHECK enum dig_status dig_output_create(const char *url, struct dig_output **output,
+                                                 struct dig_error *error);
+
+/// NULL is allowed.
+void dig_output_destroy(struct dig_output *output);
+
+/// Publish one message each; the set names trajectories. utc_us of a message is the wall clock at
+/// its time_ns. DIG_EIO when LCM could not send it.
+DIG_MUST_CHECK enum dig_status dig_output_record(struct dig_output          *output,
+                                                 const struct dig_curve_set *set,
+                                                 const struct dig_record    *record);
+DIG_MUST_CHECK enum dig_status dig_output_match(struct dig_output           *output,
+                                                const struct dig_fit_result *result);
+DIG_MUST_CHECK enum dig_status dig_output_outlook(struct dig_output          *output,
+                                                  const struct dig_curve_set *set,
+                                                  const struct dig_outlook   *outlook);
+DIG_MUST_CHECK enum dig_status dig_output_health(struct dig_output       *output,
+                                                 const struct dig_health *health);
+
+#endif // DIG_FIRMWARE_HOST_PUBLISH_OUTPUT_H

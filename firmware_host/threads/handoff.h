@@ -1,0 +1,58 @@
+// How threads of the daemon meet without a lock: a ring of records for what must not be lost, and a
+// slot for what only the newest of matters. One producer and one consumer each; wait-free on both
+// sides, no system call, no allocation. Both hold bytes by value in memory the caller gives.
+
+#ifndef DIG_FIRMWARE_HOST_THREADS_HANDOFF_H
+#define DIG_FIRMWARE_HOST_THREADS_HANDOFF_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/// Keeps the producer's and the consumer's counters on cache lines of their own.
+#define DIG_CACHE_LINE 64
+
+struct dig_ring {
+    unsigned char *memory;
+    size_t         size;     // of one record
+    size_t         capacity; // records, a power of two
+    char           apart0[DIG_CACHE_LINE];
+    atomic_size_t  written; // ever
+    char           apart1[DIG_CACHE_LINE];
+    atomic_size_t  read; // ever
+};
+
+/// memory holds size * capacity bytes and outlives the ring; capacity is a power of two.
+void dig_ring_init(struct dig_ring *ring, size_t size, size_t capacity, void *memory);
+
+/// False when the ring is full; nothing is written then. Producer only.
+bool dig_ring_push(struct dig_ring *ring, const void *record);
+
+/// False when the ring is empty; *record is untouched then. Consumer only.
+bool dig_ring_pop(struct dig_ring *ring, void *record);
+
+/// Three copies: the producer's, the consumer's, and the one that changes hands.
+struct dig_latest {
+    unsigned char *memory;
+    size_t         size;
+    unsigned       back; // producer's copy
+    char           apart0[DIG_CACHE_LINE];
+    atomic_uint    middle; // index, and a bit that says it is news
+    char           apart1[DIG_CACHE_LINE];
+    unsigned       front; // consumer's copy
+};
+
+/// memory holds 3 * size bytes and outlives the slot.
+void dig_latest_init(struct dig_latest *latest, size_t size, void *memory);
+
+/// Replaces what was put before, taken or not. Producer only.
+void dig_latest_put(struct dig_latest *latest, const void *record);
+
+/// True when something was put since the last take; *record is untouched otherwise. Consumer only.
+bool dig_latest_take(struct dig_latest *latest, void *record);
+
+/// The same without a copy: what was put last, unchanged until the next look or take; NULL when
+/// nothing was put since. Consumer only.
+const void *dig_latest_look(struct dig_latest *latest);
+
+#endif // DIG_FIRMWARE_HOST_THREADS_HANDOFF_H

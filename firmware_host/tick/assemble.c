@@ -1,0 +1,287 @@
+#include "firmware_host/tick/assemble.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+void dig_assembler_init(struct dig_assembler *const                assembler,
+                        const struct dig_assembler_settings *const settings)
+{
+    assert(assembler != NULL && settings != NULL);
+    assert(settings->time_scale > 0.0 && settings->groups <= DIG_GROUPS_MAX);
+    memset(assembler, 0, sizeof *assembler);
+    assembler->settings = *settings;
+}
+
+static int64_t ns(const double seconds)
+{
+    return (int64_t)llround(seconds * 1e9);
+}
+
+// Whole seconds apart from the rest, so that hours on the machine stay exact to the nanosecond.
+static int64_t machine_time(const struct dig_assembler *const a, const int64_t time_ns)
+{
+    const int64_t elapsed_ns = time_ns - a->first_ns;
+    return a->first_ns + (int64_t)llround((double)elapsed_ns * a->settings.time_scale);
+}
+
+static void count_drop(struct dig_drops *const drops, const uint8_t state)
+{
+    switch ((enum dig_reading_state)state) {
+    case DIG_READING_NOT_AVAILABLE: drops->not_available++; break;
+    case DIG_READING_OUT_OF_RANGE: drops->out_of_range++; break;
+    case DIG_READING_NAN: drops->nan++; break;
+    case DIG_READING_ABSENT:
+    case DIG_READING_OK: break;
+    }
+}
+
+// Frames that a busy bus or host bunches up carry the changes of this long at once.
+static const double bunched_s = 0.02;
+
+// Within what the signal can have changed by since it was last believed: a value that stays where
+// it jumped to is believed once it could have come there.
+static bool is_believable(struct dig_assembler *const a, const size_t signal, const double value,
+                          const int64_t time_ns)
+{
+    const double rate = a->settings.max_rate[signal];
+    if (rate > 0.0 && a->good_ns[signal] > 0) {
+        const double since_s = 1e-9 * (double)(time_ns - a->good_ns[signal]);
+        if (!(fabs(value - a->good[signal]) <= rate * (fmax(since_s, 0.0) + bunched_s))) {
+            a->drops.jump += dig_signal_is_optional((enum dig_signal)signal) ? 0 : 1;
+            return false;
+        }
+    }
+    a->good[signal]    = value;
+    a->good_ns[signal] = time_ns;
+    return true;
+}
+
+static void remember(struct dig_assembler *const a, const struct dig_reading *const reading,
+                     const int64_t time_ns)
+{
+    const unsigned                 group = reading->group;
+    struct dig_past_reading *const past  = &a->past[group][a->came[group]++ % DIG_HISTORY];
+
+    *past = (struct dig_past_reading){ .time_ns = time_ns };
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        if (reading->state[i] == DIG_READING_ABSENT) {
+            continue;
+        }
+        a->carried[i]  = true;
+        a->group_of[i] = group;
+        past->valid[i] =
+            reading->state[i] == DIG_READING_OK && is_believable(a, i, reading->value[i], time_ns);
+        past->value[i] = past->valid[i] ? reading->value[i] : 0.0;
+        if (!dig_signal_is_optional((enum dig_signal)i)) {
+            count_drop(&a->drops, reading->state[i]);
+        }
+    }
+}
+
+// False when the reading is a repetition of the one before.
+static bool watch_alive(struct dig_assembler *const a, const struct dig_reading *const reading,
+                        const int64_t time_ns)
+{
+    bool moved = true;
+    if (reading->has_alive) {
+        moved = !a->alive_known || reading->alive != a->alive;
+        if (moved) {
+            a->alive_ns = time_ns;
+        }
+        a->alive_known = true;
+        a->alive       = reading->alive;
+    } else if (!a->alive_known) {
+        return true; // the counter's own message has not come yet
+    }
+    a->frozen = a->settings.has_alive && time_ns - a->alive_ns > ns(a->settings.frozen_s);
+    return moved || !reading->has_alive || !a->settings.repeats;
+}
+
+// The n-th last reading of a group, n below what it remembers; NULL: there is none.
+static const struct dig_past_reading *past_of(const struct dig_assembler *const a,
+                                              const unsigned group, const size_t n)
+{
+    return n < a->came[group] && n < DIG_HISTORY
+               ? &a->past[group][(a->came[group] - 1 - n) % DIG_HISTORY]
+               : NULL;
+}
+
+// The cycle a group comes in: as it is said, or the shortest of those remembered, so that a silence
+// among them does not count.
+static int64_t cycle_ns(const struct dig_assembler *const a, const unsigned group)
+{
+    const struct dig_past_reading *younger     = past_of(a, group, 0);
+    int64_t                        shortest_ns = INT64_MAX;
+    for (size_t n = 1; younger != NULL && n < DIG_HISTORY; n++) {
+        const struct dig_past_reading *const older = past_of(a, group, n);
+        if (older != NULL && younger->time_ns - older->time_ns < shortest_ns) {
+            shortest_ns = younger->time_ns - older->time_ns;
+        }
+        younger = older;
+    }
+    const int64_t said_ns = ns(a->settings.frame[group].cycle_s);
+    return shortest_ns == INT64_MAX || shortest_ns < said_ns ? said_ns : shortest_ns;
+}
+
+// A group that can be done without, and that does not come while the others do. The clock alone
+// would not tell: after a pause of the whole bus the others may only be the first.
+static bool is_silent(const struct dig_assembler *const a, const unsigned group,
+                      const int64_t now_ns)
+{
+    if (!a->settings.spared[group] || a->beats - a->beat_of[group] < DIG_SILENT_CYCLES) {
+        return false;
+    }
+    const struct dig_past_reading *const last     = past_of(a, group, 0);
+    const int64_t                        since_ns = last != NULL ? last->time_ns : a->first_ns;
+    const int64_t                        most_ns  = DIG_SILENT_CYCLES * cycle_ns(a, group);
+    return now_ns - since_ns > (most_ns > ns(DIG_SILENT_s) ? most_ns : ns(DIG_SILENT_s));
+}
+
+// A reading of this group came: counts what silence is measured by, and finds who is silent.
+static void hear(struct dig_assembler *const a, const unsigned group, const int64_t now_ns)
+{
+    unsigned lead = 0;
+    while (lead < a->settings.groups && (!a->settings.needed[lead] || a->settings.spared[lead])) {
+        lead++;
+    }
+    a->beats += group == lead ? 1 : 0;
+    a->beat_of[group] = a->beats;
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        a->silent[g] = is_silent(a, g, now_ns);
+    }
+}
+
+static bool lacks_any(const struct dig_assembler *const a)
+{
+    bool lacks = false;
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        lacks = lacks || a->silent[g];
+    }
+    return lacks;
+}
+
+// Every needed group that speaks came since the last sample, and they belong together: *time_ns is
+// the moment all of them reach.
+static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
+{
+    int64_t oldest   = INT64_MAX;
+    int64_t youngest = INT64_MIN;
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        if (!a->settings.needed[g] || a->silent[g]) {
+            continue;
+        }
+        const struct dig_past_reading *const last = past_of(a, g, 0);
+        if (!a->fresh[g] || last == NULL) {
+            return false;
+        }
+        const int64_t last_ns = last->time_ns;
+        oldest                = last_ns < oldest ? last_ns : oldest;
+        youngest              = last_ns > youngest ? last_ns : youngest;
+    }
+    *time_ns = oldest;
+    return youngest >= oldest && youngest - oldest <= ns(a->settings.coherent_s);
+}
+
+// A signal at a moment: between the two readings around it, the younger alone where the older has
+// no value, the last one for what is older than the moment.
+static void read_off(const struct dig_assembler *const a, const size_t signal,
+                     const int64_t time_ns, struct dig_sample *const sample)
+{
+    const unsigned                 group   = a->group_of[signal];
+    const struct dig_past_reading *younger = past_of(a, group, 0);
+    const struct dig_past_reading *older   = past_of(a, group, 1);
+    for (size_t n = 1; older != NULL && older->time_ns > time_ns; n++) {
+        younger = older;
+        older   = past_of(a, group, n + 1);
+    }
+    sample->valid[signal] = younger->valid[signal];
+    sample->value[signal] = younger->value[signal];
+    if (younger->time_ns > time_ns && younger->valid[signal] && older != NULL &&
+        older->valid[signal]) {
+        const double share =
+            (double)(time_ns - older->time_ns) / (double)(younger->time_ns - older->time_ns);
+        sample->value[signal] =
+            older->value[signal] + share * (younger->value[signal] - older->value[signal]);
+    }
+}
+
+static struct dig_sample sample_at(const struct dig_assembler *const a, const int64_t time_ns)
+{
+    struct dig_sample sample = { .time_ns = time_ns };
+    for (size_t i = 0; i < DIG_SIGNALS; i++) {
+        const struct dig_past_reading *const last =
+            a->carried[i] ? past_of(a, a->group_of[i], 0) : NULL;
+        const bool old = last == NULL || a->silent[a->group_of[i]] ||
+                         (dig_signal_is_optional((enum dig_signal)i) &&
+                          time_ns - last->time_ns > ns(a->settings.optional_s));
+        if (!old) {
+            read_off(a, i, time_ns, &sample);
+        }
+    }
+    return sample;
+}
+
+// Takes the frame's stamp and counters; false when it says nothing new or nothing true.
+static bool is_news(struct dig_assembler *const a, const struct dig_reading *const reading,
+                    const int64_t time_ns)
+{
+    const unsigned                group = reading->group;
+    struct dig_frame_watch *const watch = &a->watch[group];
+    const int64_t                 owed  = watch->missed;
+    const bool                    next =
+        dig_frame_watch_take(watch, &a->settings.frame[group], time_ns, reading->counter);
+    a->drops.missed += watch->missed - owed;
+    a->drops.repeated += next ? 0 : 1;
+    if (!next) {
+        return false;
+    }
+    const bool moved = watch_alive(a, reading, time_ns);
+    a->drops.frozen += a->frozen ? 1 : 0;
+    return moved && !a->frozen;
+}
+
+bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading *const reading,
+                        struct dig_sample *const sample)
+{
+    assert(a != NULL && reading != NULL && sample != NULL);
+    assert(reading->group < a->settings.groups);
+    if (!a->started) {
+        a->started  = true;
+        a->first_ns = reading->time_ns;
+        a->alive_ns = reading->time_ns;
+    }
+    const int64_t time_ns =
+        machine_time(a, reading->time_ns) - ns(a->settings.frame[reading->group].delay_s);
+    if (!is_news(a, reading, time_ns)) {
+        return false;
+    }
+    const struct dig_past_reading *const before = past_of(a, reading->group, 0);
+    if (before != NULL && time_ns <= before->time_ns) {
+        return false; // a clock that was set back; samples ascend
+    }
+    remember(a, reading, time_ns);
+    hear(a, reading->group, time_ns);
+    a->fresh[reading->group] = true;
+    int64_t due_ns           = 0;
+    if (!is_due(a, &due_ns)) {
+        return false;
+    }
+    for (unsigned g = 0; g < a->settings.groups; g++) {
+        a->fresh[g] = false;
+    }
+    if (due_ns <= a->last_ns) {
+        return false;
+    }
+    a->last_ns = due_ns;
+
+    const struct dig_sample made = sample_at(a, due_ns);
+    if (a->settings.stuck_s > 0.0 && dig_sample_has_moment(&made) &&
+        dig_stuck_step(&a->stuck, a->settings.stuck_s, &made)) {
+        a->drops.stuck++;
+        return false;
+    }
+    a->drops.without_force += lacks_any(a) ? 1 : 0;
+    *sample = made;
+    return true;
+}

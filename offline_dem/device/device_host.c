@@ -1,0 +1,81 @@
+#include "offline_dem/device/device_host.h"
+
+#include "offline_dem/device/device_grain.h"
+#include "offline_dem/device/device_surfaces.h"
+
+#include <stdlib.h>
+
+// Both the interface and what it owns.
+struct host {
+    struct dig_device      device;
+    struct dig_device_view view;
+};
+
+static struct host *host_of(struct dig_device *const device)
+{
+    return device->own;
+}
+
+static enum dig_status upload(struct dig_device *const            device,
+                              const struct dig_device_view *const view)
+{
+    host_of(device)->view = *view;
+    return DIG_OK;
+}
+
+static enum dig_status step(struct dig_device *const device, const struct dig_device_step *const s)
+{
+    const struct dig_device_view *const view = &host_of(device)->view;
+    for (uint32_t p = 0; p < view->pairs; p++) {
+        dig_device_pair(view, s, p);
+    }
+    for (uint32_t i = 0; i < view->n; i++) {
+        dig_device_surfaces(view, s, i);
+    }
+    for (uint32_t b = 0; b < view->clumps; b++) {
+        dig_device_clump(view, s, b);
+    }
+    for (uint32_t i = 0; i < view->n; i++) {
+        dig_device_grain(view, s, i);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status attend(struct dig_device *const device, uint32_t attention[DIG_ATTENTIONS])
+{
+    for (int a = 0; a < DIG_ATTENTIONS; a++) {
+        attention[a] = host_of(device)->view.attention[a];
+    }
+    return DIG_OK;
+}
+
+// All is there. That on_tool begins anew is up to who adds it up: see offloaded.c.
+static enum dig_status download(struct dig_device *const device, const bool all)
+{
+    (void)device;
+    (void)all;
+    return DIG_OK;
+}
+
+static void destroy(struct dig_device *const device)
+{
+    free(device->own);
+}
+
+struct dig_device *dig_device_host_create(void)
+{
+    struct host *const host = calloc(1, sizeof *host);
+    if (host == NULL) {
+        return NULL;
+    }
+    host->device = (struct dig_device){
+        .name     = "processor",
+        .own      = host,
+        .upload   = upload,
+        .step     = step,
+        .attend   = attend,
+        .download = download,
+        .destroy  = destroy,
+    };
+    return &host->device;
+}

@@ -1,0 +1,208 @@
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/dig/level.h"
+#include "offline_dem/dig/packing.h"
+#include "offline_dem/dig/scatter.h"
+#include "offline_dem/dig/setup.h"
+#include "offline_dem/world/bodies.h"
+#include "offline_dem/world/offloaded.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Steps between two calls of the progress function.
+#define TELL_STEPS 400
+
+static enum dig_status go(struct dig_world *const world, const double duration_s,
+                          const double done_s, const double total_s,
+                          const struct dig_progress *const progress)
+{
+    const size_t steps = (size_t)llround(duration_s / world->dt_s);
+    for (size_t s = 0; s < steps; s++) {
+        const enum dig_status status = dig_world_step(world);
+        if (status != DIG_OK) {
+            return status;
+        }
+        if (progress != NULL && s % TELL_STEPS == 0 &&
+            !progress->tell(progress->context, done_s + (double)s * world->dt_s, total_s)) {
+            return DIG_ESTALE;
+        }
+    }
+    return DIG_OK;
+}
+
+// One kind of spheres on an empty floor: the packing every table of plain gravel is made of.
+static enum dig_status insert_plain(const struct dig_scene *const scene, const uint64_t seed,
+                                    struct dig_bed *const bed)
+{
+    struct dig_bed  made   = { 0 };
+    const size_t    n      = dig_packing_grains(scene);
+    enum dig_status status = dig_bed_create(n, false, false, &made);
+    if (status == DIG_OK) {
+        status = dig_packing_insert(scene, seed, n, made.x_m, made.y_m, made.z_m);
+    }
+    if (status != DIG_OK) {
+        dig_bed_finish(&made);
+        return status;
+    }
+    for (size_t i = 0; i < n; i++) {
+        made.radius_m[i] = 0.5 * scene->material.diameter_m;
+    }
+    *bed = made;
+    return DIG_OK;
+}
+
+static enum dig_status insert(const struct dig_scene *const scene, const uint64_t seed,
+                              struct dig_bed *const bed)
+{
+    const struct dig_bed_plan *const plan = &scene->bed;
+    if (plan->sizes == 0 && plan->clump.spheres == 0 && plan->obstacles == 0 && !plan->periodic_y) {
+        return insert_plain(scene, seed, bed);
+    }
+    struct dig_clump_shape shape;
+    const enum dig_status  status = dig_clump_shape_make(&plan->clump, &shape);
+    return status == DIG_OK ? dig_scatter(scene, &shape, seed, bed) : status;
+}
+
+// What the grains are made of, by the height at which they, or the middles of their clumps, lie.
+static void assign_layers(const struct dig_scene *const scene, struct dig_bed *const bed)
+{
+    const size_t spheres = scene->bed.clump.spheres > 0 ? scene->bed.clump.spheres : 1;
+    for (size_t first = 0; first < bed->grains; first += spheres) {
+        double z_m = 0.0;
+        for (size_t k = 0; k < spheres; k++) {
+            z_m += bed->z_m[first + k] / (double)spheres;
+        }
+        size_t material = 0;
+        for (size_t l = 0; l < scene->bed.layers; l++) {
+            const struct dig_layer *const layer = &scene->bed.layer[l];
+            if (z_m >= layer->from_m && z_m < layer->to_m) {
+                material = layer->material;
+            }
+        }
+        for (size_t k = 0; k < spheres; k++) {
+            bed->material[first + k] = (uint8_t)material;
+        }
+    }
+}
+
+// One pouring under way.
+struct pour {
+    const struct dig_scene  *scene;
+    const struct dig_gravel *gravel;
+    struct dig_ode_scene    *ode;
+    struct dig_device       *device; // NULL: the kernel steps
+    struct dig_grain_types   kinds;
+    struct dig_world         world;
+};
+
+// The world of a bed, stepped by whom it is to be.
+static enum dig_status make_world(struct pour *const p, const struct dig_bed *const bed,
+                                  const double fall_mps, struct dig_error *const error)
+{
+    enum dig_status status =
+        dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->kinds, &p->world, error);
+    if (status == DIG_OK && p->device != NULL) {
+        status = dig_offload(&p->world, p->device);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    return status;
+}
+
+static enum dig_status take(struct pour *const p, const size_t material[],
+                            struct dig_bed *const bed)
+{
+    enum dig_status status = dig_world_look(&p->world);
+    status = status == DIG_OK ? dig_bed_take(&p->world.grains, material, bed) : status;
+    if (status == DIG_OK && p->world.bodies != NULL) {
+        dig_obstacles_tell(&p->world.bodies->obstacles, bed);
+    }
+    return status;
+}
+
+// Makes the world anew with the layers' materials. The contacts begin again, as they do in a dig.
+static enum dig_status lay(struct pour *const p, struct dig_error *const error)
+{
+    struct dig_bed        bed    = { 0 };
+    const enum dig_status status = take(p, p->kinds.material, &bed);
+    if (status != DIG_OK) {
+        return dig_setup_explain(status, error);
+    }
+    assign_layers(p->scene, &bed);
+    dig_setup_finish(&p->world);
+    p->world                   = (struct dig_world){ 0 };
+    const enum dig_status made = make_world(p, &bed, 0.0, error);
+    dig_bed_finish(&bed);
+    return made;
+}
+
+static enum dig_status prepare(struct pour *const p, const struct dig_progress *const progress,
+                               struct dig_error *const error)
+{
+    const struct dig_packing *const packing = &p->scene->packing;
+    const double                    total_s = packing->settle_s + packing->relax_s;
+    enum dig_status status = go(&p->world, packing->settle_s, 0.0, total_s, progress);
+    if (status != DIG_OK) {
+        return dig_setup_explain(status, error);
+    }
+    if (p->scene->bed.preload_Pa > 0.0) {
+        status = dig_level_press(p->scene, &p->world, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    if (p->scene->bed.layers > 0) {
+        status = lay(p, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    status = dig_level_cut(p->scene, &p->world);
+    if (status == DIG_OK) {
+        status = go(&p->world, packing->relax_s, packing->settle_s, total_s, progress);
+    }
+    return status == DIG_OK ? status : dig_setup_explain(status, error);
+}
+
+enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
+                             const struct dig_gravel *const gravel, const uint64_t seed,
+                             const struct dig_progress *const progress, struct dig_bed *const bed,
+                             struct dig_error *const error)
+{
+    return dig_bed_pour_on(NULL, scene, gravel, seed, progress, bed, error);
+}
+
+enum dig_status dig_bed_pour_on(struct dig_device *const       device,
+                                const struct dig_scene *const  scene,
+                                const struct dig_gravel *const gravel, const uint64_t seed,
+                                const struct dig_progress *const progress,
+                                struct dig_bed *const bed, struct dig_error *const error)
+{
+    enum dig_status status = dig_setup_check(scene, gravel, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_bed poured = { 0 };
+    status                = insert(scene, seed, &poured);
+    if (status != DIG_OK) {
+        return dig_setup_explain(status, error);
+    }
+    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
+    struct pour p = { .scene = scene, .gravel = gravel, .ode = ode, .device = device };
+    if (ode == NULL) {
+        status = dig_setup_explain(DIG_ENOMEM, error);
+    } else {
+        status = make_world(&p, &poured, scene->packing.fall_mps, error);
+    }
+    dig_bed_finish(&poured);
+    if (status == DIG_OK) {
+        status = prepare(&p, progress, error);
+    }
+    if (status == DIG_OK) {
+        const size_t *const material = scene->bed.layers > 0 ? p.kinds.material : NULL;
+        status                       = take(&p, material, bed);
+        status                       = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    dig_setup_finish(&p.world);
+    dig_ode_scene_destroy(ode);
+    return status;
+}

@@ -1,0 +1,296 @@
+#include "offline_dem/dig/scatter.h"
+
+#include "core/ground.h"
+#include "core/units.h"
+#include "offline_dem/law/random.h"
+#include "offline_dem/law/rigid.h"
+#include "offline_dem/world/obstacles.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define ATTEMPTS 100000 // for one body, before the column is called full
+#define GROWTH   1.1    // what a full column grows by
+#define TALLEST  2.0    // times the height the solid fraction asks for
+#define NOBODY   UINT32_MAX
+
+// Spheres in cells as wide as the largest of them: looking one cell around finds every overlap.
+struct cells {
+    double    low_m[3], edge_m;
+    ptrdiff_t count[3];
+    uint32_t *first; // [cells]
+    uint32_t *next;  // [spheres]
+};
+
+// One size of body: a sphere, or a clump of them.
+struct class
+{
+    size_t bodies;
+    double diameter_m;
+};
+
+struct pouring {
+    const struct dig_scene       *scene;
+    const struct dig_clump_shape *shape;
+    size_t                        spheres; // of one body
+    size_t                        classes;
+    struct class class[DIG_SIZES_MAX];
+    double               period_m; // along y; 0: walls
+    struct dig_obstacles obstacles;
+    struct cells         cells;
+    double               low_m[3], high_m[3]; // of the box and the column
+    double               tallest_m;
+};
+
+static void plan_classes(struct pouring *const p)
+{
+    const struct dig_scene *const scene    = p->scene;
+    const struct dig_box *const   box      = &scene->box;
+    const double                  height_m = dig_scene_ground_max_m(scene) - box->z_min_m;
+    const double box_m3 = (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m) * height_m;
+    const struct dig_size one   = { scene->material.diameter_m, 1.0 };
+    const size_t          sizes = scene->bed.sizes;
+    p->classes                  = sizes > 0 ? sizes : 1;
+    for (size_t i = 0; i < p->classes; i++) {
+        const struct dig_size size = sizes > 0 ? scene->bed.size[i] : one;
+        const double          d_m  = size.diameter_m;
+        const double          m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
+        const struct class made    = {
+               .bodies = (size_t)floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3),
+               .diameter_m = d_m,
+        };
+        size_t k = i;
+        for (; k > 0 && p->class[k - 1].diameter_m < d_m; k--) {
+            p->class[k] = p->class[k - 1];
+        }
+        p->class[k] = made;
+    }
+    p->low_m[0]  = box->x_min_m;
+    p->low_m[1]  = box->y_min_m;
+    p->low_m[2]  = box->z_min_m;
+    p->high_m[0] = box->x_max_m;
+    p->high_m[1] = box->y_max_m;
+    p->high_m[2] =
+        box->z_min_m + height_m * scene->packing.fill_factor / scene->packing.solid_fraction;
+    p->tallest_m = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * TALLEST;
+    p->period_m  = dig_scene_period_m(scene);
+}
+
+static size_t count_spheres(const struct pouring *const p)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < p->classes; i++) {
+        n += p->class[i].bodies * p->spheres;
+    }
+    return n;
+}
+
+static enum dig_status make_cells(struct pouring *const p, const size_t n)
+{
+    struct cells *const c     = &p->cells;
+    double              most  = 0.5;
+    size_t              total = 1;
+    for (size_t k = 0; k < p->shape->spheres; k++) {
+        most = k == 0 ? p->shape->radius[0] : fmax(most, p->shape->radius[k]);
+    }
+    c->edge_m = 2.0 * most * p->class[0].diameter_m;
+    for (int a = 0; a < 3; a++) {
+        const double span_m = (a == 2 ? p->tallest_m : p->high_m[a]) - p->low_m[a];
+        c->low_m[a]         = p->low_m[a];
+        c->count[a]         = (ptrdiff_t)(span_m / c->edge_m) + 1;
+        total *= (size_t)c->count[a];
+    }
+    c->first = malloc(total * sizeof *c->first);
+    c->next  = malloc((n + 1) * sizeof *c->next);
+    if (c->first == NULL || c->next == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < total; i++) {
+        c->first[i] = NOBODY;
+    }
+    return DIG_OK;
+}
+
+static void find_cell(const struct cells *const c, const double at_m[3], ptrdiff_t cell[3])
+{
+    for (int a = 0; a < 3; a++) {
+        const ptrdiff_t i = (ptrdiff_t)floor((at_m[a] - c->low_m[a]) / c->edge_m);
+        cell[a]           = i < 0 ? 0 : i >= c->count[a] ? c->count[a] - 1 : i;
+    }
+}
+
+static bool overlaps_one(const struct pouring *const p, const struct dig_bed *const bed,
+                         const double at_m[3], const double radius_m, const ptrdiff_t cell)
+{
+    for (uint32_t g = p->cells.first[cell]; g != NOBODY; g = p->cells.next[g]) {
+        const double dx = at_m[0] - bed->x_m[g];
+        const double dy = at_m[1] - bed->y_m[g];
+        const double dz = at_m[2] - bed->z_m[g];
+        const double s  = radius_m + bed->radius_m[g];
+        if (dx * dx + dy * dy + dz * dz < s * s) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool overlaps(const struct pouring *const p, const struct dig_bed *const bed,
+                     const double at_m[3], const double radius_m)
+{
+    ptrdiff_t cell[3] = { 0 };
+    find_cell(&p->cells, at_m, cell);
+    const ptrdiff_t *const n = p->cells.count;
+    for (ptrdiff_t z = cell[2] - 1; z <= cell[2] + 1; z++) {
+        for (ptrdiff_t y = cell[1] - 1; y <= cell[1] + 1; y++) {
+            for (ptrdiff_t x = cell[0] - 1; x <= cell[0] + 1; x++) {
+                if (z >= 0 && z < n[2] && y >= 0 && y < n[1] && x >= 0 && x < n[0] &&
+                    overlaps_one(p, bed, at_m, radius_m, x + n[0] * (y + n[1] * z))) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+// Inside the walls, clear of the obstacles and of every sphere so far, in every image.
+static bool is_free(const struct pouring *const p, const struct dig_bed *const bed,
+                    const double at_m[3], const double radius_m)
+{
+    for (int a = 0; a < 3; a++) {
+        const double keep_m = a == 1 && p->period_m > 0.0 ? 0.0 : radius_m;
+        if (at_m[a] < p->low_m[a] + keep_m || at_m[a] > p->high_m[a] - keep_m) {
+            return false;
+        }
+    }
+    for (size_t r = 0; r < p->obstacles.rocks; r++) {
+        double closest_m[3];
+        if (dig_rock_closest(&p->obstacles.rock[r], at_m, closest_m) < radius_m) {
+            return false;
+        }
+    }
+    const int images = p->period_m > 0.0 ? 1 : 0;
+    for (int image = -images; image <= images; image++) {
+        const double shown[3] = { at_m[0], at_m[1] + image * p->period_m, at_m[2] };
+        if (overlaps(p, bed, shown, radius_m)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// A rotation at random, all equally likely (Shoemake, Graphics Gems III).
+static void turn_at_random(struct dig_random *const random, double q[4])
+{
+    const double u = dig_random_between(random, 0.0, 1.0);
+    const double a = dig_random_between(random, 0.0, 2.0 * DIG_PI);
+    const double b = dig_random_between(random, 0.0, 2.0 * DIG_PI);
+    q[0]           = sqrt(1.0 - u) * sin(a);
+    q[1]           = sqrt(1.0 - u) * cos(a);
+    q[2]           = sqrt(u) * sin(b);
+    q[3]           = sqrt(u) * cos(b);
+}
+
+// One trial of a body of this diameter: where its spheres would be. False when it overlaps.
+static bool try_body(const struct pouring *const p, const struct dig_bed *const bed,
+                     const double diameter_m, struct dig_random *const random, double at_m[][3])
+{
+    double centre_m[3];
+    double q[4] = { 1.0, 0.0, 0.0, 0.0 };
+    for (int a = 0; a < 3; a++) {
+        centre_m[a] = dig_random_between(random, p->low_m[a], p->high_m[a]);
+    }
+    if (p->shape->spheres > 0) {
+        turn_at_random(random, q);
+    }
+    for (size_t k = 0; k < p->spheres; k++) {
+        double arm[3] = { 0.0, 0.0, 0.0 };
+        double radius = 0.5;
+        if (p->shape->spheres > 0) {
+            dig_rigid_turn(q, p->shape->at[k], arm);
+            radius = p->shape->radius[k];
+        }
+        for (int a = 0; a < 3; a++) {
+            at_m[k][a] = centre_m[a] + diameter_m * arm[a];
+        }
+        if (!is_free(p, bed, at_m[k], radius * diameter_m)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void put_body(struct pouring *const p, struct dig_bed *const bed, const size_t first,
+                     const double diameter_m, const double at_m[][3])
+{
+    for (size_t k = 0; k < p->spheres; k++) {
+        const size_t g   = first + k;
+        bed->x_m[g]      = at_m[k][0];
+        bed->y_m[g]      = at_m[k][1];
+        bed->z_m[g]      = at_m[k][2];
+        bed->radius_m[g] = diameter_m * (p->shape->spheres > 0 ? p->shape->radius[k] : 0.5);
+        if (bed->clump != NULL) {
+            bed->clump[g] = (uint32_t)(first / p->spheres + 1);
+        }
+        ptrdiff_t cell[3];
+        find_cell(&p->cells, at_m[k], cell);
+        const ptrdiff_t c = cell[0] + p->cells.count[0] * (cell[1] + p->cells.count[1] * cell[2]);
+        p->cells.next[g]  = p->cells.first[c];
+        p->cells.first[c] = (uint32_t)g;
+    }
+}
+
+static enum dig_status pour(struct pouring *const p, const uint64_t seed, struct dig_bed *const bed)
+{
+    struct dig_random random = { .state = seed };
+    size_t            first  = 0;
+    for (size_t c = 0; c < p->classes; c++) {
+        for (size_t i = 0; i < p->class[c].bodies;) {
+            double at_m[DIG_CLUMP_MAX][3];
+            int    attempt = 0;
+            while (attempt < ATTEMPTS && !try_body(p, bed, p->class[c].diameter_m, &random, at_m)) {
+                attempt++;
+            }
+            if (attempt == ATTEMPTS) {
+                p->high_m[2] = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * GROWTH;
+                if (p->high_m[2] > p->tallest_m) {
+                    return DIG_EUNREACHABLE;
+                }
+                continue;
+            }
+            put_body(p, bed, first, p->class[c].diameter_m, (const double(*)[3])at_m);
+            first += p->spheres;
+            i++;
+        }
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_scatter(const struct dig_scene *const       scene,
+                            const struct dig_clump_shape *const shape, const uint64_t seed,
+                            struct dig_bed *const bed)
+{
+    struct pouring p = { .scene     = scene,
+                         .shape     = shape,
+                         .spheres   = shape->spheres > 0 ? shape->spheres : 1,
+                         .obstacles = dig_obstacles_make(scene) };
+    plan_classes(&p);
+    const size_t    n      = count_spheres(&p);
+    struct dig_bed  made   = { 0 };
+    enum dig_status status = dig_bed_create(n, false, shape->spheres > 0, &made);
+    if (status == DIG_OK) {
+        status = make_cells(&p, n);
+    }
+    if (status == DIG_OK) {
+        status = pour(&p, seed, &made);
+    }
+    free(p.cells.first);
+    free(p.cells.next);
+    if (status != DIG_OK) {
+        dig_bed_finish(&made);
+        return status;
+    }
+    *bed = made;
+    return DIG_OK;
+}

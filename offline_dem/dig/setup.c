@@ -1,0 +1,151 @@
+#include "offline_dem/dig/setup.h"
+
+#include "offline_dem/dig/dig.h"
+#include "offline_dem/world/bodies.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum dig_status dig_setup_check(const struct dig_scene *const  scene,
+                                const struct dig_gravel *const gravel,
+                                struct dig_error *const        error)
+{
+    const enum dig_status status = dig_scene_check(scene, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        const double value = gravel->value[a];
+        if (!isfinite(value) || value < 0.0 || (a == DIG_AXIS_DENSITY_kgpm3 && !(value > 0.0))) {
+            return dig_error_set(error, DIG_EINVAL, "%s: %g, expected %s",
+                                 dig_axis_name((enum dig_axis)a), value,
+                                 a == DIG_AXIS_DENSITY_kgpm3 ? "> 0" : ">= 0");
+        }
+    }
+    return DIG_OK;
+}
+
+double dig_time_step_s(const struct dig_scene *const scene, const double density_kgpm3)
+{
+    const struct dig_gravel      gravel = { { [DIG_AXIS_DENSITY_kgpm3] = density_kgpm3 } };
+    const double                 r_m    = 0.5 * scene->material.diameter_m;
+    const struct dig_grain_types kinds  = { .kinds = 1, .kind = { { .radius_m = r_m } } };
+    return dig_grain_types_time_step_s(scene, &gravel, &kinds);
+}
+
+// Mass of the body each grain is part of, in the bed's order.
+static double *body_masses(const struct dig_grain_types *const kinds, const uint8_t of[],
+                           const size_t n)
+{
+    double *const kg = malloc((n + 1) * sizeof *kg);
+    for (size_t i = 0; kg != NULL && i < n; i++) {
+        kg[i] = kinds->contact_kg[of[i]];
+    }
+    return kg;
+}
+
+static enum dig_status make_grains(const struct dig_scene *const       scene,
+                                   const struct dig_bed *const         bed,
+                                   const struct dig_clump_shape *const shape, const double fall_mps,
+                                   const struct dig_grain_types *const kinds, const uint8_t of[],
+                                   struct dig_grains *const  grains,
+                                   struct dig_bodies **const bodies)
+{
+    double *const   kg     = body_masses(kinds, of, bed->grains);
+    enum dig_status status = DIG_ENOMEM;
+    if (kg != NULL) {
+        status = dig_grains_place(kinds->kinds, kinds->kind, bed->grains, bed->x_m, bed->y_m,
+                                  bed->z_m, of, grains);
+    }
+    if (status == DIG_OK) {
+        for (size_t i = 0; i < bed->grains; i++) {
+            grains->motion[i].v_mps[2] = -fall_mps;
+        }
+        status = dig_bodies_create(scene, bed, shape, kg, fall_mps, grains, bodies);
+        if (status != DIG_OK) {
+            dig_grains_finish(grains);
+        }
+    }
+    free(kg);
+    return status;
+}
+
+enum dig_status dig_setup_world(const struct dig_scene *const  scene,
+                                const struct dig_gravel *const gravel,
+                                struct dig_ode_scene *const ode, const struct dig_bed *const bed,
+                                const double fall_mps, struct dig_grain_types *const kinds,
+                                struct dig_world *const world, struct dig_error *const error)
+{
+    struct dig_clump_shape shape  = { 0 };
+    struct dig_grain_types found  = { 0 };
+    struct dig_grains      grains = { 0 };
+    struct dig_bodies     *bodies = NULL;
+    uint8_t *const         of     = calloc(bed->grains + 1, 1);
+    enum dig_status        status = dig_clump_shape_make(&scene->bed.clump, &shape);
+    if (status != DIG_OK) {
+        status = dig_error_set(error, status, "bed.clump: no volume, expected some");
+    } else if (of == NULL) {
+        status = dig_setup_explain(DIG_ENOMEM, error);
+    } else {
+        status = dig_grain_types_find(scene, gravel, bed, &shape, &found, of, error);
+    }
+    if (status == DIG_OK && of != NULL) {
+        status = make_grains(scene, bed, &shape, fall_mps, &found, of, &grains, &bodies);
+        if (status == DIG_EINVAL) {
+            status = dig_error_set(error, status,
+                                   "bed: a grain whose position is no number, expected numbers");
+        } else if (status != DIG_OK) {
+            status = dig_setup_explain(status, error);
+        }
+    }
+    free(of);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_world made = {
+        .dt_s         = dig_grain_types_time_step_s(scene, gravel, &found),
+        .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
+        .isa          = dig_kernel_best(),
+        .bodies       = bodies,
+        .period_y_m   = dig_scene_period_m(scene),
+    };
+    made.walls = dig_ode_scene_walls(ode, made.wall);
+    dig_world_init(&made, &grains);
+    dig_grain_types_set_laws(scene, gravel, &found, &made);
+    if (bodies != NULL) {
+        const struct dig_law_material walls =
+            dig_grain_types_between(scene, gravel, 0, DIG_MATERIAL_WALLS);
+        dig_bodies_let_move(bodies, ode, &walls);
+    }
+    *kinds = found;
+    *world = made;
+    return DIG_OK;
+}
+
+void dig_setup_finish(struct dig_world *const world)
+{
+    dig_bodies_destroy(world->bodies);
+    world->bodies = NULL;
+    dig_world_finish(world);
+}
+
+enum dig_status dig_setup_explain(const enum dig_status status, struct dig_error *const error)
+{
+    switch (status) {
+    case DIG_EINVAL:
+        return dig_error_set(
+            error, status,
+            "time_step_s: the grains' positions grew beyond all bounds, expected a "
+            "shorter step");
+    case DIG_EUNREACHABLE:
+        return dig_error_set(error, status,
+                             "packing.solid_fraction: the grains do not fit, expected less");
+    case DIG_OK:
+    case DIG_ENOMATCH:
+    case DIG_ESTALE:
+    case DIG_ESCHEMA:
+    case DIG_ENOMEM:
+    case DIG_EIO: break;
+    }
+    return dig_error_set(error, status, "%s", dig_status_str(status));
+}

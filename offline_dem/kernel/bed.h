@@ -1,0 +1,42 @@
+// A settled bed: what a pouring leaves and a dig starts from, one grain (or one sphere of a clump)
+// an index.
+
+#ifndef DIG_OFFLINE_DEM_KERNEL_BED_H
+#define DIG_OFFLINE_DEM_KERNEL_BED_H
+
+#include "core/scene.h"
+#include "core/status.h"
+#include "offline_dem/kernel/grains.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Where a movable rock has come to lie: body to world, real part first.
+struct dig_rock_pose {
+    double x_m[3], q[4];
+};
+
+/// Owned by the caller, freed with dig_bed_finish().
+struct dig_bed {
+    size_t    grains;
+    double   *x_m, *y_m, *z_m, *radius_m; // [grains]
+    uint8_t  *material;                   // [grains] as in core/scene.h; NULL: all gravel
+    uint32_t *clump; // [grains] from 1, the spheres of one clump in a row and in the shape's order;
+                     // NULL: grains are spheres
+    size_t               rocks; // 0: the scene's obstacles are where the scene has them
+    struct dig_rock_pose rock[DIG_OBSTACLES_MAX];
+};
+
+/// Room for this many grains, all zero. DIG_ENOMEM leaves *bed as it was.
+DIG_MUST_CHECK enum dig_status dig_bed_create(size_t grains, bool materials, bool clumps,
+                                              struct dig_bed *bed);
+
+/// Where the grains lie now; material[kind] is what each kind is made of, NULL: all gravel. Clumps
+/// keep the order they were given in. DIG_ENOMEM leaves *bed as it was.
+DIG_MUST_CHECK enum dig_status dig_bed_take(const struct dig_grains *grains,
+                                            const size_t material[], struct dig_bed *bed);
+
+/// NULL and a zeroed bed are allowed.
+void dig_bed_finish(struct dig_bed *bed);
+
+#endif // DIG_OFFLINE_DEM_KERNEL_BED_H

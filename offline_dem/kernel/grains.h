@@ -1,0 +1,76 @@
+// The grains of one computation: state, loads and kinds. Indices are places in memory, which change
+// when the neighbour list is rebuilt so that neighbours in space are neighbours in memory; `name`
+// is the number a grain was given at the beginning and keeps.
+
+#ifndef DIG_OFFLINE_DEM_KERNEL_GRAINS_H
+#define DIG_OFFLINE_DEM_KERNEL_GRAINS_H
+
+#include "core/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define DIG_GRAIN_TYPES_MAX 16 // different radii, densities and materials in one bed
+
+/// One grain's motion. Rows of four, the fourth unused: one load fetches a vector.
+struct dig_motion {
+    double x_m[4];
+    double v_mps[4];
+    double w_radps[4];
+};
+
+/// What acts on one grain during one step.
+struct dig_load {
+    double f_N[4];
+    double t_Nm[4];
+};
+
+/// What grains have in common. A driven grain is part of a body: loads and gravity do not change
+/// its velocity, which the body sets.
+struct dig_kind {
+    double radius_m, mass_kg, inertia_kgm2;
+    bool   driven;
+};
+
+struct dig_grains {
+    size_t             n;
+    size_t             kinds;
+    struct dig_kind    kind[DIG_GRAIN_TYPES_MAX];
+    struct dig_motion *motion; // [n]
+    struct dig_load   *load;   // [n]
+    uint8_t           *of;     // [n] kind of each grain
+    uint32_t          *name;   // [n]
+    uint32_t          *clump;  // [n] body each grain is part of, from 1; 0: none. NULL: no bodies
+};
+
+/// n grains at rest at (x, y, z) with these radii and this density. DIG_EINVAL for more than
+/// DIG_GRAIN_TYPES_MAX different radii, DIG_ENOMEM. Written on success only.
+DIG_MUST_CHECK enum dig_status dig_grains_create(size_t n, const double x_m[], const double y_m[],
+                                                 const double z_m[], const double radius_m[],
+                                                 double density_kgpm3, struct dig_grains *grains);
+
+/// The same with the kinds given: grain i is of kind[of[i]]. DIG_EINVAL for a kind that is not
+/// there, a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_grains_place(size_t kinds, const struct dig_kind kind[],
+                                                size_t n, const double x_m[], const double y_m[],
+                                                const double z_m[], const uint8_t of[],
+                                                struct dig_grains *grains);
+
+/// Takes out every grain for which drop is not 0; the others keep their order.
+void dig_grains_drop(struct dig_grains *grains, const unsigned char drop[]);
+
+/// Puts grain order[k] at place k. DIG_ENOMEM leaves all as it was.
+DIG_MUST_CHECK enum dig_status dig_grains_reorder(struct dig_grains *grains,
+                                                  const uint32_t     order[]);
+
+void dig_grains_finish(struct dig_grains *grains);
+
+/// Kinetic energy of the grains, J: translation and rotation.
+double dig_grains_kinetic_J(const struct dig_grains *grains);
+
+/// False when a grain crosses its own radius within a step, or is nowhere: it has left what the law
+/// can follow, the step is too long, and the next ones would only make numbers larger.
+bool dig_grains_are_sound(const struct dig_grains *grains, double dt_s);
+
+#endif // DIG_OFFLINE_DEM_KERNEL_GRAINS_H

@@ -1,0 +1,300 @@
+#include "offline_dem/kernel/kernel.h"
+
+#include "offline_dem/kernel/rows.h"
+#include "offline_dem/kernel/stages.h"
+#include "offline_dem/kernel/wall_rows.h"
+#include "offline_dem/law/period.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#define VARIANT_AVX2 __attribute__((target("avx2")))
+// GCC takes half vectors by itself where full ones might slow the clock; clang has no such word.
+#ifdef __clang__
+#define VARIANT_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
+#else
+#define VARIANT_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")))
+#endif
+#else
+#define VARIANT_AVX2
+#define VARIANT_AVX512
+#endif
+
+enum dig_isa dig_kernel_best(void)
+{
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl")) {
+        return DIG_ISA_AVX512;
+    }
+    if (__builtin_cpu_supports("avx2")) {
+        return DIG_ISA_AVX2;
+    }
+#endif
+    return DIG_ISA_BASE;
+}
+
+const char *dig_kernel_name(const enum dig_isa isa)
+{
+    return isa == DIG_ISA_AVX512 ? "avx512f" : isa == DIG_ISA_AVX2 ? "avx2" : "baseline";
+}
+
+BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
+{
+    const double per_m = dig_period_inverse(period_m);
+#pragma omp simd simdlen(8)
+    for (size_t c = 0; c < count; c++) {
+        y_m[c] = dig_period_fold(y_m[c], period_m, per_m);
+    }
+}
+
+// Where a block of contacts finds its memories: in the list, or when the list is to stay as it is
+// in a copy.
+BODY void open_memories(const bool still, struct dig_contacts *const list, const size_t first,
+                        double copy[DIG_MEMORIES][DIG_BLOCK], double *memories[DIG_MEMORIES])
+{
+    for (int m = 0; m < DIG_MEMORIES; m++) {
+        memories[m] = list->memory[m] + first;
+        if (still) {
+            memcpy(copy[m], memories[m], sizeof copy[m]);
+            memories[m] = copy[m];
+        }
+    }
+}
+
+BODY void pairs_body(const bool wide, const bool general, const struct dig_law law,
+                     const double dt_s, const double period_m, const bool still,
+                     struct dig_contacts *const list, struct dig_grains *const grains)
+{
+    if (list->n == 0) {
+        return;
+    }
+    // Cleared once a list: the analyzer does not see that every stage fills what the next one
+    // reads.
+    struct dig_block block;
+    memset(&block, 0, sizeof block);
+    double  copy[DIG_MEMORIES][DIG_BLOCK];
+    double *memories[DIG_MEMORIES] = { NULL };
+    for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+        const size_t left  = list->n - first;
+        const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
+        gather(wide, list, grains->motion, first, count, &block);
+        if (period_m > 0.0) {
+            fold(period_m, count, block.in[1]);
+        }
+        open_memories(still, list, first, copy, memories);
+        block_body(general, law, dt_s, count, memories, &block);
+        scatter(wide, list, &block, first, count, grains->load);
+    }
+}
+
+BODY void walls_body(const bool general, const struct dig_law law, const double dt_s,
+                     const struct dig_wall wall[], const bool still,
+                     struct dig_contacts *const list, struct dig_grains *const grains,
+                     double on_walls_N[3])
+{
+    if (list->n == 0) {
+        return;
+    }
+    // Cleared once a list: the analyzer does not see that every stage fills what the next one
+    // reads.
+    struct dig_block block;
+    memset(&block, 0, sizeof block);
+    double  copy[DIG_MEMORIES][DIG_BLOCK];
+    double *memories[DIG_MEMORIES] = { NULL };
+    four    sum_N                  = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };
+    for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+        const size_t left  = list->n - first;
+        const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
+        // The law reaches as far as the grain's radius.
+        gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
+        open_memories(still, list, first, copy, memories);
+        block_body(general, law, dt_s, count, memories, &block);
+        scatter_walls(list, &block, first, count, grains->load, &sum_N);
+    }
+    for (int k = 0; k < 3; k++) {
+        on_walls_N[k] = sum_N[k];
+    }
+}
+
+// How a kind's velocities answer: gravity, and what a load is multiplied with. Zeros where a body
+// drives the grains.
+struct answer {
+    four   g_mps2;
+    double per_kg, per_kgm2;
+};
+
+// One grain over one step; returns its displacement since the lists were made, and in the fourth
+// lane its margin with the sign turned.
+BODY four advance_one(const struct answer *const answer, const double kick_s, const double dt_s,
+                      const double at_m[4], struct dig_motion *const motion,
+                      struct dig_load *const load)
+{
+    const four zero = { 0.0, 0.0, 0.0, 0.0 };
+    const four v    = load_four(motion->v_mps) +
+                   kick_s * (load_four(load->f_N) * answer->per_kg + answer->g_mps2);
+    const four w = load_four(motion->w_radps) + kick_s * (load_four(load->t_Nm) * answer->per_kgm2);
+    const four x = load_four(motion->x_m) + dt_s * v;
+    store_four(motion->v_mps, &v);
+    store_four(motion->w_radps, &w);
+    store_four(motion->x_m, &x);
+    store_four(load->f_N, &zero);
+    store_four(load->t_Nm, &zero);
+    return x - load_four(at_m);
+}
+
+// Whether any of four grains has moved beyond its margin.
+BODY four_index have_left(const four d[4])
+{
+    four c[4];
+    transpose_four(d, c);
+    // Negated, so that a coordinate that is not a number counts as having left.
+    return ~(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] <= c[3] * c[3]);
+}
+
+BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
+                       const double (*const at_m)[4], const size_t count,
+                       const uint32_t *const which, struct dig_grains *const grains)
+{
+    const four    g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
+    struct answer answer[DIG_GRAIN_TYPES_MAX];
+    for (size_t k = 0; k < grains->kinds; k++) {
+        const struct dig_kind kind = grains->kind[k];
+        answer[k].g_mps2           = (kind.driven ? 0.0 : 1.0) * g;
+        answer[k].per_kg           = kind.driven ? 0.0 : 1.0 / kind.mass_kg;
+        answer[k].per_kgm2         = kind.driven ? 0.0 : 1.0 / kind.inertia_kgm2;
+    }
+    four_index   left = { 0, 0, 0, 0 };
+    const size_t n    = which == NULL ? grains->n : count;
+    size_t       k    = 0;
+    for (; k + 4 <= n; k += 4) {
+        four d[4];
+#pragma GCC unroll 4
+        for (size_t l = 0; l < 4; l++) {
+            const size_t i = which == NULL ? k + l : which[k + l];
+            d[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
+                               &grains->load[i]);
+        }
+        left |= have_left(d);
+    }
+    four rest[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
+    for (size_t l = 0; k + l < n; l++) {
+        const size_t i = which == NULL ? k + l : which[k + l];
+        rest[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
+                              &grains->load[i]);
+    }
+    left |= have_left(rest);
+    return (left[0] | left[1] | left[2] | left[3]) != 0;
+}
+
+// An attribute cannot stand in parentheses: NOLINTBEGIN(bugprone-macro-parentheses)
+#define VARIANTS(attribute, wide, suffix)                                                          \
+    attribute static void block_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const size_t count, double *const memories[DIG_MEMORIES], \
+                                         struct dig_block *const block)                            \
+    {                                                                                              \
+        if (law->general) {                                                                        \
+            block_body(true, *law, dt_s, count, memories, block);                                  \
+        } else {                                                                                   \
+            block_body(false, *law, dt_s, count, memories, block);                                 \
+        }                                                                                          \
+    }                                                                                              \
+    attribute static void pairs_##suffix(                                                          \
+        const struct dig_law *const law, const double dt_s, const double period_m,                 \
+        const bool still, struct dig_contacts *const list, struct dig_grains *const grains)        \
+    {                                                                                              \
+        if (law->general) {                                                                        \
+            pairs_body(wide, true, *law, dt_s, period_m, still, list, grains);                     \
+        } else {                                                                                   \
+            pairs_body(wide, false, *law, dt_s, period_m, still, list, grains);                    \
+        }                                                                                          \
+    }                                                                                              \
+    attribute static void walls_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const struct dig_wall wall[], const bool still,           \
+                                         struct dig_contacts *const list,                          \
+                                         struct dig_grains *const grains, double on_walls_N[3])    \
+    {                                                                                              \
+        if (law->general) {                                                                        \
+            walls_body(true, *law, dt_s, wall, still, list, grains, on_walls_N);                   \
+        } else {                                                                                   \
+            walls_body(false, *law, dt_s, wall, still, list, grains, on_walls_N);                  \
+        }                                                                                          \
+    }                                                                                              \
+    attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
+                                           const double dt_s, const double(*const at_m)[4],        \
+                                           const size_t count, const uint32_t *const which,        \
+                                           struct dig_grains *const grains)                        \
+    {                                                                                              \
+        return which == NULL                                                                       \
+                   ? advance_body(gravity_mps2, kick_s, dt_s, at_m, count, NULL, grains)           \
+                   : advance_body(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);         \
+    }
+
+// NOLINTEND(bugprone-macro-parentheses)
+VARIANTS(, false, base)
+VARIANTS(VARIANT_AVX2, false, avx2)
+VARIANTS(VARIANT_AVX512, true, avx512)
+
+void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const size_t count, double memory[DIG_MEMORIES][DIG_BLOCK],
+                      struct dig_block *const block)
+{
+    double *const memories[DIG_MEMORIES] = { memory[0], memory[1], memory[2],
+                                             memory[3], memory[4], memory[5] };
+    switch (isa) {
+    case DIG_ISA_AVX512: block_avx512(law, dt_s, count, memories, block); break;
+    case DIG_ISA_AVX2: block_avx2(law, dt_s, count, memories, block); break;
+    case DIG_ISA_BASE: block_base(law, dt_s, count, memories, block); break;
+    }
+}
+
+static void run_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const double period_m, const bool still, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
+{
+    switch (isa) {
+    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, period_m, still, list, grains); break;
+    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, period_m, still, list, grains); break;
+    case DIG_ISA_BASE: pairs_base(law, dt_s, period_m, still, list, grains); break;
+    }
+}
+
+void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const double period_y_m, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
+{
+    run_pairs(isa, law, dt_s, period_y_m, false, list, grains);
+}
+
+void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const double period_y_m, struct dig_contacts *const list,
+                      struct dig_grains *const grains)
+{
+    run_pairs(isa, law, dt_s, period_y_m, true, list, grains);
+}
+
+void dig_kernel_walls(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
+                      const struct dig_wall wall[], const bool still,
+                      struct dig_contacts *const list, struct dig_grains *const grains,
+                      double on_walls_N[3])
+{
+    switch (isa) {
+    case DIG_ISA_AVX512: walls_avx512(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    case DIG_ISA_AVX2: walls_avx2(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    case DIG_ISA_BASE: walls_base(law, dt_s, wall, still, list, grains, on_walls_N); break;
+    }
+}
+
+bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,
+                        const double dt_s, const double at_m[][4], const size_t count,
+                        const uint32_t which[], struct dig_grains *const grains)
+{
+    switch (isa) {
+    case DIG_ISA_AVX512:
+        return advance_avx512(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+    case DIG_ISA_AVX2: return advance_avx2(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+    case DIG_ISA_BASE: break;
+    }
+    return advance_base(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+}

@@ -1,0 +1,12 @@
+// What a function is that the processor runs and a device may run as well.
+
+#ifndef DIG_OFFLINE_DEM_LAW_BOTH_H
+#define DIG_OFFLINE_DEM_LAW_BOTH_H
+
+#ifdef __CUDACC__
+#define DIG_BOTH __host__ __device__
+#else
+#define DIG_BOTH
+#endif
+
+#endif // DIG_OFFLINE_DEM_LAW_BOTH_H

@@ -1,0 +1,180 @@
+#include "offline_dem/reference/engine_ode.h"
+
+#include "core/units.h"
+#include "offline_dem/dig/setup.h"
+#include "offline_dem/reference/ode_bed.h"
+#include "offline_dem/world/ode_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// One dig under way.
+struct drive {
+    const struct dig_trajectory *trajectory;
+    const struct dig_world      *world; // grains as they were at the start
+    struct dig_ode_scene        *ode;
+    struct dig_ode_bed          *bed;
+    struct dig_tool              tool;
+};
+
+static enum dig_status refuse(struct dig_error *const error, const char *const key)
+{
+    return dig_error_set(error, DIG_EINVAL, "%s: expected none with the ode engine", key);
+}
+
+static enum dig_status check(const struct dig_scene *const scene, const char *const vtk_dir,
+                             struct dig_error *const error)
+{
+    const struct dig_bed_plan *const bed = &scene->bed;
+    if (bed->clump.spheres > 0) {
+        return refuse(error, "clump");
+    }
+    if (bed->periodic_y) {
+        return refuse(error, "periodic_y");
+    }
+    if (bed->earlier_digs > 0) {
+        return refuse(error, "earlier_digs");
+    }
+    return vtk_dir != NULL ? refuse(error, "pictures") : DIG_OK;
+}
+
+// A step with the bucket where the trajectory has it; the rates are those of the phase that ends at
+// or after time_s.
+static enum dig_status step(struct drive *const d, const double time_s,
+                            struct dig_wrench *const on_tool)
+{
+    const struct dig_pose         pose     = dig_trajectory_pose(d->trajectory, time_s);
+    const double                  middle_s = time_s - 0.5 * d->world->dt_s;
+    const struct dig_phase *const phase =
+        &d->trajectory->phase[dig_trajectory_phase(d->trajectory, middle_s)];
+    dig_ode_scene_move(d->ode, pose, phase->vx_mps, phase->vz_mps, phase->omega_radps);
+    dig_ode_scene_read(d->ode, &d->tool);
+    return dig_ode_bed_step(d->bed, &d->tool, on_tool);
+}
+
+static double carried_kg(const struct drive *const d)
+{
+    const struct dig_grains *const grains = &d->world->grains;
+    double                         sum_kg = 0.0;
+    for (size_t i = 0; i < grains->n; i++) {
+        const struct dig_motion motion = dig_ode_bed_motion(d->bed, i);
+        if (dig_tool_holds(&d->tool, motion.x_m)) {
+            sum_kg += grains->kind[grains->of[i]].mass_kg;
+        }
+    }
+    return sum_kg;
+}
+
+// Means over the steps first + 1 … first + window.
+static enum dig_status record_window(struct drive *const d, const size_t first, const size_t window,
+                                     struct dig_force_row *const row)
+{
+    const double      dt_s = d->world->dt_s;
+    struct dig_wrench sum  = { 0 };
+    for (size_t s = 1; s <= window; s++) {
+        struct dig_wrench     on_tool;
+        const enum dig_status status = step(d, (double)(first + s) * dt_s, &on_tool);
+        if (status != DIG_OK) {
+            return status;
+        }
+        for (int k = 0; k < 3; k++) {
+            sum.f_N[k] += on_tool.f_N[k] / (double)window;
+            sum.t_Nm[k] += on_tool.t_Nm[k] / (double)window;
+        }
+    }
+    const double          t_s  = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
+    const struct dig_pose pose = dig_trajectory_pose(d->trajectory, t_s);
+    *row                       = (struct dig_force_row){
+                              .t_s        = t_s,
+                              .pin_x_m    = pose.x_m,
+                              .pin_z_m    = pose.z_m,
+                              .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
+                              .Fx_N       = sum.f_N[0],
+                              .Fy_N       = sum.f_N[1],
+                              .Fz_N       = sum.f_N[2],
+                              .Mx_Nm      = sum.t_Nm[0],
+                              .My_Nm      = sum.t_Nm[1],
+                              .Mz_Nm      = sum.t_Nm[2],
+                              .carried_kg = carried_kg(d),
+    };
+    return DIG_OK;
+}
+
+static enum dig_status record(struct drive *const d, const double output_s,
+                              const struct dig_progress *const progress,
+                              struct dig_recording *const      recording)
+{
+    const double duration_s = dig_trajectory_duration_s(d->trajectory);
+    const double steps      = duration_s / d->world->dt_s;
+    const size_t window     = (size_t)fmax(1.0, round(output_s / d->world->dt_s));
+    const size_t rows       = (size_t)floor(steps / (double)window + 1e-6);
+    recording->row          = calloc(rows + 1, sizeof *recording->row);
+    if (recording->row == NULL) {
+        return DIG_ENOMEM;
+    }
+    // The forces before the first step belong to no window: they give the half kick.
+    struct dig_wrench on_tool;
+    enum dig_status   status = step(d, 0.0, &on_tool);
+    for (size_t r = 0; r < rows && status == DIG_OK; r++) {
+        status = record_window(d, r * window, window, &recording->row[r]);
+        if (status == DIG_OK && progress != NULL &&
+            !progress->tell(progress->context, recording->row[r].t_s, duration_s)) {
+            status = DIG_ESTALE;
+        }
+    }
+    recording->rows = rows;
+    return status;
+}
+
+static enum dig_status dig(const struct dig_scene *const  scene,
+                           const struct dig_gravel *const gravel, const struct dig_bed *const bed,
+                           const struct dig_trajectory *const trajectory, const char *const vtk_dir,
+                           const struct dig_progress *const progress,
+                           struct dig_recording *const recording, struct dig_error *const error)
+{
+    enum dig_status status = dig_setup_check(scene, gravel, error);
+    status                 = status == DIG_OK ? check(scene, vtk_dir, error) : status;
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
+                             trajectory->phases, DIG_PHASES_MAX);
+    }
+    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
+    if (ode == NULL) {
+        return dig_setup_explain(DIG_ENOMEM, error);
+    }
+    struct dig_grain_types kinds;
+    struct dig_world       world;
+    struct dig_recording   made = { 0 };
+    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &world, error);
+    if (status == DIG_OK) {
+        struct drive d = {
+            .trajectory = trajectory,
+            .world      = &world,
+            .ode        = ode,
+            .bed        = dig_ode_bed_create(&world),
+            .tool       = dig_tool_make(&scene->bucket),
+        };
+        status = d.bed == NULL ? DIG_ENOMEM : record(&d, scene->output_s, progress, &made);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+        dig_ode_bed_destroy(d.bed);
+        dig_setup_finish(&world);
+    }
+    dig_ode_scene_destroy(ode);
+    if (status != DIG_OK) {
+        dig_recording_finish(&made);
+        return status;
+    }
+    *recording = made;
+    return DIG_OK;
+}
+
+struct dig_engine dig_engine_ode(void)
+{
+    struct dig_engine engine = dig_engine_kernel();
+    engine.name              = "ode";
+    engine.dig               = dig;
+    return engine;
+}

@@ -1,0 +1,198 @@
+#include "offline_dem/reference/ode_bed.h"
+
+#include "offline_dem/reference/ode_contacts.h"
+#include "offline_dem/world/bodies.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The box that holds the tool, grown by nothing: grains' own boxes overlap it when they touch.
+static void place_box(const struct dig_ode_bed *const bed)
+{
+    const struct dig_tool *const tool    = bed->tool;
+    double                       low[3]  = { INFINITY, 0.0, INFINITY };
+    double                       high[3] = { -INFINITY, 0.0, -INFINITY };
+    for (size_t k = 0; k < tool->bucket.points; k++) {
+        const double body[3] = { tool->bucket.x_m[k], 0.0, tool->bucket.z_m[k] };
+        double       world[3];
+        dig_tool_turn(tool, body, world);
+        low[0]  = fmin(low[0], world[0]);
+        low[2]  = fmin(low[2], world[2]);
+        high[0] = fmax(high[0], world[0]);
+        high[2] = fmax(high[2], world[2]);
+    }
+    dGeomBoxSetLengths(bed->tool_box, high[0] - low[0], tool->bucket.width_m, high[2] - low[2]);
+    dGeomSetPosition(bed->tool_box, tool->pose.x_m + 0.5 * (low[0] + high[0]), 0.0,
+                     tool->pose.z_m + 0.5 * (low[2] + high[2]));
+}
+
+// Where the rocks are by now, and nothing pushing them yet.
+static void place_rocks(struct dig_ode_bed *const bed)
+{
+    for (size_t r = 0; r < bed->rocks; r++) {
+        struct dig_rock *const rock = &bed->rock[r];
+        const double *const    x    = rock->body.x_m;
+        memset(rock->f_N, 0, sizeof rock->f_N);
+        memset(rock->t_Nm, 0, sizeof rock->t_Nm);
+        dGeomSetPosition(bed->stone[r], x[0], x[1], x[2]);
+        dGeomSetQuaternion(bed->stone[r], rock->body.q);
+    }
+}
+
+enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig_tool *const tool,
+                                 struct dig_wrench *const on_tool)
+{
+    bed->tool    = tool;
+    bed->on_tool = (struct dig_wrench){ 0 };
+    bed->share   = bed->started ? 1.0 : 0.5;
+    dSpaceCollide(bed->grains_space, bed, dig_ode_contacts_grain);
+    dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->walls_space, bed,
+                   dig_ode_contacts_wall);
+    place_rocks(bed);
+    dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->rocks_space, bed,
+                   dig_ode_contacts_rock);
+    if (tool != NULL) {
+        place_box(bed);
+        dSpaceCollide2((dGeomID)bed->grains_space, bed->tool_box, bed, dig_ode_contacts_tool);
+    }
+    dig_ode_memory_turn(&bed->memory);
+    if (bed->short_of_memory) {
+        return DIG_ENOMEM;
+    }
+    const double *const g = bed->gravity_mps2;
+    dWorldSetGravity(bed->world, bed->share * g[0], bed->share * g[1], bed->share * g[2]);
+    if (!dWorldQuickStep(bed->world, bed->dt_s)) {
+        return DIG_ENOMEM;
+    }
+    if (bed->scene != NULL) {
+        dig_ode_rocks_step(bed->scene, tool, bed->touch, bed->dt_s, bed->rock, &bed->on_tool);
+    }
+    bed->started = true;
+    *on_tool     = bed->on_tool;
+    return DIG_OK;
+}
+
+struct dig_motion dig_ode_bed_motion(const struct dig_ode_bed *const bed, const size_t grain)
+{
+    struct dig_motion  motion = { 0 };
+    const dReal *const x      = dBodyGetPosition(bed->body[grain]);
+    const dReal *const v      = dBodyGetLinearVel(bed->body[grain]);
+    const dReal *const w      = dBodyGetAngularVel(bed->body[grain]);
+    for (int k = 0; k < 3; k++) {
+        motion.x_m[k]     = x[k];
+        motion.v_mps[k]   = v[k];
+        motion.w_radps[k] = w[k];
+    }
+    return motion;
+}
+
+static void add_grain(struct dig_ode_bed *const bed, const struct dig_kind *const kind,
+                      const struct dig_motion *const m, const size_t i)
+{
+    bed->body[i] = dBodyCreate(bed->world);
+    dMass mass;
+    dMassSetParameters(&mass, kind->mass_kg, 0.0, 0.0, 0.0, kind->inertia_kgm2, kind->inertia_kgm2,
+                       kind->inertia_kgm2, 0.0, 0.0, 0.0);
+    dBodySetMass(bed->body[i], &mass);
+    dBodySetPosition(bed->body[i], m->x_m[0], m->x_m[1], m->x_m[2]);
+    dBodySetLinearVel(bed->body[i], m->v_mps[0], m->v_mps[1], m->v_mps[2]);
+    dBodySetAngularVel(bed->body[i], m->w_radps[0], m->w_radps[1], m->w_radps[2]);
+    dBodySetGyroscopicMode(bed->body[i], 0);
+    bed->ball[i] = dCreateSphere(bed->grains_space, kind->radius_m);
+    dGeomSetBody(bed->ball[i], bed->body[i]);
+    dGeomSetData(bed->ball[i], (void *)(uintptr_t)i); // NOLINT(performance-no-int-to-ptr)
+}
+
+// Cells as large as the smallest grain to as large as the largest: the default levels are made for
+// metres, and ten times too slow here.
+static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *const grains)
+{
+    double least_m = INFINITY;
+    double most_m  = 0.0;
+    for (size_t k = 0; k < grains->kinds; k++) {
+        least_m = fmin(least_m, 2.0 * grains->kind[k].radius_m);
+        most_m  = fmax(most_m, 2.0 * grains->kind[k].radius_m);
+    }
+    bed->grains_space = dHashSpaceCreate(NULL);
+    dHashSpaceSetLevels(bed->grains_space, (int)floor(log2(least_m)), (int)ceil(log2(most_m)));
+    bed->walls_space = dSimpleSpaceCreate(NULL);
+    bed->rocks_space = dSimpleSpaceCreate(NULL);
+    bed->tool_box    = dCreateBox(NULL, 1.0, 1.0, 1.0);
+}
+
+static void add_rocks(struct dig_ode_bed *const bed, const struct dig_bodies *const bodies)
+{
+    bed->rocks = bodies->obstacles.rocks;
+    bed->scene = bodies->ode;
+    memcpy(bed->rock, bodies->obstacles.rock, sizeof bed->rock);
+    memcpy(bed->touch, bodies->touch, sizeof bed->touch);
+    for (size_t r = 0; r < bed->rocks; r++) {
+        const double *const h = bed->rock[r].half_m;
+        bed->stone[r]         = bed->rock[r].shape == DIG_OBSTACLE_BOX
+                                    ? dCreateBox(bed->rocks_space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
+                                    : dCreateSphere(bed->rocks_space, h[0]);
+        dGeomSetData(bed->stone[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)
+    }
+}
+
+struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *const world)
+{
+    if (world->bodies != NULL && world->bodies->clumps > 0) {
+        return NULL;
+    }
+    const struct dig_grains *const grains = &world->grains;
+    struct dig_ode_bed *const      bed    = calloc(1, sizeof *bed);
+    if (bed == NULL || !dInitODE2(0)) {
+        free(bed);
+        return NULL;
+    }
+    bed->n     = grains->n;
+    bed->world = dWorldCreate();
+    make_space(bed, grains);
+    bed->dt_s = world->dt_s;
+    memcpy(bed->gravity_mps2, world->gravity_mps2, sizeof bed->gravity_mps2);
+    memcpy(bed->kind, grains->kind, sizeof bed->kind);
+    memcpy(bed->pair_law, world->pair_law, sizeof bed->pair_law);
+    memcpy(bed->wall_law, world->wall_law, sizeof bed->wall_law);
+    memcpy(bed->tool_law, world->tool_law, sizeof bed->tool_law);
+    bed->body = calloc(bed->n + 1, sizeof(dBodyID));
+    bed->ball = calloc(bed->n + 1, sizeof(dGeomID));
+    bed->of   = calloc(bed->n + 1, sizeof *bed->of);
+    if (bed->body == NULL || bed->ball == NULL || bed->of == NULL) {
+        dig_ode_bed_destroy(bed);
+        return NULL;
+    }
+    memcpy(bed->of, grains->of, bed->n * sizeof *bed->of);
+    for (size_t i = 0; i < bed->n; i++) {
+        add_grain(bed, &grains->kind[grains->of[i]], &grains->motion[i], i);
+    }
+    for (size_t k = 0; k < world->walls; k++) {
+        const struct dig_wall *const wall = &world->wall[k];
+        dGeomID plane = dCreatePlane(bed->walls_space, wall->normal[0], wall->normal[1],
+                                     wall->normal[2], wall->offset_m);
+        dGeomSetData(plane, (void *)(uintptr_t)k); // NOLINT(performance-no-int-to-ptr)
+    }
+    if (world->bodies != NULL) {
+        add_rocks(bed, world->bodies);
+    }
+    return bed;
+}
+
+void dig_ode_bed_destroy(struct dig_ode_bed *const bed)
+{
+    if (bed == NULL) {
+        return;
+    }
+    dGeomDestroy(bed->tool_box);
+    dSpaceDestroy(bed->grains_space);
+    dSpaceDestroy(bed->walls_space);
+    dSpaceDestroy(bed->rocks_space);
+    dWorldDestroy(bed->world);
+    dCloseODE();
+    dig_ode_memory_finish(&bed->memory);
+    free(bed->body);
+    free(bed->ball);
+    free(bed->of);
+    free(bed);
+}

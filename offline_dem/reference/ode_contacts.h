@@ -1,0 +1,52 @@
+// What happens when ODE finds two geometries near each other: the law, as forces on bodies. Shared
+// by ode_bed.c, which makes the bodies and calls ODE, and ode_contacts.c; for nobody else.
+
+#ifndef DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
+#define DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
+
+#include "offline_dem/reference/ode_memory.h"
+#include "offline_dem/world/ode_rocks.h"
+#include "offline_dem/world/world.h"
+
+#include <ode/ode.h>
+
+struct dig_ode_bed {
+    dWorldID world;
+    dSpaceID grains_space, walls_space, rocks_space;
+    dGeomID  tool_box;
+    size_t   n;
+    dBodyID *body; // [n]
+    dGeomID *ball; // [n]
+    uint8_t *of;   // [n]
+
+    // Read from the world this was made from.
+    double          dt_s, gravity_mps2[3];
+    struct dig_kind kind[DIG_GRAIN_TYPES_MAX];
+    struct dig_law  pair_law[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX],
+        wall_law[DIG_GRAIN_TYPES_MAX], tool_law[DIG_GRAIN_TYPES_MAX];
+
+    // Rocks: copies, which this bed moves.
+    size_t                rocks;
+    struct dig_rock       rock[DIG_OBSTACLES_MAX];
+    dGeomID               stone[DIG_OBSTACLES_MAX];
+    struct dig_rock_touch touch[DIG_OBSTACLES_MAX];
+    struct dig_ode_scene *scene; // moves them; NULL: all are fixed
+
+    struct dig_ode_memory memory;
+    bool                  started;
+
+    // Of the step under way.
+    const struct dig_tool *tool;
+    struct dig_wrench      on_tool;
+    double                 share; // of a kick
+    bool                   short_of_memory;
+};
+
+/// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and a
+/// rock, a grain and the box about the tool. Loads are added to the bodies, contacts remembered.
+void dig_ode_contacts_grain(void *data, dGeomID a, dGeomID b);
+void dig_ode_contacts_wall(void *data, dGeomID a, dGeomID b);
+void dig_ode_contacts_rock(void *data, dGeomID a, dGeomID b);
+void dig_ode_contacts_tool(void *data, dGeomID a, dGeomID b);
+
+#endif // DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H

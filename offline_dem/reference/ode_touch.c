@@ -1,0 +1,122 @@
+#include "offline_dem/reference/ode_touch.h"
+
+#include <math.h>
+
+// Numbers of plates in contact memory, beyond any grain's and any wall's.
+#define PLATE_NUMBER 0xFFFF8000U
+
+struct candidate {
+    double closest_m[3];
+    double distance_m;
+    size_t plate;
+};
+
+static double distance(const double a[3], const double b[3])
+{
+    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+static size_t find_candidates(const struct dig_tool *const tool, const double body_m[3],
+                              const double radius_m, struct candidate found[])
+{
+    size_t count = 0;
+    for (size_t plate = 0; plate < tool->plates; plate++) {
+        struct candidate *const c = &found[count];
+        dig_tool_closest(tool, plate, body_m, c->closest_m);
+        c->distance_m = distance(body_m, c->closest_m);
+        c->plate      = plate;
+        count += c->distance_m < radius_m;
+    }
+    return count;
+}
+
+static void take_memory(struct dig_ode_touch *const touch, const uint32_t grain, const size_t plate,
+                        const struct dig_ode_memory *const map)
+{
+    const struct dig_memory *const was =
+        dig_ode_memory_was(map, grain, PLATE_NUMBER + (uint32_t)plate);
+    const struct dig_memory *const m = &touch->memory;
+    const double known = fabs(m->sx_m) + fabs(m->sy_m) + fabs(m->sz_m) + fabs(m->mx_Nm) +
+                         fabs(m->my_Nm) + fabs(m->mz_Nm);
+    if (was != NULL && !(known > 0.0)) {
+        touch->memory = *was;
+    }
+}
+
+// The plate on which c's closest point lies while it is itself closer: c is no minimum there.
+static const struct candidate *find_closer(const struct dig_tool *const tool,
+                                           const struct candidate found[], const size_t count,
+                                           const struct candidate *const c, const double same_m)
+{
+    for (size_t k = 0; k < count; k++) {
+        double on[3];
+        dig_tool_closest(tool, found[k].plate, c->closest_m, on);
+        if (found[k].distance_m < c->distance_m - same_m && distance(on, c->closest_m) <= same_m) {
+            return &found[k];
+        }
+    }
+    return NULL;
+}
+
+static void add(struct dig_ode_touch touch[], size_t *const touches,
+                const struct candidate *const c, const double same_m)
+{
+    size_t k = 0;
+    while (k < *touches && distance(touch[k].closest_m, c->closest_m) > same_m) {
+        k++;
+    }
+    if (k == *touches) {
+        touch[k] = (struct dig_ode_touch){
+            .closest_m = { c->closest_m[0], c->closest_m[1], c->closest_m[2] },
+        };
+        (*touches)++;
+    }
+    touch[k].plate[touch[k].plates++] = c->plate;
+}
+
+size_t dig_ode_touch_find(const struct dig_tool *const tool, const double body_m[3],
+                          const double radius_m, const uint32_t grain,
+                          const struct dig_ode_memory *const map,
+                          struct dig_ode_touch               touch[DIG_PLATES_MAX])
+{
+    const double            same_m = 1e-6 * radius_m;
+    struct candidate        found[DIG_PLATES_MAX + 1];
+    const struct candidate *closer[DIG_PLATES_MAX];
+    const size_t            count   = find_candidates(tool, body_m, radius_m, found);
+    size_t                  touches = 0;
+    for (size_t k = 0; k < count; k++) {
+        closer[k] = find_closer(tool, found, count, &found[k], same_m);
+        if (closer[k] == NULL) {
+            add(touch, &touches, &found[k], same_m);
+        }
+    }
+    // A touch remembers what its own plates know; then what those know that it came over from.
+    for (size_t t = 0; t < touches; t++) {
+        for (size_t p = 0; p < touch[t].plates; p++) {
+            take_memory(&touch[t], grain, touch[t].plate[p], map);
+        }
+        for (size_t k = 0; k < count; k++) {
+            for (size_t p = 0; closer[k] != NULL && p < touch[t].plates; p++) {
+                if (closer[k]->plate == touch[t].plate[p]) {
+                    take_memory(&touch[t], grain, found[k].plate, map);
+                }
+            }
+        }
+    }
+    return touches;
+}
+
+bool dig_ode_touch_keep(const struct dig_ode_touch *const touch, const uint32_t grain,
+                        struct dig_ode_memory *const map)
+{
+    for (size_t p = 0; p < touch->plates; p++) {
+        struct dig_memory *const memory =
+            dig_ode_memory_of(map, grain, PLATE_NUMBER + (uint32_t)touch->plate[p]);
+        if (memory == NULL) {
+            return false;
+        }
+        *memory = touch->memory;
+    }
+    return true;
+}

@@ -1,0 +1,73 @@
+// The bucket as grains meet it: plates of zero thickness, moved as the trajectory says.
+//
+// Plates 0 … points - 2 stand on the profile's polyline, across the width; the last two are the
+// sides, the profile's polygon at y = -width/2 and +width/2. Grains touch them from both sides.
+// Body and world frame, signs: core/curve.h; the body's (x, z) is turned by theta about the pin.
+
+#ifndef DIG_OFFLINE_DEM_SHAPES_TOOL_H
+#define DIG_OFFLINE_DEM_SHAPES_TOOL_H
+
+#include "core/curve.h"
+#include "core/scene.h"
+#include "offline_dem/law/both.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define DIG_PLATES_MAX (DIG_PROFILE_MAX + 1)
+
+struct dig_tool {
+    struct dig_bucket bucket;
+    size_t            plates;
+    struct dig_pose   pose;
+    double            cosine, sine;            // of theta
+    double            vx_mps, vz_mps, w_radps; // of the pin, and of theta
+    double            radius_m;                // farthest point from the pin, in the plane
+};
+
+/// Force and moment of the grains on the tool, summed over steps.
+struct dig_wrench {
+    double f_N[3];
+    double t_Nm[3]; // about the moving pin
+};
+
+struct dig_tool dig_tool_make(const struct dig_bucket *bucket);
+
+/// Places the tool, and sets its velocity.
+void dig_tool_place(struct dig_tool *tool, struct dig_pose pose, double vx_mps, double vz_mps,
+                    double w_radps);
+
+/// World to body coordinates.
+DIG_BOTH static inline void dig_tool_to_body(const struct dig_tool *const tool,
+                                             const double world_m[], double body_m[3])
+{
+    const double x = world_m[0] - tool->pose.x_m;
+    const double z = world_m[2] - tool->pose.z_m;
+    body_m[0]      = tool->cosine * x + tool->sine * z;
+    body_m[1]      = world_m[1];
+    body_m[2]      = -tool->sine * x + tool->cosine * z;
+}
+
+/// A direction, body to world.
+DIG_BOTH static inline void dig_tool_turn(const struct dig_tool *const tool, const double body[3],
+                                          double world[3])
+{
+    const double x = tool->cosine * body[0] - tool->sine * body[2];
+    const double z = tool->sine * body[0] + tool->cosine * body[2];
+    world[0]       = x;
+    world[1]       = body[1];
+    world[2]       = z;
+}
+
+/// The point of the plate that is closest to body_m, in body coordinates: on its face, an edge or a
+/// vertex. A point on the very plane of the plate is its own closest point.
+void dig_tool_closest(const struct dig_tool *tool, size_t plate, const double body_m[3],
+                      double closest_m[3]);
+
+/// True when a point of the world lies inside the profile's closed polygon and the width: carried.
+bool dig_tool_holds(const struct dig_tool *tool, const double world_m[3]);
+
+/// Farthest any point of the tool is in `to` from where it was in `from`: an upper bound.
+double dig_tool_travel_m(const struct dig_tool *tool, struct dig_pose from, struct dig_pose to);
+
+#endif // DIG_OFFLINE_DEM_SHAPES_TOOL_H

@@ -1,0 +1,316 @@
+#include "offline_dem/sweep/sweep.h"
+
+#include "offline_dem/dig/variant.h"
+#include "offline_dem/dig/watched_pour.h"
+#include "offline_dem/sweep/worker.h"
+
+#include <assert.h>
+#include <math.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define ATTEMPTS_MAX 2 // of a bed whose worker was killed
+#define WAIT_ms      250
+#define TELL_EVERY_s 1.0
+
+struct dig_engine dig_engine_kernel(void)
+{
+    return (struct dig_engine){
+        .name       = "kernel",
+        .version    = DIG_VERSION "+" DIG_NUMERICS,
+        .pour       = dig_bed_pour_watched,
+        .dig        = dig_dig_run,
+        .bed_finish = dig_bed_finish,
+        .vary       = dig_variant_make,
+    };
+}
+
+struct sweep {
+    const struct dig_scene         *scene;
+    const struct dig_engine        *engine;
+    const struct dig_sweep_options *options;
+    struct dig_store               *store;
+    struct dig_sweep_state         *state;
+    struct dig_error               *error;
+    enum dig_status                 status; // DIG_OK until something failed
+    struct dig_queue                queue;
+    size_t                          next; // job to be given out
+    struct dig_worker              *worker;
+    struct pollfd                  *poll;
+    double                          from_s, told_s;
+    size_t                          done_before; // when the sweep began
+    bool                            stopping;
+};
+
+// The first failure is the one that is told; the sweep goes on with the other beds.
+static void note_failure(struct sweep *const s, const struct dig_job *const job, const size_t digs,
+                         const char *const why)
+{
+    s->state->failed += digs;
+    if (s->status == DIG_OK) {
+        char effect[64] = "";
+        char how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&job->approach, how);
+        if (job->effect[0] != '\0') {
+            (void)snprintf(effect, sizeof effect, ", %s %g", job->effect, job->magnitude);
+        }
+        s->status = dig_error_set(s->error, DIG_EIO,
+                                  "friction %g, rolling %g, %g kg/m3%s%s, packing %zu: %.400s",
+                                  job->gravel.value[0], job->gravel.value[1], job->gravel.value[2],
+                                  effect, how, job->packing, why);
+    }
+}
+
+static void update(struct sweep *const s)
+{
+    struct dig_sweep_state *const st = s->state;
+    st->digs_under_way               = 0.0;
+    st->workers                      = 0;
+    for (size_t i = 0; i < s->options->workers; i++) {
+        const struct dig_worker *const w = &s->worker[i];
+        if (w->pid != 0) {
+            st->workers++;
+            // Its fraction counts what is stored, and so counted, already.
+            const double begun = w->fraction * (double)w->digs;
+            st->digs_under_way += fmax(begun - (double)(w->digs - w->job.digs), 0.0);
+        }
+    }
+    st->elapsed_s      = dig_sweep_now_s() - s->from_s;
+    const double mine  = (double)(st->digs_done - s->done_before) + st->digs_under_way;
+    const double total = (double)(st->digs_total - st->failed - s->done_before);
+    st->left_s         = mine > 0.0 ? st->elapsed_s * fmax(total - mine, 0.0) / mine : (double)NAN;
+}
+
+static void tell(struct sweep *const s, const bool now)
+{
+    const double at_s = dig_sweep_now_s();
+    if (s->options->tell != NULL && (now || at_s - s->told_s >= TELL_EVERY_s)) {
+        s->told_s = at_s;
+        update(s);
+        s->options->tell(s->options->context, s->state);
+    }
+}
+
+// The digs of a job that are not stored: what a second attempt has to do.
+static void strike_out(struct dig_job *const job, const size_t trajectory)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->digs; i++) {
+        if (job->trajectory[i] != trajectory) {
+            job->trajectory[kept++] = job->trajectory[i];
+        }
+    }
+    job->digs = kept;
+}
+
+static enum dig_status store_curve(struct sweep *const s, struct dig_worker *const w,
+                                   const struct dig_message *const m,
+                                   struct dig_force_row *const rows, struct dig_error *const error)
+{
+    struct dig_run_origin origin = {
+        .gravel     = w->job.gravel,
+        .magnitude  = w->job.magnitude,
+        .approach   = w->job.approach,
+        .packing    = w->job.packing,
+        .trajectory = m->trajectory,
+        .seed       = w->job.seed,
+        .grains     = m->grains,
+        .wall_s     = m->wall_s,
+    };
+    memcpy(origin.effect, w->job.effect, sizeof origin.effect);
+    (void)snprintf(origin.engine, sizeof origin.engine, "%s", s->engine->name);
+    (void)snprintf(origin.version, sizeof origin.version, "%s", s->engine->version);
+    const time_t now = time(NULL);
+    struct tm    utc;
+    if (gmtime_r(&now, &utc) != NULL) {
+        (void)strftime(origin.made_utc, sizeof origin.made_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    }
+    const struct dig_recording recording = { .rows = m->rows, .row = rows };
+    return dig_store_put(s->store, &origin, &recording, error);
+}
+
+// One message of a worker. A table that cannot be written ends the sweep.
+static void take_message(struct sweep *const s, struct dig_worker *const w,
+                         const struct dig_message *const m, struct dig_force_row *const rows)
+{
+    switch (m->kind) {
+    case DIG_MESSAGE_PROGRESS: w->fraction = m->fraction; break;
+    case DIG_MESSAGE_CURVE: {
+        struct dig_error      error  = { "" };
+        const enum dig_status status = store_curve(s, w, m, rows, &error);
+        if (status == DIG_EINVAL) {
+            note_failure(s, &w->job, 1, error.text); // a curve no table takes
+            break;
+        }
+        if (status != DIG_OK) {
+            s->status   = dig_error_set(s->error, status, "%s", error.text);
+            s->stopping = true;
+            break;
+        }
+        strike_out(&w->job, m->trajectory);
+        s->state->digs_done++;
+        tell(s, true);
+        break;
+    }
+    case DIG_MESSAGE_FAILURE:
+        w->ended = true;
+        note_failure(s, &w->job, w->job.digs, m->text);
+        break;
+    case DIG_MESSAGE_END: w->ended = true; break;
+    }
+}
+
+static void drain(struct sweep *const s, struct dig_worker *const w)
+{
+    struct dig_message    message;
+    struct dig_force_row *rows = NULL;
+    while (dig_worker_next(w, &message, &rows)) {
+        take_message(s, w, &message, rows);
+        free(rows);
+    }
+}
+
+static double deadline_s(const struct sweep *const s)
+{
+    return s->from_s + s->options->time_limit_s;
+}
+
+static bool may_start(const struct sweep *const s)
+{
+    return !s->stopping && dig_sweep_now_s() < deadline_s(s);
+}
+
+static void start(struct sweep *const s, struct dig_worker *const w,
+                  const struct dig_job *const job, const size_t attempts)
+{
+    const enum dig_status status =
+        dig_worker_start(w, s->scene, s->engine, job, deadline_s(s), s->store, s->options->workers,
+                         s->worker, s->error);
+    if (status != DIG_OK) {
+        s->status   = status;
+        s->stopping = true;
+        return;
+    }
+    w->attempts = attempts;
+}
+
+// The pipe is closed: the worker is done, gave up, or was killed.
+static void reap(struct sweep *const s, struct dig_worker *const w)
+{
+    const struct dig_job job      = w->job;
+    const size_t         attempts = w->attempts;
+    const bool           ended    = w->ended;
+    const int            signal   = dig_worker_finish(w);
+    if (ended || job.digs == 0 || s->stopping) {
+        return;
+    }
+    if (attempts < ATTEMPTS_MAX && may_start(s)) {
+        start(s, w, &job, attempts + 1);
+    } else if (attempts >= ATTEMPTS_MAX) {
+        char why[80];
+        (void)snprintf(why, sizeof why, "the worker was killed by signal %d, twice", signal);
+        note_failure(s, &job, job.digs, why);
+    }
+}
+
+static void give_out(struct sweep *const s)
+{
+    for (size_t i = 0; i < s->options->workers; i++) {
+        if (s->worker[i].pid == 0 && s->next < s->queue.jobs && may_start(s)) {
+            start(s, &s->worker[i], &s->queue.job[s->next++], 1);
+        }
+    }
+}
+
+static void stop_workers(struct sweep *const s)
+{
+    for (size_t i = 0; i < s->options->workers; i++) {
+        if (s->worker[i].pid != 0) {
+            (void)kill(s->worker[i].pid, SIGTERM);
+        }
+    }
+}
+
+// Waits for any worker to say something; false when there is none left.
+static bool listen_once(struct sweep *const s)
+{
+    nfds_t running = 0;
+    for (size_t i = 0; i < s->options->workers; i++) {
+        if (s->worker[i].pid != 0) {
+            s->poll[running++] = (struct pollfd){ .fd = s->worker[i].fd, .events = POLLIN };
+        }
+    }
+    if (running == 0) {
+        return false;
+    }
+    (void)poll(s->poll, running, WAIT_ms);
+    for (size_t i = 0; i < s->options->workers; i++) {
+        struct dig_worker *const w = &s->worker[i];
+        if (w->pid != 0) {
+            const bool open = dig_worker_read(w);
+            drain(s, w);
+            if (!open) {
+                reap(s, w);
+            }
+        }
+    }
+    return true;
+}
+
+static void run(struct sweep *const s)
+{
+    bool told_to_stop = false;
+    do {
+        s->stopping = s->stopping || (s->options->stop != NULL && *s->options->stop != 0);
+        if (s->stopping && !told_to_stop) {
+            stop_workers(s);
+            told_to_stop = true;
+        }
+        give_out(s);
+        tell(s, false);
+    } while (listen_once(s));
+}
+
+enum dig_status dig_sweep_run(const struct dig_scene *const         scene,
+                              const struct dig_plan *const          plan,
+                              const struct dig_engine *const        engine,
+                              const struct dig_sweep_options *const options,
+                              struct dig_store *const store, struct dig_sweep_state *const state,
+                              struct dig_error *const error)
+{
+    assert(scene != NULL && plan != NULL && engine != NULL && options != NULL && state != NULL);
+    assert(options->workers >= 1);
+
+    *state         = (struct dig_sweep_state){ .left_s = (double)NAN };
+    struct sweep s = {
+        .scene   = scene,
+        .engine  = engine,
+        .options = options,
+        .store   = store,
+        .state   = state,
+        .error   = error,
+        .from_s  = dig_sweep_now_s(),
+    };
+    const enum dig_status status = dig_queue_make(store, plan, &s.queue, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    s.worker = calloc(options->workers, sizeof *s.worker);
+    s.poll   = calloc(options->workers, sizeof *s.poll);
+    if (s.worker == NULL || s.poll == NULL) {
+        s.status = dig_error_set(error, DIG_ENOMEM, "no memory for %zu workers", options->workers);
+    } else {
+        state->digs_total = s.queue.digs_total;
+        state->digs_done  = s.queue.digs_done;
+        s.done_before     = s.queue.digs_done;
+        run(&s);
+        update(&s);
+    }
+    free(s.worker);
+    free(s.poll);
+    dig_queue_finish(&s.queue);
+    return s.status;
+}

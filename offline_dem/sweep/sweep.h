@@ -1,0 +1,74 @@
+// A whole table: every bed of a plan poured and dug, one process a bed, on all cores.
+//
+//   parent: queue -> fork a worker for a bed -> read its curves -> store, one transaction each
+//   worker: pour the bed, dig it with one trajectory after another, send each curve when it is done
+//
+// Only the parent touches the table. A worker that is killed costs its unfinished digs, which are
+// tried once more; a parent that is killed takes its workers along, and the next sweep goes on with
+// what the table lacks. Every curve is computed from its own seed alone, so it does not matter in
+// which order, on how many cores, or in how many attempts a table was made.
+
+#ifndef DIG_OFFLINE_DEM_SWEEP_SWEEP_H
+#define DIG_OFFLINE_DEM_SWEEP_SWEEP_H
+
+#include "core/effect.h"
+#include "core/error.h"
+#include "offline_dem/dig/dig.h"
+#include "tables/queue.h"
+#include "tables/store.h"
+
+#include <signal.h>
+
+/// The engine that computes, as functions: tests put in one that takes no time. version tells two
+/// builds apart that may compute differently. vary puts an effect into a scene (see
+/// offline_dem/dig/variant.h); NULL: the engine knows no effects.
+struct dig_engine {
+    const char *name;
+    const char *version;
+    enum dig_status (*pour)(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                            uint64_t seed, const struct dig_progress *progress, struct dig_bed *bed,
+                            struct dig_error *error);
+    enum dig_status (*dig)(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                           const struct dig_bed *bed, const struct dig_trajectory *trajectory,
+                           const char *vtk_dir, const struct dig_progress *progress,
+                           struct dig_recording *recording, struct dig_error *error);
+    void (*bed_finish)(struct dig_bed *bed);
+    enum dig_status (*vary)(const struct dig_scene *scene, enum dig_effect_id effect,
+                            double magnitude, struct dig_scene *varied, struct dig_error *error);
+};
+
+/// The grain kernel: offline_dem/dig/dig.h. Its version is the release and, behind a plus, a hash
+/// of the sources and the compiler settings its numbers depend on.
+struct dig_engine dig_engine_kernel(void);
+
+/// How far a sweep is. Fractions of digs under way are counted in digs_under_way.
+struct dig_sweep_state {
+    size_t digs_total, digs_done; // of the whole plan, with what was there before
+    double digs_under_way;
+    size_t workers;
+    size_t failed; // digs given up
+    double elapsed_s;
+    double left_s; // NaN until something can be said
+};
+
+struct dig_sweep_options {
+    size_t workers;      // processes at a time, >= 1
+    double time_limit_s; // no new dig is begun after it; INFINITY: none
+    // Set to non-zero by a signal handler: workers are stopped and what they finished is kept.
+    const volatile sig_atomic_t *stop;
+    // Called about every second and after each dig stored; NULL: not at all.
+    void (*tell)(void *context, const struct dig_sweep_state *state);
+    void *context;
+};
+
+/// Runs the plan into the store. DIG_OK when nothing failed, whether or not a limit or a stop cut
+/// it short: state->digs_done < digs_total says so. DIG_EIO when digs failed (the first one's
+/// reason in *error) or the table cannot be written. *state is always filled in.
+///
+/// Forks: call it from a process without threads.
+DIG_MUST_CHECK enum dig_status
+dig_sweep_run(const struct dig_scene *scene, const struct dig_plan *plan,
+              const struct dig_engine *engine, const struct dig_sweep_options *options,
+              struct dig_store *store, struct dig_sweep_state *state, struct dig_error *error);
+
+#endif // DIG_OFFLINE_DEM_SWEEP_SWEEP_H

@@ -1,0 +1,235 @@
+#include "offline_dem/world/grain_types.h"
+
+#include "core/bed_plan.h"
+#include "core/units.h"
+#include "offline_dem/law/time_step.h"
+
+#include <math.h>
+
+// What a material of grains has of its own.
+struct own {
+    double friction, rolling, density_kgpm3, restitution;
+};
+
+static struct own own_of(const struct dig_scene *const scene, const struct dig_gravel *const gravel,
+                         const size_t material)
+{
+    if (material == 0) {
+        return (struct own){ gravel->value[DIG_AXIS_FRICTION], gravel->value[DIG_AXIS_ROLLING],
+                             gravel->value[DIG_AXIS_DENSITY_kgpm3], scene->material.restitution };
+    }
+    const struct dig_other_material *const m = &scene->bed.material[material - 1];
+    return (struct own){ m->friction, m->rolling, m->density_kgpm3, m->restitution };
+}
+
+double dig_grain_types_density(const struct dig_scene *const  scene,
+                               const struct dig_gravel *const gravel, const size_t material)
+{
+    return own_of(scene, gravel, material).density_kgpm3;
+}
+
+struct dig_law_material dig_grain_types_between(const struct dig_scene *const  scene,
+                                                const struct dig_gravel *const gravel,
+                                                const size_t a, const size_t b)
+{
+    const struct dig_material *const m        = &scene->material;
+    const size_t                     grain    = a < DIG_MATERIAL_BUCKET ? a : b;
+    const size_t                     other    = grain == a ? b : a;
+    const struct own                 own      = own_of(scene, gravel, grain);
+    struct dig_law_material          material = {
+                 .young_Pa                    = m->young_Pa,
+                 .poisson                     = m->poisson,
+                 .restitution                 = own.restitution,
+                 .characteristic_velocity_mps = m->characteristic_velocity_mps,
+                 .friction                    = own.friction,
+                 .rolling                     = own.rolling,
+                 .normal_law                  = scene->laws.normal,
+                 .rolling_law                 = scene->laws.rolling,
+    };
+    if (other == DIG_MATERIAL_BUCKET) {
+        material.cohesion_Jpm3 = scene->laws.adhesion_Jpm3;
+    } else if (other < DIG_MATERIAL_BUCKET) {
+        material.cohesion_Jpm3 = scene->laws.cohesion_Jpm3;
+    }
+    if (other < DIG_MATERIAL_BUCKET && other != grain) {
+        const struct own theirs = own_of(scene, gravel, other);
+        material.friction       = fmin(own.friction, theirs.friction);
+        material.rolling        = fmin(own.rolling, theirs.rolling);
+        material.restitution    = sqrt(own.restitution * theirs.restitution);
+    }
+    for (size_t i = 0; i < scene->bed.pairs; i++) {
+        const struct dig_material_pair *const p = &scene->bed.pair[i];
+        if ((p->a == a && p->b == b) || (p->a == b && p->b == a)) {
+            material.friction    = p->friction;
+            material.rolling     = p->rolling;
+            material.restitution = p->restitution;
+        }
+    }
+    return material;
+}
+
+static double sphere_m3(const double radius_m)
+{
+    return 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
+}
+
+// The kind of a grain, or a new one; DIG_GRAIN_TYPES_MAX when there is no room. Radii from one file
+// or one pouring are equal to the bit, or nearly.
+static size_t find_kind(struct dig_grain_types *const kinds, const struct dig_kind kind,
+                        const size_t material, const double contact_kg)
+{
+    for (size_t k = 0; k < kinds->kinds; k++) {
+        if (fabs(kinds->kind[k].radius_m - kind.radius_m) <= 1e-9 * kind.radius_m &&
+            fabs(kinds->contact_kg[k] - contact_kg) <= 1e-6 * contact_kg &&
+            kinds->material[k] == material) {
+            return k;
+        }
+    }
+    if (kinds->kinds == DIG_GRAIN_TYPES_MAX) {
+        return DIG_GRAIN_TYPES_MAX;
+    }
+    const size_t k       = kinds->kinds++;
+    kinds->kind[k]       = kind;
+    kinds->material[k]   = material;
+    kinds->contact_kg[k] = contact_kg;
+    return k;
+}
+
+// Where in its clump a sphere stands; spheres of a clump follow each other.
+static enum dig_status find_member(const struct dig_bed *const         bed,
+                                   const struct dig_clump_shape *const shape, const size_t i,
+                                   size_t *const member)
+{
+    const size_t first = i / shape->spheres * shape->spheres;
+    const size_t last  = first + shape->spheres - 1;
+    const double unit  = bed->radius_m[first] / shape->radius[0];
+    const bool   whole = last < bed->grains && bed->clump[i] > 0 &&
+                       bed->clump[first] == bed->clump[i] && bed->clump[last] == bed->clump[i];
+    *member = i - first;
+    return whole && fabs(bed->radius_m[i] - unit * shape->radius[*member]) <= 1e-6 * unit
+               ? DIG_OK
+               : DIG_EINVAL;
+}
+
+static double spheres_m3(const struct dig_clump_shape *const shape)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < shape->spheres; k++) {
+        sum += shape->radius[k] * shape->radius[k] * shape->radius[k];
+    }
+    return sum;
+}
+
+static enum dig_status make_kind(const struct dig_scene *const       scene,
+                                 const struct dig_gravel *const      gravel,
+                                 const struct dig_bed *const         bed,
+                                 const struct dig_clump_shape *const shape, const size_t i,
+                                 struct dig_kind *const kind, double *const contact_kg,
+                                 struct dig_error *const error)
+{
+    const double radius_m = bed->radius_m[i];
+    const size_t material = bed->material == NULL ? 0 : bed->material[i];
+    if (!(radius_m > 0.0) || !isfinite(radius_m)) {
+        return dig_error_set(error, DIG_EINVAL, "bed: grain %zu: radius_m %g, expected > 0", i,
+                             radius_m);
+    }
+    if (material > scene->bed.materials) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bed: grain %zu: material %zu, expected one of the scene's %zu", i,
+                             material, scene->bed.materials + 1);
+    }
+    const double density_kgpm3 = dig_grain_types_density(scene, gravel, material);
+    double       mass_kg       = density_kgpm3 * sphere_m3(radius_m);
+    *contact_kg                = mass_kg;
+    if (shape->spheres > 0) {
+        size_t member = 0;
+        if (bed->clump == NULL || find_member(bed, shape, i, &member) != DIG_OK) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed: grain %zu: expected whole clumps of the scene's %zu spheres",
+                                 i, shape->spheres);
+        }
+        const double r = shape->radius[member];
+        *contact_kg    = density_kgpm3 * sphere_m3(0.5 * radius_m / r);
+        mass_kg        = *contact_kg * r * r * r / spheres_m3(shape);
+    } else if (bed->clump != NULL) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "bed: holds clumps, expected spheres as in the scene");
+    }
+    *kind = (struct dig_kind){ .radius_m     = radius_m,
+                               .mass_kg      = mass_kg,
+                               .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
+                               .driven       = shape->spheres > 0 };
+    return DIG_OK;
+}
+
+enum dig_status dig_grain_types_find(const struct dig_scene *const       scene,
+                                     const struct dig_gravel *const      gravel,
+                                     const struct dig_bed *const         bed,
+                                     const struct dig_clump_shape *const shape,
+                                     struct dig_grain_types *const kinds, uint8_t of[],
+                                     struct dig_error *const error)
+{
+    struct dig_grain_types made = { 0 };
+    for (size_t i = 0; i < bed->grains; i++) {
+        struct dig_kind       kind       = { 0 };
+        double                contact_kg = 0.0;
+        const enum dig_status status =
+            make_kind(scene, gravel, bed, shape, i, &kind, &contact_kg, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        const size_t material = bed->material == NULL ? 0 : bed->material[i];
+        const size_t k        = find_kind(&made, kind, material, contact_kg);
+        if (k == DIG_GRAIN_TYPES_MAX) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed: more than %d sizes and materials, expected fewer",
+                                 DIG_GRAIN_TYPES_MAX);
+        }
+        of[i] = (uint8_t)k;
+    }
+    *kinds = made;
+    return DIG_OK;
+}
+
+void dig_grain_types_set_laws(const struct dig_scene *const       scene,
+                              const struct dig_gravel *const      gravel,
+                              const struct dig_grain_types *const kinds,
+                              struct dig_world *const             world)
+{
+    for (size_t a = 0; a < kinds->kinds; a++) {
+        const size_t ma   = kinds->material[a];
+        const double ra_m = kinds->kind[a].radius_m;
+        const double a_kg = kinds->contact_kg[a];
+        for (size_t b = a; b < kinds->kinds; b++) {
+            const struct dig_law_material between =
+                dig_grain_types_between(scene, gravel, ma, kinds->material[b]);
+            world->pair_law[a * DIG_GRAIN_TYPES_MAX + b] =
+                dig_law_pair(&between, ra_m, kinds->kind[b].radius_m, a_kg, kinds->contact_kg[b]);
+        }
+        const struct dig_law_material wall =
+            dig_grain_types_between(scene, gravel, ma, DIG_MATERIAL_WALLS);
+        const struct dig_law_material tool =
+            dig_grain_types_between(scene, gravel, ma, DIG_MATERIAL_BUCKET);
+        world->wall_law[a] = dig_law_wall(&wall, ra_m, a_kg);
+        world->tool_law[a] = dig_law_wall(&tool, ra_m, a_kg);
+    }
+}
+
+double dig_grain_types_time_step_s(const struct dig_scene *const       scene,
+                                   const struct dig_gravel *const      gravel,
+                                   const struct dig_grain_types *const kinds)
+{
+    if (scene->time_step_s > 0.0) {
+        return scene->time_step_s;
+    }
+    double least_s = INFINITY;
+    for (size_t k = 0; k < kinds->kinds; k++) {
+        const struct dig_law_material own =
+            dig_grain_types_between(scene, gravel, kinds->material[k], kinds->material[k]);
+        least_s =
+            fmin(least_s,
+                 dig_time_step_limit_s(&own, kinds->kind[k].radius_m,
+                                       dig_grain_types_density(scene, gravel, kinds->material[k])));
+    }
+    return least_s;
+}

@@ -1,0 +1,50 @@
+// The kinds of grain in a bed, and the laws between them: sizes, materials and spheres of clumps,
+// each combination a kind.
+
+#ifndef DIG_OFFLINE_DEM_WORLD_GRAIN_TYPES_H
+#define DIG_OFFLINE_DEM_WORLD_GRAIN_TYPES_H
+
+#include "core/error.h"
+#include "core/scene.h"
+#include "offline_dem/kernel/bed.h"
+#include "offline_dem/law/law.h"
+#include "offline_dem/shapes/clump.h"
+#include "offline_dem/world/world.h"
+
+/// mass_kg of a clump's sphere is its share of the clump's by volume; contacts feel all of it.
+struct dig_grain_types {
+    size_t          kinds;
+    struct dig_kind kind[DIG_GRAIN_TYPES_MAX];
+    size_t          material[DIG_GRAIN_TYPES_MAX];
+    double          contact_kg[DIG_GRAIN_TYPES_MAX]; // mass of the body the grain is or is part of
+};
+
+/// Density of a material in this scene with this gravel, kg/m3.
+double dig_grain_types_density(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                               size_t material);
+
+/// Constants of contacts between two materials, the bucket and the walls among them: the scene's
+/// pair, else the smaller frictions and the geometric mean of restitution; of grains with bucket or
+/// walls, else the grains' own. Grains cohere with each other, adhere to the bucket, and neither
+/// to walls.
+struct dig_law_material dig_grain_types_between(const struct dig_scene  *scene,
+                                                const struct dig_gravel *gravel, size_t a,
+                                                size_t b);
+
+/// Sorts the bed's grains into kinds, of[grain]. DIG_EINVAL for more than DIG_GRAIN_TYPES_MAX
+/// kinds, a radius that is not positive, a material the scene does not have, or a clump that is not
+/// whole; *error says which.
+DIG_MUST_CHECK enum dig_status
+dig_grain_types_find(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                     const struct dig_bed *bed, const struct dig_clump_shape *shape,
+                     struct dig_grain_types *kinds, uint8_t of[], struct dig_error *error);
+
+/// Fills the world's laws for these kinds.
+void dig_grain_types_set_laws(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                              const struct dig_grain_types *kinds, struct dig_world *world);
+
+/// The step a bed of these kinds is computed with, s: the scene's, or derived.
+double dig_grain_types_time_step_s(const struct dig_scene *scene, const struct dig_gravel *gravel,
+                                   const struct dig_grain_types *kinds);
+
+#endif // DIG_OFFLINE_DEM_WORLD_GRAIN_TYPES_H

@@ -1,0 +1,282 @@
+#include "offline_dem/world/obstacles.h"
+
+#include "core/units.h"
+#include "offline_dem/kernel/contacts.h"
+#include "offline_dem/law/period.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A rock's margin: a share of its smallest half edge, and so many steps of its speed.
+#define MARGIN_SHARE 0.008
+#define MARGIN_STEPS 20
+
+static struct dig_rock make_rock(const struct dig_obstacle *const o)
+{
+    struct dig_rock rock = { .shape = o->shape, .movable = o->movable, .body.q = { 1.0 } };
+    const bool      box  = o->shape == DIG_OBSTACLE_BOX;
+    for (size_t k = 0; k < 3; k++) {
+        rock.half_m[k]   = 0.5 * o->size_m[box ? k : 0];
+        rock.body.x_m[k] = o->centre_m[k];
+    }
+    const double *const h  = rock.half_m;
+    const double        m3 = box ? 8.0 * h[0] * h[1] * h[2] : DIG_PI / 0.75 * h[0] * h[0] * h[0];
+    rock.body.mass_kg      = o->density_kgpm3 * m3;
+    if (!o->movable) {
+        rock.body.mass_kg = 0.0;
+        return rock;
+    }
+    for (size_t k = 0; k < 3; k++) {
+        const double y2               = h[(k + 1) % 3] * h[(k + 1) % 3];
+        const double z2               = h[(k + 2) % 3] * h[(k + 2) % 3];
+        const double m2               = box ? (y2 + z2) / 3.0 : 0.4 * h[0] * h[0];
+        rock.body.inverse_pkgm2[k][k] = 1.0 / (rock.body.mass_kg * m2);
+    }
+    return rock;
+}
+
+struct dig_obstacles dig_obstacles_make(const struct dig_scene *const scene)
+{
+    struct dig_obstacles made = { .rocks = scene->bed.obstacles };
+    for (size_t i = 0; i < made.rocks; i++) {
+        made.rock[i] = make_rock(&scene->bed.obstacle[i]);
+    }
+    return made;
+}
+
+void dig_obstacles_place(struct dig_obstacles *const obstacles, const struct dig_bed *const bed)
+{
+    for (size_t i = 0; i < obstacles->rocks && i < bed->rocks; i++) {
+        memcpy(obstacles->rock[i].body.x_m, bed->rock[i].x_m, sizeof bed->rock[i].x_m);
+        memcpy(obstacles->rock[i].body.q, bed->rock[i].q, sizeof bed->rock[i].q);
+    }
+}
+
+void dig_obstacles_tell(const struct dig_obstacles *const obstacles, struct dig_bed *const bed)
+{
+    bed->rocks = obstacles->rocks;
+    for (size_t i = 0; i < obstacles->rocks; i++) {
+        memcpy(bed->rock[i].x_m, obstacles->rock[i].body.x_m, sizeof bed->rock[i].x_m);
+        memcpy(bed->rock[i].q, obstacles->rock[i].body.q, sizeof bed->rock[i].q);
+    }
+}
+
+struct dig_rock_place dig_rock_place(const struct dig_rock *const rock)
+{
+    struct dig_rock_place place = { .shape = rock->shape };
+    memcpy(place.half_m, rock->half_m, sizeof place.half_m);
+    memcpy(place.x_m, rock->body.x_m, sizeof place.x_m);
+    memcpy(place.q, rock->body.q, sizeof place.q);
+    return place;
+}
+
+double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], double closest_m[3])
+{
+    const struct dig_rock_place place = dig_rock_place(rock);
+    return dig_rock_near(&place, p_m, closest_m);
+}
+
+// Where a grain is, as the rock sees it: in its image that is nearest along y.
+static void look_at(const struct dig_world *const world, const struct dig_rock *const rock,
+                    const double x_m[], double seen_m[3])
+{
+    const double y_m = rock->body.x_m[1];
+    memcpy(seen_m, x_m, 3 * sizeof *seen_m);
+    if (world->period_y_m > 0.0) {
+        seen_m[1] = y_m + dig_period_fold(x_m[1] - y_m, world->period_y_m,
+                                          dig_period_inverse(world->period_y_m));
+    }
+}
+
+static double length(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// How far from the centre turning moves the surface.
+static double arm_of(const struct dig_rock *const rock)
+{
+    return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
+}
+
+static void set_margins(struct dig_obstacles *const o, const double dt_s)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        const struct dig_rock *const rock = &o->rock[r];
+        const double *const          h    = rock->half_m;
+        const double                 least_m =
+            rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
+        const double speed_mps =
+            length(rock->body.v_mps) + arm_of(rock) * length(rock->body.w_radps);
+        o->was[r] = dig_rock_place(rock);
+        o->margin_m[r] =
+            rock->movable ? MARGIN_SHARE * least_m + MARGIN_STEPS * dt_s * speed_mps : 0.0;
+    }
+}
+
+bool dig_obstacles_have_left(const struct dig_obstacles *const o)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        const struct dig_rigid *const body = &o->rock[r].body;
+        const double *const           x    = o->was[r].x_m;
+        const double *const           q    = o->was[r].q;
+        const double d[3]   = { body->x_m[0] - x[0], body->x_m[1] - x[1], body->x_m[2] - x[2] };
+        const double cosine = body->q[0] * q[0] + body->q[1] * q[1] + body->q[2] * q[2] +
+                              body->q[3] * q[3]; // of half the angle it has turned
+        const double chord = 2.0 * sqrt(fmax(0.0, 1.0 - cosine * cosine));
+        // Negated, so that a place that is not a number counts as having left.
+        if (o->rock[r].movable && !(length(d) + chord * arm_of(&o->rock[r]) <= o->margin_m[r])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
+                                   const struct dig_world *const world)
+{
+    set_margins(o, world->dt_s);
+    const struct dig_grains *const g   = &world->grains;
+    uint32_t *const                was = malloc((g->n * o->rocks + 1) * sizeof *was);
+    if (was == NULL) {
+        return DIG_ENOMEM;
+    }
+    memset(was, 0xff, g->n * o->rocks * sizeof *was);
+    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
+        for (size_t c = 0; c < o->contact[k].n; c++) {
+            was[o->contact[k].i[c] * o->rocks + o->contact[k].j[c]] = (uint32_t)c;
+        }
+    }
+    struct dig_contacts fresh[DIG_GRAIN_TYPES_MAX] = { 0 };
+    enum dig_status     status                     = DIG_OK;
+    for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
+        const size_t kind    = g->of[i];
+        const double reach_m = g->kind[kind].radius_m + world->at_m[i][3];
+        for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
+            double closest_m[3];
+            double seen_m[3];
+            look_at(world, &o->rock[r], g->motion[i].x_m, seen_m);
+            if (dig_rock_closest(&o->rock[r], seen_m, closest_m) < reach_m + o->margin_m[r]) {
+                const uint32_t at = was[i * o->rocks + r];
+                status            = dig_contacts_add(&fresh[kind], i, r, r,
+                                          at == UINT32_MAX ? NULL : &o->contact[kind], at);
+            }
+        }
+    }
+    free(was);
+    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
+        if (status == DIG_OK) {
+            dig_contacts_finish(&o->contact[k]);
+            o->contact[k] = fresh[k];
+        } else {
+            dig_contacts_finish(&fresh[k]);
+        }
+    }
+    return status;
+}
+
+static void fill(const struct dig_world *const world, const struct dig_rock *const rock,
+                 const struct dig_motion *const m, const double radius_m, const size_t c,
+                 struct dig_block *const block, double arm_m[3])
+{
+    double                      closest_m[3];
+    double                      seen_m[3];
+    double                      d_m[3];
+    const struct dig_rock_place place = dig_rock_place(rock);
+    look_at(world, rock, m->x_m, seen_m);
+    dig_rock_apart(&place, seen_m, radius_m, closest_m, d_m);
+    const double *const w = rock->body.w_radps;
+    for (int k = 0; k < 3; k++) {
+        arm_m[k] = closest_m[k] - rock->body.x_m[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        const double v = rock->body.v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
+                         w[(k + 2) % 3] * arm_m[(k + 1) % 3];
+        block->in[k][c]     = d_m[k];
+        block->in[3 + k][c] = m->v_mps[k] - v;
+        block->in[6 + k][c] = m->w_radps[k];
+        block->in[9 + k][c] = w[k];
+    }
+}
+
+static void apply(struct dig_world *const world, struct dig_obstacles *const o,
+                  const struct dig_contacts *const list, const size_t first, const size_t count,
+                  const struct dig_block *const block, const double arm_m[DIG_BLOCK][3])
+{
+    for (size_t c = 0; c < count; c++) {
+        struct dig_load *const load = &world->grains.load[list->i[first + c]];
+        struct dig_rock *const rock = &o->rock[list->j[first + c]];
+        const double *const    a    = arm_m[c];
+        for (int k = 0; k < 3; k++) {
+            load->f_N[k] += block->out[k][c];
+            load->t_Nm[k] += block->out[3 + k][c];
+            rock->f_N[k] -= block->out[k][c];
+            rock->t_Nm[k] += block->out[6 + k][c] - (a[(k + 1) % 3] * block->out[(k + 2) % 3][c] -
+                                                     a[(k + 2) % 3] * block->out[(k + 1) % 3][c]);
+        }
+    }
+}
+
+void dig_obstacles_push(struct dig_obstacles *const o, struct dig_world *const world)
+{
+    for (size_t r = 0; r < o->rocks; r++) {
+        memset(o->rock[r].f_N, 0, sizeof o->rock[r].f_N);
+        memset(o->rock[r].t_Nm, 0, sizeof o->rock[r].t_Nm);
+    }
+    for (size_t kind = 0; kind < world->grains.kinds; kind++) {
+        struct dig_contacts *const list     = &o->contact[kind];
+        const double               radius_m = world->grains.kind[kind].radius_m;
+        for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+            const size_t     left  = list->n - first;
+            const size_t     count = left < DIG_BLOCK ? left : DIG_BLOCK;
+            struct dig_block block;
+            double           arm_m[DIG_BLOCK][3];
+            double           memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
+            for (size_t c = 0; c < count; c++) {
+                fill(world, &o->rock[list->j[first + c]], &world->grains.motion[list->i[first + c]],
+                     radius_m, c, &block, arm_m[c]);
+            }
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+            }
+            dig_kernel_block(world->isa, &world->wall_law[kind], world->dt_s, count, memory,
+                             &block);
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+            }
+            apply(world, o, list, first, count, &block, (const double(*)[3])arm_m);
+        }
+    }
+}
+
+void dig_obstacles_move(struct dig_obstacles *const o, const uint32_t place[])
+{
+    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
+        struct dig_contacts *const list = &o->contact[k];
+        size_t                     kept = 0;
+        for (size_t c = 0; c < list->n; c++) {
+            if (place[list->i[c]] == UINT32_MAX) {
+                continue;
+            }
+            list->i[kept]   = place[list->i[c]];
+            list->j[kept]   = list->j[c];
+            list->key[kept] = list->key[c];
+            for (int m = 0; m < DIG_MEMORIES; m++) {
+                list->memory[m][kept] = list->memory[m][c];
+            }
+            kept++;
+        }
+        list->n = kept;
+    }
+}
+
+void dig_obstacles_finish(struct dig_obstacles *const obstacles)
+{
+    if (obstacles == NULL) {
+        return;
+    }
+    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
+        dig_contacts_finish(&obstacles->contact[k]);
+    }
+}

@@ -1,0 +1,205 @@
+#include "offline_dem/world/ode_rocks.h"
+
+#include "offline_dem/world/ode_scene_private.h"
+
+#include <math.h>
+#include <string.h>
+
+#define CONTACTS_MAX 8 // of one pair of geometries
+
+// One step: the contacts found, and what the bucket feels of them.
+struct meeting {
+    struct dig_ode_scene        *ode;
+    const struct dig_rock_touch *touch;
+    double                       dt_s;
+    size_t                       felt;
+    dJointFeedback               feedback[DIG_OBSTACLES_MAX * CONTACTS_MAX];
+};
+
+static void remove_all(struct dig_ode_scene *const ode)
+{
+    for (size_t i = 0; i < ode->count; i++) {
+        dGeomDestroy(ode->rock[i]);
+        if (ode->body[i] != NULL) {
+            dBodyDestroy(ode->body[i]);
+        }
+    }
+    ode->count = 0;
+}
+
+static dBodyID make_body(struct dig_ode_scene *const ode, const struct dig_rock *const rock)
+{
+    dBodyID             body = dBodyCreate(ode->world);
+    const double *const h    = rock->half_m;
+    dMass               mass;
+    if (rock->shape == DIG_OBSTACLE_BOX) {
+        dMassSetBoxTotal(&mass, rock->body.mass_kg, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2]);
+    } else {
+        dMassSetSphereTotal(&mass, rock->body.mass_kg, h[0]);
+    }
+    dBodySetMass(body, &mass);
+    dBodySetPosition(body, rock->body.x_m[0], rock->body.x_m[1], rock->body.x_m[2]);
+    dBodySetQuaternion(body, rock->body.q);
+    dBodySetLinearVel(body, rock->body.v_mps[0], rock->body.v_mps[1], rock->body.v_mps[2]);
+    dBodySetAngularVel(body, rock->body.w_radps[0], rock->body.w_radps[1], rock->body.w_radps[2]);
+    dBodySetAutoDisableFlag(body, 0);
+    return body;
+}
+
+void dig_ode_rocks_put(struct dig_ode_scene *const ode, const size_t rocks,
+                       const struct dig_rock rock[])
+{
+    remove_all(ode);
+    for (size_t i = 0; i < rocks; i++) {
+        const double *const h = rock[i].half_m;
+        ode->rock[i]          = rock[i].shape == DIG_OBSTACLE_BOX
+                                    ? dCreateBox(ode->rocks, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
+                                    : dCreateSphere(ode->rocks, h[0]);
+        // The number of the rock, so that a contact finds it.
+        dGeomSetData(ode->rock[i], &ode->rock[i]);
+        ode->body[i] = rock[i].movable ? make_body(ode, &rock[i]) : NULL;
+        if (ode->body[i] != NULL) {
+            dGeomSetBody(ode->rock[i], ode->body[i]);
+        } else {
+            const double *const x = rock[i].body.x_m;
+            dGeomSetPosition(ode->rock[i], x[0], x[1], x[2]);
+            dGeomSetQuaternion(ode->rock[i], rock[i].body.q);
+        }
+    }
+    ode->count = rocks;
+}
+
+static size_t rock_of(const struct dig_ode_scene *const ode, dGeomID geom)
+{
+    return (size_t)((const dGeomID *)dGeomGetData(geom) - ode->rock);
+}
+
+// A joint that gives way as the law's spring and damper do, over one step.
+static dJointID join(struct meeting *const m, const dContactGeom *const at, const size_t rock,
+                     dBodyID a, dBodyID b)
+{
+    const struct dig_rock_touch *const t       = &m->touch[rock];
+    const double                       give    = m->dt_s * t->normal_Npm + t->damping_Nspm;
+    dContact                           contact = { .geom = *at };
+    contact.surface.mode     = dContactSoftERP | dContactSoftCFM | dContactApprox1;
+    contact.surface.mu       = t->friction;
+    contact.surface.soft_erp = m->dt_s * t->normal_Npm / give;
+    contact.surface.soft_cfm = 1.0 / give;
+    dJointID joint           = dJointCreateContact(m->ode->world, m->ode->touching, &contact);
+    dJointAttach(joint, a, b);
+    return joint;
+}
+
+static void meet(void *const data, dGeomID a, dGeomID b)
+{
+    struct meeting *const m     = data;
+    const bool            turn  = dGeomGetData(a) == NULL;
+    dGeomID               rock  = turn ? b : a;
+    dGeomID               other = turn ? a : b;
+    dContactGeom          found[CONTACTS_MAX];
+    if (dGeomGetBody(rock) == NULL && dGeomGetBody(other) == NULL) {
+        return;
+    }
+    const int count = dCollide(rock, other, CONTACTS_MAX, found, sizeof found[0]);
+    for (int c = 0; c < count; c++) {
+        (void)join(m, &found[c], rock_of(m->ode, rock), dGeomGetBody(rock), dGeomGetBody(other));
+    }
+}
+
+static void feel(struct meeting *const m, const dContactGeom *const at, const size_t rock)
+{
+    if (m->felt < sizeof m->feedback / sizeof m->feedback[0]) {
+        dJointID joint = join(m, at, rock, m->ode->body[rock], m->ode->bucket);
+        dJointSetFeedback(joint, &m->feedback[m->felt++]);
+    }
+}
+
+// A sphere meets the plates as grains do: at the closest point of the tool.
+static void meet_plates(struct meeting *const m, const struct dig_tool *const tool,
+                        const struct dig_rock *const rock, const size_t number)
+{
+    double body_m[3];
+    double least_m    = INFINITY;
+    double closest[3] = { 0.0, 0.0, 0.0 };
+    dig_tool_to_body(tool, rock->body.x_m, body_m);
+    for (size_t p = 0; p < tool->plates; p++) {
+        double c[3];
+        dig_tool_closest(tool, p, body_m, c);
+        const double d_m = hypot(hypot(body_m[0] - c[0], body_m[1] - c[1]), body_m[2] - c[2]);
+        if (d_m < least_m) {
+            least_m = d_m;
+            memcpy(closest, c, sizeof closest);
+        }
+    }
+    if (!(least_m < rock->half_m[0]) || !(least_m > 0.0)) {
+        return;
+    }
+    const double away[3] = { body_m[0] - closest[0], body_m[1] - closest[1],
+                             body_m[2] - closest[2] };
+    double       normal[3];
+    double       arm_m[3];
+    dig_tool_turn(tool, away, normal);
+    dig_tool_turn(tool, closest, arm_m);
+    dContactGeom at = { .depth = rock->half_m[0] - least_m };
+    for (int k = 0; k < 3; k++) {
+        at.normal[k] = normal[k] / least_m;
+        at.pos[k]    = arm_m[k];
+    }
+    at.pos[0] += tool->pose.x_m;
+    at.pos[2] += tool->pose.z_m;
+    feel(m, &at, number);
+}
+
+// A box meets the triangles of the bucket.
+static void meet_shell(struct meeting *const m, const size_t rock)
+{
+    dContactGeom found[CONTACTS_MAX];
+    const int    count =
+        dCollide(m->ode->rock[rock], m->ode->shell, CONTACTS_MAX, found, sizeof found[0]);
+    for (int c = 0; c < count; c++) {
+        feel(m, &found[c], rock);
+    }
+}
+
+static void read_back(const struct dig_ode_scene *const ode, struct dig_rock rock[])
+{
+    for (size_t i = 0; i < ode->count; i++) {
+        if (ode->body[i] == NULL) {
+            continue;
+        }
+        memcpy(rock[i].body.x_m, dBodyGetPosition(ode->body[i]), sizeof rock[i].body.x_m);
+        memcpy(rock[i].body.v_mps, dBodyGetLinearVel(ode->body[i]), sizeof rock[i].body.v_mps);
+        memcpy(rock[i].body.w_radps, dBodyGetAngularVel(ode->body[i]), sizeof rock[i].body.w_radps);
+        memcpy(rock[i].body.q, dBodyGetQuaternion(ode->body[i]), sizeof rock[i].body.q);
+    }
+}
+
+void dig_ode_rocks_step(struct dig_ode_scene *const ode, const struct dig_tool *const tool,
+                        const struct dig_rock_touch touch[], const double dt_s,
+                        struct dig_rock rock[], struct dig_wrench *const on_tool)
+{
+    struct meeting m = { .ode = ode, .touch = touch, .dt_s = dt_s };
+    dSpaceCollide(ode->rocks, &m, meet);
+    dSpaceCollide2((dGeomID)ode->rocks, (dGeomID)ode->walls, &m, meet);
+    for (size_t i = 0; i < ode->count; i++) {
+        if (ode->body[i] == NULL) {
+            continue;
+        }
+        if (tool != NULL && rock[i].shape == DIG_OBSTACLE_SPHERE) {
+            meet_plates(&m, tool, &rock[i], i);
+        } else if (tool != NULL) {
+            meet_shell(&m, i);
+        }
+        dBodyAddForce(ode->body[i], rock[i].f_N[0], rock[i].f_N[1], rock[i].f_N[2]);
+        dBodyAddTorque(ode->body[i], rock[i].t_Nm[0], rock[i].t_Nm[1], rock[i].t_Nm[2]);
+    }
+    dWorldStep(ode->world, dt_s);
+    for (size_t i = 0; i < m.felt; i++) {
+        for (int k = 0; k < 3; k++) {
+            on_tool->f_N[k] += m.feedback[i].f2[k];
+            on_tool->t_Nm[k] += m.feedback[i].t2[k];
+        }
+    }
+    dJointGroupEmpty(ode->touching);
+    read_back(ode, rock);
+}

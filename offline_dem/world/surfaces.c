@@ -1,0 +1,225 @@
+#include "offline_dem/world/surfaces.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FAR_m 1e9 // stands in for "does not touch"
+
+// A grain's candidate plates, one beside the other in the list.
+struct near_plates {
+    size_t count;
+    size_t contact[DIG_PLATES_MAX];
+    size_t plate[DIG_PLATES_MAX];
+    double closest_m[DIG_PLATES_MAX][3]; // body frame
+    double distance_m[DIG_PLATES_MAX];
+    bool   counts[DIG_PLATES_MAX];
+};
+
+static double distance(const double a[3], const double b[3])
+{
+    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+static bool remembers(const struct dig_contacts *const list, const size_t c)
+{
+    for (int m = 0; m < DIG_MEMORIES; m++) {
+        if (fabs(list->memory[m][c]) > 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// What `from` remembers goes to `to`, unless that knows something itself.
+static void hand_over(struct dig_contacts *const list, const size_t from, const size_t to)
+{
+    if (!remembers(list, to)) {
+        for (int m = 0; m < DIG_MEMORIES; m++) {
+            list->memory[m][to]   = list->memory[m][from];
+            list->memory[m][from] = 0.0;
+        }
+    }
+}
+
+// Leaves the true minima of the distance to the whole tool.
+static void resolve_edges(const struct dig_tool *const tool, const double radius_m,
+                          struct near_plates *const near, struct dig_contacts *const list)
+{
+    const double same_m = 1e-6 * radius_m;
+    for (size_t p = 0; p < near->count; p++) {
+        for (size_t q = 0; q < near->count && near->counts[p]; q++) {
+            if (q == p || !near->counts[q] || near->distance_m[q] > near->distance_m[p] + same_m) {
+                continue;
+            }
+            // Does p's closest point lie on q as well?
+            double on_q[3];
+            dig_tool_closest(tool, near->plate[q], near->closest_m[p], on_q);
+            if (distance(on_q, near->closest_m[p]) > same_m) {
+                continue;
+            }
+            // On a tie the contact stays with the plate that had it; then with the first.
+            const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
+            if (tie && (remembers(list, near->contact[p]) ||
+                        (!remembers(list, near->contact[q]) && p < q))) {
+                near->counts[q] = false;
+                continue;
+            }
+            hand_over(list, near->contact[p], near->contact[q]);
+            near->counts[p] = false;
+        }
+    }
+}
+
+static void fill(struct dig_block *const block, const size_t c, const struct dig_motion *const m,
+                 const double d[3], const double v[3])
+{
+    for (int k = 0; k < 3; k++) {
+        block->in[k][c]     = d[k];
+        block->in[3 + k][c] = m->v_mps[k] - v[k];
+        block->in[6 + k][c] = m->w_radps[k];
+        block->in[9 + k][c] = 0.0;
+    }
+}
+
+// One contact of the tool; the arm from the pin to the contact point is kept for the moment.
+static void fill_plate(const struct dig_tool *const tool, const double body_m[3],
+                       const double closest_m[3], const struct dig_motion *const m, const size_t c,
+                       struct dig_block *const block, double arm_m[3])
+{
+    const double away[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
+                             body_m[2] - closest_m[2] };
+    double       d[3];
+    dig_tool_turn(tool, away, d);
+    dig_tool_turn(tool, closest_m, arm_m);
+    const double v[3] = { tool->vx_mps - tool->w_radps * arm_m[2], 0.0,
+                          tool->vz_mps + tool->w_radps * arm_m[0] };
+    fill(block, c, m, d, v);
+}
+
+// The candidates of one grain, contacts c … of the list; returns how many.
+static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const list,
+                          const double radius_m, const size_t first, const size_t c,
+                          const size_t count, struct dig_block *const block,
+                          double arm_m[DIG_BLOCK][3])
+{
+    const uint32_t                 i = list->i[first + c];
+    const struct dig_motion *const m = &w->grains.motion[i];
+    struct near_plates             near;
+    near.count = 0;
+    double body_m[3];
+    dig_tool_to_body(w->tool, m->x_m, body_m);
+    size_t used   = 0;
+    size_t in_use = 0;
+    while (c + used < count && list->i[first + c + used] == i) {
+        const size_t k     = near.count;
+        const size_t plate = list->j[first + c + used] - w->walls;
+        dig_tool_closest(w->tool, plate, body_m, near.closest_m[k]);
+        near.contact[k]    = first + c + used;
+        near.plate[k]      = plate;
+        near.distance_m[k] = distance(body_m, near.closest_m[k]);
+        near.counts[k]     = near.distance_m[k] < radius_m;
+        in_use += near.counts[k];
+        near.count++;
+        used++;
+    }
+    if (in_use > 1) {
+        resolve_edges(w->tool, radius_m, &near, list);
+    }
+    for (size_t k = 0; k < near.count; k++) {
+        if (near.counts[k]) {
+            fill_plate(w->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
+        } else {
+            fill(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
+                 (const double[3]){ 0.0, 0.0, 0.0 });
+            memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
+        }
+    }
+    return used;
+}
+
+static void apply(struct dig_world *const w, const struct dig_contacts *const list,
+                  const size_t first, const size_t count, const struct dig_block *const block,
+                  const double arm_m[DIG_BLOCK][3])
+{
+    for (size_t c = 0; c < count; c++) {
+        struct dig_load *const load = &w->grains.load[list->i[first + c]];
+        double                 f[3];
+        double                 t[3];
+        for (int k = 0; k < 3; k++) {
+            f[k] = block->out[k][c];
+            t[k] = block->out[6 + k][c];
+            load->f_N[k] += f[k];
+            load->t_Nm[k] += block->out[3 + k][c];
+        }
+        const double *const      a   = arm_m[c];
+        struct dig_wrench *const sum = &w->on_tool;
+        for (int k = 0; k < 3; k++) {
+            sum->f_N[k] -= f[k];
+            sum->t_Nm[k] +=
+                t[k] - (a[(k + 1) % 3] * f[(k + 2) % 3] - a[(k + 2) % 3] * f[(k + 1) % 3]);
+        }
+    }
+}
+
+// A grain's plates must meet in one block: a block ends before a grain that would not fit.
+static size_t block_length(const struct dig_contacts *const list, const size_t first)
+{
+    if (list->n - first <= DIG_BLOCK) {
+        return list->n - first;
+    }
+    size_t count = DIG_BLOCK;
+    while (list->i[first + count] == list->i[first + count - 1]) {
+        count--;
+    }
+    return count;
+}
+
+// One list of contacts of grains of one radius with the plates. Contacts of held grains remember
+// nothing new.
+static void step_plates(struct dig_world *const w, const struct dig_law *const law,
+                        const double radius_m, const bool held, struct dig_contacts *const list)
+{
+    for (size_t first = 0; first < list->n;) {
+        const size_t     count = block_length(list, first);
+        struct dig_block block;
+        double           arm_m[DIG_BLOCK][3];
+        for (size_t c = 0; c < count;) {
+            c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
+        }
+        double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
+        for (int m = 0; m < DIG_MEMORIES; m++) {
+            memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+        }
+        dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
+        for (int m = 0; m < DIG_MEMORIES && !held; m++) {
+            memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+        }
+        apply(w, list, first, count, &block, (const double(*)[3])arm_m);
+        first += count;
+    }
+}
+
+void dig_surfaces_step(struct dig_world *const w, const bool held)
+{
+    w->on_tool  = (struct dig_wrench){ 0 };
+    w->on_walls = (struct dig_wrench){ 0 };
+    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
+        const struct dig_law *const law = &w->wall_law[kind];
+        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, false, &w->surface[kind], &w->grains,
+                         w->on_walls.f_N);
+        if (held) {
+            dig_kernel_walls(w->isa, law, w->dt_s, w->wall, true, &w->held_surface[kind],
+                             &w->grains, w->on_walls.f_N);
+        }
+    }
+    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
+        const double                radius_m = w->grains.kind[kind].radius_m;
+        const struct dig_law *const law      = &w->tool_law[kind];
+        const size_t                l        = DIG_GRAIN_TYPES_MAX + kind;
+        step_plates(w, law, radius_m, false, &w->surface[l]);
+        if (held) {
+            step_plates(w, law, radius_m, true, &w->held_surface[l]);
+        }
+    }
+}

@@ -1,0 +1,17 @@
+// Contacts of grains with walls and with the tool's plates: one step of them.
+//
+// Plates share edges. A grain touches the tool where its distance to all plates together has a
+// local minimum: a plate's edge counts only if the neighbouring plate comes no closer there, and an
+// edge two plates share is one contact. In a concave corner a grain lies on two faces: two
+// contacts. A contact that passes over an edge from plate to plate takes along what it remembers.
+
+#ifndef DIG_OFFLINE_DEM_WORLD_SURFACES_H
+#define DIG_OFFLINE_DEM_WORLD_SURFACES_H
+
+#include "offline_dem/world/world.h"
+
+/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls; those of held
+/// grains only where `held`.
+void dig_surfaces_step(struct dig_world *world, bool held);
+
+#endif // DIG_OFFLINE_DEM_WORLD_SURFACES_H

@@ -1,0 +1,121 @@
+// A box of grains, its walls and perhaps a tool, stepped through time: neighbour list, contact
+// lists and kernel put together. Leap-frog: forces at x(t) with v(t - dt/2), which is velocity
+// Verlet with half kicks, the two halves that meet between two steps done as one.
+
+#ifndef DIG_OFFLINE_DEM_WORLD_WORLD_H
+#define DIG_OFFLINE_DEM_WORLD_WORLD_H
+
+#include "core/status.h"
+#include "offline_dem/kernel/contacts.h"
+#include "offline_dem/kernel/grains.h"
+#include "offline_dem/kernel/kernel.h"
+#include "offline_dem/kernel/neighbour.h"
+#include "offline_dem/law/law.h"
+#include "offline_dem/law/wall.h"
+#include "offline_dem/shapes/tool.h"
+#include "offline_dem/world/rest.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct dig_bodies;
+struct dig_offloaded;
+
+#define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
+#define DIG_SURFACE_LISTS ((size_t)2 * DIG_GRAIN_TYPES_MAX)
+
+/// Memory of contact_detection.c, kept from pick to pick: where each pair and surface stands in the
+/// lists that are being replaced (all ones in between), and the lists to fill.
+struct dig_contact_detection {
+    uint32_t           *was_pair, *was_surface, *close;
+    size_t              pairs, surfaces, closes; // room
+    struct dig_contacts pair[DIG_PAIR_LISTS], held_pair[DIG_PAIR_LISTS];
+    struct dig_contacts surface[DIG_SURFACE_LISTS], held_surface[DIG_SURFACE_LISTS];
+};
+
+struct dig_world {
+    // Fixed at start.
+    double dt_s;
+    double gravity_mps2[3];
+    // Laws of every kind pair [kind_i * DIG_GRAIN_TYPES_MAX + kind_j], kind_i <= kind_j, and of
+    // every kind with the walls and with the tool.
+    struct dig_law  pair_law[DIG_PAIR_LISTS];
+    struct dig_law  wall_law[DIG_GRAIN_TYPES_MAX];
+    struct dig_law  tool_law[DIG_GRAIN_TYPES_MAX];
+    size_t          walls;
+    struct dig_wall wall[DIG_WALLS_MAX];
+    enum dig_isa    isa;
+    double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
+                       // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
+    double freeze;     // what a grain that is held still may be pushed, rest.h; 0: none is held
+
+    // May be placed between steps; NULL: no tool.
+    struct dig_tool *tool;
+
+    // Clumps and obstacles, owned by the caller; NULL: none.
+    struct dig_bodies *bodies;
+
+    // What steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
+    struct dig_offloaded *offloaded;
+
+    // State.
+    struct dig_grains grains;
+    bool              started; // the first kick is half a step
+    size_t            steps;
+    struct dig_wrench on_tool;  // of the last step of the kernel
+    struct dig_wrench sum_tool; // of the steps since dig_world_take_wrench()
+    struct dig_wrench on_walls; // of the last step of the kernel
+
+    // Lists and their validity.
+    struct dig_neighbours near_list;
+    struct dig_contacts
+        pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // kind_i * KINDS_MAX + kind_j
+    struct dig_contacts surface[DIG_SURFACE_LISTS];      // kind with wall j; KINDS_MAX + kind with
+                                                         // plate j - walls
+    // Contacts of held grains among themselves, and with walls: worked out at looks only.
+    struct dig_contacts          held_pair[DIG_PAIR_LISTS];
+    struct dig_contacts          held_surface[DIG_SURFACE_LISTS];
+    struct dig_rest              rest;
+    struct dig_contact_detection pick;
+    double (*at_m)[4]; // [n] where the lists were made
+    size_t          at_room;
+    struct dig_pose tool_at;
+    double          tool_margin_m;
+    bool            stale;
+    size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
+};
+
+/// Takes over *grains. The caller fills the fixed fields of a zeroed *world, the
+/// laws before the first step.
+void dig_world_init(struct dig_world *world, struct dig_grains *grains);
+
+/// Gives every pair of kinds, and every kind with walls and tool, the laws of one material. After
+/// dig_world_init(); a caller with several materials overwrites what differs.
+void dig_world_set_material(struct dig_world *world, const struct dig_law_material *material);
+
+/// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
+/// remade before the next step. Contacts stay with their grains.
+void dig_world_touched(struct dig_world *world);
+
+/// Removes grains for which drop[i] is not 0; the contacts between the others remember.
+DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const unsigned char drop[]);
+
+/// One step. The tool, if any, stands where it is at the time of the present positions. DIG_ENOMEM,
+/// or DIG_EINVAL when a grain moves farther than its radius in a step or is nowhere any more: the
+/// time step was too long.
+DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
+
+/// Sum over the steps since it was asked for last. Status as dig_world_step().
+DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
+                                                     struct dig_wrench *wrench);
+
+/// Before motions are read: brings them here from where they are. Nothing to do, and no failure,
+/// where the kernel steps.
+DIG_MUST_CHECK enum dig_status dig_world_look(struct dig_world *world);
+
+/// The same before motions are written, or grains taken out: the contacts come, too.
+DIG_MUST_CHECK enum dig_status dig_world_fetch(struct dig_world *world);
+
+void dig_world_finish(struct dig_world *world);
+
+#endif // DIG_OFFLINE_DEM_WORLD_WORLD_H

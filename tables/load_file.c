@@ -1,0 +1,101 @@
+// Tables and tables of effects from files: what all but tables/ calls.
+
+#include "tables/load.h"
+
+#include "tables/load_approaches.h"
+#include "tables/load_covariance.h"
+#include "tables/load_effects.h"
+#include "tables/store_private.h"
+
+#include <assert.h>
+#include <string.h>
+
+enum dig_status dig_table_list(const char *const path, struct dig_curve_set **const plain,
+                               struct dig_effect_set **const effects, struct dig_error *const error)
+{
+    assert(path != NULL && plain != NULL);
+
+    sqlite3              *db     = NULL;
+    struct dig_table_head head   = { .trajectories = 0 };
+    enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_curve_set  *set    = NULL;
+    struct dig_effect_set *varied = NULL;
+    // One transaction, so that a writer's commit cannot fall between two statements.
+    status = dig_sql_run(db, path, "BEGIN", error);
+    if (status == DIG_OK) {
+        status = dig_sql_load(db, path, &head, &set, error);
+    }
+    if (status == DIG_OK && set != NULL) {
+        status = dig_sql_load_covariance(db, path, &head, set, error);
+    }
+    if (status == DIG_OK && set != NULL) {
+        status = dig_sql_load_approaches(db, path, &head, &set->approaches, error);
+    }
+    if (status == DIG_OK && effects != NULL) {
+        status = dig_sql_load_effects(db, path, &head, &varied, error);
+    }
+    (void)sqlite3_close(db);
+    if (status != DIG_OK) {
+        dig_curve_set_destroy(set);
+        return status;
+    }
+    *plain = set;
+    if (effects != NULL) {
+        *effects = varied;
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_table_load(const char *const path, struct dig_curve_set **const set,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && set != NULL);
+
+    struct dig_curve_set *made   = NULL;
+    const enum dig_status status = dig_table_list(path, &made, NULL, error);
+    if (status != DIG_OK || made == NULL) {
+        return status;
+    }
+    if (made->entries == 0) {
+        dig_curve_set_destroy(made);
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: ground: no rows without an effect, expected at least one entry "
+                             "(is it generated?)",
+                             path);
+    }
+    *set = made;
+    return DIG_OK;
+}
+
+enum dig_status dig_effects_load(const char *const path, const struct dig_curve_set *const plain,
+                                 struct dig_effect_set **const set, struct dig_error *const error)
+{
+    assert(path != NULL && plain != NULL && set != NULL);
+
+    struct dig_curve_set  *beside = NULL;
+    struct dig_effect_set *made   = NULL;
+    enum dig_status        status = dig_table_list(path, &beside, &made, error);
+    if (status != DIG_OK || beside == NULL || made == NULL) {
+        return status;
+    }
+    if (strcmp(made->scene_hash, plain->scene_hash) != 0) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s: scene: holds \"%s\" (%.12s…), expected the scene of the table "
+                               "it goes with, \"%s\" (%.12s…)",
+                               path, beside->scene_name, beside->scene_hash, plain->scene_name,
+                               plain->scene_hash);
+    } else if (made->entries == 0) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s: ground: no rows with an effect, expected at least one", path);
+    }
+    dig_curve_set_destroy(beside);
+    if (status != DIG_OK) {
+        dig_effect_set_destroy(made);
+        return status;
+    }
+    *set = made;
+    return DIG_OK;
+}

@@ -1,0 +1,129 @@
+// Tests for closed_loop/recordings/alignment.c
+
+#include "closed_loop/recordings/alignment.h"
+
+#include "core/units.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+
+#define TOOTH_m 0.09
+
+// Down and then along: 0.6 s at 0.05 m/s, 2 s at 0.0463 m/s, a turn of 0.3 rad/s in the last.
+static const struct dig_trajectory dug = { "dug",
+                                           -0.26,
+                                           0.08,
+                                           0.17,
+                                           3,
+                                           { { "in", 0.6, 0.03, -0.04, 0.0 },
+                                             { "drag", 1.0, 0.0463, 0.0, 0.0 },
+                                             { "turn", 1.0, 0.0, 0.0, 0.3 } } };
+
+static double way_m(const double t_s)
+{
+    const double drag_s = fmin(fmax(t_s - 0.6, 0.0), 1.0);
+    const double turn_s = fmax(t_s - 1.6, 0.0);
+    return 0.05 * fmin(t_s, 0.6) + 0.0463 * drag_s + TOOTH_m * 0.3 * turn_s;
+}
+
+struct scatter {
+    double pin_m, theta_deg;
+};
+
+// The dig from one time of it to another, somewhere else, the poses read with noise.
+static struct dig_recording drive(const double from_s, const double to_s, const double rate_Hz,
+                                  const struct scatter *const noise)
+{
+    const size_t         rows  = (size_t)((to_s - from_s) * rate_Hz) + 1;
+    struct dig_recording r     = { rows, calloc(rows, sizeof *r.row) };
+    uint64_t             state = 17;
+    for (size_t i = 0; i < rows; i++) {
+        const double          t_s  = from_s + (double)i / rate_Hz;
+        const struct dig_pose pose = dig_trajectory_pose(&dug, t_s);
+
+        r.row[i].t_s     = t_s;
+        r.row[i].pin_x_m = pose.x_m + 3.0 + noise->pin_m * model_normal(&state);
+        r.row[i].pin_z_m = pose.z_m - 1.0 + noise->pin_m * model_normal(&state);
+        r.row[i].theta_deg =
+            pose.theta_rad / DIG_RAD_PER_DEG + noise->theta_deg * model_normal(&state);
+    }
+    return r;
+}
+
+static const struct scatter clean = { 0.0, 0.0 };
+static const struct scatter real  = { 5e-5, 0.05 };
+
+// Added up step by step the noise alone would make this way five times as long.
+static void noise_of_the_path_makes_no_way(void **state)
+{
+    (void)state;
+    const struct scatter *const noises[] = { &clean, &real };
+    for (int n = 0; n < 2; n++) {
+        struct dig_recording r        = drive(0.0, 2.6, 1000.0, noises[n]);
+        double *const        progress = calloc(r.rows, sizeof *progress);
+        assert_close(dig_alignment_progress(&r, TOOTH_m, progress) / way_m(2.6), 1.0,
+                     n == 0 ? 0.01 : 0.2);
+        for (size_t i = 0; i < r.rows; i++) {
+            assert_close(progress[i], way_m(r.row[i].t_s) / way_m(2.6), n == 0 ? 0.003 : 0.015);
+            assert_true(i == 0 || progress[i] >= progress[i - 1]);
+        }
+        assert_close(progress[r.rows - 1], 1.0, 1e-12);
+        free(progress);
+        dig_recording_finish(&r);
+    }
+}
+
+static void expect_part(const double from_s, const double to_s, const struct scatter *const noise,
+                        const double within)
+{
+    struct dig_recording r        = drive(from_s, to_s, 200.0, noise);
+    double *const        progress = calloc(r.rows, sizeof *progress);
+    (void)dig_alignment_progress(&r, TOOTH_m, progress);
+    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &dug, TOOTH_m);
+    assert_close(part.from, way_m(from_s) / way_m(2.6), within);
+    assert_close(part.to, way_m(to_s) / way_m(2.6), within);
+    assert_true(part.off < 0.004);
+    free(progress);
+    dig_recording_finish(&r);
+}
+
+static void what_a_recording_lacks_is_told_by_the_poses(void **state)
+{
+    (void)state;
+    expect_part(0.0, 2.6, &clean, 1e-12);
+    expect_part(0.0, 2.6, &real, 1e-12);
+    expect_part(0.0, 2.4, &clean, 0.004);
+    expect_part(0.2, 2.6, &clean, 0.004);
+    expect_part(0.15, 2.3, &clean, 0.004);
+    expect_part(0.15, 2.3, &real, 0.015);
+}
+
+// A path that is no part of the trajectory's is compared with all of it.
+static void another_path_is_not_bent_to_fit(void **state)
+{
+    (void)state;
+    struct dig_recording r = drive(0.0, 2.6, 200.0, &clean);
+    for (size_t i = 0; i < r.rows; i++) {
+        r.row[i].pin_z_m += 0.003 * sin(2.4 * r.row[i].t_s);
+    }
+    double *const progress = calloc(r.rows, sizeof *progress);
+    (void)dig_alignment_progress(&r, TOOTH_m, progress);
+    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &dug, TOOTH_m);
+    assert_close(part.from, 0.0, 0.0);
+    assert_close(part.to, 1.0, 0.0);
+    assert_close(part.off, dig_alignment_distance(&r, progress, &dug, TOOTH_m, 0.0, 1.0), 1e-12);
+    assert_true(part.off > 0.01);
+    free(progress);
+    dig_recording_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noise_of_the_path_makes_no_way),
+        cmocka_unit_test(what_a_recording_lacks_is_told_by_the_poses),
+        cmocka_unit_test(another_path_is_not_bent_to_fit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

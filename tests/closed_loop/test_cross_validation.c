@@ -1,0 +1,134 @@
+#include "closed_loop/search/cross_validation.h"
+
+#include "tests/closed_loop/world_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 7 };
+
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+
+// Six digs of one trajectory and one of the other at this place.
+static void dig_with_lone(const size_t lone, const double layer, uint64_t seed)
+{
+    static const enum dig_effect_id layering = DIG_EFFECT_LAYERING;
+    bool                            take[DIGS];
+    double                          place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i == lone ? MADE_ACTUAL : MADE_SIMPLE_A, 1, &layering, &layer, &seed);
+        measured[i].order = i;
+        take[i]           = true;
+    }
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+}
+
+static void dig_with(const double layer, const uint64_t seed)
+{
+    dig_with_lone(2, layer, seed);
+}
+
+static const struct dig_fitted *fit_of(const enum dig_effect_id effect, const size_t effects)
+{
+    static struct dig_fitted    fitted[2];
+    const struct dig_hypothesis hypothesis                     = { effects, { effect }, false };
+    const double                middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    dig_hypothesis_fit(&batch, soil, &hypothesis, middle, DIG_FIT_THOROUGH, &fitted[effects]);
+    return &fitted[effects];
+}
+
+static double gain_of(const enum dig_effect_id effect)
+{
+    double gain = (double)NAN;
+    assert_int_equal(
+        dig_cross_validation_gain(&batch, soil, fit_of(effect, 0), fit_of(effect, 1), &gain),
+        DIG_OK);
+    return gain;
+}
+
+static void what_is_there_predicts_the_digs_left_out(void **state)
+{
+    (void)state;
+    dig_with(0.8, 3);
+    assert_true(gain_of(DIG_EFFECT_LAYERING) > 20.0);
+}
+
+// Fitted to digs without an effect, a trend explains their scatter and predicts none: over twelve
+// campaigns it takes nothing off what was left out.
+static void what_is_not_there_predicts_nothing(void **state)
+{
+    (void)state;
+    double sum = 0.0;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        dig_with(0.0, 100 + seed);
+        sum += gain_of(DIG_EFFECT_WEAR);
+    }
+    assert_true(sum < 0.0);
+}
+
+// A trend needs four digs: of four none can be left out.
+static void what_cannot_be_fitted_to_the_others_counts_nothing(void **state)
+{
+    (void)state;
+    bool   take[DIGS] = { true, true, true, true };
+    double place[DIG_AXES];
+    dig_with(0.0, 5);
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+    assert_close(gain_of(DIG_EFFECT_WEAR), 0.0, 0.0);
+}
+
+// The only real dig takes its trajectory along; the others keep their numbers, means are theirs.
+static void expect_the_others(const size_t lone)
+{
+    static struct dig_whitened_digs others;
+    dig_with_lone(lone, 0.0, 9);
+    for (size_t out = 0; out < DIGS; out++) {
+        dig_whitened_digs_leave_out(&batch, out, &others);
+        assert_int_equal(others.digs, DIGS - 1);
+        assert_int_equal(others.groups, out == lone ? 1 : 2);
+        for (size_t i = 0; i < others.digs; i++) {
+            const struct dig_whitened_digs_dig *const was = &batch.dig[i < out ? i : i + 1];
+            assert_int_equal(others.dig[i].measured, was->measured);
+            assert_memory_equal(others.dig[i].y, was->y, sizeof was->y);
+            assert_int_equal(others.group[others.dig[i].group].trajectory,
+                             batch.group[was->group].trajectory);
+        }
+        for (size_t g = 0; g < others.groups; g++) {
+            double sum = 0.0;
+            size_t n   = 0;
+            for (size_t i = 0; i < others.digs; i++) {
+                n += others.dig[i].group == g ? 1 : 0;
+                sum += others.dig[i].group == g ? others.dig[i].y[0] : 0.0;
+            }
+            assert_int_equal(others.group[g].digs, n);
+            assert_close(others.group[g].mean[0], sum / (double)n, 1e-12);
+        }
+    }
+}
+
+static void a_dig_left_out_leaves_the_others_as_they_are(void **state)
+{
+    (void)state;
+    expect_the_others(2);
+    expect_the_others(0); // of the first trajectory: the second becomes the first
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_there_predicts_the_digs_left_out),
+        cmocka_unit_test(what_is_not_there_predicts_nothing),
+        cmocka_unit_test(what_cannot_be_fitted_to_the_others_counts_nothing),
+        cmocka_unit_test(a_dig_left_out_leaves_the_others_as_they_are),
+    };
+    return cmocka_run_group_tests_name("confirm", tests, world_setup, world_teardown);
+}

@@ -1,0 +1,221 @@
+#include "closed_loop/accuracy/effect_size.h"
+
+#include "tests/made_campaign.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 8 };
+
+static struct made_world         world;
+static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured      *measured;
+static struct dig_whitened_digs *batch;
+static struct dig_soil          *soil;
+static struct dig_fitted         plain;
+
+static int make(void **state)
+{
+    (void)state;
+    uint64_t     seed = 3;
+    bool         take[DIGS];
+    double       place[DIG_AXES];
+    const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    world                                       = made_world(5);
+    measured                                    = calloc(DIGS, sizeof *measured);
+    batch                                       = malloc(sizeof *batch);
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        take[i] = true;
+    }
+    dig_response_surface_place(world.surface, &gravel, place);
+    static const struct dig_hypothesis none = { .effects = 0 };
+    if (dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch) !=
+            DIG_OK ||
+        dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK) {
+        return 1;
+    }
+    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
+    return 0;
+}
+
+static int clean(void **state)
+{
+    (void)state;
+    free(soil);
+    free(batch);
+    free(measured);
+    made_world_finish(&world);
+    return 0;
+}
+
+// The machine adds this share of the scatter of one dig, changing sign ten times along each dig: no
+// gravel does that.
+static void add_wave(const double share)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        const enum made_trajectory which = i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        double                     rms   = 0.0;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double p = (double)k / (DIG_CURVE_POINTS - 1);
+            rms += pow(made_moment_Nm(&gravel, which, p, 0.0), 2.0) / DIG_CURVE_POINTS;
+        }
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double p = (double)k / (DIG_CURVE_POINTS - 1);
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] =
+                share * MADE_SCATTER * sqrt(rms) * sqrt(2.0) * sin(31.0 * p);
+        }
+    }
+}
+
+static void without_the_machine_there_is_no_size(void **state)
+{
+    (void)state;
+    add_wave(0.0);
+    assert_close(dig_effect_size_of_machine(batch, &plain, measured), 0.0, 1e-12);
+}
+
+// Four digs of each trajectory: their mean scatters by half as much as one; what all share (.05 for
+// the DEM and the surface's) makes the floor 1 / .55 to 1 / .6 of that.
+static void what_no_gravel_does_counts_in_floors(void **state)
+{
+    (void)state;
+    add_wave(2.0);
+    const double size = dig_effect_size_of_machine(batch, &plain, measured);
+    assert_in_range(1000.0 * size, 3000, 4000);
+    add_wave(4.0);
+    assert_close(dig_effect_size_of_machine(batch, &plain, measured), 2.0 * size, 0.05 * size);
+}
+
+static void what_another_gravel_does_is_no_size(void **state)
+{
+    (void)state;
+    const struct dig_gravel other = { { 0.6, 0.55, 3000 } };
+    double                  here[DIG_AXES];
+    double                  there[DIG_AXES];
+    dig_response_surface_place(world.surface, &gravel, here);
+    dig_response_surface_place(world.surface, &other, there);
+    struct dig_fitted at = plain;
+    memcpy(at.number, here, sizeof here);
+    for (size_t i = 0; i < DIGS; i++) {
+        double a[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double b[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_response_surface_curve(world.surface, (size_t)measured[i].trajectory, here, a);
+        dig_response_surface_curve(world.surface, (size_t)measured[i].trajectory, there, b);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] =
+                b[DIG_CHANNEL_MY_Nm][k] - a[DIG_CHANNEL_MY_Nm][k];
+        }
+    }
+    assert_close(dig_effect_size_of_machine(batch, &at, measured), 0.0, 0.02);
+    // Twice of it is beyond the table's grid.
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] *= 20.0;
+        }
+    }
+    assert_true(dig_effect_size_of_machine(batch, &at, measured) > 3.0);
+}
+
+// The digs are measured with what the machine adds; whether that is known to be the machine's.
+static void add_to_value(const bool known)
+{
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].value[DIG_CHANNEL_MY_Nm][k] += measured[i].machine[DIG_CHANNEL_MY_Nm][k];
+            measured[i].machine[DIG_CHANNEL_MY_Nm][k] *= known ? 1.0 : 0.0;
+        }
+    }
+}
+
+// A wave of the digs that no gravel makes leaves the size it has by itself, whatever the digs'
+// scatter does; where it is known to be the machine's it leaves nothing more.
+static void what_no_gravel_explains_is_left(void **state)
+{
+    (void)state;
+    static struct dig_measured as_dug[DIGS];
+    add_wave(0.0);
+    memcpy(as_dug, measured, sizeof as_dug);
+    const double plainly = dig_effect_size_left(batch, &plain);
+    add_wave(2.0);
+    const double size = dig_effect_size_of_machine(batch, &plain, measured);
+    add_to_value(true);
+    const double known = dig_effect_size_left(batch, &plain);
+    memcpy(measured, as_dug, sizeof as_dug);
+    add_wave(2.0);
+    add_to_value(false);
+    const double left = dig_effect_size_left(batch, &plain);
+    memcpy(measured, as_dug, sizeof as_dug);
+    assert_true(plainly < 1.0);
+    assert_close(known, plainly, 1e-6);
+    assert_close(left, size, 1.0);
+}
+
+// Digs of a plain gravel leave, over their floor, no more on average than that.
+static void digs_of_a_plain_gravel_leave_nothing(void **state)
+{
+    (void)state;
+    enum { CAMPAIGNS = 30 };
+    static struct dig_measured as_dug[DIGS];
+    memcpy(as_dug, measured, sizeof as_dug);
+    uint64_t seed   = 77;
+    int      beyond = 0;
+    for (int c = 0; c < CAMPAIGNS; c++) {
+        for (size_t i = 0; i < DIGS; i++) {
+            measured[i] =
+                made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        }
+        beyond += dig_effect_size_left(batch, &plain) > 1.0 ? 1 : 0;
+    }
+    memcpy(measured, as_dug, sizeof as_dug);
+    assert_true(beyond <= 2);
+}
+
+static double size_of(const double layer, const double cohesion)
+{
+    struct dig_fitted chosen = plain;
+    double            size   = -1.0;
+    chosen.hypothesis =
+        (struct dig_hypothesis){ .effects = 2,
+                                 .effect  = { DIG_EFFECT_COHESION, DIG_EFFECT_LAYERING } };
+    chosen.number[DIG_AXES]     = cohesion;
+    chosen.number[DIG_AXES + 1] = layer;
+    assert_int_equal(dig_effect_size_of_soil(batch, soil, &chosen, 1, plain.noise, &size), DIG_OK);
+    return size;
+}
+
+// The layer of the made world is a bump that no gravel has: it counts in proportion, and by itself.
+static void an_effect_of_the_soil_counts_by_itself(void **state)
+{
+    (void)state;
+    const double size = size_of(0.05, 0.0);
+    assert_close(size_of(0.0, 0.0), 0.0, 1e-12);
+    assert_close(size_of(0.0, 1.0), 0.0, 1e-12);
+    assert_true(size > 0.0);
+    assert_close(size_of(0.1, 0.0), 2.0 * size, 0.1 * size);
+    assert_close(size_of(0.05, 1.0), size, 1e-9);
+}
+
+static void at_the_floor_the_odds_are_even(void **state)
+{
+    (void)state;
+    assert_close(dig_effect_size_chance(1.0), 0.5, 1e-12);
+    assert_true(dig_effect_size_chance(0.3) < 0.01);
+    assert_true(dig_effect_size_chance(1.5) > 0.95);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_the_machine_there_is_no_size),
+        cmocka_unit_test(what_no_gravel_does_counts_in_floors),
+        cmocka_unit_test(what_another_gravel_does_is_no_size),
+        cmocka_unit_test(what_no_gravel_explains_is_left),
+        cmocka_unit_test(digs_of_a_plain_gravel_leave_nothing),
+        cmocka_unit_test(an_effect_of_the_soil_counts_by_itself),
+        cmocka_unit_test(at_the_floor_the_odds_are_even),
+    };
+    return cmocka_run_group_tests_name("consequence", tests, make, clean);
+}

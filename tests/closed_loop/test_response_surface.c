@@ -1,0 +1,123 @@
+#include "closed_loop/model/response_surface.h"
+
+#include "tests/made_table.h"
+#include "tests/testlib.h"
+
+#include <stdlib.h>
+
+// The made table is linear in friction and rolling friction and proportional to density: between
+// its points the surface must agree with the closed form.
+static void between_the_points_it_is_the_truth(void **state)
+{
+    (void)state;
+    const struct made_options    options = { .relative_sd = 0.1, .packings = 5 };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    const struct dig_gravel gravel[] = { { { 0.4, 0.25, 2000 } }, { { 0.75, 0.8, 3300 } } };
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
+            double place[DIG_AXES];
+            double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+            dig_response_surface_place(surface, &gravel[i], place);
+            dig_response_surface_curve(surface, t, place, curve);
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k += 15) {
+                const double truth = made_moment_Nm(&gravel[i], (enum made_trajectory)t,
+                                                    (double)k / (DIG_CURVE_POINTS - 1), 0.0);
+                assert_close(curve[0][k], truth, 0.02 * fabs(truth) + 0.01);
+                assert_close(curve[1][k], -8.0 * truth, 8.0 * (0.02 * fabs(truth) + 0.01));
+            }
+        }
+    }
+    free(surface);
+    made_table_destroy(set);
+}
+
+static void a_place_is_a_gravel_and_back(void **state)
+{
+    (void)state;
+    const struct made_options    options = { .packings = 2, .one_density = true };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    const struct dig_gravel gravel = { { 0.42, 0.87, 2500 } };
+    double                  place[DIG_AXES];
+    dig_response_surface_place(surface, &gravel, place);
+    assert_close(place[DIG_AXIS_DENSITY_kgpm3], 0.0, 0.0);
+    const struct dig_gravel back = dig_response_surface_gravel(surface, place);
+    for (int a = 0; a < DIG_AXES; a++) {
+        assert_close(back.value[a], gravel.value[a], 1e-9);
+    }
+    free(surface);
+    made_table_destroy(set);
+}
+
+// Features are linear in the curve, so those of the surface are those of its curve.
+static void features_are_those_of_the_curve(void **state)
+{
+    (void)state;
+    const struct made_options    options = { .packings = 3 };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    const double place[DIG_AXES] = { 0.3, -0.4, 0.1 };
+    double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double       of_curve[DIG_FEATURES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+    dig_response_surface_curve(surface, MADE_ACTUAL, place, curve);
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
+    dig_response_surface_features(surface, MADE_ACTUAL, place, feature, size);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        assert_close(feature[f], of_curve[f], 1e-9 * size[f / DIG_FEATURE_BINS]);
+    }
+    free(surface);
+    made_table_destroy(set);
+}
+
+// The mean of its variance over the entries, weighted by packings, is terms / packings: the trace
+// of a projection.
+static void its_noise_is_that_of_least_squares(void **state)
+{
+    (void)state;
+    const struct made_options    options = { .packings = 4 };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    double sum = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        double place[DIG_AXES];
+        dig_response_surface_place(surface, &set->gravel[e], place);
+        sum += dig_response_surface_noise(surface, 0, place);
+    }
+    assert_int_equal(surface->terms, DIG_RESPONSE_SURFACE_TERMS);
+    assert_close(sum, DIG_RESPONSE_SURFACE_TERMS / 4.0, 1e-4);
+    free(surface);
+    made_table_destroy(set);
+}
+
+static void too_few_entries_are_refused(void **state)
+{
+    (void)state;
+    const struct made_options    options = { .packings = 4 };
+    struct dig_curve_set        *set     = made_table(&options);
+    struct dig_response_surface *surface = malloc(sizeof *surface);
+    for (size_t e = 5; e < set->entries; e++) {
+        for (size_t t = 0; t < set->trajectories; t++) {
+            set->packings[e * set->trajectories + t] = 0;
+        }
+    }
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_EINVAL);
+    free(surface);
+    made_table_destroy(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(between_the_points_it_is_the_truth),
+        cmocka_unit_test(a_place_is_a_gravel_and_back),
+        cmocka_unit_test(features_are_those_of_the_curve),
+        cmocka_unit_test(its_noise_is_that_of_least_squares),
+        cmocka_unit_test(too_few_entries_are_refused),
+    };
+    return cmocka_run_group_tests_name("surface", tests, NULL, NULL);
+}

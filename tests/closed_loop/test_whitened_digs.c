@@ -1,0 +1,198 @@
+#include "closed_loop/model/whitened_digs.h"
+
+#include "tests/closed_loop/world_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGS = 60 };
+
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+
+static struct dig_whitened_digs *batch_of(struct dig_measured    measured[DIGS],
+                                          enum dig_status *const status)
+{
+    uint64_t seed = 3;
+    bool     take[DIGS];
+    double   place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        take[i] = true;
+    }
+    struct dig_whitened_digs *batch = malloc(sizeof *batch);
+    dig_response_surface_place(world.surface, &gravel, place);
+    *status =
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch);
+    return batch;
+}
+
+// One dig scatters by 1 in every direction, in whatever channel and bin.
+static void digs_of_one_gravel_scatter_by_one(void **state)
+{
+    (void)state;
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status           status;
+    struct dig_whitened_digs *batch = batch_of(measured, &status);
+    assert_int_equal(status, DIG_OK);
+    assert_int_equal(batch->groups, 2);
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch->group[g];
+        assert_int_equal(group->digs, DIGS / 2);
+        assert_int_equal(group->features, DIG_FEATURES);
+        const double freedom = (double)(group->features * (group->digs - 1));
+        // Five sigma of chi square, and the floor that is in S but not in the digs.
+        assert_close(group->about / freedom, 0.97, 5.0 * sqrt(2.0 / freedom) + 0.05);
+    }
+    free(batch);
+    free(measured);
+}
+
+static void what_the_machine_adds_is_taken_off(void **state)
+{
+    (void)state;
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status           status;
+    struct dig_whitened_digs *plain = batch_of(measured, &status);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].value[0][k] += 1e-4;
+            measured[i].machine[0][k] += 1e-4;
+        }
+    }
+    bool take[DIGS];
+    memset(take, true, sizeof take);
+    double                    place[DIG_AXES];
+    struct dig_whitened_digs *off = malloc(sizeof *off);
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, off),
+        DIG_OK);
+    for (size_t k = 0; k < DIG_FEATURES; k++) {
+        assert_close(off->group[0].mean[k], plain->group[0].mean[k], 1e-3);
+    }
+    free(off);
+    free(plain);
+    free(measured);
+}
+
+// Where digs scatter more, what stands for a model shrinks as they do: a model that explained them
+// still does.
+static void digs_and_models_shrink_alike(void **state)
+{
+    (void)state;
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status           status;
+    struct dig_whitened_digs *batch = batch_of(measured, &status);
+    double                    feature[DIG_FEATURES];
+    double                    model[2][DIG_FEATURES];
+    double                    y[2][DIG_FEATURES];
+    const double              about = batch->group[1].about;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] = 0.1 * (double)(f % 7);
+    }
+    for (int after = 0; after < 2; after++) {
+        if (after) {
+            dig_whitened_digs_spread(batch, 1.5);
+        }
+        dig_whitened_digs_whiten(&batch->group[1], feature, model[after]);
+        memcpy(y[after], batch->group[1].mean, sizeof y[after]);
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        assert_close(1.5 * model[1][f], model[0][f], 1e-9);
+        assert_close(1.5 * y[1][f], y[0][f], 1e-9);
+    }
+    assert_close(1.5 * 1.5 * batch->group[1].about, about, 1e-6);
+    free(batch);
+    free(measured);
+}
+
+// One noiseless simple dig, its moment averaged over +-half_s of rig time, at this pace.
+static void dig_once(const double half_s, const double pace, double y[DIG_FEATURES])
+{
+    const struct dig_trajectory     t        = made_trajectory(MADE_SIMPLE_A);
+    const double                    end_s    = dig_trajectory_duration_s(&t);
+    const double                    whole_m  = dig_trajectory_path_m(&t, 0.09, end_s);
+    const bool                      take     = true;
+    struct dig_measured *const      measured = calloc(1, sizeof *measured);
+    struct dig_whitened_digs *const batch    = malloc(sizeof *batch);
+    double                          place[DIG_AXES];
+    *measured = (struct dig_measured){ .trajectory = MADE_SIMPLE_A, .last = 1.0, .pace = pace };
+    measured->measured[DIG_CHANNEL_MY_Nm] = true;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at_s = dig_trajectory_time_s(&t, 0.09, (double)k / (DIG_CURVE_POINTS - 1));
+        for (int i = -50; i <= 50; i++) {
+            const double time_s = fmin(fmax(at_s + half_s * i / 50.0, 0.0), end_s);
+            measured->value[DIG_CHANNEL_MY_Nm][k] +=
+                made_moment_Nm(&gravel, MADE_SIMPLE_A,
+                               dig_trajectory_path_m(&t, 0.09, time_s) / whole_m, 0.0) /
+                101.0;
+        }
+    }
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, 1, measured, &take, place, batch),
+        DIG_OK);
+    memcpy(y, batch->group[0].mean, DIG_FEATURE_BINS * sizeof y[0]);
+    free(batch);
+    free(measured);
+}
+
+// Smoothing over 0.16 s takes in twice the way of a dig twice as fast: beside the table's own
+// smoothing as sqrt(3) times 0.16 s would.
+static void what_smoothing_does_to_a_fast_dig_is_taken_off(void **state)
+{
+    (void)state;
+    double plain[DIG_FEATURES], fast[DIG_FEATURES], blurred[DIG_FEATURES];
+    double off    = 0.0;
+    double before = 0.0;
+    dig_once(0.0, 1.0, plain);
+    dig_once(sqrt(3.0) * DIG_SMOOTH_HALF_s, 2.0, fast);
+    dig_once(sqrt(3.0) * DIG_SMOOTH_HALF_s, 1.0, blurred);
+    for (size_t k = 0; k < DIG_FEATURE_BINS; k++) {
+        off    = fmax(off, fabs(fast[k] - plain[k]));
+        before = fmax(before, fabs(blurred[k] - plain[k]));
+    }
+    assert_true(before > 0.1);
+    assert_true(off < 0.25 * before);
+}
+
+// Digs that were measured in part are compared in that part; of nothing there is no batch.
+static void only_what_all_digs_have_is_compared(void **state)
+{
+    (void)state;
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status           status;
+    struct dig_whitened_digs *batch = batch_of(measured, &status);
+    bool                      take[DIGS];
+    memset(take, true, sizeof take);
+    measured[0].last        = 0.75;
+    measured[2].measured[1] = false;
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
+        DIG_OK);
+    assert_int_equal(batch->group[0].features, 2 * 7);
+    assert_int_equal(batch->group[1].features, DIG_FEATURES);
+    measured[0].last = 0.1;
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
+        DIG_ENOMATCH);
+    memset(take, false, sizeof take);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
+        DIG_ENOMATCH);
+    free(batch);
+    free(measured);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(digs_of_one_gravel_scatter_by_one),
+        cmocka_unit_test(what_the_machine_adds_is_taken_off),
+        cmocka_unit_test(digs_and_models_shrink_alike),
+        cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
+        cmocka_unit_test(only_what_all_digs_have_is_compared),
+    };
+    return cmocka_run_group_tests_name("batch", tests, world_setup, world_teardown);
+}
