@@ -25,6 +25,17 @@ pkg_cflags  = $(shell $(PKG_CONFIG) --cflags $(1))
 pkg_libs    = $(shell $(PKG_CONFIG) --libs $(1))
 LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml) -lyaml -lpthread -lm
 
+# Goals that compile nothing, or install what is missing first. Before any other, a missing library is named.
+compile_nothing := setup demo test help clean format format-check layers uninstall arm64 spy
+ifneq ($(filter-out $(compile_nothing),$(or $(MAKECMDGOALS),all)),)
+missing := $(if $(shell command -v $(LCM_GEN)),,liblcm-bin) \
+           $(shell PKG_CONFIG='$(PKG_CONFIG)' scripts/missing_packages.sh build \
+                   $(if $(filter check% coverage,$(MAKECMDGOALS)),test))
+ifneq ($(strip $(missing)),)
+$(error These Debian packages are missing: $(strip $(missing)). `scripts/setup.sh build test` installs them)
+endif
+endif
+
 Q   := $(if $(filter 1,$(V)),,@)
 say  = @printf '  %-6s %s\n' $(1) $(2)
 
