@@ -76,7 +76,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
+.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -213,6 +213,18 @@ fuzz: ## Damaged files, frames and replies against every reader, under sanitizer
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
+
+# libFuzzer is clang's. FUZZ_TARGETS: some of the files of tests/fuzz/coverage.
+FUZZ_SECONDS ?= 60
+FUZZ_TARGETS ?= $(patsubst tests/fuzz/coverage/%.c,%,$(wildcard tests/fuzz/coverage/*.c))
+FUZZ_FLAGS   := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+fuzz-coverage: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS each
+	$(Q)scripts/setup.sh fuzz
+	$(Q)$(MAKE) --no-print-directory $(FUZZ_TARGETS:%=$(BUILD)/libfuzzer/tests/fuzz/coverage/%) \
+	    BUILD=$(BUILD)/libfuzzer CC=clang WARN=-w CFLAGS="$(FUZZ_FLAGS)"
+	$(Q)FUZZERS=$(BUILD)/libfuzzer/tests/fuzz/coverage CORPORA=$(BUILD)/fuzz-corpora \
+	    scripts/fuzz_coverage.sh $(FUZZ_SECONDS) $(FUZZ_TARGETS)
+$(BUILD)/tests/fuzz/coverage/%: LDFLAGS += -fsanitize=fuzzer
 
 $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
