@@ -76,7 +76,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
+.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -213,6 +213,20 @@ fuzz: ## Damaged files, frames and replies against every reader, under sanitizer
 	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
+
+# What does not end when something is taken away or goes wrong, seconds or hours long: TORTURE_S for each script.
+TORTURE_S    ?= 30
+torture_made := $(patsubst tests/torture/%.c,$(BUILD)/tests/torture/%.so,$(wildcard tests/torture/fail_*.c)) \
+                $(patsubst tests/torture/%.c,$(BUILD)/tests/torture/%,$(filter-out tests/torture/fail_%,$(wildcard tests/torture/*.c)))
+torture: all $(helpers) $(torture_made) ## kill -9, full disks, no memory, lying buses, floods, TORTURE_S seconds each; counts at the end
+	$(Q)BIN=$(BUILD)/bin TORTURE_S=$(TORTURE_S) scripts/torture.sh $(or $(TORTURE_ONLY),$(sort $(wildcard tests/torture/*.sh)))
+
+$(BUILD)/tests/torture/%.so: tests/torture/%.c
+	$(call say,CC,$<)
+	$(Q)mkdir -p $(@D) && $(CC) -std=gnu11 -O2 -fPIC -shared $< -o $@ -ldl
+$(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
 
 # libFuzzer is clang's. FUZZ_TARGETS: some of the files of tests/fuzz/coverage.
 FUZZ_SECONDS ?= 60
