@@ -81,7 +81,6 @@ static struct felt *feel_all(const struct dig_world *const world)
     struct felt *const felt = calloc(world->grains.n + 1, sizeof *felt);
     for (size_t l = 0; felt != NULL && l < DIG_PAIR_LISTS; l++) {
         feel(world, world->pair_law[l], &world->pair[l], felt);
-        feel(world, world->pair_law[l], &world->held_pair[l], felt);
     }
     return felt;
 }

@@ -49,23 +49,18 @@ BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
     }
 }
 
-// Where a block of contacts finds its memories: in the list, or when the list is to stay as it is
-// in a copy.
-BODY void open_memories(const bool still, struct dig_contacts *const list, const size_t first,
-                        double copy[DIG_MEMORIES][DIG_BLOCK], double *memories[DIG_MEMORIES])
+// Where a block of contacts finds its memories.
+BODY void open_memories(struct dig_contacts *const list, const size_t first,
+                        double *memories[DIG_MEMORIES])
 {
     for (int m = 0; m < DIG_MEMORIES; m++) {
         memories[m] = list->memory[m] + first;
-        if (still) {
-            memcpy(copy[m], memories[m], sizeof copy[m]);
-            memories[m] = copy[m];
-        }
     }
 }
 
 BODY void pairs_body(const bool wide, const bool general, const struct dig_law law,
-                     const double dt_s, const double period_m, const bool still,
-                     struct dig_contacts *const list, struct dig_grains *const grains)
+                     const double dt_s, const double period_m, struct dig_contacts *const list,
+                     struct dig_grains *const grains)
 {
     if (list->n == 0) {
         return;
@@ -74,7 +69,6 @@ BODY void pairs_body(const bool wide, const bool general, const struct dig_law l
     // reads.
     struct dig_block block;
     memset(&block, 0, sizeof block);
-    double  copy[DIG_MEMORIES][DIG_BLOCK];
     double *memories[DIG_MEMORIES] = { NULL };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
@@ -83,16 +77,15 @@ BODY void pairs_body(const bool wide, const bool general, const struct dig_law l
         if (period_m > 0.0) {
             fold(period_m, count, block.in[1]);
         }
-        open_memories(still, list, first, copy, memories);
+        open_memories(list, first, memories);
         block_body(general, law, dt_s, count, memories, &block);
         scatter(wide, list, &block, first, count, grains->load);
     }
 }
 
 BODY void walls_body(const bool general, const struct dig_law law, const double dt_s,
-                     const struct dig_wall wall[], const bool still,
-                     struct dig_contacts *const list, struct dig_grains *const grains,
-                     double on_walls_N[3])
+                     const struct dig_wall wall[], struct dig_contacts *const list,
+                     struct dig_grains *const grains, double on_walls_N[3])
 {
     if (list->n == 0) {
         return;
@@ -101,7 +94,6 @@ BODY void walls_body(const bool general, const struct dig_law law, const double 
     // reads.
     struct dig_block block;
     memset(&block, 0, sizeof block);
-    double  copy[DIG_MEMORIES][DIG_BLOCK];
     double *memories[DIG_MEMORIES] = { NULL };
     four    sum_N                  = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
@@ -109,7 +101,7 @@ BODY void walls_body(const bool general, const struct dig_law law, const double 
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
         // The law reaches as far as the grain's radius.
         gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
-        open_memories(still, list, first, copy, memories);
+        open_memories(list, first, memories);
         block_body(general, law, dt_s, count, memories, &block);
         scatter_walls(list, &block, first, count, grains->load, &sum_N);
     }
@@ -154,8 +146,7 @@ BODY four_index have_left(const four d[4])
 }
 
 BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
-                       const double (*const at_m)[4], const size_t count,
-                       const uint32_t *const which, struct dig_grains *const grains)
+                       const double (*const at_m)[4], struct dig_grains *const grains)
 {
     const four    g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
     struct answer answer[DIG_GRAIN_TYPES_MAX];
@@ -166,13 +157,13 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
         answer[k].per_kgm2         = kind.driven ? 0.0 : 1.0 / kind.inertia_kgm2;
     }
     four_index   left = { 0, 0, 0, 0 };
-    const size_t n    = which == NULL ? grains->n : count;
+    const size_t n    = grains->n;
     size_t       k    = 0;
     for (; k + 4 <= n; k += 4) {
         four d[4];
 #pragma GCC unroll 4
         for (size_t l = 0; l < 4; l++) {
-            const size_t i = which == NULL ? k + l : which[k + l];
+            const size_t i = k + l;
             d[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
                                &grains->load[i]);
         }
@@ -180,7 +171,7 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
     }
     four rest[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
     for (size_t l = 0; k + l < n; l++) {
-        const size_t i = which == NULL ? k + l : which[k + l];
+        const size_t i = k + l;
         rest[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
                               &grains->load[i]);
     }
@@ -200,35 +191,31 @@ BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const 
             block_body(false, *law, dt_s, count, memories, block);                                 \
         }                                                                                          \
     }                                                                                              \
-    attribute static void pairs_##suffix(                                                          \
-        const struct dig_law *const law, const double dt_s, const double period_m,                 \
-        const bool still, struct dig_contacts *const list, struct dig_grains *const grains)        \
+    attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const double period_m, struct dig_contacts *const list,   \
+                                         struct dig_grains *const grains)                          \
     {                                                                                              \
         if (law->general) {                                                                        \
-            pairs_body(wide, true, *law, dt_s, period_m, still, list, grains);                     \
+            pairs_body(wide, true, *law, dt_s, period_m, list, grains);                            \
         } else {                                                                                   \
-            pairs_body(wide, false, *law, dt_s, period_m, still, list, grains);                    \
+            pairs_body(wide, false, *law, dt_s, period_m, list, grains);                           \
         }                                                                                          \
     }                                                                                              \
-    attribute static void walls_##suffix(const struct dig_law *const law, const double dt_s,       \
-                                         const struct dig_wall wall[], const bool still,           \
-                                         struct dig_contacts *const list,                          \
-                                         struct dig_grains *const grains, double on_walls_N[3])    \
+    attribute static void walls_##suffix(                                                          \
+        const struct dig_law *const law, const double dt_s, const struct dig_wall wall[],          \
+        struct dig_contacts *const list, struct dig_grains *const grains, double on_walls_N[3])    \
     {                                                                                              \
         if (law->general) {                                                                        \
-            walls_body(true, *law, dt_s, wall, still, list, grains, on_walls_N);                   \
+            walls_body(true, *law, dt_s, wall, list, grains, on_walls_N);                          \
         } else {                                                                                   \
-            walls_body(false, *law, dt_s, wall, still, list, grains, on_walls_N);                  \
+            walls_body(false, *law, dt_s, wall, list, grains, on_walls_N);                         \
         }                                                                                          \
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
                                            const double dt_s, const double(*const at_m)[4],        \
-                                           const size_t count, const uint32_t *const which,        \
                                            struct dig_grains *const grains)                        \
     {                                                                                              \
-        return which == NULL                                                                       \
-                   ? advance_body(gravity_mps2, kick_s, dt_s, at_m, count, NULL, grains)           \
-                   : advance_body(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);         \
+        return advance_body(gravity_mps2, kick_s, dt_s, at_m, grains);                             \
     }
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -236,65 +223,37 @@ VARIANTS(, false, base)
 VARIANTS(VARIANT_AVX2, false, avx2)
 VARIANTS(VARIANT_AVX512, true, avx512)
 
+// The variant of a function for this processor.
+#define CALL(isa, name, ...)                                                                       \
+    ((isa) == DIG_ISA_AVX512 ? name##_avx512(__VA_ARGS__)                                          \
+     : (isa) == DIG_ISA_AVX2 ? name##_avx2(__VA_ARGS__)                                            \
+                             : name##_base(__VA_ARGS__))
+
 void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
                       const size_t count, double memory[DIG_MEMORIES][DIG_BLOCK],
                       struct dig_block *const block)
 {
     double *const memories[DIG_MEMORIES] = { memory[0], memory[1], memory[2],
                                              memory[3], memory[4], memory[5] };
-    switch (isa) {
-    case DIG_ISA_AVX512: block_avx512(law, dt_s, count, memories, block); break;
-    case DIG_ISA_AVX2: block_avx2(law, dt_s, count, memories, block); break;
-    case DIG_ISA_BASE: block_base(law, dt_s, count, memories, block); break;
-    }
-}
-
-static void run_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const double period_m, const bool still, struct dig_contacts *const list,
-                      struct dig_grains *const grains)
-{
-    switch (isa) {
-    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, period_m, still, list, grains); break;
-    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, period_m, still, list, grains); break;
-    case DIG_ISA_BASE: pairs_base(law, dt_s, period_m, still, list, grains); break;
-    }
+    CALL(isa, block, law, dt_s, count, memories, block);
 }
 
 void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
                       const double period_y_m, struct dig_contacts *const list,
                       struct dig_grains *const grains)
 {
-    run_pairs(isa, law, dt_s, period_y_m, false, list, grains);
-}
-
-void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const double period_y_m, struct dig_contacts *const list,
-                      struct dig_grains *const grains)
-{
-    run_pairs(isa, law, dt_s, period_y_m, true, list, grains);
+    CALL(isa, pairs, law, dt_s, period_y_m, list, grains);
 }
 
 void dig_kernel_walls(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const struct dig_wall wall[], const bool still,
-                      struct dig_contacts *const list, struct dig_grains *const grains,
-                      double on_walls_N[3])
+                      const struct dig_wall wall[], struct dig_contacts *const list,
+                      struct dig_grains *const grains, double on_walls_N[3])
 {
-    switch (isa) {
-    case DIG_ISA_AVX512: walls_avx512(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    case DIG_ISA_AVX2: walls_avx2(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    case DIG_ISA_BASE: walls_base(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    }
+    CALL(isa, walls, law, dt_s, wall, list, grains, on_walls_N);
 }
 
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,
-                        const double dt_s, const double at_m[][4], const size_t count,
-                        const uint32_t which[], struct dig_grains *const grains)
+                        const double dt_s, const double at_m[][4], struct dig_grains *const grains)
 {
-    switch (isa) {
-    case DIG_ISA_AVX512:
-        return advance_avx512(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
-    case DIG_ISA_AVX2: return advance_avx2(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
-    case DIG_ISA_BASE: break;
-    }
-    return advance_base(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+    return CALL(isa, advance, gravity_mps2, kick_s, dt_s, at_m, grains);
 }

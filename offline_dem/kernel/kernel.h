@@ -43,22 +43,16 @@ void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, 
 void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
                       struct dig_contacts *list, struct dig_grains *grains);
 
-/// The same, but the contacts remember nothing of it: for grains that are held still.
-void dig_kernel_still(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
-                      struct dig_contacts *list, struct dig_grains *grains);
-
 /// Forces and torques of all contacts of a list of grains with walls, added to the loads; the
-/// walls' reaction is added to on_walls_N. With `still` the contacts remember nothing of it.
+/// walls' reaction is added to on_walls_N.
 void dig_kernel_walls(enum dig_isa isa, const struct dig_law *law, double dt_s,
-                      const struct dig_wall wall[], bool still, struct dig_contacts *list,
+                      const struct dig_wall wall[], struct dig_contacts *list,
                       struct dig_grains *grains, double on_walls_N[3]);
 
-/// Kicks every grain (with `which`: those `count` grains only) over kick_s with its load and
-/// gravity, moves it over dt_s and clears its load. at_m: where each grain stood when the contact
-/// lists were made, and its margin. True when a grain has left its margin, or has a coordinate that
-/// is not a number.
+/// Kicks every grain over kick_s with its load and gravity, moves it over dt_s and clears its load.
+/// at_m: where each grain stood when the contact lists were made, and its margin. True when a grain
+/// has left its margin, or has a coordinate that is not a number.
 bool dig_kernel_advance(enum dig_isa isa, const double gravity_mps2[3], double kick_s, double dt_s,
-                        const double at_m[][4], size_t count, const uint32_t which[],
-                        struct dig_grains *grains);
+                        const double at_m[][4], struct dig_grains *grains);
 
 #endif // DIG_OFFLINE_DEM_KERNEL_KERNEL_H

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HELD 0x80000000U // marks a place in a list of held contacts
-
 // The kernel works in fours: beyond the last contact, where grains may stand that are gone by now,
 // it is to find a grain that exists.
 static void pad(struct dig_contacts *const list)
@@ -52,23 +50,19 @@ static enum dig_status make_room(uint32_t **const table, size_t *const room, con
 }
 
 // Writes where each contact of a list stands, or all ones again.
-static void index_list(const struct dig_contacts *const list, const uint32_t mark, const bool clear,
-                       uint32_t was[])
+static void index_list(const struct dig_contacts *const list, const bool clear, uint32_t was[])
 {
     for (size_t c = 0; c < list->n; c++) {
         if (list->key[c] != DIG_NO_SLOT) {
-            was[list->key[c]] = clear ? UINT32_MAX : ((uint32_t)c | mark);
+            was[list->key[c]] = clear ? UINT32_MAX : (uint32_t)c;
         }
     }
 }
 
-static void index_pairs(struct dig_world *const w, const bool all, const bool clear)
+static void index_pairs(struct dig_world *const w, const bool clear)
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        index_list(&w->pair[l], 0, clear, w->pick.was_pair);
-        if (all) {
-            index_list(&w->held_pair[l], HELD, clear, w->pick.was_pair);
-        }
+        index_list(&w->pair[l], clear, w->pick.was_pair);
     }
 }
 
@@ -95,68 +89,47 @@ static size_t find_close(const struct dig_world *const w, const uint32_t i, uint
 }
 
 // One pair to the list it belongs in. Grains of unlike kinds stand in the order of their kinds.
-static enum dig_status add_pair(struct dig_world *const w, const uint32_t i, const uint32_t s,
-                                const bool all)
+static enum dig_status add_pair(struct dig_world *const w, const uint32_t i, const uint32_t s)
 {
     const uint8_t *const of   = w->grains.of;
     const uint32_t       j    = w->near_list.other[s];
-    const bool           held = dig_rest_holds(&w->rest, i) && dig_rest_holds(&w->rest, j);
-    if (held && !all) {
-        return DIG_OK;
-    }
-    const bool     turn = of[i] > of[j];
-    const uint32_t a    = turn ? j : i;
-    const uint32_t b    = turn ? i : j;
-    const size_t   l    = (size_t)of[a] * DIG_GRAIN_TYPES_MAX + of[b];
-    const uint32_t was  = w->pick.was_pair[s];
-
-    const struct dig_contacts *const from = was == DIG_NO_SLOT  ? NULL
-                                            : (was & HELD) != 0 ? &w->held_pair[l]
-                                                                : &w->pair[l];
-    return dig_contacts_add(held ? &w->pick.held_pair[l] : &w->pick.pair[l], a, b, s, from,
-                            was & ~HELD);
+    const bool           turn = of[i] > of[j];
+    const uint32_t       a    = turn ? j : i;
+    const uint32_t       b    = turn ? i : j;
+    const size_t         l    = (size_t)of[a] * DIG_GRAIN_TYPES_MAX + of[b];
+    const uint32_t       was  = w->pick.was_pair[s];
+    return dig_contacts_add(&w->pick.pair[l], a, b, s, was == DIG_NO_SLOT ? NULL : &w->pair[l],
+                            was);
 }
 
-enum dig_status dig_contact_detection_pairs(struct dig_world *const w, const bool all)
+enum dig_status dig_contact_detection_pairs(struct dig_world *const w)
 {
-    const size_t n      = w->grains.n;
-    const size_t slots  = w->near_list.start[n];
-    const bool   rested = w->rest.grain != NULL;
+    const size_t n     = w->grains.n;
+    const size_t slots = w->near_list.start[n];
     if (make_room(&w->pick.was_pair, &w->pick.pairs, slots + 1) != DIG_OK ||
         make_room(&w->pick.close, &w->pick.closes, slots + 1) != DIG_OK) {
         return DIG_ENOMEM;
     }
-    index_pairs(w, all, false);
+    index_pairs(w, false);
     enum dig_status status = DIG_OK;
     for (uint32_t i = 0; i < n && status == DIG_OK; i++) {
-        if (rested && !all && !w->rest.grain[i].loose) {
-            continue;
-        }
         const size_t count = find_close(w, i, w->pick.close);
         for (size_t c = 0; c < count && status == DIG_OK; c++) {
-            status = add_pair(w, i, w->pick.close[c], all);
+            status = add_pair(w, i, w->pick.close[c]);
         }
     }
-    index_pairs(w, all, true);
+    index_pairs(w, true);
     adopt(status, DIG_PAIR_LISTS, w->pair, w->pick.pair);
-    if (all) {
-        adopt(status, DIG_PAIR_LISTS, w->held_pair, w->pick.held_pair);
-    }
     return status;
 }
 
 static enum dig_status add_surface(struct dig_world *const w, const uint32_t i,
                                    const size_t surface, const uint32_t known[])
 {
-    const size_t   l    = w->grains.of[i] + (surface < w->walls ? 0U : (size_t)DIG_GRAIN_TYPES_MAX);
-    const bool     held = dig_rest_holds(&w->rest, i);
-    const uint32_t was  = known[surface];
-
-    const struct dig_contacts *const from = was == DIG_NO_SLOT  ? NULL
-                                            : (was & HELD) != 0 ? &w->held_surface[l]
-                                                                : &w->surface[l];
-    return dig_contacts_add(held ? &w->pick.held_surface[l] : &w->pick.surface[l], i,
-                            (uint32_t)surface, (uint32_t)surface, from, was & ~HELD);
+    const size_t   l   = w->grains.of[i] + (surface < w->walls ? 0U : (size_t)DIG_GRAIN_TYPES_MAX);
+    const uint32_t was = known[surface];
+    return dig_contacts_add(&w->pick.surface[l], i, (uint32_t)surface, (uint32_t)surface,
+                            was == DIG_NO_SLOT ? NULL : &w->surface[l], was);
 }
 
 static enum dig_status pick_walls(struct dig_world *const w, const uint32_t i, const double reach_m,
@@ -199,36 +172,30 @@ static enum dig_status pick_plates(struct dig_world *const w, const uint32_t i,
     return status;
 }
 
-static void index_surfaces(struct dig_world *const w, const size_t surfaces, const bool all,
-                           const bool clear)
+static void index_surfaces(struct dig_world *const w, const size_t surfaces, const bool clear)
 {
-    for (size_t l = 0; l < 2 * DIG_SURFACE_LISTS; l++) {
-        const bool                       held = l >= DIG_SURFACE_LISTS;
-        const struct dig_contacts *const list =
-            held ? &w->held_surface[l - DIG_SURFACE_LISTS] : &w->surface[l];
-        for (size_t c = 0; c < list->n && (all || !held); c++) {
+    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
+        const struct dig_contacts *const list = &w->surface[l];
+        for (size_t c = 0; c < list->n; c++) {
             // Plates are beyond the end when the tool has been taken away.
             if (list->j[c] < surfaces) {
                 w->pick.was_surface[list->i[c] * surfaces + list->j[c]] =
-                    clear ? UINT32_MAX : ((uint32_t)c | (held ? HELD : 0));
+                    clear ? UINT32_MAX : (uint32_t)c;
             }
         }
     }
 }
 
-enum dig_status dig_contact_detection_surfaces(struct dig_world *const w, const bool all)
+enum dig_status dig_contact_detection_surfaces(struct dig_world *const w)
 {
     const struct dig_grains *const g        = &w->grains;
     const size_t                   surfaces = w->walls + (w->tool != NULL ? w->tool->plates : 0);
     if (make_room(&w->pick.was_surface, &w->pick.surfaces, g->n * surfaces + 1) != DIG_OK) {
         return DIG_ENOMEM;
     }
-    index_surfaces(w, surfaces, all, false);
+    index_surfaces(w, surfaces, false);
     enum dig_status status = DIG_OK;
     for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
-        if (!all && dig_rest_holds(&w->rest, i)) {
-            continue;
-        }
         const double          reach_m = g->kind[g->of[i]].radius_m + w->at_m[i][3];
         const uint32_t *const known   = w->pick.was_surface + i * surfaces;
         status                        = pick_walls(w, i, reach_m, known);
@@ -236,11 +203,8 @@ enum dig_status dig_contact_detection_surfaces(struct dig_world *const w, const 
             status = pick_plates(w, i, reach_m + w->tool_margin_m, known);
         }
     }
-    index_surfaces(w, surfaces, all, true);
+    index_surfaces(w, surfaces, true);
     adopt(status, DIG_SURFACE_LISTS, w->surface, w->pick.surface);
-    if (all) {
-        adopt(status, DIG_SURFACE_LISTS, w->held_surface, w->pick.held_surface);
-    }
     return status;
 }
 
@@ -257,8 +221,6 @@ void dig_contact_detection_finish(struct dig_contact_detection *const pick)
     free(pick->was_surface);
     free(pick->close);
     finish_lists(DIG_PAIR_LISTS, pick->pair);
-    finish_lists(DIG_PAIR_LISTS, pick->held_pair);
     finish_lists(DIG_SURFACE_LISTS, pick->surface);
-    finish_lists(DIG_SURFACE_LISTS, pick->held_surface);
     *pick = (struct dig_contact_detection){ 0 };
 }

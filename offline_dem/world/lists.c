@@ -49,11 +49,9 @@ void dig_lists_move(struct dig_world *const w, const uint32_t place[])
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         move_list(&w->pair[l], true, place);
-        move_list(&w->held_pair[l], true, place);
     }
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         move_list(&w->surface[l], false, place);
-        move_list(&w->held_surface[l], false, place);
     }
 }
 
@@ -122,10 +120,6 @@ enum dig_status dig_lists_renew(struct dig_world *const w, const struct dig_skin
     for (size_t k = 0; k < n; k++) {
         place[order[k]] = (uint32_t)k;
     }
-    status = dig_rest_move(w, place);
-    if (status != DIG_OK) {
-        goto done;
-    }
     status = dig_grains_reorder(&w->grains, order);
     if (status != DIG_OK) {
         goto done;
@@ -144,7 +138,6 @@ enum dig_status dig_lists_renew(struct dig_world *const w, const struct dig_skin
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         const bool like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
         find_slots(&w->near_list, like, &w->pair[l]);
-        find_slots(&w->near_list, like, &w->held_pair[l]);
     }
     w->list_rebuilds++;
 
@@ -200,7 +193,6 @@ enum dig_status dig_lists_update(struct dig_world *const w)
         w->at_m    = at;
         w->at_room = n + 1;
     }
-    bool all = w->rest.changed;
     set_margins(w);
     if (!is_covered(w)) {
         const enum dig_status status = dig_lists_renew(w, near_skin);
@@ -208,21 +200,16 @@ enum dig_status dig_lists_update(struct dig_world *const w)
             return status;
         }
         set_margins(w);
-        all = true;
     }
-    if (all) {
-        dig_rest_mark(w);
-    }
-    enum dig_status status = dig_contact_detection_pairs(w, all);
+    enum dig_status status = dig_contact_detection_pairs(w);
     if (status == DIG_OK) {
-        status = dig_contact_detection_surfaces(w, all);
+        status = dig_contact_detection_surfaces(w);
     }
     if (status == DIG_OK && w->bodies != NULL) {
         status = dig_bodies_pick(w);
     }
     if (status == DIG_OK) {
-        w->stale        = false;
-        w->rest.changed = false;
+        w->stale = false;
         w->contact_rebuilds++;
     }
     return status;
@@ -232,14 +219,11 @@ void dig_lists_finish(struct dig_world *const w)
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         dig_contacts_finish(&w->pair[l]);
-        dig_contacts_finish(&w->held_pair[l]);
     }
     for (size_t k = 0; k < DIG_SURFACE_LISTS; k++) {
         dig_contacts_finish(&w->surface[k]);
-        dig_contacts_finish(&w->held_surface[k]);
     }
     dig_contact_detection_finish(&w->pick);
-    dig_rest_finish(&w->rest);
     dig_neighbours_finish(&w->near_list);
     free(w->at_m);
     w->at_m    = NULL;

@@ -175,10 +175,9 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-// One list of contacts of grains of one radius with the plates. Contacts of held grains remember
-// nothing new.
+// One list of contacts of grains of one radius with the plates.
 static void step_plates(struct dig_world *const w, const struct dig_law *const law,
-                        const double radius_m, const bool held, struct dig_contacts *const list)
+                        const double radius_m, struct dig_contacts *const list)
 {
     for (size_t first = 0; first < list->n;) {
         const size_t     count = block_length(list, first);
@@ -192,7 +191,7 @@ static void step_plates(struct dig_world *const w, const struct dig_law *const l
             memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
         }
         dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
-        for (int m = 0; m < DIG_MEMORIES && !held; m++) {
+        for (int m = 0; m < DIG_MEMORIES; m++) {
             memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
         }
         apply(w, list, first, count, &block, (const double(*)[3])arm_m);
@@ -200,26 +199,18 @@ static void step_plates(struct dig_world *const w, const struct dig_law *const l
     }
 }
 
-void dig_surfaces_step(struct dig_world *const w, const bool held)
+void dig_surfaces_step(struct dig_world *const w)
 {
     w->on_tool  = (struct dig_wrench){ 0 };
     w->on_walls = (struct dig_wrench){ 0 };
     for (size_t kind = 0; kind < w->grains.kinds; kind++) {
         const struct dig_law *const law = &w->wall_law[kind];
-        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, false, &w->surface[kind], &w->grains,
+        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, &w->surface[kind], &w->grains,
                          w->on_walls.f_N);
-        if (held) {
-            dig_kernel_walls(w->isa, law, w->dt_s, w->wall, true, &w->held_surface[kind],
-                             &w->grains, w->on_walls.f_N);
-        }
     }
     for (size_t kind = 0; kind < w->grains.kinds; kind++) {
         const double                radius_m = w->grains.kind[kind].radius_m;
         const struct dig_law *const law      = &w->tool_law[kind];
-        const size_t                l        = DIG_GRAIN_TYPES_MAX + kind;
-        step_plates(w, law, radius_m, false, &w->surface[l]);
-        if (held) {
-            step_plates(w, law, radius_m, true, &w->held_surface[l]);
-        }
+        step_plates(w, law, radius_m, &w->surface[DIG_GRAIN_TYPES_MAX + kind]);
     }
 }

@@ -53,11 +53,7 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     }
     dig_lists_move(w, place);
     dig_bodies_move(w->bodies, place);
-    const enum dig_status status = dig_rest_move(w, place);
     free(place);
-    if (status != DIG_OK) {
-        return status;
-    }
     dig_grains_drop(&w->grains, drop);
     // The neighbour list still counts the grains there were: it is remade before it is used.
     dig_neighbours_finish(&w->near_list);
@@ -65,23 +61,13 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     return DIG_OK;
 }
 
-// Before a look, loads of held grains are what is left of the steps since the last one.
-static void push_pairs(struct dig_world *const w, const bool held)
+static void push_pairs(struct dig_world *const w)
 {
-    for (size_t i = 0; held && i < w->grains.n && w->rest.grain != NULL; i++) {
-        if (w->rest.grain[i].held) {
-            w->grains.load[i] = (struct dig_load){ 0 };
-        }
-    }
     for (size_t a = 0; a < w->grains.kinds; a++) {
         for (size_t b = a; b < w->grains.kinds; b++) {
             const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
             dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l],
                              &w->grains);
-            if (held) {
-                dig_kernel_still(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->held_pair[l],
-                                 &w->grains);
-            }
         }
     }
 }
@@ -112,22 +98,13 @@ enum dig_status dig_world_step(struct dig_world *const w)
             return status;
         }
     }
-    const bool look = dig_rest_is_due(w);
-    push_pairs(w, look);
-    dig_surfaces_step(w, look);
+    push_pairs(w);
+    dig_surfaces_step(w);
     if (w->bodies != NULL) {
         dig_bodies_push(w);
     }
-    if (look) {
-        const enum dig_status status = dig_rest_look(w);
-        if (status != DIG_OK) {
-            return status;
-        }
-    }
-    const bool left =
-        dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s, w->dt_s,
-                           (const double(*)[4])w->at_m, w->rest.awakes, w->rest.awake, &w->grains);
-    w->stale = w->rest.changed || left;
+    w->stale = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
+                                  w->dt_s, (const double(*)[4])w->at_m, &w->grains);
     if (w->bodies != NULL) {
         dig_bodies_advance(w);
     }

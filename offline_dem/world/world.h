@@ -13,7 +13,6 @@
 #include "offline_dem/law/law.h"
 #include "offline_dem/law/wall.h"
 #include "offline_dem/shapes/tool.h"
-#include "offline_dem/world/rest.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,8 +28,8 @@ struct dig_offloaded;
 struct dig_contact_detection {
     uint32_t           *was_pair, *was_surface, *close;
     size_t              pairs, surfaces, closes; // room
-    struct dig_contacts pair[DIG_PAIR_LISTS], held_pair[DIG_PAIR_LISTS];
-    struct dig_contacts surface[DIG_SURFACE_LISTS], held_surface[DIG_SURFACE_LISTS];
+    struct dig_contacts pair[DIG_PAIR_LISTS];
+    struct dig_contacts surface[DIG_SURFACE_LISTS];
 };
 
 struct dig_world {
@@ -47,7 +46,6 @@ struct dig_world {
     enum dig_isa    isa;
     double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
                        // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
-    double freeze;     // what a grain that is held still may be pushed, rest.h; 0: none is held
 
     // May be placed between steps; NULL: no tool.
     struct dig_tool *tool;
@@ -72,10 +70,6 @@ struct dig_world {
         pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // kind_i * KINDS_MAX + kind_j
     struct dig_contacts surface[DIG_SURFACE_LISTS];      // kind with wall j; KINDS_MAX + kind with
                                                          // plate j - walls
-    // Contacts of held grains among themselves, and with walls: worked out at looks only.
-    struct dig_contacts          held_pair[DIG_PAIR_LISTS];
-    struct dig_contacts          held_surface[DIG_SURFACE_LISTS];
-    struct dig_rest              rest;
     struct dig_contact_detection pick;
     double (*at_m)[4]; // [n] where the lists were made
     size_t          at_room;
