@@ -1,7 +1,7 @@
 // The device interface (offline_dem/world/device.h) on a graphics card. A step is two kernels: a thread a
 // pair and a thread a grain for what is outside, then a thread a grain that moves it; with clumps a
 // third between them. No sum is shared between threads, so the same steps give the same bits, and
-// with -fmad=false those of offline_dem/device/device_host.c, but for clumps.
+// with -fmad=false those of tests/offline_dem/host_device.c, but for clumps.
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"

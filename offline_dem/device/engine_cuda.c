@@ -27,7 +27,7 @@ static enum dig_status pour(const struct dig_scene *const  scene,
     if (card == NULL) {
         return DIG_EIO;
     }
-    status = dig_bed_pour_watched_on(card, scene, gravel, seed, progress, bed, error);
+    status = dig_bed_pour_watched(card, scene, gravel, seed, progress, bed, error);
     card->destroy(card);
     return status;
 }
@@ -46,8 +46,7 @@ static enum dig_status dig(const struct dig_scene *const  scene,
     if (card == NULL) {
         return DIG_EIO;
     }
-    status =
-        dig_dig_run_on(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
+    status = dig_dig_run(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
     card->destroy(card);
     return status;
 }

@@ -192,22 +192,11 @@ static enum dig_status dig_all(struct drive *const d, struct dig_recording *cons
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_dig_run(const struct dig_scene *const  scene,
+enum dig_status dig_dig_run(struct dig_device *const device, const struct dig_scene *const scene,
                             const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                             const struct dig_trajectory *const trajectory,
                             const char *const vtk_dir, const struct dig_progress *const progress,
                             struct dig_recording *const recording, struct dig_error *const error)
-{
-    return dig_dig_run_on(NULL, scene, gravel, bed, trajectory, vtk_dir, progress, recording,
-                          error);
-}
-
-enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig_scene *const scene,
-                               const struct dig_gravel *const     gravel,
-                               const struct dig_bed *const        bed,
-                               const struct dig_trajectory *const trajectory,
-                               const char *const vtk_dir, const struct dig_progress *const progress,
-                               struct dig_recording *const recording, struct dig_error *const error)
 {
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {

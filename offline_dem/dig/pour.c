@@ -163,19 +163,10 @@ static enum dig_status prepare(struct pour *const p, const struct dig_progress *
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
+enum dig_status dig_bed_pour(struct dig_device *const device, const struct dig_scene *const scene,
                              const struct dig_gravel *const gravel, const uint64_t seed,
                              const struct dig_progress *const progress, struct dig_bed *const bed,
                              struct dig_error *const error)
-{
-    return dig_bed_pour_on(NULL, scene, gravel, seed, progress, bed, error);
-}
-
-enum dig_status dig_bed_pour_on(struct dig_device *const       device,
-                                const struct dig_scene *const  scene,
-                                const struct dig_gravel *const gravel, const uint64_t seed,
-                                const struct dig_progress *const progress,
-                                struct dig_bed *const bed, struct dig_error *const error)
 {
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {

@@ -1,6 +1,5 @@
 #include "offline_dem/dig/setup.h"
 
-#include "offline_dem/dig/dig.h"
 #include "offline_dem/world/bodies.h"
 
 #include <math.h>
@@ -23,14 +22,6 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
         }
     }
     return DIG_OK;
-}
-
-double dig_time_step_s(const struct dig_scene *const scene, const double density_kgpm3)
-{
-    const struct dig_gravel      gravel = { { [DIG_AXIS_DENSITY_kgpm3] = density_kgpm3 } };
-    const double                 r_m    = 0.5 * scene->material.diameter_m;
-    const struct dig_grain_types kinds  = { .kinds = 1, .kind = { { .radius_m = r_m } } };
-    return dig_grain_types_time_step_s(scene, &gravel, &kinds);
 }
 
 // Mass of the body each grain is part of, in the bed's order.

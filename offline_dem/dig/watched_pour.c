@@ -71,15 +71,15 @@ enum dig_status dig_bed_watch(const struct dig_scene *const  scene,
     return status == DIG_OK ? watch_bed(scene, gravel, bed, WATCH_FILE_s, error) : status;
 }
 
-enum dig_status dig_bed_pour_watched_on(struct dig_device *const       device,
-                                        const struct dig_scene *const  scene,
-                                        const struct dig_gravel *const gravel, const uint64_t seed,
-                                        const struct dig_progress *const progress,
-                                        struct dig_bed *const bed, struct dig_error *const error)
+enum dig_status dig_bed_pour_watched(struct dig_device *const       device,
+                                     const struct dig_scene *const  scene,
+                                     const struct dig_gravel *const gravel, const uint64_t seed,
+                                     const struct dig_progress *const progress,
+                                     struct dig_bed *const bed, struct dig_error *const error)
 {
     assert(scene != NULL && gravel != NULL && bed != NULL);
     struct dig_bed  poured = { 0 };
-    enum dig_status status = dig_bed_pour_on(device, scene, gravel, seed, progress, &poured, error);
+    enum dig_status status = dig_bed_pour(device, scene, gravel, seed, progress, &poured, error);
     if (status == DIG_OK && scene->time_step_s > 0.0 && !scene->may_tremble) {
         status = watch_bed(scene, gravel, &poured, WATCH_s, error);
     }
@@ -89,12 +89,4 @@ enum dig_status dig_bed_pour_watched_on(struct dig_device *const       device,
     }
     *bed = poured;
     return DIG_OK;
-}
-
-enum dig_status dig_bed_pour_watched(const struct dig_scene *const  scene,
-                                     const struct dig_gravel *const gravel, const uint64_t seed,
-                                     const struct dig_progress *const progress,
-                                     struct dig_bed *const bed, struct dig_error *const error)
-{
-    return dig_bed_pour_watched_on(NULL, scene, gravel, seed, progress, bed, error);
 }

@@ -12,17 +12,11 @@
 /// dig_energy_drift_watch(): some per cent of what the pouring costs. DIG_EINVAL when it heats;
 /// *error names the key, the step and the longest one that is sure not to. Then *bed is not
 /// written.
-DIG_MUST_CHECK enum dig_status dig_bed_pour_watched(const struct dig_scene  *scene,
+DIG_MUST_CHECK enum dig_status dig_bed_pour_watched(struct dig_device       *device,
+                                                    const struct dig_scene  *scene,
                                                     const struct dig_gravel *gravel, uint64_t seed,
                                                     const struct dig_progress *progress,
                                                     struct dig_bed *bed, struct dig_error *error);
-
-/// The same with the grains stepped by a device; see dig_bed_pour_on().
-DIG_MUST_CHECK enum dig_status
-dig_bed_pour_watched_on(struct dig_device *device, const struct dig_scene *scene,
-                        const struct dig_gravel *gravel, uint64_t seed,
-                        const struct dig_progress *progress, struct dig_bed *bed,
-                        struct dig_error *error);
 
 /// Refuses a bed that was not poured here as a dig and as the pouring above would: DIG_EINVAL for
 /// grains that overlap or are behind a wall (offline_dem/dig/input_checks.h) and for a step that

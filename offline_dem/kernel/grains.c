@@ -20,55 +20,6 @@ static void *allocate(const size_t n, const size_t size)
     return p;
 }
 
-// Radii from one file or one pouring: equal ones are equal to the bit, or nearly.
-// DIG_GRAIN_TYPES_MAX when there is no room for another.
-static size_t find_kind(const double radius_m, const double density_kgpm3, size_t *const kinds,
-                        struct dig_kind kind[DIG_GRAIN_TYPES_MAX])
-{
-    for (size_t k = 0; k < *kinds; k++) {
-        if (fabs(kind[k].radius_m - radius_m) <= 1e-9 * radius_m) {
-            return k;
-        }
-    }
-    if (*kinds == DIG_GRAIN_TYPES_MAX) {
-        return DIG_GRAIN_TYPES_MAX;
-    }
-    const double mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
-    kind[*kinds]         = (struct dig_kind){
-                .radius_m     = radius_m,
-                .mass_kg      = mass_kg,
-                .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
-    };
-    return (*kinds)++;
-}
-
-enum dig_status dig_grains_create(const size_t n, const double x_m[], const double y_m[],
-                                  const double z_m[], const double radius_m[],
-                                  const double density_kgpm3, struct dig_grains *const grains)
-{
-    uint8_t *const of = malloc(n + 1);
-    if (of == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_status status = DIG_OK;
-    size_t          kinds  = 0;
-    struct dig_kind kind[DIG_GRAIN_TYPES_MAX];
-    for (size_t i = 0; i < n && status == DIG_OK; i++) {
-        if (!(radius_m[i] > 0.0) || !isfinite(radius_m[i])) {
-            status = DIG_EINVAL;
-            continue;
-        }
-        const size_t k = find_kind(radius_m[i], density_kgpm3, &kinds, kind);
-        of[i]          = (uint8_t)k;
-        status         = k < DIG_GRAIN_TYPES_MAX ? DIG_OK : DIG_EINVAL;
-    }
-    if (status == DIG_OK) {
-        status = dig_grains_place(kinds, kind, n, x_m, y_m, z_m, of, grains);
-    }
-    free(of);
-    return status;
-}
-
 static bool is_kind(const struct dig_kind *const kind)
 {
     return kind->radius_m > 0.0 && kind->mass_kg > 0.0 && kind->inertia_kgm2 > 0.0 &&

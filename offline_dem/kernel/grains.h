@@ -44,14 +44,9 @@ struct dig_grains {
     uint32_t          *clump;  // [n] body each grain is part of, from 1; 0: none. NULL: no bodies
 };
 
-/// n grains at rest at (x, y, z) with these radii and this density. DIG_EINVAL for more than
-/// DIG_GRAIN_TYPES_MAX different radii, DIG_ENOMEM. Written on success only.
-DIG_MUST_CHECK enum dig_status dig_grains_create(size_t n, const double x_m[], const double y_m[],
-                                                 const double z_m[], const double radius_m[],
-                                                 double density_kgpm3, struct dig_grains *grains);
-
-/// The same with the kinds given: grain i is of kind[of[i]]. DIG_EINVAL for a kind that is not
-/// there, a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM.
+/// n grains at rest at (x, y, z), grain i of kind[of[i]]. DIG_EINVAL for a kind that is not there,
+/// a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM. Written on
+/// success only.
 DIG_MUST_CHECK enum dig_status dig_grains_place(size_t kinds, const struct dig_kind kind[],
                                                 size_t n, const double x_m[], const double y_m[],
                                                 const double z_m[], const uint8_t of[],

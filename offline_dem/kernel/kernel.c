@@ -35,11 +35,6 @@ enum dig_isa dig_kernel_best(void)
     return DIG_ISA_BASE;
 }
 
-const char *dig_kernel_name(const enum dig_isa isa)
-{
-    return isa == DIG_ISA_AVX512 ? "avx512f" : isa == DIG_ISA_AVX2 ? "avx2" : "baseline";
-}
-
 BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
 {
     const double per_m = dig_period_inverse(period_m);

@@ -18,9 +18,6 @@ enum dig_isa { DIG_ISA_BASE, DIG_ISA_AVX2, DIG_ISA_AVX512 };
 /// The best this processor can do.
 enum dig_isa dig_kernel_best(void);
 
-/// "baseline", "avx2", "avx512f".
-const char *dig_kernel_name(enum dig_isa isa);
-
 /// Operands of a block of contacts, filled by whoever knows the geometry; the law leaves its
 /// results in their place.
 struct dig_block {

@@ -10,7 +10,7 @@
 //
 // What a thread does stands in device_pair.h, device_surfaces.h and device_grain.h, in C for both
 // sides: a device that rounds as the processor does gives the same bits as the loop of
-// device_host.c, which tests run; but for clumps, whose sines are the device's own.
+// tests/offline_dem/host_device.c; but for clumps, whose sines are the device's own.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_DEVICE_H
 #define DIG_OFFLINE_DEM_WORLD_DEVICE_H

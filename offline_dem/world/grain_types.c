@@ -22,12 +22,6 @@ static struct own own_of(const struct dig_scene *const scene, const struct dig_g
     return (struct own){ m->friction, m->rolling, m->density_kgpm3, m->restitution };
 }
 
-double dig_grain_types_density(const struct dig_scene *const  scene,
-                               const struct dig_gravel *const gravel, const size_t material)
-{
-    return own_of(scene, gravel, material).density_kgpm3;
-}
-
 struct dig_law_material dig_grain_types_between(const struct dig_scene *const  scene,
                                                 const struct dig_gravel *const gravel,
                                                 const size_t a, const size_t b)
@@ -138,7 +132,7 @@ static enum dig_status make_kind(const struct dig_scene *const       scene,
                              "bed: grain %zu: material %zu, expected one of the scene's %zu", i,
                              material, scene->bed.materials + 1);
     }
-    const double density_kgpm3 = dig_grain_types_density(scene, gravel, material);
+    const double density_kgpm3 = own_of(scene, gravel, material).density_kgpm3;
     double       mass_kg       = density_kgpm3 * sphere_m3(radius_m);
     *contact_kg                = mass_kg;
     if (shape->spheres > 0) {
@@ -229,7 +223,7 @@ double dig_grain_types_time_step_s(const struct dig_scene *const       scene,
         least_s =
             fmin(least_s,
                  dig_time_step_limit_s(&own, kinds->kind[k].radius_m,
-                                       dig_grain_types_density(scene, gravel, kinds->material[k])));
+                                       own_of(scene, gravel, kinds->material[k]).density_kgpm3));
     }
     return least_s;
 }

@@ -19,10 +19,6 @@ struct dig_grain_types {
     double          contact_kg[DIG_GRAIN_TYPES_MAX]; // mass of the body the grain is or is part of
 };
 
-/// Density of a material in this scene with this gravel, kg/m3.
-double dig_grain_types_density(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                               size_t material);
-
 /// Constants of contacts between two materials, the bucket and the walls among them: the scene's
 /// pair, else the smaller frictions and the geometric mean of restitution; of grains with bucket or
 /// walls, else the grains' own. Grains cohere with each other, adhere to the bucket, and neither

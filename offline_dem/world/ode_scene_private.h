@@ -20,7 +20,6 @@ struct dig_ode_scene {
     size_t         planes; // of them
     dBodyID        bucket;
     dGeomID        shell;
-    dGeomID        sphere; // moved to wherever a collision is asked for
     dTriMeshDataID mesh;
     // ODE keeps pointers to these.
     double       vertex[DIG_ODE_VERTICES_MAX][3];

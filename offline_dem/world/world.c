@@ -16,22 +16,6 @@ void dig_world_init(struct dig_world *const world, struct dig_grains *const grai
     *grains       = (struct dig_grains){ 0 };
 }
 
-void dig_world_set_material(struct dig_world *const              world,
-                            const struct dig_law_material *const material)
-{
-    const struct dig_grains *const g = &world->grains;
-    for (size_t a = 0; a < g->kinds; a++) {
-        const struct dig_kind ka = g->kind[a];
-        for (size_t b = a; b < g->kinds; b++) {
-            const struct dig_kind kb = g->kind[b];
-            world->pair_law[a * DIG_GRAIN_TYPES_MAX + b] =
-                dig_law_pair(material, ka.radius_m, kb.radius_m, ka.mass_kg, kb.mass_kg);
-        }
-        world->wall_law[a] = dig_law_wall(material, ka.radius_m, ka.mass_kg);
-        world->tool_law[a] = world->wall_law[a];
-    }
-}
-
 void dig_world_touched(struct dig_world *const world)
 {
     world->stale = true;

@@ -83,10 +83,6 @@ struct dig_world {
 /// laws before the first step.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);
 
-/// Gives every pair of kinds, and every kind with walls and tool, the laws of one material. After
-/// dig_world_init(); a caller with several materials overwrites what differs.
-void dig_world_set_material(struct dig_world *world, const struct dig_law_material *material);
-
 /// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
 /// remade before the next step. Contacts stay with their grains.
 void dig_world_touched(struct dig_world *world);

@@ -81,7 +81,7 @@ static enum dig_status rest(const struct dig_scene *const scene, const struct di
     struct dig_world       world  = { 0 };
     struct dig_ode_scene  *ode    = dig_ode_scene_create(scene);
     enum dig_status        status = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
-                                                : dig_bed_pour(scene, g, 1, NULL, &bed, error);
+                                                : dig_bed_pour(NULL, scene, g, 1, NULL, &bed, error);
     if (status == DIG_OK) {
         status = dig_setup_world(scene, g, ode, &bed, 0.0, &kinds, &world, error);
     }

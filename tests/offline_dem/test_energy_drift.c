@@ -16,7 +16,7 @@ static int pour(void **state)
     (void)state;
     const struct dig_scene  scene  = dem_small_scene();
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
-    return dig_bed_pour(&scene, &gravel, 3, NULL, &poured, NULL);
+    return dig_bed_pour(NULL, &scene, &gravel, 3, NULL, &poured, NULL);
 }
 
 static int empty(void **state)
@@ -102,13 +102,14 @@ static void a_scene_whose_step_heats_is_refused_by_name(void **state)
     struct dig_error        error  = { "" };
     struct dig_bed          bed    = { 0 };
     scene.time_step_s              = 1.2e-4;
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_pour_watched(NULL, &scene, &gravel, 3, NULL, &bed, &error),
+                     DIG_EINVAL);
     assert_non_null(
         strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving, expected at"));
     assert_null(bed.x_m);
 
     scene.may_tremble = true;
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
+    assert_int_equal(dig_bed_pour_watched(NULL, &scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
     dig_bed_finish(&bed);
 }
 
@@ -145,7 +146,7 @@ static void what_is_watched_is_poured_as_ever(void **state)
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     const struct dig_scene  scene  = dem_small_scene();
     struct dig_bed          bed    = { 0 };
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour_watched(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
     assert_int_equal(bed.grains, poured.grains);
     assert_memory_equal(bed.x_m, poured.x_m, bed.grains * sizeof *bed.x_m);
     dig_bed_finish(&bed);

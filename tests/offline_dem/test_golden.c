@@ -103,7 +103,7 @@ static void a_short_dig_keeps_its_bits(void **state)
     for (enum dig_isa isa = DIG_ISA_BASE; isa <= dig_kernel_best(); isa++) {
         const uint64_t hash = dig(isa);
         if (hash != UINT64_C(0xdd76c5a58b508d51)) {
-            fail_msg("%s: %016llx", dig_kernel_name(isa), (unsigned long long)hash);
+            fail_msg("variant %d: %016llx", (int)isa, (unsigned long long)hash);
         }
     }
 }

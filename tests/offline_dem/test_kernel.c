@@ -121,11 +121,11 @@ static void grains_of_two_sizes_keep_momentum_too(void **state)
         x[3][i] = dig_random_next(&random) % 2 == 0 ? GRAIN_m : 0.7 * GRAIN_m;
     }
     struct dig_grains grains;
-    assert_int_equal(dig_grains_create(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
+    assert_int_equal(dem_create_grains(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
     const struct dig_law_material material = dem_material(0.5, 0.3);
     struct dig_world              world    = { .dt_s = STEP_s };
     dig_world_init(&world, &grains);
-    dig_world_set_material(&world, &material);
+    dem_set_material(&world, &material);
     assert_int_equal(world.grains.kinds, 2);
     for (size_t i = 0; i < 64; i++) {
         for (size_t k = 0; k < 3; k++) {
@@ -174,7 +174,7 @@ static void without_damping_and_friction_energy_comes_back(void **state)
     struct dig_law_material smooth = dem_material(0.0, 0.0);
     smooth.restitution             = 0.999999;
     struct dig_world world         = make_cloud(4, 0.5);
-    dig_world_set_material(&world, &smooth);
+    dem_set_material(&world, &smooth);
     world.dt_s           = STEP_s / 4.0;
     const double first_J = dig_grains_kinetic_J(&world.grains);
     dem_run(&world, 16000);

@@ -68,7 +68,7 @@ static void hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found(void **stat
         const double     rj    = large_m[k / 2];
         const double     v     = speed[k % 2];
         struct dig_world world = two(1.001 * (GRAIN_m + rj), rj, 4000.0);
-        dig_world_set_material(&world, &m);
+        dem_set_material(&world, &m);
         world.grains.motion[0].v_mps[0] = v;
         const double mi                 = world.grains.kind[0].mass_kg;
         const double mj                 = world.grains.kind[1].mass_kg;
@@ -98,7 +98,7 @@ static void hertz_spheres_part_with_their_restitution_at_any_speed(void **state)
         struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
         m.restitution             = e[k / 2];
         struct dig_world world    = two(2.6 * GRAIN_m, 1.5 * GRAIN_m, 1500.0);
-        dig_world_set_material(&world, &m);
+        dem_set_material(&world, &m);
         world.grains.motion[0].v_mps[0] = speed[k % 2];
         double deepest_m;
         double contact_s;
@@ -221,7 +221,7 @@ static void glued_grains_rest_where_push_and_pull_balance(void **state)
     m.cohesion_Jpm3           = PULL_Jpm3;
     const double     rj       = 1.5 * GRAIN_m;
     struct dig_world world    = two((GRAIN_m + rj) * (1.0 - 1e-6), rj, DENSITY);
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     dem_run_for(&world, 0.05);
     const double apart_m   = dem_grain(&world, 1)->x_m[0] - dem_grain(&world, 0)->x_m[0];
     const double overlap_m = GRAIN_m + rj - apart_m;
@@ -276,7 +276,7 @@ static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state
     m.rolling                 = 0.4;
     m.cohesion_Jpm3           = PULL_Jpm3;
     struct dig_world world    = two(2.7 * GRAIN_m, 1.6 * GRAIN_m, 4000.0);
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     struct dig_motion *const motion = world.grains.motion;
     motion[0].x_m[1]                = 0.8 * GRAIN_m;
     motion[0].v_mps[0]              = 0.7;

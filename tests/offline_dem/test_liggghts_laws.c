@@ -32,7 +32,7 @@ static void meet_pair(const struct dig_law_material m, const char *const path)
     g->kind[1].mass_kg         = BIG_KGPM3 * 4.0 / 3.0 * DIG_PI * LARGE_m * LARGE_m * LARGE_m;
     g->kind[1].inertia_kgm2    = 0.4 * g->kind[1].mass_kg * LARGE_m * LARGE_m;
     g->of[1]                   = 1;
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     world.dt_s = FINE_s;
     g->motion[0] =
         (struct dig_motion){ .v_mps = { 0.2, 0.03, 0.01 }, .w_radps = { 3.0, 5.0, -7.0 } };
@@ -115,7 +115,7 @@ static struct dig_world mixed_cluster(const struct table *const start)
         g->of[i]              = (uint8_t)((i + 1) % 3);
         g->motion[i].v_mps[2] = -1.0;
     }
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     world.dt_s            = FINE_s;
     world.gravity_mps2[2] = -GRAVITY;
     dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);

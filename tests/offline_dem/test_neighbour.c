@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/neighbour.h"
 #include "offline_dem/law/random.h"
+#include "tests/dem_grains.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static struct scatter make_scatter(const uint64_t seed)
         s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.01) : 0.0006;
     }
     x[7] = 12.0;
-    assert_int_equal(dig_grains_create(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
+    assert_int_equal(dem_create_grains(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
     assert_int_equal(s.grains.kinds, 2);
     return s;
 }
@@ -152,22 +153,24 @@ static void no_grains_make_an_empty_list(void **state)
     dig_neighbours_finish(NULL);
 }
 
-static void too_many_radii_and_senseless_ones_are_refused(void **state)
+static void too_many_types_and_senseless_ones_are_refused(void **state)
 {
     (void)state;
-    double            at[DIG_GRAIN_TYPES_MAX + 1] = { 0.0 };
-    double            r[DIG_GRAIN_TYPES_MAX + 1];
+    double            at[2] = { 0.0, 0.0 };
+    const uint8_t     of[2] = { 0, 1 };
+    struct dig_kind   kind[DIG_GRAIN_TYPES_MAX + 1];
     struct dig_grains untouched = { .n = 77 };
-    for (size_t i = 0; i <= DIG_GRAIN_TYPES_MAX; i++) {
-        r[i] = 0.001 * (double)(i + 1);
+    for (size_t k = 0; k <= DIG_GRAIN_TYPES_MAX; k++) {
+        kind[k] = (struct dig_kind){ .radius_m = 0.001, .mass_kg = 1e-5, .inertia_kgm2 = 1e-11 };
     }
-    assert_int_equal(dig_grains_create(DIG_GRAIN_TYPES_MAX + 1, at, at, at, r, 2500.0, &untouched),
+    assert_int_equal(dig_grains_place(DIG_GRAIN_TYPES_MAX + 1, kind, 2, at, at, at, of, &untouched),
                      DIG_EINVAL);
-    r[1] = -1.0;
-    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
-    r[1]  = 0.001;
-    at[1] = NAN;
-    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
+    assert_int_equal(dig_grains_place(1, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    kind[1].radius_m = -0.001;
+    assert_int_equal(dig_grains_place(2, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    kind[1].radius_m = 0.001;
+    at[1]            = NAN;
+    assert_int_equal(dig_grains_place(2, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
     assert_int_equal(untouched.n, 77);
 }
 
@@ -179,7 +182,7 @@ int main(void)
         cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
         cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
         cmocka_unit_test(no_grains_make_an_empty_list),
-        cmocka_unit_test(too_many_radii_and_senseless_ones_are_refused),
+        cmocka_unit_test(too_many_types_and_senseless_ones_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

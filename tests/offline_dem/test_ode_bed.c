@@ -45,7 +45,7 @@ static struct dig_world heap(const struct dig_law_material *const m)
         }
         g->motion[i].v_mps[2] -= 0.7;
     }
-    dig_world_set_material(&world, m);
+    dem_set_material(&world, m);
     const double high_m   = 2.65 * GRAIN_m * (SIDE + 0.1);
     world.gravity_mps2[2] = -GRAVITY;
     dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);

@@ -71,7 +71,7 @@ static double spin_after(const double step_s, const size_t steps)
     for (size_t i = 1; i < 9; i++) {
         world.grains.of[i] = 1;
     }
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     // The law is that of equal grains: heavy ones only stand for fixed ones.
     world.pair_law[1] = world.pair_law[0];
     world.started     = true; // whole kicks only

@@ -5,6 +5,7 @@
 
 #include "offline_dem/law/random.h"
 #include "offline_dem/world/ode_scene.h"
+#include "offline_dem/world/ode_scene_private.h"
 #include "offline_dem/world/surfaces.h"
 
 #include <math.h>
@@ -326,6 +327,17 @@ static void ode_holds_the_walls_and_the_bucket(void **state)
     dig_ode_scene_destroy(NULL);
 }
 
+// ODE's narrow phase between a sphere and the bucket's triangles: how many contacts.
+static size_t collide(const struct dig_ode_scene *const ode, const double centre_m[3],
+                      dContactGeom contact[8])
+{
+    dGeomID ball = dCreateSphere(NULL, GRAIN_m);
+    dGeomSetPosition(ball, centre_m[0], centre_m[1], centre_m[2]);
+    const int count = dCollide(ball, ode->shell, 8, contact, sizeof contact[0]);
+    dGeomDestroy(ball);
+    return (size_t)count;
+}
+
 // Spheres that touch one plate only, on its face, from the side ODE's triangles show: here both
 // narrow phases must agree. On the other side, at edges and in corners ODE's does not find what the
 // law needs, which is why ours is used: docs/adr/0002-tool-narrow-phase.md.
@@ -370,8 +382,8 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
         const double away[3] = { (body[0] - closest[0]) / best, (body[1] - closest[1]) / best,
                                  (body[2] - closest[2]) / best };
         dig_tool_turn(&tool, away, normal);
-        struct dig_ode_contact contact[8];
-        const size_t           count = dig_ode_scene_collide(ode, world, GRAIN_m, 8, contact);
+        dContactGeom contact[8];
+        const size_t count = collide(ode, world, contact);
         if (count == 0) {
             missed++;
             continue;
@@ -379,12 +391,13 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
         // A sphere over the seam of two triangles gets more contacts than one: the deepest counts.
         size_t deepest = 0;
         for (size_t c = 1; c < count; c++) {
-            deepest = contact[c].depth_m > contact[deepest].depth_m ? c : deepest;
+            deepest = contact[c].depth > contact[deepest].depth ? c : deepest;
         }
+        // ODE's normal points into the first geometry, the sphere.
         const double *const n   = contact[deepest].normal;
         const double        dot = n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2];
         assert_close(dot, 1.0, 1e-9);
-        assert_close(contact[deepest].depth_m, GRAIN_m - best, 1e-8);
+        assert_close(contact[deepest].depth, GRAIN_m - best, 1e-8);
         seen++;
     }
     assert_true(seen >= 400);

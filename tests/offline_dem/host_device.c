@@ -1,4 +1,4 @@
-#include "offline_dem/device/device_host.h"
+#include "tests/offline_dem/host_device.h"
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
@@ -62,7 +62,7 @@ static void destroy(struct dig_device *const device)
     free(device->own);
 }
 
-struct dig_device *dig_device_host_create(void)
+struct dig_device *dem_host_device_create(void)
 {
     struct host *const host = calloc(1, sizeof *host);
     if (host == NULL) {
