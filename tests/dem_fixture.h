@@ -128,7 +128,7 @@ static inline void dem_add_slope(struct dig_world *const world, const double slo
 static inline struct dig_motion *dem_grain(const struct dig_world *const world, const uint32_t name)
 {
     for (size_t i = 0; i < world->grains.n; i++) {
-        if (world->grains.name[i] == name) {
+        if (world->grains.id[i] == name) {
             return &world->grains.motion[i];
         }
     }

@@ -18,7 +18,7 @@ struct dig_device;
 /// Called now and then from the computing thread: done of total seconds of simulated time (packing
 /// counted in). Return false to stop; the call then returns DIG_ESTALE and writes nothing.
 struct dig_progress {
-    int (*tell)(void *context, double done_s, double total_s);
+    int (*report)(void *context, double done_s, double total_s);
     void *context;
 };
 

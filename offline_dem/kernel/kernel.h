@@ -22,8 +22,8 @@ enum dig_isa dig_kernel_best(void);
 /// results in their place.
 struct dig_block {
     union {
-        _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
-        _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
+        _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_kinematics, in order
+        _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_contact_force, in order
     };
     // Between the stages of the plain law: distances, and whether a cap may hold.
     _Alignas(64) double d_m[DIG_BLOCK];
@@ -33,7 +33,7 @@ struct dig_block {
 /// The law on count <= DIG_BLOCK contacts, whose operands stand in block->in and whose memories
 /// stand in memory; memories are updated, block->out is filled and block->in is gone.
 void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, size_t count,
-                      double memory[DIG_MEMORIES][DIG_BLOCK], struct dig_block *block);
+                      double history[DIG_HISTORY_VALUES][DIG_BLOCK], struct dig_block *block);
 
 /// Forces and torques of all contacts of a list of grain pairs, added to the loads. With period_y_m
 /// > 0 grains meet their nearest images in y.
@@ -50,6 +50,6 @@ void dig_kernel_walls(enum dig_isa isa, const struct dig_law *law, double dt_s,
 /// at_m: where each grain stood when the contact lists were made, and its margin. True when a grain
 /// has left its margin, or has a coordinate that is not a number.
 bool dig_kernel_advance(enum dig_isa isa, const double gravity_mps2[3], double kick_s, double dt_s,
-                        const double at_m[][4], struct dig_grains *grains);
+                        const double reference_m[][4], struct dig_grains *grains);
 
 #endif // DIG_OFFLINE_DEM_KERNEL_KERNEL_H

@@ -15,6 +15,6 @@ DIG_MUST_CHECK enum dig_status dig_contact_detection_pairs(struct dig_world *wor
 /// From the walls and the tool's plates, likewise.
 DIG_MUST_CHECK enum dig_status dig_contact_detection_surfaces(struct dig_world *world);
 
-void dig_contact_detection_finish(struct dig_contact_detection *pick);
+void dig_contact_detection_finish(struct dig_contact_detection *detection);
 
 #endif // DIG_OFFLINE_DEM_WORLD_CONTACT_DETECTION_H

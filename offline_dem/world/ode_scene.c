@@ -74,8 +74,8 @@ struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *const scene)
     ode->bucket = dBodyCreate(ode->world);
     dBodySetKinematic(ode->bucket);
     dGeomSetBody(ode->shell, ode->bucket);
-    ode->rocks    = dSimpleSpaceCreate(NULL);
-    ode->touching = dJointGroupCreate(0);
+    ode->rocks          = dSimpleSpaceCreate(NULL);
+    ode->contact_joints = dJointGroupCreate(0);
     return ode;
 }
 
@@ -87,7 +87,7 @@ void dig_ode_scene_destroy(struct dig_ode_scene *const ode)
     dGeomDestroy(ode->shell);
     dGeomTriMeshDataDestroy(ode->mesh);
     dSpaceDestroy(ode->walls);
-    dJointGroupDestroy(ode->touching);
+    dJointGroupDestroy(ode->contact_joints);
     dSpaceDestroy(ode->rocks);
     dWorldDestroy(ode->world);
     dCloseODE();

@@ -27,7 +27,7 @@ struct dig_ode_scene {
     unsigned int vertices, triangles;
     // Rocks: those that are fixed have a geometry and no body.
     dSpaceID      rocks;
-    dJointGroupID touching; // contacts of the step under way
+    dJointGroupID contact_joints; // contacts of the step under way
     size_t        count;
     dGeomID       rock[DIG_OBSTACLES_MAX];
     dBodyID       body[DIG_OBSTACLES_MAX];

@@ -11,6 +11,6 @@
 #include "offline_dem/world/world.h"
 
 /// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls.
-void dig_surfaces_step(struct dig_world *world);
+void dig_surfaces_add_loads(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_WORLD_SURFACES_H

@@ -271,10 +271,10 @@ static void pictures_are_written_where_they_are_wanted(void **state)
 static double step_of(const struct dig_scene *const scene)
 {
     const struct dig_gravel      dense = { { [DIG_AXIS_DENSITY_kgpm3] = DENSITY } };
-    const struct dig_grain_types kinds = {
-        .kinds = 1, .kind = { { .radius_m = 0.5 * scene->material.diameter_m } }
+    const struct dig_grain_types types = {
+        .types = 1, .type = { { .radius_m = 0.5 * scene->material.diameter_m } }
     };
-    return dig_grain_types_time_step_s(scene, &dense, &kinds);
+    return dig_grain_types_time_step_s(scene, &dense, &types);
 }
 
 // Measured on beds of the reference: quiet at 3.1e-5 s for 5 MPa and 1.25e-5 s for 150 MPa, warming

@@ -31,7 +31,7 @@ static struct scatter make_scatter(const uint64_t seed)
     }
     x[7] = 12.0;
     assert_int_equal(dem_create_grains(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
-    assert_int_equal(s.grains.kinds, 2);
+    assert_int_equal(s.grains.types, 2);
     return s;
 }
 
@@ -47,8 +47,8 @@ static bool is_near(const struct scatter *const s, const double period_m, const 
     const double *const a = s->grains.motion[i].x_m;
     const double *const b = s->grains.motion[j].x_m;
     const double gap_m = hypot(hypot(a[0] - b[0], apart_in_y(a[1] - b[1], period_m)), a[2] - b[2]) -
-                         s->grains.kind[s->grains.of[i]].radius_m -
-                         s->grains.kind[s->grains.of[j]].radius_m;
+                         s->grains.type[s->grains.type_of[i]].radius_m -
+                         s->grains.type[s->grains.type_of[j]].radius_m;
     return gap_m < s->margin_m[i] + s->margin_m[j];
 }
 
@@ -118,7 +118,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     struct scatter s = make_scatter(3);
     uint32_t       order[GRAINS];
     bool           seen[GRAINS] = { false };
-    assert_int_equal(dig_neighbours_order(&s.grains, 0.01, order), DIG_OK);
+    assert_int_equal(dig_neighbours_sort(&s.grains, 0.01, order), DIG_OK);
     double path_m = 0.0, unsorted_m = 0.0;
     for (size_t k = 0; k < GRAINS; k++) {
         assert_true(order[k] < GRAINS);
@@ -136,7 +136,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     assert_true(path_m < 0.75 * unsorted_m);
     assert_int_equal(dig_grains_reorder(&s.grains, order), DIG_OK);
     for (size_t k = 0; k < GRAINS; k++) {
-        assert_int_equal(s.grains.name[k], order[k]);
+        assert_int_equal(s.grains.id[k], order[k]);
     }
     dig_grains_finish(&s.grains);
 }
@@ -156,21 +156,23 @@ static void no_grains_make_an_empty_list(void **state)
 static void too_many_types_and_senseless_ones_are_refused(void **state)
 {
     (void)state;
-    double            at[2] = { 0.0, 0.0 };
-    const uint8_t     of[2] = { 0, 1 };
-    struct dig_kind   kind[DIG_GRAIN_TYPES_MAX + 1];
-    struct dig_grains untouched = { .n = 77 };
+    double                at[2] = { 0.0, 0.0 };
+    const uint8_t         of[2] = { 0, 1 };
+    struct dig_grain_type type[DIG_GRAIN_TYPES_MAX + 1];
+    struct dig_grains     untouched = { .n = 77 };
     for (size_t k = 0; k <= DIG_GRAIN_TYPES_MAX; k++) {
-        kind[k] = (struct dig_kind){ .radius_m = 0.001, .mass_kg = 1e-5, .inertia_kgm2 = 1e-11 };
+        type[k] =
+            (struct dig_grain_type){ .radius_m = 0.001, .mass_kg = 1e-5, .inertia_kgm2 = 1e-11 };
     }
-    assert_int_equal(dig_grains_place(DIG_GRAIN_TYPES_MAX + 1, kind, 2, at, at, at, of, &untouched),
-                     DIG_EINVAL);
-    assert_int_equal(dig_grains_place(1, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
-    kind[1].radius_m = -0.001;
-    assert_int_equal(dig_grains_place(2, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
-    kind[1].radius_m = 0.001;
+    assert_int_equal(
+        dig_grains_create(DIG_GRAIN_TYPES_MAX + 1, type, 2, at, at, at, of, &untouched),
+        DIG_EINVAL);
+    assert_int_equal(dig_grains_create(1, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    type[1].radius_m = -0.001;
+    assert_int_equal(dig_grains_create(2, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    type[1].radius_m = 0.001;
     at[1]            = NAN;
-    assert_int_equal(dig_grains_place(2, kind, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    assert_int_equal(dig_grains_create(2, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
     assert_int_equal(untouched.n, 77);
 }
 

@@ -156,9 +156,9 @@ static void lead_round(const double angle_rad, const double w_radps, struct dig_
     const double      s   = sin(angle_rad);
     struct dig_motion at  = { .x_m   = { -0.052 + d_m * c, 0.0, -0.042 + d_m * s },
                               .v_mps = { -w_radps * d_m * s, 0.0, w_radps * d_m * c } };
-    assert_int_equal(dig_world_fetch(world), DIG_OK);
+    assert_int_equal(dig_world_sync(world), DIG_OK);
     world->grains.motion[0] = at;
-    dig_world_touched(world);
+    dig_world_mark_stale(world);
     dem_run(world, 1);
 }
 
@@ -196,14 +196,14 @@ static void a_contact_goes_on_across_an_edge(void **state)
 }
 
 // A device whose grains never ask for new lists: steps on, and then says that one got away.
-static enum dig_status (*real_attend)(struct dig_device *device,
-                                      uint32_t           attention[DIG_ATTENTIONS]);
+static enum dig_status (*real_poll)(struct dig_device *device,
+                                      uint32_t           margin_flag[DIG_MARGIN_FLAGS]);
 
-static enum dig_status attend_late(struct dig_device *const device,
-                                   uint32_t                 attention[DIG_ATTENTIONS])
+static enum dig_status poll_late(struct dig_device *const device,
+                                   uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
 {
-    const enum dig_status status  = real_attend(device, attention);
-    attention[DIG_ATTENTION_SOON] = 0;
+    const enum dig_status status        = real_poll(device, margin_flag);
+    margin_flag[DIG_MARGIN_NEARLY_LEFT] = 0;
     return status;
 }
 
@@ -214,8 +214,8 @@ static void a_grain_that_got_away_is_refused(void **state)
     struct dig_world         world     = dem_world(2, x_m, dem_material(0.5, 0.5));
     struct dig_device *const host      = dem_host_device_create();
     assert_non_null(host);
-    real_attend           = host->attend;
-    host->attend          = attend_late;
+    real_poll           = host->poll_margins;
+    host->poll_margins    = poll_late;
     world.gravity_mps2[2] = -GRAVITY;
     assert_int_equal(dig_offload(&world, host), DIG_OK);
     enum dig_status status = DIG_OK;

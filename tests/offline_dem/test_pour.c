@@ -4,7 +4,7 @@
 
 #include "core/ground.h"
 #include "offline_dem/dig/dig.h"
-#include "offline_dem/dig/scatter.h"
+#include "offline_dem/dig/mixed_packing.h"
 #include "offline_dem/shapes/clump.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ static void three_sizes_are_poured_by_mass(void **state)
     scene.bed.size[1]                  = (struct dig_size){ 0.0075, 0.4 };
     scene.bed.size[2]                  = (struct dig_size){ 0.010, 0.3 };
     struct dig_bed poured              = { 0 };
-    assert_int_equal(dig_scatter(&scene, &shape, 1, &poured), DIG_OK);
+    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &poured), DIG_OK);
     assert_close(deepest_overlap(&poured), 0.0, 0.0);
     const double all =
         mass_of(&poured, 0.003) + mass_of(&poured, 0.00375) + mass_of(&poured, 0.005);
@@ -275,7 +275,7 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
     scene.bed.obstacle[0]              = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
                                                                 .centre_m = { 0.03, 0.0, 0.1 },
                                                                 .size_m   = { 0.05, 0.04, 0.4 } };
-    assert_int_equal(dig_scatter(&scene, &shape, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &bed), DIG_EUNREACHABLE);
     assert_int_equal(bed.grains, 77);
 }
 

@@ -86,7 +86,7 @@ static void body_and_world_agree_with_the_drawing(void **state)
     dig_tool_place(&tool, (struct dig_pose){ 1.0, 2.0, 0.5 }, 0.0, 0.0, 0.0);
     // The tooth is at pin + L (sin theta, -cos theta).
     double world[3], body[3];
-    dig_tool_turn(&tool, (const double[3]){ 0.0, 0.01, -0.09 }, world);
+    dig_tool_rotate(&tool, (const double[3]){ 0.0, 0.01, -0.09 }, world);
     assert_close(world[0], 0.09 * sin(0.5), 1e-15);
     assert_close(world[2], -0.09 * cos(0.5), 1e-15);
     const double there[3] = { 1.0 + world[0], 0.01, 2.0 + world[2] };
@@ -217,7 +217,7 @@ static void a_contact_goes_on_across_an_edge(void **state)
         at.v_mps[0]            = step_m / STEP_s * t[0];
         at.v_mps[2]            = step_m / STEP_s * t[1];
         world.grains.motion[0] = at;
-        dig_world_touched(&world);
+        dig_world_mark_stale(&world);
         dem_run(&world, 1);
         const double *const f        = world.on_tool.f_N;
         const double        normal_N = -(f[0] * n[0] + f[2] * n[1]);
@@ -376,12 +376,12 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
             continue; // the rim of the mouth
         }
         double world[3], normal[3];
-        dig_tool_turn(&tool, body, world);
+        dig_tool_rotate(&tool, body, world);
         world[0] += tool.pose.x_m;
         world[2] += tool.pose.z_m;
         const double away[3] = { (body[0] - closest[0]) / best, (body[1] - closest[1]) / best,
                                  (body[2] - closest[2]) / best };
-        dig_tool_turn(&tool, away, normal);
+        dig_tool_rotate(&tool, away, normal);
         dContactGeom contact[8];
         const size_t count = collide(ode, world, contact);
         if (count == 0) {
