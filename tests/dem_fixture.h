@@ -7,6 +7,7 @@
 #include "core/scene.h"
 #include "core/units.h"
 #include "offline_dem/world/world.h"
+#include "tests/dem_grains.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -89,11 +90,11 @@ static inline struct dig_world dem_world(const size_t n, const double (*const x_
     }
     struct dig_grains grains;
     assert_int_equal(
-        dig_grains_create(n, work, work + n, work + 2 * n, work + 3 * n, DENSITY, &grains), DIG_OK);
+        dem_create_grains(n, work, work + n, work + 2 * n, work + 3 * n, DENSITY, &grains), DIG_OK);
     free(work);
     struct dig_world world = { .dt_s = STEP_s, .isa = dig_kernel_best() };
     dig_world_init(&world, &grains);
-    dig_world_set_material(&world, &material);
+    dem_set_material(&world, &material);
     return world;
 }
 
@@ -127,7 +128,7 @@ static inline void dem_add_slope(struct dig_world *const world, const double slo
 static inline struct dig_motion *dem_grain(const struct dig_world *const world, const uint32_t name)
 {
     for (size_t i = 0; i < world->grains.n; i++) {
-        if (world->grains.name[i] == name) {
+        if (world->grains.id[i] == name) {
             return &world->grains.motion[i];
         }
     }

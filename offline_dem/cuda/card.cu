@@ -1,7 +1,7 @@
 // The device interface (offline_dem/world/device.h) on a graphics card. A step is two kernels: a thread a
 // pair and a thread a grain for what is outside, then a thread a grain that moves it; with clumps a
 // third between them. No sum is shared between threads, so the same steps give the same bits, and
-// with -fmad=false those of offline_dem/device/device_host.c, but for clumps.
+// with -fmad=false those of tests/offline_dem/host_device.c, but for clumps.
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
@@ -22,36 +22,36 @@ struct array {
 };
 
 enum {
-    OF,
-    AT,
-    ROW,
-    OTHER,
-    FIRST,
-    PUSH_OF,
+    TYPE_OF,
+    REFERENCE,
+    PAIR_I,
+    PAIR_J,
+    LOAD_START,
+    LOAD_INDEX,
     PAIR_LAW,
     WALL_LAW,
     TOOL_LAW,
-    KIND,
+    TYPE,
     SHAPE, // fixed
     MOTION,
-    MEMORY,
+    PAIR_HISTORY,
     TOUCHING,
-    PUSH,
-    SURFACE,
-    SURFACES,
-    OUTSIDE,
+    PAIR_LOAD,
+    SURFACE_HISTORY,
+    SURFACE_MASK,
+    SURFACE_LOAD,
     ON_TOOL,
     CLUMP,
-    ATTENTION, // state
+    MARGIN_FLAG, // state
     ARRAYS
 };
 
 struct card {
     dig_device      device;
-    dig_device_view theirs; // the processor's arrays
+    dig_device_view host_view; // the processor's arrays
     dig_device_view view;   // the card's
     array           at[ARRAYS];
-    uint32_t       *attention; // pinned
+    uint32_t       *margin_flag; // pinned
     cudaStream_t    stream;
 };
 
@@ -62,37 +62,37 @@ __host__ __device__ uint32_t blocks(const uint32_t things)
 
 // Pairs, and in the blocks behind theirs what is outside: neither waits for the other.
 __global__ void __launch_bounds__(THREADS)
-    push(const dig_device_view view, const __grid_constant__ dig_device_step step)
+    add_loads(const dig_device_view view, const __grid_constant__ dig_device_step step)
 {
     const uint32_t of_pairs = blocks(view.pairs);
     if (blockIdx.x < of_pairs) {
         const uint32_t pair = blockIdx.x * THREADS + threadIdx.x;
         if (pair < view.pairs) {
-            dig_device_pair(&view, &step, pair);
+            dig_device_step_pair(&view, &step, pair);
         }
     } else {
         const uint32_t i = (blockIdx.x - of_pairs) * THREADS + threadIdx.x;
         if (i < view.n) {
-            dig_device_surfaces(&view, &step, i);
+            dig_device_step_surfaces(&view, &step, i);
         }
     }
 }
 
 __global__ void __launch_bounds__(THREADS)
-    carry(const dig_device_view view, const __grid_constant__ dig_device_step step)
+    move_clumps(const dig_device_view view, const __grid_constant__ dig_device_step step)
 {
     const uint32_t b = blockIdx.x * THREADS + threadIdx.x;
     if (b < view.clumps) {
-        dig_device_clump(&view, &step, b);
+        dig_device_step_clump(&view, &step, b);
     }
 }
 
 __global__ void __launch_bounds__(THREADS)
-    move(const dig_device_view view, const __grid_constant__ dig_device_step step)
+    move_grains(const dig_device_view view, const __grid_constant__ dig_device_step step)
 {
     const uint32_t i = blockIdx.x * THREADS + threadIdx.x;
     if (i < view.n) {
-        dig_device_grain(&view, &step, i);
+        dig_device_step_grain(&view, &step, i);
     }
 }
 
@@ -148,36 +148,36 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
     dig_device_view *const w    = &c->view;
     const size_t           n    = v->n;
     const size_t           p    = v->pairs;
-    c->theirs                   = *v;
+    c->host_view                   = *v;
     w->n                        = v->n;
     w->pairs                    = v->pairs;
     w->clumps                   = v->clumps;
-    w->surfaces_used            = v->surfaces_used;
+    w->surface_rows            = v->surface_rows;
     const double     *at        = nullptr;
     const cudaError_t e[ARRAYS] = {
-        place_const(c, OF, n, v->of, &w->of),
-        place_const(c, AT, 4 * n, &v->at_m[0][0], &at),
-        place(c, ROW, p, v->row, &w->row),
-        place_const(c, OTHER, p, v->other, &w->other),
-        place(c, FIRST, n + 1, v->first, &w->first),
-        place(c, PUSH_OF, p, v->push_of, &w->push_of),
+        place_const(c, TYPE_OF, n, v->type_of, &w->type_of),
+        place_const(c, REFERENCE, 4 * n, &v->reference_m[0][0], &at),
+        place(c, PAIR_I, p, v->pair_i, &w->pair_i),
+        place_const(c, PAIR_J, p, v->pair_j, &w->pair_j),
+        place(c, LOAD_START, n + 1, v->load_start, &w->load_start),
+        place(c, LOAD_INDEX, p, v->load_index, &w->load_index),
         place_const(c, PAIR_LAW, DIG_DEVICE_LAWS, v->pair_law, &w->pair_law),
         place_const(c, WALL_LAW, DIG_GRAIN_TYPES_MAX, v->wall_law, &w->wall_law),
         place_const(c, TOOL_LAW, DIG_GRAIN_TYPES_MAX, v->tool_law, &w->tool_law),
-        place_const(c, KIND, DIG_GRAIN_TYPES_MAX, v->kind, &w->kind),
+        place_const(c, TYPE, DIG_GRAIN_TYPES_MAX, v->type, &w->type),
         place_const(c, SHAPE, v->shape == nullptr ? 0 : 1, v->shape, &w->shape),
         place(c, MOTION, n, v->motion, &w->motion),
-        place(c, MEMORY, p, v->memory, &w->memory),
+        place(c, PAIR_HISTORY, p, v->pair_history, &w->pair_history),
         place(c, TOUCHING, 2 * p, v->touching, &w->touching),
-        place(c, PUSH, 2 * p, static_cast<const dig_load *>(nullptr), &w->push),
-        place(c, SURFACE, v->surfaces_used * n, v->surface, &w->surface),
-        place(c, SURFACES, n, v->surfaces, &w->surfaces),
-        place(c, OUTSIDE, n, static_cast<const dig_load *>(nullptr), &w->outside),
+        place(c, PAIR_LOAD, 2 * p, static_cast<const dig_load *>(nullptr), &w->pair_load),
+        place(c, SURFACE_HISTORY, v->surface_rows * n, v->surface_history, &w->surface_history),
+        place(c, SURFACE_MASK, n, v->surface_mask, &w->surface_mask),
+        place(c, SURFACE_LOAD, n, static_cast<const dig_load *>(nullptr), &w->surface_load),
         place(c, ON_TOOL, n, v->on_tool, &w->on_tool),
         place(c, CLUMP, v->clumps, v->clump, &w->clump),
-        place(c, ATTENTION, DIG_ATTENTIONS, v->attention, &w->attention),
+        place(c, MARGIN_FLAG, DIG_MARGIN_FLAGS, v->margin_flag, &w->margin_flag),
     };
-    w->at_m = reinterpret_cast<const double(*)[4]>(at);
+    w->reference_m = reinterpret_cast<const double(*)[4]>(at);
     for (int a = 0; a < ARRAYS; a++) {
         if (e[a] != cudaSuccess) {
             return status_of(e[a]);
@@ -192,27 +192,27 @@ dig_status step(dig_device *const device, const dig_device_step *const s)
     if (c->view.n == 0) {
         return DIG_OK;
     }
-    push<<<blocks(c->view.pairs) + blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
+    add_loads<<<blocks(c->view.pairs) + blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
     if (c->view.clumps > 0) {
-        carry<<<blocks(c->view.clumps), THREADS, 0, c->stream>>>(c->view, *s);
+        move_clumps<<<blocks(c->view.clumps), THREADS, 0, c->stream>>>(c->view, *s);
     }
-    move<<<blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
+    move_grains<<<blocks(c->view.n), THREADS, 0, c->stream>>>(c->view, *s);
     return status_of(cudaPeekAtLastError());
 }
 
-dig_status attend(dig_device *const device, uint32_t attention[DIG_ATTENTIONS])
+dig_status poll_margins(dig_device *const device, uint32_t margin_flag[DIG_MARGIN_FLAGS])
 {
     card *const c = card_of(device);
     cudaError_t e =
-        cudaMemcpyAsync(c->attention, c->view.attention, DIG_ATTENTIONS * sizeof *attention,
+        cudaMemcpyAsync(c->margin_flag, c->view.margin_flag, DIG_MARGIN_FLAGS * sizeof *margin_flag,
                         cudaMemcpyDeviceToHost, c->stream);
     e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;
-    memcpy(attention, c->attention, DIG_ATTENTIONS * sizeof *attention);
+    memcpy(margin_flag, c->margin_flag, DIG_MARGIN_FLAGS * sizeof *margin_flag);
     return status_of(e);
 }
 
 template <typename T>
-cudaError_t bring(card *const c, T *const to, const T *const from, const size_t count)
+cudaError_t fetch(card *const c, T *const to, const T *const from, const size_t count)
 {
     return count == 0
                ? cudaSuccess
@@ -222,18 +222,18 @@ cudaError_t bring(card *const c, T *const to, const T *const from, const size_t 
 dig_status download(dig_device *const device, const bool all)
 {
     card *const                  c = card_of(device);
-    const dig_device_view *const t = &c->theirs;
+    const dig_device_view *const t = &c->host_view;
     const dig_device_view *const v = &c->view;
     const size_t                 n = v->n;
-    cudaError_t                  e = bring(c, t->motion, v->motion, n);
-    e                              = e == cudaSuccess ? bring(c, t->on_tool, v->on_tool, n) : e;
-    e                              = e == cudaSuccess ? bring(c, t->clump, v->clump, v->clumps) : e;
+    cudaError_t                  e = fetch(c, t->motion, v->motion, n);
+    e                              = e == cudaSuccess ? fetch(c, t->on_tool, v->on_tool, n) : e;
+    e                              = e == cudaSuccess ? fetch(c, t->clump, v->clump, v->clumps) : e;
     e = e == cudaSuccess ? cudaMemsetAsync(v->on_tool, 0, n * sizeof *v->on_tool, c->stream) : e;
     if (all) {
-        e = e == cudaSuccess ? bring(c, t->memory, v->memory, v->pairs) : e;
-        e = e == cudaSuccess ? bring(c, t->touching, v->touching, 2 * v->pairs) : e;
-        e = e == cudaSuccess ? bring(c, t->surface, v->surface, v->surfaces_used * n) : e;
-        e = e == cudaSuccess ? bring(c, t->surfaces, v->surfaces, n) : e;
+        e = e == cudaSuccess ? fetch(c, t->pair_history, v->pair_history, v->pairs) : e;
+        e = e == cudaSuccess ? fetch(c, t->touching, v->touching, 2 * v->pairs) : e;
+        e = e == cudaSuccess ? fetch(c, t->surface_history, v->surface_history, v->surface_rows * n) : e;
+        e = e == cudaSuccess ? fetch(c, t->surface_mask, v->surface_mask, n) : e;
     }
     e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;
     return status_of(e);
@@ -245,7 +245,7 @@ void destroy(dig_device *const device)
     for (int a = 0; a < ARRAYS; a++) {
         (void)cudaFree(c->at[a].here);
     }
-    (void)cudaFreeHost(c->attention);
+    (void)cudaFreeHost(c->margin_flag);
     (void)cudaStreamDestroy(c->stream);
     free(c);
 }
@@ -265,8 +265,8 @@ extern "C" dig_device *dig_cuda_create(char why[], const size_t size)
         return nullptr;
     }
     cudaError_t e = cudaStreamCreate(&c->stream);
-    e             = e == cudaSuccess ? cudaMallocHost(reinterpret_cast<void **>(&c->attention),
-                                                      DIG_ATTENTIONS * sizeof *c->attention)
+    e             = e == cudaSuccess ? cudaMallocHost(reinterpret_cast<void **>(&c->margin_flag),
+                                                      DIG_MARGIN_FLAGS * sizeof *c->margin_flag)
                                      : e;
     if (e != cudaSuccess) {
         snprintf(why, size, "%s", cudaGetErrorString(e));
@@ -277,7 +277,7 @@ extern "C" dig_device *dig_cuda_create(char why[], const size_t size)
     c->device.own      = c;
     c->device.upload   = upload;
     c->device.step     = step;
-    c->device.attend   = attend;
+    c->device.poll_margins   = poll_margins;
     c->device.download = download;
     c->device.destroy  = destroy;
     return &c->device;

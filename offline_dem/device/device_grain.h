@@ -25,71 +25,71 @@ DIG_BOTH static inline void dig_device_advance(const struct dig_device_view *con
                                                const struct dig_device_step *const step,
                                                const uint32_t i, const struct dig_load *const load)
 {
-    const struct dig_kind *const kind     = &view->kind[view->of[i]];
-    struct dig_motion            m        = view->motion[i];
-    const double                 per_kg   = kind->driven ? 0.0 : 1.0 / kind->mass_kg;
-    const double                 per_kgm2 = kind->driven ? 0.0 : 1.0 / kind->inertia_kgm2;
-    const double                 falls    = kind->driven ? 0.0 : 1.0;
-    double                       moved_m2 = 0.0;
-    double                       v2       = 0.0;
+    const struct dig_grain_type *const type         = &view->type[view->type_of[i]];
+    struct dig_motion                  m            = view->motion[i];
+    const double                       inverse_kg   = type->driven ? 0.0 : 1.0 / type->mass_kg;
+    const double                       inverse_kgm2 = type->driven ? 0.0 : 1.0 / type->inertia_kgm2;
+    const double                       falls        = type->driven ? 0.0 : 1.0;
+    double                             moved_m2     = 0.0;
+    double                             v2           = 0.0;
     for (int k = 0; k < 3; k++) {
-        m.v_mps[k] += step->kick_s * (load->f_N[k] * per_kg + falls * step->gravity_mps2[k]);
-        m.w_radps[k] += step->kick_s * (load->t_Nm[k] * per_kgm2);
+        m.v_mps[k] += step->kick_s * (load->f_N[k] * inverse_kg + falls * step->gravity_mps2[k]);
+        m.w_radps[k] += step->kick_s * (load->t_Nm[k] * inverse_kgm2);
         m.x_m[k] += step->dt_s * m.v_mps[k];
-        const double d = m.x_m[k] - view->at_m[i][k];
+        const double d = m.x_m[k] - view->reference_m[i][k];
         moved_m2 += d * d;
         v2 += m.v_mps[k] * m.v_mps[k];
     }
     view->motion[i] = m;
     // Negated, so that a coordinate that is not a number counts as having left.
-    const double margin_m = view->at_m[i][3];
-    const double soon_m   = DIG_DEVICE_SOON * margin_m - step->ahead_s * sqrt(v2);
+    const double margin_m = view->reference_m[i][3];
+    const double soon_m   = DIG_DEVICE_SOON * margin_m - step->horizon_s * sqrt(v2);
     if (!(soon_m > 0.0 && moved_m2 < soon_m * soon_m)) {
-        view->attention[DIG_ATTENTION_SOON] = 1;
+        view->margin_flag[DIG_MARGIN_NEARLY_LEFT] = 1;
     }
     if (!(moved_m2 <= margin_m * margin_m)) {
-        view->attention[DIG_ATTENTION_LEFT] = 1;
+        view->margin_flag[DIG_MARGIN_LEFT] = 1;
     }
 }
 
-DIG_BOTH static inline struct dig_load dig_device_load(const struct dig_device_view *const view,
-                                                       const uint32_t                      i)
+DIG_BOTH static inline struct dig_load
+dig_device_sum_loads(const struct dig_device_view *const view, const uint32_t i)
 {
     struct dig_load load = { { 0 }, { 0 } };
-    if (view->surfaces[i] != 0) {
-        load = view->outside[i];
+    if (view->surface_mask[i] != 0) {
+        load = view->surface_load[i];
     }
-    for (uint32_t k = view->first[i]; k < view->first[i + 1]; k++) {
+    for (uint32_t k = view->load_start[i]; k < view->load_start[i + 1]; k++) {
         if (view->touching[k] != 0) {
-            dig_device_add_load(&view->push[k], &load);
+            dig_device_add_load(&view->pair_load[k], &load);
         }
     }
     return load;
 }
 
 /// Before its spheres, which are driven, are moved.
-DIG_BOTH static inline void dig_device_clump(const struct dig_device_view *const view,
-                                             const struct dig_device_step *const step,
-                                             const uint32_t                      b)
+DIG_BOTH static inline void dig_device_step_clump(const struct dig_device_view *const view,
+                                                  const struct dig_device_step *const step,
+                                                  const uint32_t                      b)
 {
     struct dig_load load[DIG_CLUMP_MAX];
     if (view->clump[b].gone) {
         return;
     }
     for (size_t k = 0; k < view->shape->spheres; k++) {
-        load[k] = dig_device_load(view, view->clump[b].member[k]);
+        load[k] = dig_device_sum_loads(view, view->clump[b].member[k]);
     }
     dig_clump_step(view->shape, load, step->gravity_mps2, step->kick_s, step->dt_s, &view->clump[b],
                    view->motion);
 }
 
-DIG_BOTH static inline void dig_device_grain(const struct dig_device_view *const view,
-                                             const struct dig_device_step *const step,
-                                             const uint32_t                      i)
+DIG_BOTH static inline void dig_device_step_grain(const struct dig_device_view *const view,
+                                                  const struct dig_device_step *const step,
+                                                  const uint32_t                      i)
 {
     struct dig_load load = { { 0 }, { 0 } };
-    if (!view->kind[view->of[i]].driven) {
-        load = dig_device_load(view, i);
+    if (!view->type[view->type_of[i]].driven) {
+        load = dig_device_sum_loads(view, i);
     }
     dig_device_advance(view, step, i, &load);
 }

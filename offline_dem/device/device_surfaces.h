@@ -5,7 +5,7 @@
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_SURFACES_H
 
 #include "offline_dem/device/device_pair.h"
-#include "offline_dem/shapes/bucket_near.h"
+#include "offline_dem/shapes/bucket_surface.h"
 
 #include <math.h>
 
@@ -13,20 +13,20 @@
 #define DIG_DEVICE_FAR 1.001
 
 /// One grain under way.
-struct dig_device_grain {
+struct dig_device_contacts {
     const struct dig_device_view *view;
     const struct dig_device_step *step;
     uint32_t                      i;
     struct dig_motion             m;
     struct dig_load               load;
-    uint64_t                      surfaces;
+    uint64_t                      surface_mask;
 };
 
 /// The plates near a grain, those it touches marked.
 struct dig_device_plates {
     double   closest_m[DIG_PLATES_MAX][3]; // body frame
     double   distance_m[DIG_PLATES_MAX];
-    uint32_t counts; // bit p: plate p is touched
+    uint32_t contact_mask; // bit p: plate p is touched
 };
 
 DIG_BOTH static inline double dig_device_distance(const double a[3], const double b[3])
@@ -35,24 +35,24 @@ DIG_BOTH static inline double dig_device_distance(const double a[3], const doubl
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-DIG_BOTH static inline struct dig_memory *
-dig_device_surface(const struct dig_device_grain *const grain, const uint32_t surface)
+DIG_BOTH static inline struct dig_contact_history *
+dig_device_surface_history(const struct dig_device_contacts *const grain, const uint32_t surface)
 {
-    return &grain->view->surface[(size_t)surface * grain->view->n + grain->i];
+    return &grain->view->surface_history[(size_t)surface * grain->view->n + grain->i];
 }
 
-DIG_BOTH static inline void dig_device_forget(struct dig_device_grain *const grain,
-                                              const uint32_t                 surface)
+DIG_BOTH static inline void dig_device_clear_history(struct dig_device_contacts *const grain,
+                                                     const uint32_t                    surface)
 {
-    if ((grain->surfaces >> surface & 1) != 0) {
-        const struct dig_memory none = { 0 };
-        grain->surfaces &= ~((uint64_t)1 << surface);
-        *dig_device_surface(grain, surface) = none;
+    if ((grain->surface_mask >> surface & 1) != 0) {
+        const struct dig_contact_history none = { 0 };
+        grain->surface_mask &= ~((uint64_t)1 << surface);
+        *dig_device_surface_history(grain, surface) = none;
     }
 }
 
-DIG_BOTH static inline void dig_device_add(const struct dig_push *const p,
-                                           struct dig_load *const       load)
+DIG_BOTH static inline void dig_device_add_force(const struct dig_contact_force *const p,
+                                                 struct dig_load *const                load)
 {
     load->f_N[0] += p->fx_N;
     load->f_N[1] += p->fy_N;
@@ -63,89 +63,89 @@ DIG_BOTH static inline void dig_device_add(const struct dig_push *const p,
 }
 
 /// What a surface does to the grain, which touches it: d to the grain's centre, v of the surface.
-DIG_BOTH static inline struct dig_push dig_device_push_surface(struct dig_device_grain *const grain,
-                                                               const struct dig_law *const    law,
-                                                               const uint32_t surface,
-                                                               const double d[3], const double v[3])
+DIG_BOTH static inline struct dig_contact_force
+dig_device_add_surface(struct dig_device_contacts *const grain, const struct dig_law *const law,
+                       const uint32_t surface, const double d[3], const double v[3])
 {
-    const struct dig_motion *const m     = &grain->m;
-    const struct dig_touch         touch = {
-                d[0],
-                d[1],
-                d[2],
-                m->v_mps[0] - v[0],
-                m->v_mps[1] - v[1],
-                m->v_mps[2] - v[2],
-                m->w_radps[0],
-                m->w_radps[1],
-                m->w_radps[2],
-                0.0,
-                0.0,
-                0.0,
+    const struct dig_motion *const m          = &grain->m;
+    const struct dig_kinematics    kinematics = {
+           d[0],
+           d[1],
+           d[2],
+           m->v_mps[0] - v[0],
+           m->v_mps[1] - v[1],
+           m->v_mps[2] - v[2],
+           m->w_radps[0],
+           m->w_radps[1],
+           m->w_radps[2],
+           0.0,
+           0.0,
+           0.0,
     };
-    const struct dig_push push =
-        dig_device_law(law, grain->step->dt_s, &touch, dig_device_surface(grain, surface));
-    grain->surfaces |= (uint64_t)1 << surface;
-    dig_device_add(&push, &grain->load);
-    return push;
+    const struct dig_contact_force force = dig_law_apply(
+        law, grain->step->dt_s, &kinematics, dig_device_surface_history(grain, surface));
+    grain->surface_mask |= (uint64_t)1 << surface;
+    dig_device_add_force(&force, &grain->load);
+    return force;
 }
 
-DIG_BOTH static inline void dig_device_push_walls(struct dig_device_grain *const grain)
+DIG_BOTH static inline void dig_device_add_walls(struct dig_device_contacts *const grain)
 {
-    const struct dig_law *const law      = &grain->view->wall_law[grain->view->of[grain->i]];
+    const struct dig_law *const law      = &grain->view->wall_law[grain->view->type_of[grain->i]];
     const double                still[3] = { 0.0, 0.0, 0.0 };
     for (uint32_t w = 0; w < grain->step->walls; w++) {
         const double *const n = grain->step->wall[w].normal;
         const double *const x = grain->m.x_m;
         const double h = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - grain->step->wall[w].offset_m;
         if (h > DIG_DEVICE_FAR * law->reach_m) {
-            dig_device_forget(grain, w);
+            dig_device_clear_history(grain, w);
             continue;
         }
         // A grain pressed through a wall still stands on the right side of it.
-        const double           least_m = 1e-3 * law->reach_m;
-        const double           safe_m  = h > least_m ? h : least_m;
-        const double           d[3]    = { safe_m * n[0], safe_m * n[1], safe_m * n[2] };
-        const struct dig_touch touch   = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
-        if (dig_device_touches(law, &touch)) {
-            (void)dig_device_push_surface(grain, law, w, d, still);
+        const double                least_m    = 1e-3 * law->reach_m;
+        const double                safe_m     = h > least_m ? h : least_m;
+        const double                d[3]       = { safe_m * n[0], safe_m * n[1], safe_m * n[2] };
+        const struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
+        if (dig_device_touches(law, &kinematics)) {
+            (void)dig_device_add_surface(grain, law, w, d, still);
         } else {
-            dig_device_forget(grain, w);
+            dig_device_clear_history(grain, w);
         }
     }
 }
 
-DIG_BOTH static inline bool dig_device_remembers(const struct dig_device_grain *const grain,
-                                                 const uint32_t                       plate)
+DIG_BOTH static inline bool dig_device_has_history(const struct dig_device_contacts *const grain,
+                                                   const uint32_t                          plate)
 {
-    const struct dig_memory *const m = dig_device_surface(grain, DIG_WALLS_MAX + plate);
+    const struct dig_contact_history *const m =
+        dig_device_surface_history(grain, DIG_WALLS_MAX + plate);
     return fabs(m->sx_m) > 0.0 || fabs(m->sy_m) > 0.0 || fabs(m->sz_m) > 0.0 ||
            fabs(m->mx_Nm) > 0.0 || fabs(m->my_Nm) > 0.0 || fabs(m->mz_Nm) > 0.0;
 }
 
 /// What is remembered of one plate goes to another, unless that knows something itself.
-DIG_BOTH static inline void dig_device_hand_over(struct dig_device_grain *const grain,
-                                                 const uint32_t from, const uint32_t to)
+DIG_BOTH static inline void dig_device_move_history(struct dig_device_contacts *const grain,
+                                                    const uint32_t from, const uint32_t to)
 {
-    if (!dig_device_remembers(grain, to)) {
-        *dig_device_surface(grain, DIG_WALLS_MAX + to) =
-            *dig_device_surface(grain, DIG_WALLS_MAX + from);
-        grain->surfaces |= (uint64_t)1 << (DIG_WALLS_MAX + to);
-        dig_device_forget(grain, DIG_WALLS_MAX + from);
+    if (!dig_device_has_history(grain, to)) {
+        *dig_device_surface_history(grain, DIG_WALLS_MAX + to) =
+            *dig_device_surface_history(grain, DIG_WALLS_MAX + from);
+        grain->surface_mask |= (uint64_t)1 << (DIG_WALLS_MAX + to);
+        dig_device_clear_history(grain, DIG_WALLS_MAX + from);
     }
 }
 
 /// Leaves the true minima of the distance to the whole tool.
-DIG_BOTH static inline void dig_device_resolve(struct dig_device_grain *const  grain,
-                                               struct dig_device_plates *const near,
-                                               const double                    radius_m)
+DIG_BOTH static inline void dig_device_resolve_edges(struct dig_device_contacts *const grain,
+                                                     struct dig_device_plates *const   near,
+                                                     const double                      radius_m)
 {
     const struct dig_bucket *const bucket = &grain->step->tool.bucket;
     const uint32_t                 plates = (uint32_t)grain->step->tool.plates;
     const double                   same_m = 1e-6 * radius_m;
     for (uint32_t p = 0; p < plates; p++) {
-        for (uint32_t q = 0; q < plates && (near->counts >> p & 1) != 0; q++) {
-            if (q == p || (near->counts >> q & 1) == 0 ||
+        for (uint32_t q = 0; q < plates && (near->contact_mask >> p & 1) != 0; q++) {
+            if (q == p || (near->contact_mask >> q & 1) == 0 ||
                 near->distance_m[q] > near->distance_m[p] + same_m) {
                 continue;
             }
@@ -157,34 +157,35 @@ DIG_BOTH static inline void dig_device_resolve(struct dig_device_grain *const  g
             }
             // On a tie the contact stays with the plate that had it; then with the first.
             const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
-            if (tie &&
-                (dig_device_remembers(grain, p) || (!dig_device_remembers(grain, q) && p < q))) {
-                near->counts &= ~(1U << q);
+            if (tie && (dig_device_has_history(grain, p) ||
+                        (!dig_device_has_history(grain, q) && p < q))) {
+                near->contact_mask &= ~(1U << q);
                 continue;
             }
-            dig_device_hand_over(grain, p, q);
-            near->counts &= ~(1U << p);
+            dig_device_move_history(grain, p, q);
+            near->contact_mask &= ~(1U << p);
         }
     }
 }
 
 /// One plate the grain touches; the opposite acts on the tool, about the pin.
-DIG_BOTH static inline void dig_device_push_plate(struct dig_device_grain *const grain,
-                                                  const uint32_t plate, const double body_m[3],
-                                                  const double closest_m[3])
+DIG_BOTH static inline void dig_device_add_plate(struct dig_device_contacts *const grain,
+                                                 const uint32_t plate, const double body_m[3],
+                                                 const double closest_m[3])
 {
     const struct dig_tool *const tool    = &grain->step->tool;
     const double                 away[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
                                              body_m[2] - closest_m[2] };
     double                       d[3];
     double                       a[3];
-    dig_tool_turn(tool, away, d);
-    dig_tool_turn(tool, closest_m, a);
-    const double                v[3] = { tool->vx_mps - tool->w_radps * a[2], 0.0,
-                                         tool->vz_mps + tool->w_radps * a[0] };
-    const struct dig_law *const law  = &grain->view->tool_law[grain->view->of[grain->i]];
-    const struct dig_push    p   = dig_device_push_surface(grain, law, DIG_WALLS_MAX + plate, d, v);
-    struct dig_wrench *const sum = &grain->view->on_tool[grain->i];
+    dig_tool_rotate(tool, away, d);
+    dig_tool_rotate(tool, closest_m, a);
+    const double                   v[3] = { tool->vx_mps - tool->w_radps * a[2], 0.0,
+                                            tool->vz_mps + tool->w_radps * a[0] };
+    const struct dig_law *const    law  = &grain->view->tool_law[grain->view->type_of[grain->i]];
+    const struct dig_contact_force p =
+        dig_device_add_surface(grain, law, DIG_WALLS_MAX + plate, d, v);
+    struct dig_wrench *const sum  = &grain->view->on_tool[grain->i];
     const double             f[3] = { p.fx_N, p.fy_N, p.fz_N };
     const double             t[3] = { p.jx_Nm, p.jy_Nm, p.jz_Nm };
     for (int k = 0; k < 3; k++) {
@@ -193,17 +194,17 @@ DIG_BOTH static inline void dig_device_push_plate(struct dig_device_grain *const
     }
 }
 
-DIG_BOTH static inline void dig_device_push_tool(struct dig_device_grain *const grain)
+DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *const grain)
 {
     const struct dig_tool *const tool = &grain->step->tool;
-    const double radius_m             = grain->view->tool_law[grain->view->of[grain->i]].reach_m;
+    const double radius_m = grain->view->tool_law[grain->view->type_of[grain->i]].reach_m;
     double       body_m[3];
     dig_tool_to_body(tool, grain->m.x_m, body_m);
     const double reach_m = tool->radius_m + radius_m;
     const bool   is_far  = body_m[0] * body_m[0] + body_m[2] * body_m[2] > reach_m * reach_m ||
                         fabs(body_m[1]) > 0.5 * tool->bucket.width_m + radius_m;
     struct dig_device_plates near;
-    near.counts = 0;
+    near.contact_mask = 0;
     for (uint32_t p = 0; p < tool->plates && !is_far; p++) {
         // A side is as far away as its plane, at least.
         const double half_m =
@@ -213,70 +214,70 @@ DIG_BOTH static inline void dig_device_push_tool(struct dig_device_grain *const 
         }
         dig_bucket_closest(&tool->bucket, p, body_m, near.closest_m[p]);
         near.distance_m[p] = dig_device_distance(body_m, near.closest_m[p]);
-        near.counts |= (near.distance_m[p] < radius_m ? 1U : 0U) << p;
+        near.contact_mask |= (near.distance_m[p] < radius_m ? 1U : 0U) << p;
     }
-    if ((near.counts & (near.counts - 1)) != 0) {
-        dig_device_resolve(grain, &near, radius_m);
+    if ((near.contact_mask & (near.contact_mask - 1)) != 0) {
+        dig_device_resolve_edges(grain, &near, radius_m);
     }
     for (uint32_t p = 0; p < tool->plates; p++) {
-        if ((near.counts >> p & 1) != 0) {
-            dig_device_push_plate(grain, p, body_m, near.closest_m[p]);
+        if ((near.contact_mask >> p & 1) != 0) {
+            dig_device_add_plate(grain, p, body_m, near.closest_m[p]);
         } else {
-            dig_device_forget(grain, DIG_WALLS_MAX + p);
+            dig_device_clear_history(grain, DIG_WALLS_MAX + p);
         }
     }
 }
 
-DIG_BOTH static inline void dig_device_forget_tool(struct dig_device_grain *const grain)
+DIG_BOTH static inline void dig_device_clear_tool(struct dig_device_contacts *const grain)
 {
     for (uint32_t p = DIG_WALLS_MAX; p < DIG_DEVICE_ROCKS; p++) {
-        dig_device_forget(grain, p);
+        dig_device_clear_history(grain, p);
     }
 }
 
 /// Rocks that stand still, in their image along y that is nearest.
-DIG_BOTH static inline void dig_device_push_rocks(struct dig_device_grain *const grain)
+DIG_BOTH static inline void dig_device_add_rocks(struct dig_device_contacts *const grain)
 {
     const struct dig_device_step *const step = grain->step;
-    const struct dig_law *const         law  = &grain->view->wall_law[grain->view->of[grain->i]];
-    const double                        still[3] = { 0.0, 0.0, 0.0 };
+    const struct dig_law *const law      = &grain->view->wall_law[grain->view->type_of[grain->i]];
+    const double                still[3] = { 0.0, 0.0, 0.0 };
     for (uint32_t r = 0; r < step->rocks; r++) {
-        const struct dig_rock_place *const rock = &step->rock[r];
+        const struct dig_rock_surface *const rock = &step->rock[r];
         double seen[3] = { grain->m.x_m[0], grain->m.x_m[1], grain->m.x_m[2] };
         double closest[3];
         double d[3];
         if (step->period_y_m > 0.0) {
-            seen[1] = rock->x_m[1] +
-                      dig_period_fold(seen[1] - rock->x_m[1], step->period_y_m, step->per_m);
+            seen[1] = rock->x_m[1] + dig_period_fold(seen[1] - rock->x_m[1], step->period_y_m,
+                                                     step->inverse_period);
         }
-        dig_rock_apart(rock, seen, law->reach_m, closest, d);
-        const struct dig_touch touch = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
-        if (dig_device_touches(law, &touch)) {
-            (void)dig_device_push_surface(grain, law, DIG_DEVICE_ROCKS + r, d, still);
+        dig_rock_surface_separation(rock, seen, law->reach_m, closest, d);
+        const struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
+        if (dig_device_touches(law, &kinematics)) {
+            (void)dig_device_add_surface(grain, law, DIG_DEVICE_ROCKS + r, d, still);
         } else {
-            dig_device_forget(grain, DIG_DEVICE_ROCKS + r);
+            dig_device_clear_history(grain, DIG_DEVICE_ROCKS + r);
         }
     }
 }
 
-DIG_BOTH static inline void dig_device_surfaces(const struct dig_device_view *const view,
-                                                const struct dig_device_step *const step,
-                                                const uint32_t                      i)
+DIG_BOTH static inline void dig_device_step_surfaces(const struct dig_device_view *const view,
+                                                     const struct dig_device_step *const step,
+                                                     const uint32_t                      i)
 {
-    struct dig_device_grain grain = {
-        view, step, i, view->motion[i], { { 0 }, { 0 } }, view->surfaces[i]
+    struct dig_device_contacts grain = {
+        view, step, i, view->motion[i], { { 0 }, { 0 } }, view->surface_mask[i]
     };
-    const uint64_t before = grain.surfaces;
-    dig_device_push_walls(&grain);
-    if (step->digs) {
-        dig_device_push_tool(&grain);
-    } else if (grain.surfaces >> DIG_WALLS_MAX != 0) {
-        dig_device_forget_tool(&grain);
+    const uint64_t before = grain.surface_mask;
+    dig_device_add_walls(&grain);
+    if (step->has_tool) {
+        dig_device_add_tool(&grain);
+    } else if (grain.surface_mask >> DIG_WALLS_MAX != 0) {
+        dig_device_clear_tool(&grain);
     }
-    dig_device_push_rocks(&grain);
-    if ((before | grain.surfaces) != 0) {
-        view->outside[i]  = grain.load;
-        view->surfaces[i] = grain.surfaces;
+    dig_device_add_rocks(&grain);
+    if ((before | grain.surface_mask) != 0) {
+        view->surface_load[i] = grain.load;
+        view->surface_mask[i] = grain.surface_mask;
     }
 }
 

@@ -1,7 +1,7 @@
 #include "offline_dem/device/engine_cuda.h"
 
 #include "offline_dem/device/device_cuda.h"
-#include "offline_dem/dig/watched_pour.h"
+#include "offline_dem/dig/checked_pour.h"
 
 static enum dig_status check(const struct dig_scene *const scene, struct dig_error *const error)
 {
@@ -27,7 +27,7 @@ static enum dig_status pour(const struct dig_scene *const  scene,
     if (card == NULL) {
         return DIG_EIO;
     }
-    status = dig_bed_pour_watched_on(card, scene, gravel, seed, progress, bed, error);
+    status = dig_bed_pour_checked(card, scene, gravel, seed, progress, bed, error);
     card->destroy(card);
     return status;
 }
@@ -46,8 +46,7 @@ static enum dig_status dig(const struct dig_scene *const  scene,
     if (card == NULL) {
         return DIG_EIO;
     }
-    status =
-        dig_dig_run_on(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
+    status = dig_dig_run(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
     card->destroy(card);
     return status;
 }

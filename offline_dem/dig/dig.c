@@ -12,13 +12,13 @@
 #include <stdlib.h>
 
 // Windows of a curve between two pictures, and between two calls of the progress function.
-#define PICTURE_WINDOWS 20
-#define TELL_WINDOWS    8
+#define PICTURE_WINDOWS  20
+#define PROGRESS_WINDOWS 8
 // … and in a dig that is not recorded.
-#define TELL_STEPS 640
+#define PROGRESS_STEPS 640
 
 // One dig under way.
-struct drive {
+struct run {
     const struct dig_scene      *scene;
     const struct dig_trajectory *trajectory;
     const char                  *vtk_dir;
@@ -30,7 +30,7 @@ struct drive {
 
 // Puts ODE's bucket where the trajectory has it, and reads the tool from there. The rates are those
 // of the phase that ends at or after time_s.
-static void place_tool(struct drive *const d, const double time_s)
+static void place_tool(struct run *const d, const double time_s)
 {
     const double                  middle_s = time_s - 0.5 * d->world.dt_s;
     const struct dig_pose         pose     = dig_trajectory_pose(d->trajectory, time_s);
@@ -41,20 +41,20 @@ static void place_tool(struct drive *const d, const double time_s)
 }
 
 // Mass of the grains in the bucket, whose motions are here.
-static double carried_kg(const struct drive *const d)
+static double carried_kg(const struct run *const d)
 {
     const struct dig_grains *const grains = &d->world.grains;
     double                         sum_kg = 0.0;
     for (size_t i = 0; i < grains->n; i++) {
-        if (dig_tool_holds(&d->tool, grains->motion[i].x_m)) {
-            sum_kg += grains->kind[grains->of[i]].mass_kg;
+        if (dig_tool_contains(&d->tool, grains->motion[i].x_m)) {
+            sum_kg += grains->type[grains->type_of[i]].mass_kg;
         }
     }
     return sum_kg;
 }
 
 // Means over the steps first + 1 … first + window.
-static enum dig_status record_window(struct drive *const d, const size_t first, const size_t window,
+static enum dig_status record_window(struct run *const d, const size_t first, const size_t window,
                                      struct dig_force_row *const row)
 {
     const double      dt_s   = d->world.dt_s;
@@ -68,26 +68,26 @@ static enum dig_status record_window(struct drive *const d, const size_t first, 
     if (status != DIG_OK) {
         return status;
     }
-    const double          share = 1.0 / (double)window;
-    const double          t_s   = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
-    const struct dig_pose pose  = dig_trajectory_pose(d->trajectory, t_s);
-    *row                        = (struct dig_force_row){
-                               .t_s        = t_s,
-                               .pin_x_m    = pose.x_m,
-                               .pin_z_m    = pose.z_m,
-                               .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
-                               .Fx_N       = share * sum.f_N[0],
-                               .Fy_N       = share * sum.f_N[1],
-                               .Fz_N       = share * sum.f_N[2],
-                               .Mx_Nm      = share * sum.t_Nm[0],
-                               .My_Nm      = share * sum.t_Nm[1],
-                               .Mz_Nm      = share * sum.t_Nm[2],
-                               .carried_kg = carried_kg(d),
+    const double          per_step = 1.0 / (double)window;
+    const double          t_s      = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
+    const struct dig_pose pose     = dig_trajectory_pose(d->trajectory, t_s);
+    *row                           = (struct dig_force_row){
+                                  .t_s        = t_s,
+                                  .pin_x_m    = pose.x_m,
+                                  .pin_z_m    = pose.z_m,
+                                  .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
+                                  .Fx_N       = per_step * sum.f_N[0],
+                                  .Fy_N       = per_step * sum.f_N[1],
+                                  .Fz_N       = per_step * sum.f_N[2],
+                                  .Mx_Nm      = per_step * sum.t_Nm[0],
+                                  .My_Nm      = per_step * sum.t_Nm[1],
+                                  .Mz_Nm      = per_step * sum.t_Nm[2],
+                                  .carried_kg = carried_kg(d),
     };
     return DIG_OK;
 }
 
-static enum dig_status drive(struct drive *const d, struct dig_recording *const recording)
+static enum dig_status run(struct run *const d, struct dig_recording *const recording)
 {
     const double dt_s       = d->world.dt_s;
     const double duration_s = dig_trajectory_duration_s(d->trajectory);
@@ -102,7 +102,7 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
-            status = dig_world_look(&d->world);
+            status = dig_world_sync_motion(&d->world);
         }
         if (status == DIG_OK && d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
             status = dig_vtk_write(d->vtk_dir, r / PICTURE_WINDOWS, &d->world, &d->tool);
@@ -110,8 +110,8 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
         if (status == DIG_OK) {
             status = record_window(d, r * window, window, &recording->row[r]);
         }
-        if (status == DIG_OK && d->progress != NULL && r % TELL_WINDOWS == 0 &&
-            !d->progress->tell(d->progress->context, recording->row[r].t_s, duration_s)) {
+        if (status == DIG_OK && d->progress != NULL && r % PROGRESS_WINDOWS == 0 &&
+            !d->progress->report(d->progress->context, recording->row[r].t_s, duration_s)) {
             status = DIG_ESTALE;
         }
     }
@@ -125,10 +125,10 @@ static enum dig_status drive(struct drive *const d, struct dig_recording *const 
 }
 
 // Steps without a tool, until what the bucket let fall and what was raked lies.
-static enum dig_status settle(struct drive *const d)
+static enum dig_status settle(struct run *const d)
 {
     d->world.tool = NULL;
-    dig_world_touched(&d->world);
+    dig_world_mark_stale(&d->world);
     const size_t    steps  = (size_t)llround(d->scene->packing.settle_s / d->world.dt_s);
     enum dig_status status = DIG_OK;
     for (size_t s = 0; s < steps && status == DIG_OK; s++) {
@@ -137,18 +137,18 @@ static enum dig_status settle(struct drive *const d)
     return status;
 }
 
-static enum dig_status dig_once(struct drive *const d)
+static enum dig_status run_unrecorded(struct run *const d)
 {
     const double duration_s = dig_trajectory_duration_s(d->trajectory);
     const size_t steps      = (size_t)floor(duration_s / d->world.dt_s);
     d->world.tool           = &d->tool;
-    dig_world_touched(&d->world);
+    dig_world_mark_stale(&d->world);
     enum dig_status status = DIG_OK;
     for (size_t s = 0; s <= steps && status == DIG_OK; s++) {
         place_tool(d, (double)s * d->world.dt_s);
         status = dig_world_step(&d->world);
-        if (status == DIG_OK && d->progress != NULL && s % TELL_STEPS == 0 &&
-            !d->progress->tell(d->progress->context, 0.0, duration_s)) {
+        if (status == DIG_OK && d->progress != NULL && s % PROGRESS_STEPS == 0 &&
+            !d->progress->report(d->progress->context, 0.0, duration_s)) {
             status = DIG_ESTALE;
         }
     }
@@ -157,7 +157,7 @@ static enum dig_status dig_once(struct drive *const d)
 
 // The digs made in this bed before. The bucket is taken away where it ends, and what it carries
 // falls; then the ground is raked level as after the paper's digs, unless it is to stay as dug.
-static enum dig_status dig_before(struct drive *const d)
+static enum dig_status run_earlier_digs(struct run *const d)
 {
     const struct dig_bed_plan *const   bed    = &d->scene->bed;
     const struct dig_trajectory *const own    = d->trajectory;
@@ -166,7 +166,7 @@ static enum dig_status dig_before(struct drive *const d)
         d->trajectory = dig_scene_find(d->scene, bed->earlier);
     }
     for (size_t i = 0; i < bed->earlier_digs && status == DIG_OK; i++) {
-        status = dig_once(d);
+        status = run_unrecorded(d);
         if (status == DIG_OK) {
             status = settle(d);
         }
@@ -180,34 +180,23 @@ static enum dig_status dig_before(struct drive *const d)
     return status;
 }
 
-static enum dig_status dig_all(struct drive *const d, struct dig_recording *const recording,
+static enum dig_status run_all(struct run *const d, struct dig_recording *const recording,
                                struct dig_error *const error)
 {
-    enum dig_status status = dig_before(d);
+    enum dig_status status = run_earlier_digs(d);
     if (status == DIG_OK) {
         d->world.tool = &d->tool;
-        dig_world_touched(&d->world);
-        status = drive(d, recording);
+        dig_world_mark_stale(&d->world);
+        status = run(d, recording);
     }
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_dig_run(const struct dig_scene *const  scene,
+enum dig_status dig_dig_run(struct dig_device *const device, const struct dig_scene *const scene,
                             const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                             const struct dig_trajectory *const trajectory,
                             const char *const vtk_dir, const struct dig_progress *const progress,
                             struct dig_recording *const recording, struct dig_error *const error)
-{
-    return dig_dig_run_on(NULL, scene, gravel, bed, trajectory, vtk_dir, progress, recording,
-                          error);
-}
-
-enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig_scene *const scene,
-                               const struct dig_gravel *const     gravel,
-                               const struct dig_bed *const        bed,
-                               const struct dig_trajectory *const trajectory,
-                               const char *const vtk_dir, const struct dig_progress *const progress,
-                               struct dig_recording *const recording, struct dig_error *const error)
 {
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {
@@ -225,7 +214,7 @@ enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig
     if (ode == NULL) {
         return dig_setup_explain(DIG_ENOMEM, error);
     }
-    struct drive d = {
+    struct run d = {
         .scene      = scene,
         .trajectory = trajectory,
         .vtk_dir    = vtk_dir,
@@ -233,9 +222,9 @@ enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig
         .ode        = ode,
         .tool       = dig_tool_make(&scene->bucket),
     };
-    struct dig_grain_types kinds;
+    struct dig_grain_types types;
     struct dig_recording   made = { 0 };
-    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &d.world, error);
+    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &d.world, error);
     if (status == DIG_OK) {
         place_tool(&d, 0.0);
         status = dig_input_checks_outside(&d.world, error);
@@ -245,7 +234,7 @@ enum dig_status dig_dig_run_on(struct dig_device *const device, const struct dig
             status = dig_offload(&d.world, device);
             status = status == DIG_OK ? status : dig_setup_explain(status, error);
         }
-        status = status == DIG_OK ? dig_all(&d, &made, error) : status;
+        status = status == DIG_OK ? run_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);
     }
     dig_ode_scene_destroy(ode);

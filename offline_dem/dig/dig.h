@@ -13,18 +13,23 @@
 
 #include <stdint.h>
 
+struct dig_device;
+
 /// Called now and then from the computing thread: done of total seconds of simulated time (packing
 /// counted in). Return false to stop; the call then returns DIG_ESTALE and writes nothing.
 struct dig_progress {
-    int (*tell)(void *context, double done_s, double total_s);
+    int (*report)(void *context, double done_s, double total_s);
     void *context;
 };
 
-/// Pours and levels a bed of this gravel: 4 s of one core with AVX-512 for 7000 grains, half a
-/// minute without. *bed and *error (which may be NULL) as everywhere: the bed is written on success
-/// only. DIG_EINVAL when the scene or the gravel cannot be computed or the scene's time step is too
-/// long for it, DIG_EUNREACHABLE when the grains do not fit, DIG_ESTALE when stopped, DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
+/// Pours and levels a bed of this gravel. A device (offline_dem/world/device.h) steps the grains,
+/// which no scene with a movable rock allows; NULL: the kernel does, in 4 s of one core with
+/// AVX-512 for 7000 grains, half a minute without. *bed and *error (which may be NULL) as
+/// everywhere: the bed is written on success only. DIG_EINVAL when the scene or the gravel cannot
+/// be computed or the scene's time step is too long for it, DIG_EUNREACHABLE when the grains do not
+/// fit, DIG_ESTALE when stopped, DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_bed_pour(struct dig_device       *device,
+                                            const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
                                             struct dig_bed *bed, struct dig_error *error);
@@ -33,27 +38,9 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_scene  *scene,
 /// 3 s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging
 /// (offline_dem/dig/vtk.h); NULL: none. Refusals as above, a bed that cannot be and a trajectory
 /// without phases among them, and DIG_EIO when a picture cannot be written.
-DIG_MUST_CHECK enum dig_status
-dig_dig_run(const struct dig_scene *scene, const struct dig_gravel *gravel,
-            const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
-            const struct dig_progress *progress, struct dig_recording *recording,
-            struct dig_error *error);
-
-struct dig_device;
-
-/// The same two with the grains stepped by a device (offline_dem/world/device.h); NULL: by the
-/// kernel. No rock of the scene may be moved. DIG_EIO when the device fails.
-DIG_MUST_CHECK enum dig_status dig_bed_pour_on(struct dig_device       *device,
-                                               const struct dig_scene  *scene,
-                                               const struct dig_gravel *gravel, uint64_t seed,
-                                               const struct dig_progress *progress,
-                                               struct dig_bed *bed, struct dig_error *error);
-DIG_MUST_CHECK enum dig_status dig_dig_run_on(
+DIG_MUST_CHECK enum dig_status dig_dig_run(
     struct dig_device *device, const struct dig_scene *scene, const struct dig_gravel *gravel,
     const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
     const struct dig_progress *progress, struct dig_recording *recording, struct dig_error *error);
-
-/// The step a dig is computed with, s: the scene's, or derived (docs/numerics/dem.md).
-double dig_time_step_s(const struct dig_scene *scene, double density_kgpm3);
 
 #endif // DIG_OFFLINE_DEM_DIG_DIG_H

@@ -3,17 +3,17 @@
 #include <math.h>
 
 #define SAMPLE_STEPS 5    // odd: what flips from step to step is not always caught on one side
-#define STILL        1e-3 // kinetic energy of a resting grain, at most, in m g r
+#define REST_ENERGY  1e-3 // kinetic energy of a resting grain, at most, in m g r
 
 // Weight times radius, over all grains.
-static double unit_J(const struct dig_world *const world)
+static double scale_J(const struct dig_world *const world)
 {
     const double *const g      = world->gravity_mps2;
     const double        g_mps2 = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     double              sum_J  = 0.0;
     for (size_t i = 0; i < world->grains.n; i++) {
-        const struct dig_kind *const kind = &world->grains.kind[world->grains.of[i]];
-        sum_J += g_mps2 * kind->mass_kg * kind->radius_m;
+        const struct dig_grain_type *const type = &world->grains.type[world->grains.type_of[i]];
+        sum_J += g_mps2 * type->mass_kg * type->radius_m;
     }
     return sum_J;
 }
@@ -26,7 +26,7 @@ static enum dig_status mean_kinetic(struct dig_world *const world, const size_t 
     size_t samples = 0;
     for (size_t s = 0; s < steps; s++) {
         enum dig_status status = dig_world_step(world);
-        status = status == DIG_OK && s % SAMPLE_STEPS == 0 ? dig_world_look(world) : status;
+        status = status == DIG_OK && s % SAMPLE_STEPS == 0 ? dig_world_sync_motion(world) : status;
         if (status != DIG_OK) {
             return status;
         }
@@ -39,8 +39,8 @@ static enum dig_status mean_kinetic(struct dig_world *const world, const size_t 
     return DIG_OK;
 }
 
-enum dig_status dig_energy_drift_watch(struct dig_world *const world, const size_t steps,
-                                       bool *const heats)
+enum dig_status dig_energy_drift_detect(struct dig_world *const world, const size_t steps,
+                                        bool *const drifts)
 {
     double          mean_J = 0.0;
     enum dig_status status = mean_kinetic(world, steps - steps / 3, &mean_J);
@@ -50,7 +50,7 @@ enum dig_status dig_energy_drift_watch(struct dig_world *const world, const size
     if (status != DIG_OK) {
         return status;
     }
-    const double most_J = STILL * unit_J(world);
-    *heats              = most_J > 0.0 && mean_J > most_J;
+    const double most_J = REST_ENERGY * scale_J(world);
+    *drifts             = most_J > 0.0 && mean_J > most_J;
     return DIG_OK;
 }

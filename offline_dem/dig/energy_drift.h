@@ -17,7 +17,7 @@
 /// us leave a hundredth of that, 80 us three times as much (docs/numerics/dem.md). A world without
 /// gravity never heats. DIG_ENOMEM, DIG_EINVAL as dig_world_step(); *heats is written on success
 /// only.
-DIG_MUST_CHECK enum dig_status dig_energy_drift_watch(struct dig_world *world, size_t steps,
-                                                      bool *heats);
+DIG_MUST_CHECK enum dig_status dig_energy_drift_detect(struct dig_world *world, size_t steps,
+                                                       bool *drifts);
 
 #endif // DIG_OFFLINE_DEM_DIG_ENERGY_DRIFT_H

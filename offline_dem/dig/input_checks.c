@@ -6,10 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PATH_STEPS   500 // along a trajectory
-#define OVERLAP_MOST 0.3 // of the smaller radius: ten times what a resting bed of soft grains has
-#define CUT_MOST     0.5 // radii a plate may be in a grain at the start: levelled beds rise a little
-#define SEEN         0.01 // of a radius: margin of the list that overlaps are looked for in
+#define PATH_STEPS     500 // along a trajectory
+#define OVERLAP_MOST   0.3 // of the smaller radius: ten times what a resting bed of soft grains has
+#define CUT_MOST       0.5 // radii a plate may be in a grain at the start: levelled beds rise a little
+#define OVERLAP_MARGIN 0.01 // of a radius: margin of the list that overlaps are looked for in
 
 // How far outside the box the bucket is in this pose; the coordinate in which, and how much.
 static double outside_m(const struct dig_scene *const scene, const struct dig_pose pose,
@@ -61,24 +61,23 @@ static enum dig_status find_overlap(const struct dig_world *const      world,
                                     const struct dig_neighbours *const near,
                                     struct dig_error *const            error)
 {
-    const struct dig_grains *const g     = &world->grains;
-    const double                   per_m = dig_period_inverse(world->period_y_m);
+    const struct dig_grains *const g              = &world->grains;
+    const double                   inverse_period = dig_period_inverse(world->period_y_m);
     for (uint32_t i = 0; i < g->n; i++) {
         for (uint32_t s = near->start[i]; s < near->start[i + 1]; s++) {
             const uint32_t      j    = near->other[s];
             const double *const x    = g->motion[i].x_m;
             const double *const y    = g->motion[j].x_m;
-            const double        ri_m = g->kind[g->of[i]].radius_m;
-            const double        rj_m = g->kind[g->of[j]].radius_m;
-            const double        dy_m = dig_period_fold(x[1] - y[1], world->period_y_m, per_m);
-            const double        d_m  = hypot(hypot(x[0] - y[0], dy_m), x[2] - y[2]);
-            const double        deep = (ri_m + rj_m - d_m) / fmin(ri_m, rj_m);
+            const double        ri_m = g->type[g->type_of[i]].radius_m;
+            const double        rj_m = g->type[g->type_of[j]].radius_m;
+            const double dy_m = dig_period_fold(x[1] - y[1], world->period_y_m, inverse_period);
+            const double d_m  = hypot(hypot(x[0] - y[0], dy_m), x[2] - y[2]);
+            const double deep = (ri_m + rj_m - d_m) / fmin(ri_m, rj_m);
             if (deep > OVERLAP_MOST) {
                 return dig_error_set(error, DIG_EINVAL,
                                      "bed: grains %u and %u overlap by %.2g of the smaller's "
                                      "radius, expected at most %g",
-                                     (unsigned)g->name[i], (unsigned)g->name[j], deep,
-                                     OVERLAP_MOST);
+                                     (unsigned)g->id[i], (unsigned)g->id[j], deep, OVERLAP_MOST);
             }
         }
     }
@@ -93,7 +92,7 @@ enum dig_status dig_input_checks_overlap(const struct dig_world *const world,
     double *const                  margin = malloc((g->n + 1) * sizeof *margin);
     enum dig_status                status = DIG_ENOMEM;
     for (size_t i = 0; margin != NULL && i < g->n; i++) {
-        margin[i] = SEEN * g->kind[g->of[i]].radius_m;
+        margin[i] = OVERLAP_MARGIN * g->type[g->type_of[i]].radius_m;
     }
     if (margin != NULL) {
         status = dig_neighbours_build(g, world->period_y_m, margin, &near);
@@ -111,7 +110,7 @@ enum dig_status dig_input_checks_outside(const struct dig_world *const world,
     const struct dig_grains *const g = &world->grains;
     for (size_t i = 0; i < g->n; i++) {
         const double *const x        = g->motion[i].x_m;
-        const double        radius_m = g->kind[g->of[i]].radius_m;
+        const double        radius_m = g->type[g->type_of[i]].radius_m;
         for (size_t w = 0; w < world->walls; w++) {
             const double *const n      = world->wall[w].normal;
             const double        d_m    = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];
@@ -120,7 +119,7 @@ enum dig_status dig_input_checks_outside(const struct dig_world *const world,
                 return dig_error_set(error, DIG_EINVAL,
                                      "bed: grain %u at (%.4g, %.4g, %.4g) m is %.3g m behind a "
                                      "wall of box_m, expected at most %g of its radius",
-                                     (unsigned)g->name[i], x[0], x[1], x[2], deep_m, OVERLAP_MOST);
+                                     (unsigned)g->id[i], x[0], x[1], x[2], deep_m, OVERLAP_MOST);
             }
         }
     }
@@ -133,9 +132,9 @@ enum dig_status dig_input_checks_start(const struct dig_world *const world,
 {
     for (size_t i = 0; i < world->grains.n; i++) {
         const double *const x        = world->grains.motion[i].x_m;
-        const double        radius_m = world->grains.kind[world->grains.of[i]].radius_m;
+        const double        radius_m = world->grains.type[world->grains.type_of[i]].radius_m;
         double              body_m[3];
-        bool                inside = dig_tool_holds(tool, x);
+        bool                inside = dig_tool_contains(tool, x);
         dig_tool_to_body(tool, x, body_m);
         for (size_t p = 0; p < tool->plates && !inside; p++) {
             double c[3];

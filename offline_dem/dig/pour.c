@@ -1,7 +1,7 @@
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/dig/level.h"
+#include "offline_dem/dig/mixed_packing.h"
 #include "offline_dem/dig/packing.h"
-#include "offline_dem/dig/scatter.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/world/bodies.h"
 #include "offline_dem/world/offloaded.h"
@@ -10,11 +10,11 @@
 #include <stdlib.h>
 
 // Steps between two calls of the progress function.
-#define TELL_STEPS 400
+#define PROGRESS_STEPS 400
 
-static enum dig_status go(struct dig_world *const world, const double duration_s,
-                          const double done_s, const double total_s,
-                          const struct dig_progress *const progress)
+static enum dig_status step_for(struct dig_world *const world, const double duration_s,
+                                const double done_s, const double total_s,
+                                const struct dig_progress *const progress)
 {
     const size_t steps = (size_t)llround(duration_s / world->dt_s);
     for (size_t s = 0; s < steps; s++) {
@@ -22,8 +22,8 @@ static enum dig_status go(struct dig_world *const world, const double duration_s
         if (status != DIG_OK) {
             return status;
         }
-        if (progress != NULL && s % TELL_STEPS == 0 &&
-            !progress->tell(progress->context, done_s + (double)s * world->dt_s, total_s)) {
+        if (progress != NULL && s % PROGRESS_STEPS == 0 &&
+            !progress->report(progress->context, done_s + (double)s * world->dt_s, total_s)) {
             return DIG_ESTALE;
         }
     }
@@ -60,7 +60,7 @@ static enum dig_status insert(const struct dig_scene *const scene, const uint64_
     }
     struct dig_clump_shape shape;
     const enum dig_status  status = dig_clump_shape_make(&plan->clump, &shape);
-    return status == DIG_OK ? dig_scatter(scene, &shape, seed, bed) : status;
+    return status == DIG_OK ? dig_mixed_packing_insert(scene, &shape, seed, bed) : status;
 }
 
 // What the grains are made of, by the height at which they, or the middles of their clumps, lie.
@@ -91,7 +91,7 @@ struct pour {
     const struct dig_gravel *gravel;
     struct dig_ode_scene    *ode;
     struct dig_device       *device; // NULL: the kernel steps
-    struct dig_grain_types   kinds;
+    struct dig_grain_types   types;
     struct dig_world         world;
 };
 
@@ -100,7 +100,7 @@ static enum dig_status make_world(struct pour *const p, const struct dig_bed *co
                                   const double fall_mps, struct dig_error *const error)
 {
     enum dig_status status =
-        dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->kinds, &p->world, error);
+        dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->types, &p->world, error);
     if (status == DIG_OK && p->device != NULL) {
         status = dig_offload(&p->world, p->device);
         status = status == DIG_OK ? status : dig_setup_explain(status, error);
@@ -108,22 +108,22 @@ static enum dig_status make_world(struct pour *const p, const struct dig_bed *co
     return status;
 }
 
-static enum dig_status take(struct pour *const p, const size_t material[],
-                            struct dig_bed *const bed)
+static enum dig_status copy_bed(struct pour *const p, const size_t material[],
+                                struct dig_bed *const bed)
 {
-    enum dig_status status = dig_world_look(&p->world);
-    status = status == DIG_OK ? dig_bed_take(&p->world.grains, material, bed) : status;
+    enum dig_status status = dig_world_sync_motion(&p->world);
+    status = status == DIG_OK ? dig_bed_from_grains(&p->world.grains, material, bed) : status;
     if (status == DIG_OK && p->world.bodies != NULL) {
-        dig_obstacles_tell(&p->world.bodies->obstacles, bed);
+        dig_obstacles_save_poses(&p->world.bodies->obstacles, bed);
     }
     return status;
 }
 
 // Makes the world anew with the layers' materials. The contacts begin again, as they do in a dig.
-static enum dig_status lay(struct pour *const p, struct dig_error *const error)
+static enum dig_status apply_layers(struct pour *const p, struct dig_error *const error)
 {
     struct dig_bed        bed    = { 0 };
-    const enum dig_status status = take(p, p->kinds.material, &bed);
+    const enum dig_status status = copy_bed(p, p->types.material, &bed);
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
     }
@@ -135,12 +135,13 @@ static enum dig_status lay(struct pour *const p, struct dig_error *const error)
     return made;
 }
 
-static enum dig_status prepare(struct pour *const p, const struct dig_progress *const progress,
-                               struct dig_error *const error)
+static enum dig_status settle_and_level(struct pour *const               p,
+                                        const struct dig_progress *const progress,
+                                        struct dig_error *const          error)
 {
     const struct dig_packing *const packing = &p->scene->packing;
     const double                    total_s = packing->settle_s + packing->relax_s;
-    enum dig_status status = go(&p->world, packing->settle_s, 0.0, total_s, progress);
+    enum dig_status status = step_for(&p->world, packing->settle_s, 0.0, total_s, progress);
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
     }
@@ -151,31 +152,22 @@ static enum dig_status prepare(struct pour *const p, const struct dig_progress *
         }
     }
     if (p->scene->bed.layers > 0) {
-        status = lay(p, error);
+        status = apply_layers(p, error);
         if (status != DIG_OK) {
             return status;
         }
     }
     status = dig_level_cut(p->scene, &p->world);
     if (status == DIG_OK) {
-        status = go(&p->world, packing->relax_s, packing->settle_s, total_s, progress);
+        status = step_for(&p->world, packing->relax_s, packing->settle_s, total_s, progress);
     }
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_bed_pour(const struct dig_scene *const  scene,
+enum dig_status dig_bed_pour(struct dig_device *const device, const struct dig_scene *const scene,
                              const struct dig_gravel *const gravel, const uint64_t seed,
                              const struct dig_progress *const progress, struct dig_bed *const bed,
                              struct dig_error *const error)
-{
-    return dig_bed_pour_on(NULL, scene, gravel, seed, progress, bed, error);
-}
-
-enum dig_status dig_bed_pour_on(struct dig_device *const       device,
-                                const struct dig_scene *const  scene,
-                                const struct dig_gravel *const gravel, const uint64_t seed,
-                                const struct dig_progress *const progress,
-                                struct dig_bed *const bed, struct dig_error *const error)
 {
     enum dig_status status = dig_setup_check(scene, gravel, error);
     if (status != DIG_OK) {
@@ -195,11 +187,11 @@ enum dig_status dig_bed_pour_on(struct dig_device *const       device,
     }
     dig_bed_finish(&poured);
     if (status == DIG_OK) {
-        status = prepare(&p, progress, error);
+        status = settle_and_level(&p, progress, error);
     }
     if (status == DIG_OK) {
-        const size_t *const material = scene->bed.layers > 0 ? p.kinds.material : NULL;
-        status                       = take(&p, material, bed);
+        const size_t *const material = scene->bed.layers > 0 ? p.types.material : NULL;
+        status                       = copy_bed(&p, material, bed);
         status                       = status == DIG_OK ? status : dig_setup_explain(status, error);
     }
     dig_setup_finish(&p.world);

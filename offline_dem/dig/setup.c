@@ -1,6 +1,5 @@
 #include "offline_dem/dig/setup.h"
 
-#include "offline_dem/dig/dig.h"
 #include "offline_dem/world/bodies.h"
 
 #include <math.h>
@@ -25,21 +24,13 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
     return DIG_OK;
 }
 
-double dig_time_step_s(const struct dig_scene *const scene, const double density_kgpm3)
-{
-    const struct dig_gravel      gravel = { { [DIG_AXIS_DENSITY_kgpm3] = density_kgpm3 } };
-    const double                 r_m    = 0.5 * scene->material.diameter_m;
-    const struct dig_grain_types kinds  = { .kinds = 1, .kind = { { .radius_m = r_m } } };
-    return dig_grain_types_time_step_s(scene, &gravel, &kinds);
-}
-
 // Mass of the body each grain is part of, in the bed's order.
-static double *body_masses(const struct dig_grain_types *const kinds, const uint8_t of[],
+static double *body_masses(const struct dig_grain_types *const types, const uint8_t type_of[],
                            const size_t n)
 {
     double *const kg = malloc((n + 1) * sizeof *kg);
     for (size_t i = 0; kg != NULL && i < n; i++) {
-        kg[i] = kinds->contact_kg[of[i]];
+        kg[i] = types->contact_kg[type_of[i]];
     }
     return kg;
 }
@@ -47,15 +38,15 @@ static double *body_masses(const struct dig_grain_types *const kinds, const uint
 static enum dig_status make_grains(const struct dig_scene *const       scene,
                                    const struct dig_bed *const         bed,
                                    const struct dig_clump_shape *const shape, const double fall_mps,
-                                   const struct dig_grain_types *const kinds, const uint8_t of[],
-                                   struct dig_grains *const  grains,
+                                   const struct dig_grain_types *const types,
+                                   const uint8_t type_of[], struct dig_grains *const grains,
                                    struct dig_bodies **const bodies)
 {
-    double *const   kg     = body_masses(kinds, of, bed->grains);
+    double *const   kg     = body_masses(types, type_of, bed->grains);
     enum dig_status status = DIG_ENOMEM;
     if (kg != NULL) {
-        status = dig_grains_place(kinds->kinds, kinds->kind, bed->grains, bed->x_m, bed->y_m,
-                                  bed->z_m, of, grains);
+        status = dig_grains_create(types->types, types->type, bed->grains, bed->x_m, bed->y_m,
+                                   bed->z_m, type_of, grains);
     }
     if (status == DIG_OK) {
         for (size_t i = 0; i < bed->grains; i++) {
@@ -73,24 +64,24 @@ static enum dig_status make_grains(const struct dig_scene *const       scene,
 enum dig_status dig_setup_world(const struct dig_scene *const  scene,
                                 const struct dig_gravel *const gravel,
                                 struct dig_ode_scene *const ode, const struct dig_bed *const bed,
-                                const double fall_mps, struct dig_grain_types *const kinds,
+                                const double fall_mps, struct dig_grain_types *const types,
                                 struct dig_world *const world, struct dig_error *const error)
 {
-    struct dig_clump_shape shape  = { 0 };
-    struct dig_grain_types found  = { 0 };
-    struct dig_grains      grains = { 0 };
-    struct dig_bodies     *bodies = NULL;
-    uint8_t *const         of     = calloc(bed->grains + 1, 1);
-    enum dig_status        status = dig_clump_shape_make(&scene->bed.clump, &shape);
+    struct dig_clump_shape shape   = { 0 };
+    struct dig_grain_types found   = { 0 };
+    struct dig_grains      grains  = { 0 };
+    struct dig_bodies     *bodies  = NULL;
+    uint8_t *const         type_of = calloc(bed->grains + 1, 1);
+    enum dig_status        status  = dig_clump_shape_make(&scene->bed.clump, &shape);
     if (status != DIG_OK) {
         status = dig_error_set(error, status, "bed.clump: no volume, expected some");
-    } else if (of == NULL) {
+    } else if (type_of == NULL) {
         status = dig_setup_explain(DIG_ENOMEM, error);
     } else {
-        status = dig_grain_types_find(scene, gravel, bed, &shape, &found, of, error);
+        status = dig_grain_types_find(scene, gravel, bed, &shape, &found, type_of, error);
     }
-    if (status == DIG_OK && of != NULL) {
-        status = make_grains(scene, bed, &shape, fall_mps, &found, of, &grains, &bodies);
+    if (status == DIG_OK && type_of != NULL) {
+        status = make_grains(scene, bed, &shape, fall_mps, &found, type_of, &grains, &bodies);
         if (status == DIG_EINVAL) {
             status = dig_error_set(error, status,
                                    "bed: a grain whose position is no number, expected numbers");
@@ -98,7 +89,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
             status = dig_setup_explain(status, error);
         }
     }
-    free(of);
+    free(type_of);
     if (status != DIG_OK) {
         return status;
     }
@@ -115,9 +106,9 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     if (bodies != NULL) {
         const struct dig_law_material walls =
             dig_grain_types_between(scene, gravel, 0, DIG_MATERIAL_WALLS);
-        dig_bodies_let_move(bodies, ode, &walls);
+        dig_bodies_release_rocks(bodies, ode, &walls);
     }
-    *kinds = found;
+    *types = found;
     *world = made;
     return DIG_OK;
 }

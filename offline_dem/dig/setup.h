@@ -22,7 +22,7 @@ DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
 DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
                                                struct dig_ode_scene *ode, const struct dig_bed *bed,
-                                               double fall_mps, struct dig_grain_types *kinds,
+                                               double fall_mps, struct dig_grain_types *types,
                                                struct dig_world *world, struct dig_error *error);
 
 /// The world and its bodies.

@@ -9,26 +9,26 @@
 #define PATH_STEPS 1000 // along a trajectory, to find the tooth's way
 
 // How an effect changes a scene in which it is absent.
-struct change {
+struct effect_change {
     enum dig_effect_id effect;
     const char        *unit;
     double             least, most;
     void (*apply)(double magnitude, struct dig_scene *scene);
 };
 
-static void cohere(const double magnitude, struct dig_scene *const scene)
+static void set_cohesion(const double magnitude, struct dig_scene *const scene)
 {
     scene->laws.cohesion_Jpm3 = magnitude;
     scene->laws.adhesion_Jpm3 = magnitude; // what sticks to itself sticks to steel
 }
 
-static void adhere(const double magnitude, struct dig_scene *const scene)
+static void set_adhesion(const double magnitude, struct dig_scene *const scene)
 {
     scene->laws.adhesion_Jpm3 = magnitude;
 }
 
 // 6, 7.5 and 10 mm at 5/3: the logarithms of both steps keep their ratio.
-static void mix_sizes(const double magnitude, struct dig_scene *const scene)
+static void set_sizes(const double magnitude, struct dig_scene *const scene)
 {
     const double down    = log(0.8) / log(5.0 / 3.0);
     const double d_m     = scene->material.diameter_m;
@@ -40,7 +40,7 @@ static void mix_sizes(const double magnitude, struct dig_scene *const scene)
     scene->time_step_s *= small_m / d_m;
 }
 
-static void stretch(const double magnitude, struct dig_scene *const scene)
+static void set_grain_shape(const double magnitude, struct dig_scene *const scene)
 {
     scene->bed.clump = (struct dig_clump){ .spheres = 2,
                                            .x       = { 1.0 - magnitude, magnitude - 1.0 },
@@ -61,7 +61,7 @@ static void find_tooth(const struct dig_scene *const scene, const struct dig_tra
     *z_m                       = pose.z_m + s * scene->bucket.x_m[0] + c * scene->bucket.z_m[0];
 }
 
-static void tilt(const double magnitude, struct dig_scene *const scene)
+static void set_slope(const double magnitude, struct dig_scene *const scene)
 {
     const struct dig_box *const box  = &scene->box;
     const double                rise = tan(magnitude * DIG_RAD_PER_DEG);
@@ -90,7 +90,7 @@ static void tilt(const double magnitude, struct dig_scene *const scene)
     b->surface_z_m[b->surface++] = fmax(end_m[1], least_m);
 }
 
-static void lay(const double magnitude, struct dig_scene *const scene)
+static void set_layer(const double magnitude, struct dig_scene *const scene)
 {
     const struct dig_other_material hard  = { "layer", 0.9, 0.9, 4000.0, 0.0 };
     const struct dig_other_material loose = { "layer", 0.3, 0.3, 1500.0, 0.0 };
@@ -103,7 +103,7 @@ static void lay(const double magnitude, struct dig_scene *const scene)
 }
 
 // In the middle of what the tooth does below the ground.
-static void block(const double magnitude, struct dig_scene *const scene)
+static void set_obstacle(const double magnitude, struct dig_scene *const scene)
 {
     const struct dig_trajectory *const t          = &scene->trajectory[0];
     const double                       duration_s = dig_trajectory_duration_s(t);
@@ -131,27 +131,27 @@ static void block(const double magnitude, struct dig_scene *const scene)
     };
 }
 
-static void dig_before(const double magnitude, struct dig_scene *const scene)
+static void set_earlier_digs(const double magnitude, struct dig_scene *const scene)
 {
     scene->bed.earlier_digs = (size_t)llround(magnitude);
 }
 
-static const struct change change[] = {
-    { DIG_EFFECT_COHESION, "J/m3", 1e-3, 1e8, cohere },
-    { DIG_EFFECT_ADHESION, "J/m3", 1e-3, 1e8, adhere },
-    { DIG_EFFECT_POLYDISPERSITY, "1", 1.01, 4.0, mix_sizes },
-    { DIG_EFFECT_GRAIN_SHAPE, "1", 1.01, 2.0, stretch },
-    { DIG_EFFECT_GROUND_SLOPE, "deg", -30.0, 30.0, tilt },
-    { DIG_EFFECT_LAYERING, "m", -100.0, 100.0, lay },
-    { DIG_EFFECT_OBSTACLE, "m", 1e-4, 100.0, block },
-    { DIG_EFFECT_COMPACTION, "digs", 1.0, DIG_EARLIER_MAX, dig_before },
+static const struct effect_change effect_change[] = {
+    { DIG_EFFECT_COHESION, "J/m3", 1e-3, 1e8, set_cohesion },
+    { DIG_EFFECT_ADHESION, "J/m3", 1e-3, 1e8, set_adhesion },
+    { DIG_EFFECT_POLYDISPERSITY, "1", 1.01, 4.0, set_sizes },
+    { DIG_EFFECT_GRAIN_SHAPE, "1", 1.01, 2.0, set_grain_shape },
+    { DIG_EFFECT_GROUND_SLOPE, "deg", -30.0, 30.0, set_slope },
+    { DIG_EFFECT_LAYERING, "m", -100.0, 100.0, set_layer },
+    { DIG_EFFECT_OBSTACLE, "m", 1e-4, 100.0, set_obstacle },
+    { DIG_EFFECT_COMPACTION, "digs", 1.0, DIG_EARLIER_MAX, set_earlier_digs },
 };
 
-static const struct change *find_change(const enum dig_effect_id effect)
+static const struct effect_change *find_effect(const enum dig_effect_id effect)
 {
-    for (size_t i = 0; i < sizeof change / sizeof change[0]; i++) {
-        if (change[i].effect == effect) {
-            return &change[i];
+    for (size_t i = 0; i < sizeof effect_change / sizeof effect_change[0]; i++) {
+        if (effect_change[i].effect == effect) {
+            return &effect_change[i];
         }
     }
     return NULL;
@@ -159,13 +159,13 @@ static const struct change *find_change(const enum dig_effect_id effect)
 
 const char *dig_variant_unit(const enum dig_effect_id effect)
 {
-    const struct change *const c = find_change(effect);
+    const struct effect_change *const c = find_effect(effect);
     return c == NULL ? NULL : c->unit;
 }
 
 // A magnitude in the range at which the effect is not absent, and which a bed can hold.
-static bool is_held(const struct change *const c, const double magnitude,
-                    const struct dig_scene *const scene)
+static bool is_in_range(const struct effect_change *const c, const double magnitude,
+                        const struct dig_scene *const scene)
 {
     const double height_m = scene->box.z_max_m - scene->box.z_min_m;
     if (!(magnitude >= c->least && magnitude <= c->most)) {
@@ -184,12 +184,12 @@ enum dig_status dig_variant_make(const struct dig_scene *const scene,
                                  const enum dig_effect_id effect, const double magnitude,
                                  struct dig_scene *const varied, struct dig_error *const error)
 {
-    const struct change *const c = find_change(effect);
+    const struct effect_change *const c = find_effect(effect);
     if (c == NULL) {
         return dig_error_set(error, DIG_EINVAL, "%s: expected an effect that beds can hold",
                              dig_effect_name(effect));
     }
-    if (!is_held(c, magnitude, scene)) {
+    if (!is_in_range(c, magnitude, scene)) {
         return dig_error_set(
             error, DIG_EINVAL,
             "%s: %g %s, expected %g to %g, not where it is absent, no higher than the bed, whole "

@@ -33,57 +33,59 @@ static enum dig_status end(FILE *const file)
 }
 
 // What the grains that touch it do to a grain now, the springs as they stand.
-struct felt {
+struct grain_force {
     double f_N[3];
     double load_N;
 };
 
-static void feel(const struct dig_world *const world, const struct dig_law law,
-                 const struct dig_contacts *const list, struct felt felt[])
+static void add_contact_forces(const struct dig_world *const world, const struct dig_law law,
+                               const struct dig_contacts *const list,
+                               struct grain_force               grain_force[])
 {
-    const struct dig_motion *const motion = world->grains.motion;
-    const double                   per_m  = dig_period_inverse(world->period_y_m);
+    const struct dig_motion *const motion         = world->grains.motion;
+    const double                   inverse_period = dig_period_inverse(world->period_y_m);
     for (size_t c = 0; c < list->n; c++) {
-        const struct dig_motion *const a     = &motion[list->i[c]];
-        const struct dig_motion *const b     = &motion[list->j[c]];
-        const struct dig_touch         touch = {
-                    .dx_m     = a->x_m[0] - b->x_m[0],
-                    .dy_m     = dig_period_fold(a->x_m[1] - b->x_m[1], world->period_y_m, per_m),
-                    .dz_m     = a->x_m[2] - b->x_m[2],
-                    .vx_mps   = a->v_mps[0] - b->v_mps[0],
-                    .vy_mps   = a->v_mps[1] - b->v_mps[1],
-                    .vz_mps   = a->v_mps[2] - b->v_mps[2],
-                    .ix_radps = a->w_radps[0],
-                    .iy_radps = a->w_radps[1],
-                    .iz_radps = a->w_radps[2],
-                    .jx_radps = b->w_radps[0],
-                    .jy_radps = b->w_radps[1],
-                    .jz_radps = b->w_radps[2],
+        const struct dig_motion *const a          = &motion[list->i[c]];
+        const struct dig_motion *const b          = &motion[list->j[c]];
+        const struct dig_kinematics    kinematics = {
+               .dx_m   = a->x_m[0] - b->x_m[0],
+               .dy_m   = dig_period_fold(a->x_m[1] - b->x_m[1], world->period_y_m, inverse_period),
+               .dz_m   = a->x_m[2] - b->x_m[2],
+               .vx_mps = a->v_mps[0] - b->v_mps[0],
+               .vy_mps = a->v_mps[1] - b->v_mps[1],
+               .vz_mps = a->v_mps[2] - b->v_mps[2],
+               .ix_radps = a->w_radps[0],
+               .iy_radps = a->w_radps[1],
+               .iz_radps = a->w_radps[2],
+               .jx_radps = b->w_radps[0],
+               .jy_radps = b->w_radps[1],
+               .jz_radps = b->w_radps[2],
         };
-        struct dig_memory     memory = { list->memory[0][c], list->memory[1][c], list->memory[2][c],
-                                         list->memory[3][c], list->memory[4][c], list->memory[5][c] };
-        const struct dig_push push   = law.general ? dig_law_general(law, 0.0, touch, &memory)
-                                                   : dig_law_step(law, 0.0, touch, &memory);
-        const double          f_N[3] = { push.fx_N, push.fy_N, push.fz_N };
+        struct dig_contact_history     history = { list->history[0][c], list->history[1][c],
+                                                   list->history[2][c], list->history[3][c],
+                                                   list->history[4][c], list->history[5][c] };
+        const struct dig_contact_force force   = law.general
+                                                     ? dig_law_general(law, 0.0, kinematics, &history)
+                                                     : dig_law_step(law, 0.0, kinematics, &history);
+        const double                   f_N[3]  = { force.fx_N, force.fy_N, force.fz_N };
         const double half_N = 0.5 * sqrt(f_N[0] * f_N[0] + f_N[1] * f_N[1] + f_N[2] * f_N[2]);
         for (int k = 0; k < 3; k++) {
-            felt[list->i[c]].f_N[k] += f_N[k];
-            felt[list->j[c]].f_N[k] -= f_N[k];
+            grain_force[list->i[c]].f_N[k] += f_N[k];
+            grain_force[list->j[c]].f_N[k] -= f_N[k];
         }
-        felt[list->i[c]].load_N += half_N;
-        felt[list->j[c]].load_N += half_N;
+        grain_force[list->i[c]].load_N += half_N;
+        grain_force[list->j[c]].load_N += half_N;
     }
 }
 
 // NULL when memory is short.
-static struct felt *feel_all(const struct dig_world *const world)
+static struct grain_force *sum_contact_forces(const struct dig_world *const world)
 {
-    struct felt *const felt = calloc(world->grains.n + 1, sizeof *felt);
-    for (size_t l = 0; felt != NULL && l < DIG_PAIR_LISTS; l++) {
-        feel(world, world->pair_law[l], &world->pair[l], felt);
-        feel(world, world->pair_law[l], &world->held_pair[l], felt);
+    struct grain_force *const grain_force = calloc(world->grains.n + 1, sizeof *grain_force);
+    for (size_t l = 0; grain_force != NULL && l < DIG_PAIR_LISTS; l++) {
+        add_contact_forces(world, world->pair_law[l], &world->pair[l], grain_force);
     }
-    return felt;
+    return grain_force;
 }
 
 static void begin_scalar(FILE *const file, const char *const name, const char *const type)
@@ -92,7 +94,7 @@ static void begin_scalar(FILE *const file, const char *const name, const char *c
 }
 
 static void write_grains(FILE *const file, const struct dig_grains *const grains,
-                         const struct felt felt[])
+                         const struct grain_force grain_force[])
 {
     const size_t n = grains->n;
     (void)fprintf(file, "POINTS %zu double\n", n);
@@ -107,11 +109,11 @@ static void write_grains(FILE *const file, const struct dig_grains *const grains
     (void)fprintf(file, "POINT_DATA %zu\n", n);
     begin_scalar(file, "radius_m", "double");
     for (size_t i = 0; i < n; i++) {
-        (void)fprintf(file, "%.7g\n", grains->kind[grains->of[i]].radius_m);
+        (void)fprintf(file, "%.7g\n", grains->type[grains->type_of[i]].radius_m);
     }
     begin_scalar(file, "name", "int");
     for (size_t i = 0; i < n; i++) {
-        (void)fprintf(file, "%u\n", (unsigned)grains->name[i]);
+        (void)fprintf(file, "%u\n", (unsigned)grains->id[i]);
     }
     begin_scalar(file, "clump", "int");
     for (size_t i = 0; i < n; i++) {
@@ -119,7 +121,7 @@ static void write_grains(FILE *const file, const struct dig_grains *const grains
     }
     begin_scalar(file, "load_N", "double");
     for (size_t i = 0; i < n; i++) {
-        (void)fprintf(file, "%.5g\n", felt[i].load_N);
+        (void)fprintf(file, "%.5g\n", grain_force[i].load_N);
     }
     (void)fprintf(file, "VECTORS velocity_mps double\n");
     for (size_t i = 0; i < n; i++) {
@@ -128,7 +130,7 @@ static void write_grains(FILE *const file, const struct dig_grains *const grains
     }
     (void)fprintf(file, "VECTORS force_N double\n");
     for (size_t i = 0; i < n; i++) {
-        const double *const f = felt[i].f_N;
+        const double *const f = grain_force[i].f_N;
         (void)fprintf(file, "%.5g %.5g %.5g\n", f[0], f[1], f[2]);
     }
 }
@@ -144,7 +146,7 @@ static void write_bucket(FILE *const file, const struct dig_tool *const tool)
         const double body[3] = { bucket->x_m[k / 2], k % 2 == 0 ? -half_m : half_m,
                                  bucket->z_m[k / 2] };
         double       world[3];
-        dig_tool_turn(tool, body, world);
+        dig_tool_rotate(tool, body, world);
         (void)fprintf(file, "%.7g %.7g %.7g\n", world[0] + tool->pose.x_m, world[1],
                       world[2] + tool->pose.z_m);
     }
@@ -178,7 +180,7 @@ static void write_rock_points(FILE *const file, const struct dig_rock *const roc
                 p[a] *=
                     rock->shape == DIG_OBSTACLE_BOX ? rock->half_m[a] : rock->half_m[0] / length;
             }
-            dig_rigid_turn(rock->body.q, p, x_m);
+            dig_rigid_rotate(rock->body.q, p, x_m);
             (void)fprintf(file, "%.7g %.7g %.7g\n", x_m[0] + rock->body.x_m[0],
                           x_m[1] + rock->body.x_m[1], x_m[2] + rock->body.x_m[2]);
         }
@@ -207,17 +209,17 @@ static void write_rocks(FILE *const file, const struct dig_obstacles *const obst
 static enum dig_status write_all_grains(const char *const dir, const size_t frame,
                                         const struct dig_world *const world)
 {
-    struct felt *const felt = feel_all(world);
-    if (felt == NULL) {
+    struct grain_force *const grain_force = sum_contact_forces(world);
+    if (grain_force == NULL) {
         return DIG_ENOMEM;
     }
     enum dig_status status = DIG_EIO;
     FILE *const     file   = begin(dir, "grains", frame);
     if (file != NULL) {
-        write_grains(file, &world->grains, felt);
+        write_grains(file, &world->grains, grain_force);
         status = end(file);
     }
-    free(felt);
+    free(grain_force);
     return status;
 }
 

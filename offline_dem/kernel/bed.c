@@ -23,42 +23,42 @@ enum dig_status dig_bed_create(const size_t grains, const bool materials, const 
     return DIG_OK;
 }
 
-struct named {
-    uint32_t name, place;
+struct numbered {
+    uint32_t id, place;
 };
 
-static int by_name(const void *const a, const void *const b)
+static int by_id(const void *const a, const void *const b)
 {
-    const uint32_t x = ((const struct named *)a)->name;
-    const uint32_t y = ((const struct named *)b)->name;
+    const uint32_t x = ((const struct numbered *)a)->id;
+    const uint32_t y = ((const struct numbered *)b)->id;
     return (x > y) - (x < y);
 }
 
-enum dig_status dig_bed_take(const struct dig_grains *const grains, const size_t material[],
-                             struct dig_bed *const bed)
+enum dig_status dig_bed_from_grains(const struct dig_grains *const grains, const size_t material[],
+                                    struct dig_bed *const bed)
 {
-    const size_t        n     = grains->n;
-    struct named *const order = malloc((n + 1) * sizeof *order);
-    struct dig_bed      made  = { 0 };
+    const size_t           n     = grains->n;
+    struct numbered *const order = malloc((n + 1) * sizeof *order);
+    struct dig_bed         made  = { 0 };
     if (order == NULL ||
         dig_bed_create(n, material != NULL, grains->clump != NULL, &made) != DIG_OK) {
         free(order);
         return DIG_ENOMEM;
     }
     for (size_t i = 0; i < n; i++) {
-        order[i] = (struct named){ grains->name[i], (uint32_t)i };
+        order[i] = (struct numbered){ grains->id[i], (uint32_t)i };
     }
     if (grains->clump != NULL) {
-        qsort(order, n, sizeof *order, by_name);
+        qsort(order, n, sizeof *order, by_id);
     }
     for (size_t k = 0; k < n; k++) {
         const size_t i   = order[k].place;
         made.x_m[k]      = grains->motion[i].x_m[0];
         made.y_m[k]      = grains->motion[i].x_m[1];
         made.z_m[k]      = grains->motion[i].x_m[2];
-        made.radius_m[k] = grains->kind[grains->of[i]].radius_m;
+        made.radius_m[k] = grains->type[grains->type_of[i]].radius_m;
         if (material != NULL) {
-            made.material[k] = (uint8_t)material[grains->of[i]];
+            made.material[k] = (uint8_t)material[grains->type_of[i]];
         }
         if (grains->clump != NULL) {
             made.clump[k] = grains->clump[i];

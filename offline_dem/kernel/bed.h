@@ -33,8 +33,8 @@ DIG_MUST_CHECK enum dig_status dig_bed_create(size_t grains, bool materials, boo
 
 /// Where the grains lie now; material[kind] is what each kind is made of, NULL: all gravel. Clumps
 /// keep the order they were given in. DIG_ENOMEM leaves *bed as it was.
-DIG_MUST_CHECK enum dig_status dig_bed_take(const struct dig_grains *grains,
-                                            const size_t material[], struct dig_bed *bed);
+DIG_MUST_CHECK enum dig_status dig_bed_from_grains(const struct dig_grains *grains,
+                                                   const size_t material[], struct dig_bed *bed);
 
 /// NULL and a zeroed bed are allowed.
 void dig_bed_finish(struct dig_bed *bed);

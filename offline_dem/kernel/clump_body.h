@@ -23,7 +23,7 @@ DIG_BOTH static inline void dig_clump_arms(const struct dig_clump_shape *const s
                                            double                              arm_m[][3])
 {
     for (size_t k = 0; k < shape->spheres; k++) {
-        dig_rigid_turn(clump->body.q, shape->at[k], arm_m[k]);
+        dig_rigid_rotate(clump->body.q, shape->at[k], arm_m[k]);
         for (int a = 0; a < 3; a++) {
             arm_m[k][a] *= clump->unit_m;
         }

@@ -25,12 +25,12 @@ enum dig_status dig_contacts_grow(struct dig_contacts *const list)
         .room = room,
         .i    = grow(list->i, list->n, room, sizeof *more.i),
         .j    = grow(list->j, list->n, room, sizeof *more.j),
-        .key  = grow(list->key, list->n, room, sizeof *more.key),
+        .slot = grow(list->slot, list->n, room, sizeof *more.slot),
     };
-    int ok = more.i != NULL && more.j != NULL && more.key != NULL;
-    for (int m = 0; m < DIG_MEMORIES; m++) {
-        more.memory[m] = grow(list->memory[m], list->n, room, sizeof(double));
-        ok             = ok && more.memory[m] != NULL;
+    int ok = more.i != NULL && more.j != NULL && more.slot != NULL;
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
+        ok              = ok && more.history[m] != NULL;
     }
     if (!ok) {
         dig_contacts_finish(&more);
@@ -48,9 +48,9 @@ void dig_contacts_finish(struct dig_contacts *const list)
     }
     free(list->i);
     free(list->j);
-    free(list->key);
-    for (int m = 0; m < DIG_MEMORIES; m++) {
-        free(list->memory[m]);
+    free(list->slot);
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        free(list->history[m]);
     }
     *list = (struct dig_contacts){ 0 };
 }

@@ -20,94 +20,46 @@ static void *allocate(const size_t n, const size_t size)
     return p;
 }
 
-// Radii from one file or one pouring: equal ones are equal to the bit, or nearly.
-// DIG_GRAIN_TYPES_MAX when there is no room for another.
-static size_t find_kind(const double radius_m, const double density_kgpm3, size_t *const kinds,
-                        struct dig_kind kind[DIG_GRAIN_TYPES_MAX])
+static bool is_type(const struct dig_grain_type *const type)
 {
-    for (size_t k = 0; k < *kinds; k++) {
-        if (fabs(kind[k].radius_m - radius_m) <= 1e-9 * radius_m) {
-            return k;
-        }
-    }
-    if (*kinds == DIG_GRAIN_TYPES_MAX) {
-        return DIG_GRAIN_TYPES_MAX;
-    }
-    const double mass_kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
-    kind[*kinds]         = (struct dig_kind){
-                .radius_m     = radius_m,
-                .mass_kg      = mass_kg,
-                .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
-    };
-    return (*kinds)++;
+    return type->radius_m > 0.0 && type->mass_kg > 0.0 && type->inertia_kgm2 > 0.0 &&
+           isfinite(type->radius_m + type->mass_kg + type->inertia_kgm2);
 }
 
-enum dig_status dig_grains_create(const size_t n, const double x_m[], const double y_m[],
-                                  const double z_m[], const double radius_m[],
-                                  const double density_kgpm3, struct dig_grains *const grains)
-{
-    uint8_t *const of = malloc(n + 1);
-    if (of == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_status status = DIG_OK;
-    size_t          kinds  = 0;
-    struct dig_kind kind[DIG_GRAIN_TYPES_MAX];
-    for (size_t i = 0; i < n && status == DIG_OK; i++) {
-        if (!(radius_m[i] > 0.0) || !isfinite(radius_m[i])) {
-            status = DIG_EINVAL;
-            continue;
-        }
-        const size_t k = find_kind(radius_m[i], density_kgpm3, &kinds, kind);
-        of[i]          = (uint8_t)k;
-        status         = k < DIG_GRAIN_TYPES_MAX ? DIG_OK : DIG_EINVAL;
-    }
-    if (status == DIG_OK) {
-        status = dig_grains_place(kinds, kind, n, x_m, y_m, z_m, of, grains);
-    }
-    free(of);
-    return status;
-}
-
-static bool is_kind(const struct dig_kind *const kind)
-{
-    return kind->radius_m > 0.0 && kind->mass_kg > 0.0 && kind->inertia_kgm2 > 0.0 &&
-           isfinite(kind->radius_m + kind->mass_kg + kind->inertia_kgm2);
-}
-
-enum dig_status dig_grains_place(const size_t kinds, const struct dig_kind kind[], const size_t n,
-                                 const double x_m[], const double y_m[], const double z_m[],
-                                 const uint8_t of[], struct dig_grains *const grains)
+enum dig_status dig_grains_create(const size_t types, const struct dig_grain_type type[],
+                                  const size_t n, const double x_m[], const double y_m[],
+                                  const double z_m[], const uint8_t type_of[],
+                                  struct dig_grains *const grains)
 {
     struct dig_grains made = {
-        .n      = n,
-        .kinds  = kinds,
-        .motion = allocate(n, sizeof *made.motion),
-        .load   = allocate(n, sizeof *made.load),
-        .of     = allocate(n, sizeof *made.of),
-        .name   = allocate(n, sizeof *made.name),
+        .n       = n,
+        .types   = types,
+        .motion  = allocate(n, sizeof *made.motion),
+        .load    = allocate(n, sizeof *made.load),
+        .type_of = allocate(n, sizeof *made.type_of),
+        .id      = allocate(n, sizeof *made.id),
     };
     enum dig_status status = DIG_ENOMEM;
-    if (made.motion == NULL || made.load == NULL || made.of == NULL || made.name == NULL) {
+    if (made.motion == NULL || made.load == NULL || made.type_of == NULL || made.id == NULL) {
         goto error;
     }
     status = DIG_EINVAL;
-    if (kinds > DIG_GRAIN_TYPES_MAX) {
+    if (types > DIG_GRAIN_TYPES_MAX) {
         goto error;
     }
-    for (size_t k = 0; k < kinds; k++) {
-        if (!is_kind(&kind[k])) {
+    for (size_t k = 0; k < types; k++) {
+        if (!is_type(&type[k])) {
             goto error;
         }
-        made.kind[k] = kind[k];
+        made.type[k] = type[k];
     }
     for (size_t i = 0; i < n; i++) {
-        if (of[i] >= kinds || !isfinite(x_m[i] + y_m[i] + z_m[i])) {
+        if (type_of[i] >= types || !isfinite(x_m[i] + y_m[i] + z_m[i])) {
             goto error;
         }
-        made.motion[i] = (struct dig_motion){ .x_m = { x_m[i], y_m[i], z_m[i] } };
-        made.of[i]     = of[i];
-        made.name[i]   = (uint32_t)i;
+        made.motion[i]  = (struct dig_motion){ .x_m = { x_m[i], y_m[i], z_m[i] } };
+        made.type_of[i] = type_of[i];
+        made.id[i]      = (uint32_t)i;
     }
     *grains = made;
     return DIG_OK;
@@ -122,10 +74,10 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
     size_t kept = 0;
     for (size_t i = 0; i < grains->n; i++) {
         if (!drop[i]) {
-            grains->motion[kept] = grains->motion[i];
-            grains->load[kept]   = grains->load[i];
-            grains->of[kept]     = grains->of[i];
-            grains->name[kept]   = grains->name[i];
+            grains->motion[kept]  = grains->motion[i];
+            grains->load[kept]    = grains->load[i];
+            grains->type_of[kept] = grains->type_of[i];
+            grains->id[kept]      = grains->id[i];
             if (grains->clump != NULL) {
                 grains->clump[kept] = grains->clump[i];
             }
@@ -139,32 +91,32 @@ enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32
 {
     const size_t      n    = grains->n;
     struct dig_grains made = {
-        .motion = allocate(n, sizeof *made.motion),
-        .of     = allocate(n, sizeof *made.of),
-        .name   = allocate(n, sizeof *made.name),
-        .clump  = grains->clump == NULL ? NULL : allocate(n, sizeof *made.clump),
+        .motion  = allocate(n, sizeof *made.motion),
+        .type_of = allocate(n, sizeof *made.type_of),
+        .id      = allocate(n, sizeof *made.id),
+        .clump   = grains->clump == NULL ? NULL : allocate(n, sizeof *made.clump),
     };
-    if (made.motion == NULL || made.of == NULL || made.name == NULL ||
+    if (made.motion == NULL || made.type_of == NULL || made.id == NULL ||
         (made.clump == NULL && grains->clump != NULL)) {
         dig_grains_finish(&made);
         return DIG_ENOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        made.motion[k] = grains->motion[order[k]];
-        made.of[k]     = grains->of[order[k]];
-        made.name[k]   = grains->name[order[k]];
+        made.motion[k]  = grains->motion[order[k]];
+        made.type_of[k] = grains->type_of[order[k]];
+        made.id[k]      = grains->id[order[k]];
         if (made.clump != NULL) {
             made.clump[k] = grains->clump[order[k]];
         }
     }
     free(grains->motion);
-    free(grains->of);
-    free(grains->name);
+    free(grains->type_of);
+    free(grains->id);
     free(grains->clump);
-    grains->motion = made.motion;
-    grains->of     = made.of;
-    grains->name   = made.name;
-    grains->clump  = made.clump;
+    grains->motion  = made.motion;
+    grains->type_of = made.type_of;
+    grains->id      = made.id;
+    grains->clump   = made.clump;
     return DIG_OK;
 }
 
@@ -175,8 +127,8 @@ void dig_grains_finish(struct dig_grains *const grains)
     }
     free(grains->motion);
     free(grains->load);
-    free(grains->of);
-    free(grains->name);
+    free(grains->type_of);
+    free(grains->id);
     free(grains->clump);
     *grains = (struct dig_grains){ 0 };
 }
@@ -185,11 +137,11 @@ double dig_grains_kinetic_J(const struct dig_grains *const grains)
 {
     double sum_J = 0.0;
     for (size_t i = 0; i < grains->n; i++) {
-        const double *const          v    = grains->motion[i].v_mps;
-        const double *const          w    = grains->motion[i].w_radps;
-        const struct dig_kind *const kind = &grains->kind[grains->of[i]];
-        sum_J += 0.5 * kind->mass_kg * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
-                 0.5 * kind->inertia_kgm2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        const double *const                v    = grains->motion[i].v_mps;
+        const double *const                w    = grains->motion[i].w_radps;
+        const struct dig_grain_type *const type = &grains->type[grains->type_of[i]];
+        sum_J += 0.5 * type->mass_kg * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
+                 0.5 * type->inertia_kgm2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     }
     return sum_J;
 }
@@ -201,7 +153,7 @@ bool dig_grains_are_sound(const struct dig_grains *const grains, const double dt
         const double *const x        = grains->motion[i].x_m;
         const double *const v        = grains->motion[i].v_mps;
         const double *const o        = grains->motion[i].w_radps;
-        const double        radius_m = grains->kind[grains->of[i]].radius_m;
+        const double        radius_m = grains->type[grains->type_of[i]].radius_m;
         const double        limit    = radius_m / dt_s;
         if (!(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < limit * limit) ||
             !isfinite(x[0] + x[1] + x[2] + o[0] + o[1] + o[2])) {

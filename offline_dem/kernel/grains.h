@@ -28,34 +28,29 @@ struct dig_load {
 
 /// What grains have in common. A driven grain is part of a body: loads and gravity do not change
 /// its velocity, which the body sets.
-struct dig_kind {
+struct dig_grain_type {
     double radius_m, mass_kg, inertia_kgm2;
     bool   driven;
 };
 
 struct dig_grains {
-    size_t             n;
-    size_t             kinds;
-    struct dig_kind    kind[DIG_GRAIN_TYPES_MAX];
-    struct dig_motion *motion; // [n]
-    struct dig_load   *load;   // [n]
-    uint8_t           *of;     // [n] kind of each grain
-    uint32_t          *name;   // [n]
-    uint32_t          *clump;  // [n] body each grain is part of, from 1; 0: none. NULL: no bodies
+    size_t                n;
+    size_t                types;
+    struct dig_grain_type type[DIG_GRAIN_TYPES_MAX];
+    struct dig_motion    *motion;  // [n]
+    struct dig_load      *load;    // [n]
+    uint8_t              *type_of; // [n] kind of each grain
+    uint32_t             *id;      // [n]
+    uint32_t             *clump; // [n] body each grain is part of, from 1; 0: none. NULL: no bodies
 };
 
-/// n grains at rest at (x, y, z) with these radii and this density. DIG_EINVAL for more than
-/// DIG_GRAIN_TYPES_MAX different radii, DIG_ENOMEM. Written on success only.
-DIG_MUST_CHECK enum dig_status dig_grains_create(size_t n, const double x_m[], const double y_m[],
-                                                 const double z_m[], const double radius_m[],
-                                                 double density_kgpm3, struct dig_grains *grains);
-
-/// The same with the kinds given: grain i is of kind[of[i]]. DIG_EINVAL for a kind that is not
-/// there, a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_grains_place(size_t kinds, const struct dig_kind kind[],
-                                                size_t n, const double x_m[], const double y_m[],
-                                                const double z_m[], const uint8_t of[],
-                                                struct dig_grains *grains);
+/// n grains at rest at (x, y, z), grain i of kind[of[i]]. DIG_EINVAL for a kind that is not there,
+/// a radius or mass that is not positive, or a position that is not finite; DIG_ENOMEM. Written on
+/// success only.
+DIG_MUST_CHECK enum dig_status dig_grains_create(size_t types, const struct dig_grain_type type[],
+                                                 size_t n, const double x_m[], const double y_m[],
+                                                 const double z_m[], const uint8_t type_of[],
+                                                 struct dig_grains *grains);
 
 /// Takes out every grain for which drop is not 0; the others keep their order.
 void dig_grains_drop(struct dig_grains *grains, const unsigned char drop[]);

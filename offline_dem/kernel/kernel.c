@@ -35,37 +35,27 @@ enum dig_isa dig_kernel_best(void)
     return DIG_ISA_BASE;
 }
 
-const char *dig_kernel_name(const enum dig_isa isa)
+INLINED void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
 {
-    return isa == DIG_ISA_AVX512 ? "avx512f" : isa == DIG_ISA_AVX2 ? "avx2" : "baseline";
-}
-
-BODY void fold(const double period_m, const size_t count, double y_m[DIG_BLOCK])
-{
-    const double per_m = dig_period_inverse(period_m);
+    const double inverse_period = dig_period_inverse(period_m);
 #pragma omp simd simdlen(8)
     for (size_t c = 0; c < count; c++) {
-        y_m[c] = dig_period_fold(y_m[c], period_m, per_m);
+        y_m[c] = dig_period_fold(y_m[c], period_m, inverse_period);
     }
 }
 
-// Where a block of contacts finds its memories: in the list, or when the list is to stay as it is
-// in a copy.
-BODY void open_memories(const bool still, struct dig_contacts *const list, const size_t first,
-                        double copy[DIG_MEMORIES][DIG_BLOCK], double *memories[DIG_MEMORIES])
+// Where a block of contacts finds its memories.
+INLINED void open_memories(struct dig_contacts *const list, const size_t first,
+                           double *histories[DIG_HISTORY_VALUES])
 {
-    for (int m = 0; m < DIG_MEMORIES; m++) {
-        memories[m] = list->memory[m] + first;
-        if (still) {
-            memcpy(copy[m], memories[m], sizeof copy[m]);
-            memories[m] = copy[m];
-        }
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        histories[m] = list->history[m] + first;
     }
 }
 
-BODY void pairs_body(const bool wide, const bool general, const struct dig_law law,
-                     const double dt_s, const double period_m, const bool still,
-                     struct dig_contacts *const list, struct dig_grains *const grains)
+INLINED void pairs_body(const bool wide, const bool general, const struct dig_law law,
+                        const double dt_s, const double period_m, struct dig_contacts *const list,
+                        struct dig_grains *const grains)
 {
     if (list->n == 0) {
         return;
@@ -74,8 +64,7 @@ BODY void pairs_body(const bool wide, const bool general, const struct dig_law l
     // reads.
     struct dig_block block;
     memset(&block, 0, sizeof block);
-    double  copy[DIG_MEMORIES][DIG_BLOCK];
-    double *memories[DIG_MEMORIES] = { NULL };
+    double *histories[DIG_HISTORY_VALUES] = { NULL };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
@@ -83,16 +72,15 @@ BODY void pairs_body(const bool wide, const bool general, const struct dig_law l
         if (period_m > 0.0) {
             fold(period_m, count, block.in[1]);
         }
-        open_memories(still, list, first, copy, memories);
-        block_body(general, law, dt_s, count, memories, &block);
+        open_memories(list, first, histories);
+        block_body(general, law, dt_s, count, histories, &block);
         scatter(wide, list, &block, first, count, grains->load);
     }
 }
 
-BODY void walls_body(const bool general, const struct dig_law law, const double dt_s,
-                     const struct dig_wall wall[], const bool still,
-                     struct dig_contacts *const list, struct dig_grains *const grains,
-                     double on_walls_N[3])
+INLINED void walls_body(const bool general, const struct dig_law law, const double dt_s,
+                        const struct dig_wall wall[], struct dig_contacts *const list,
+                        struct dig_grains *const grains, double on_walls_N[3])
 {
     if (list->n == 0) {
         return;
@@ -101,16 +89,15 @@ BODY void walls_body(const bool general, const struct dig_law law, const double 
     // reads.
     struct dig_block block;
     memset(&block, 0, sizeof block);
-    double  copy[DIG_MEMORIES][DIG_BLOCK];
-    double *memories[DIG_MEMORIES] = { NULL };
-    four    sum_N                  = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };
+    double *histories[DIG_HISTORY_VALUES] = { NULL };
+    four    sum_N                         = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
         // The law reaches as far as the grain's radius.
         gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
-        open_memories(still, list, first, copy, memories);
-        block_body(general, law, dt_s, count, memories, &block);
+        open_memories(list, first, histories);
+        block_body(general, law, dt_s, count, histories, &block);
         scatter_walls(list, &block, first, count, grains->load, &sum_N);
     }
     for (int k = 0; k < 3; k++) {
@@ -120,32 +107,33 @@ BODY void walls_body(const bool general, const struct dig_law law, const double 
 
 // How a kind's velocities answer: gravity, and what a load is multiplied with. Zeros where a body
 // drives the grains.
-struct answer {
+struct inertia {
     four   g_mps2;
-    double per_kg, per_kgm2;
+    double inverse_kg, inverse_kgm2;
 };
 
 // One grain over one step; returns its displacement since the lists were made, and in the fourth
 // lane its margin with the sign turned.
-BODY four advance_one(const struct answer *const answer, const double kick_s, const double dt_s,
-                      const double at_m[4], struct dig_motion *const motion,
-                      struct dig_load *const load)
+INLINED four advance_one(const struct inertia *const inertia, const double kick_s,
+                         const double dt_s, const double reference_m[4],
+                         struct dig_motion *const motion, struct dig_load *const load)
 {
     const four zero = { 0.0, 0.0, 0.0, 0.0 };
     const four v    = load_four(motion->v_mps) +
-                   kick_s * (load_four(load->f_N) * answer->per_kg + answer->g_mps2);
-    const four w = load_four(motion->w_radps) + kick_s * (load_four(load->t_Nm) * answer->per_kgm2);
+                   kick_s * (load_four(load->f_N) * inertia->inverse_kg + inertia->g_mps2);
+    const four w =
+        load_four(motion->w_radps) + kick_s * (load_four(load->t_Nm) * inertia->inverse_kgm2);
     const four x = load_four(motion->x_m) + dt_s * v;
     store_four(motion->v_mps, &v);
     store_four(motion->w_radps, &w);
     store_four(motion->x_m, &x);
     store_four(load->f_N, &zero);
     store_four(load->t_Nm, &zero);
-    return x - load_four(at_m);
+    return x - load_four(reference_m);
 }
 
 // Whether any of four grains has moved beyond its margin.
-BODY four_index have_left(const four d[4])
+INLINED four_index left_margin(const four d[4])
 {
     four c[4];
     transpose_four(d, c);
@@ -153,82 +141,77 @@ BODY four_index have_left(const four d[4])
     return ~(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] <= c[3] * c[3]);
 }
 
-BODY bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
-                       const double (*const at_m)[4], const size_t count,
-                       const uint32_t *const which, struct dig_grains *const grains)
+INLINED bool advance_body(const double gravity_mps2[3], const double kick_s, const double dt_s,
+                          const double (*const reference_m)[4], struct dig_grains *const grains)
 {
-    const four    g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
-    struct answer answer[DIG_GRAIN_TYPES_MAX];
-    for (size_t k = 0; k < grains->kinds; k++) {
-        const struct dig_kind kind = grains->kind[k];
-        answer[k].g_mps2           = (kind.driven ? 0.0 : 1.0) * g;
-        answer[k].per_kg           = kind.driven ? 0.0 : 1.0 / kind.mass_kg;
-        answer[k].per_kgm2         = kind.driven ? 0.0 : 1.0 / kind.inertia_kgm2;
+    const four     g = { gravity_mps2[0], gravity_mps2[1], gravity_mps2[2], 0.0 };
+    struct inertia inertia[DIG_GRAIN_TYPES_MAX];
+    for (size_t k = 0; k < grains->types; k++) {
+        const struct dig_grain_type type = grains->type[k];
+        inertia[k].g_mps2                = (type.driven ? 0.0 : 1.0) * g;
+        inertia[k].inverse_kg            = type.driven ? 0.0 : 1.0 / type.mass_kg;
+        inertia[k].inverse_kgm2          = type.driven ? 0.0 : 1.0 / type.inertia_kgm2;
     }
     four_index   left = { 0, 0, 0, 0 };
-    const size_t n    = which == NULL ? grains->n : count;
+    const size_t n    = grains->n;
     size_t       k    = 0;
     for (; k + 4 <= n; k += 4) {
         four d[4];
 #pragma GCC unroll 4
         for (size_t l = 0; l < 4; l++) {
-            const size_t i = which == NULL ? k + l : which[k + l];
-            d[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
-                               &grains->load[i]);
+            const size_t i = k + l;
+            d[l]           = advance_one(&inertia[grains->type_of[i]], kick_s, dt_s, reference_m[i],
+                                         &grains->motion[i], &grains->load[i]);
         }
-        left |= have_left(d);
+        left |= left_margin(d);
     }
     four rest[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
     for (size_t l = 0; k + l < n; l++) {
-        const size_t i = which == NULL ? k + l : which[k + l];
-        rest[l] = advance_one(&answer[grains->of[i]], kick_s, dt_s, at_m[i], &grains->motion[i],
-                              &grains->load[i]);
+        const size_t i = k + l;
+        rest[l]        = advance_one(&inertia[grains->type_of[i]], kick_s, dt_s, reference_m[i],
+                                     &grains->motion[i], &grains->load[i]);
     }
-    left |= have_left(rest);
+    left |= left_margin(rest);
     return (left[0] | left[1] | left[2] | left[3]) != 0;
 }
 
 // An attribute cannot stand in parentheses: NOLINTBEGIN(bugprone-macro-parentheses)
 #define VARIANTS(attribute, wide, suffix)                                                          \
-    attribute static void block_##suffix(const struct dig_law *const law, const double dt_s,       \
-                                         const size_t count, double *const memories[DIG_MEMORIES], \
-                                         struct dig_block *const block)                            \
+    attribute static void block_##suffix(                                                          \
+        const struct dig_law *const law, const double dt_s, const size_t count,                    \
+        double *const histories[DIG_HISTORY_VALUES], struct dig_block *const block)                \
     {                                                                                              \
         if (law->general) {                                                                        \
-            block_body(true, *law, dt_s, count, memories, block);                                  \
+            block_body(true, *law, dt_s, count, histories, block);                                 \
         } else {                                                                                   \
-            block_body(false, *law, dt_s, count, memories, block);                                 \
+            block_body(false, *law, dt_s, count, histories, block);                                \
         }                                                                                          \
     }                                                                                              \
-    attribute static void pairs_##suffix(                                                          \
-        const struct dig_law *const law, const double dt_s, const double period_m,                 \
-        const bool still, struct dig_contacts *const list, struct dig_grains *const grains)        \
+    attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const double period_m, struct dig_contacts *const list,   \
+                                         struct dig_grains *const grains)                          \
     {                                                                                              \
         if (law->general) {                                                                        \
-            pairs_body(wide, true, *law, dt_s, period_m, still, list, grains);                     \
+            pairs_body(wide, true, *law, dt_s, period_m, list, grains);                            \
         } else {                                                                                   \
-            pairs_body(wide, false, *law, dt_s, period_m, still, list, grains);                    \
+            pairs_body(wide, false, *law, dt_s, period_m, list, grains);                           \
         }                                                                                          \
     }                                                                                              \
-    attribute static void walls_##suffix(const struct dig_law *const law, const double dt_s,       \
-                                         const struct dig_wall wall[], const bool still,           \
-                                         struct dig_contacts *const list,                          \
-                                         struct dig_grains *const grains, double on_walls_N[3])    \
+    attribute static void walls_##suffix(                                                          \
+        const struct dig_law *const law, const double dt_s, const struct dig_wall wall[],          \
+        struct dig_contacts *const list, struct dig_grains *const grains, double on_walls_N[3])    \
     {                                                                                              \
         if (law->general) {                                                                        \
-            walls_body(true, *law, dt_s, wall, still, list, grains, on_walls_N);                   \
+            walls_body(true, *law, dt_s, wall, list, grains, on_walls_N);                          \
         } else {                                                                                   \
-            walls_body(false, *law, dt_s, wall, still, list, grains, on_walls_N);                  \
+            walls_body(false, *law, dt_s, wall, list, grains, on_walls_N);                         \
         }                                                                                          \
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
-                                           const double dt_s, const double(*const at_m)[4],        \
-                                           const size_t count, const uint32_t *const which,        \
+                                           const double dt_s, const double(*const reference_m)[4], \
                                            struct dig_grains *const grains)                        \
     {                                                                                              \
-        return which == NULL                                                                       \
-                   ? advance_body(gravity_mps2, kick_s, dt_s, at_m, count, NULL, grains)           \
-                   : advance_body(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);         \
+        return advance_body(gravity_mps2, kick_s, dt_s, reference_m, grains);                      \
     }
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -236,65 +219,38 @@ VARIANTS(, false, base)
 VARIANTS(VARIANT_AVX2, false, avx2)
 VARIANTS(VARIANT_AVX512, true, avx512)
 
+// The variant of a function for this processor.
+#define CALL(isa, name, ...)                                                                       \
+    ((isa) == DIG_ISA_AVX512 ? name##_avx512(__VA_ARGS__)                                          \
+     : (isa) == DIG_ISA_AVX2 ? name##_avx2(__VA_ARGS__)                                            \
+                             : name##_base(__VA_ARGS__))
+
 void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const size_t count, double memory[DIG_MEMORIES][DIG_BLOCK],
+                      const size_t count, double history[DIG_HISTORY_VALUES][DIG_BLOCK],
                       struct dig_block *const block)
 {
-    double *const memories[DIG_MEMORIES] = { memory[0], memory[1], memory[2],
-                                             memory[3], memory[4], memory[5] };
-    switch (isa) {
-    case DIG_ISA_AVX512: block_avx512(law, dt_s, count, memories, block); break;
-    case DIG_ISA_AVX2: block_avx2(law, dt_s, count, memories, block); break;
-    case DIG_ISA_BASE: block_base(law, dt_s, count, memories, block); break;
-    }
-}
-
-static void run_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const double period_m, const bool still, struct dig_contacts *const list,
-                      struct dig_grains *const grains)
-{
-    switch (isa) {
-    case DIG_ISA_AVX512: pairs_avx512(law, dt_s, period_m, still, list, grains); break;
-    case DIG_ISA_AVX2: pairs_avx2(law, dt_s, period_m, still, list, grains); break;
-    case DIG_ISA_BASE: pairs_base(law, dt_s, period_m, still, list, grains); break;
-    }
+    double *const histories[DIG_HISTORY_VALUES] = { history[0], history[1], history[2],
+                                                    history[3], history[4], history[5] };
+    CALL(isa, block, law, dt_s, count, histories, block);
 }
 
 void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
                       const double period_y_m, struct dig_contacts *const list,
                       struct dig_grains *const grains)
 {
-    run_pairs(isa, law, dt_s, period_y_m, false, list, grains);
-}
-
-void dig_kernel_still(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const double period_y_m, struct dig_contacts *const list,
-                      struct dig_grains *const grains)
-{
-    run_pairs(isa, law, dt_s, period_y_m, true, list, grains);
+    CALL(isa, pairs, law, dt_s, period_y_m, list, grains);
 }
 
 void dig_kernel_walls(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const struct dig_wall wall[], const bool still,
-                      struct dig_contacts *const list, struct dig_grains *const grains,
-                      double on_walls_N[3])
+                      const struct dig_wall wall[], struct dig_contacts *const list,
+                      struct dig_grains *const grains, double on_walls_N[3])
 {
-    switch (isa) {
-    case DIG_ISA_AVX512: walls_avx512(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    case DIG_ISA_AVX2: walls_avx2(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    case DIG_ISA_BASE: walls_base(law, dt_s, wall, still, list, grains, on_walls_N); break;
-    }
+    CALL(isa, walls, law, dt_s, wall, list, grains, on_walls_N);
 }
 
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,
-                        const double dt_s, const double at_m[][4], const size_t count,
-                        const uint32_t which[], struct dig_grains *const grains)
+                        const double dt_s, const double reference_m[][4],
+                        struct dig_grains *const grains)
 {
-    switch (isa) {
-    case DIG_ISA_AVX512:
-        return advance_avx512(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
-    case DIG_ISA_AVX2: return advance_avx2(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
-    case DIG_ISA_BASE: break;
-    }
-    return advance_base(gravity_mps2, kick_s, dt_s, at_m, count, which, grains);
+    return CALL(isa, advance, gravity_mps2, kick_s, dt_s, reference_m, grains);
 }

@@ -18,15 +18,12 @@ enum dig_isa { DIG_ISA_BASE, DIG_ISA_AVX2, DIG_ISA_AVX512 };
 /// The best this processor can do.
 enum dig_isa dig_kernel_best(void);
 
-/// "baseline", "avx2", "avx512f".
-const char *dig_kernel_name(enum dig_isa isa);
-
 /// Operands of a block of contacts, filled by whoever knows the geometry; the law leaves its
 /// results in their place.
 struct dig_block {
     union {
-        _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_touch, in order
-        _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_push, in order
+        _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_kinematics, in order
+        _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_contact_force, in order
     };
     // Between the stages of the plain law: distances, and whether a cap may hold.
     _Alignas(64) double d_m[DIG_BLOCK];
@@ -36,29 +33,23 @@ struct dig_block {
 /// The law on count <= DIG_BLOCK contacts, whose operands stand in block->in and whose memories
 /// stand in memory; memories are updated, block->out is filled and block->in is gone.
 void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s, size_t count,
-                      double memory[DIG_MEMORIES][DIG_BLOCK], struct dig_block *block);
+                      double history[DIG_HISTORY_VALUES][DIG_BLOCK], struct dig_block *block);
 
 /// Forces and torques of all contacts of a list of grain pairs, added to the loads. With period_y_m
 /// > 0 grains meet their nearest images in y.
 void dig_kernel_pairs(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
                       struct dig_contacts *list, struct dig_grains *grains);
 
-/// The same, but the contacts remember nothing of it: for grains that are held still.
-void dig_kernel_still(enum dig_isa isa, const struct dig_law *law, double dt_s, double period_y_m,
-                      struct dig_contacts *list, struct dig_grains *grains);
-
 /// Forces and torques of all contacts of a list of grains with walls, added to the loads; the
-/// walls' reaction is added to on_walls_N. With `still` the contacts remember nothing of it.
+/// walls' reaction is added to on_walls_N.
 void dig_kernel_walls(enum dig_isa isa, const struct dig_law *law, double dt_s,
-                      const struct dig_wall wall[], bool still, struct dig_contacts *list,
+                      const struct dig_wall wall[], struct dig_contacts *list,
                       struct dig_grains *grains, double on_walls_N[3]);
 
-/// Kicks every grain (with `which`: those `count` grains only) over kick_s with its load and
-/// gravity, moves it over dt_s and clears its load. at_m: where each grain stood when the contact
-/// lists were made, and its margin. True when a grain has left its margin, or has a coordinate that
-/// is not a number.
+/// Kicks every grain over kick_s with its load and gravity, moves it over dt_s and clears its load.
+/// at_m: where each grain stood when the contact lists were made, and its margin. True when a grain
+/// has left its margin, or has a coordinate that is not a number.
 bool dig_kernel_advance(enum dig_isa isa, const double gravity_mps2[3], double kick_s, double dt_s,
-                        const double at_m[][4], size_t count, const uint32_t which[],
-                        struct dig_grains *grains);
+                        const double reference_m[][4], struct dig_grains *grains);
 
 #endif // DIG_OFFLINE_DEM_KERNEL_KERNEL_H

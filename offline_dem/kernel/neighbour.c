@@ -105,8 +105,8 @@ static enum dig_status fill_grid(const struct dig_grains *const grains, const do
     return DIG_OK;
 }
 
-enum dig_status dig_neighbours_order(const struct dig_grains *const grains, const double cell_m,
-                                     uint32_t order[])
+enum dig_status dig_neighbours_sort(const struct dig_grains *const grains, const double cell_m,
+                                    uint32_t order[])
 {
     if (grains->n == 0) {
         return DIG_OK;
@@ -138,18 +138,18 @@ static enum dig_status make_room(struct dig_neighbours *const list, const size_t
 }
 
 // What the search reads of a grain, in the order in which it comes by: cell by cell.
-struct spot {
+struct cell_grain {
     double   x_m[3], radius_m, margin_m;
     uint32_t grain, clump;
 };
 
-static struct spot look_up(const struct dig_grains *const grains, const double margin_m[],
-                           const uint32_t i)
+static struct cell_grain make_cell_grain(const struct dig_grains *const grains,
+                                         const double margin_m[], const uint32_t i)
 {
     const double *const x = grains->motion[i].x_m;
-    return (struct spot){
+    return (struct cell_grain){
         .x_m      = { x[0], x[1], x[2] },
-        .radius_m = grains->kind[grains->of[i]].radius_m,
+        .radius_m = grains->type[grains->type_of[i]].radius_m,
         .margin_m = margin_m[i],
         .grain    = i,
         .clump    = grains->clump == NULL ? 0 : grains->clump[i],
@@ -159,23 +159,23 @@ static struct spot look_up(const struct dig_grains *const grains, const double m
 // What is looked for around one grain, or around its image beyond a side that is one with the
 // other.
 struct query {
-    const struct spot *all; // in the order of the grid's members
-    double             radius_max_m;
-    double             half_m; // of the period: farther images in y are not the nearest
-    struct spot        own;
-    double             x_m[3]; // of the grain, or of its image
+    const struct cell_grain *all; // in the order of the grid's members
+    double                   radius_max_m;
+    double                   half_m; // of the period: farther images in y are not the nearest
+    struct cell_grain        own;
+    double                   x_m[3]; // of the grain, or of its image
 };
 
 // Whether a grain that is close is listed under the query's. The grain with the larger margin
 // searches far enough to see the pair.
-static bool is_listed(const struct query *const q, const struct spot *const other,
+static bool is_listed(const struct query *const q, const struct cell_grain *const other,
                       const double dy_m)
 {
-    const struct spot *const own  = &q->own;
-    const bool               mine = other->margin_m < own->margin_m ||
-                      (!(other->margin_m > own->margin_m) && other->grain > own->grain);
+    const struct cell_grain *const own      = &q->own;
+    const bool                     is_first = other->margin_m < own->margin_m ||
+                          (!(other->margin_m > own->margin_m) && other->grain > own->grain);
     const bool apart = own->clump == 0 || own->clump != other->clump;
-    return mine && apart && dy_m >= -q->half_m && dy_m < q->half_m;
+    return is_first && apart && dy_m >= -q->half_m && dy_m < q->half_m;
 }
 
 // The pairs of the query's grain, appended at *used.
@@ -204,7 +204,7 @@ static enum dig_status search(const struct query *const q, const struct grid *co
                 return DIG_ENOMEM;
             }
             for (size_t k = first; k < last; k++) {
-                const struct spot *const y = &q->all[k];
+                const struct cell_grain *const y = &q->all[k];
                 const double d[3]    = { x[0] - y->x_m[0], x[1] - y->x_m[1], x[2] - y->x_m[2] };
                 const double reach_m = own_m + y->radius_m + y->margin_m;
                 if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
@@ -238,11 +238,11 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
     const size_t n = grains->n;
     if (list->n != n || list->start == NULL) {
         free(list->start);
-        free(list->at_m);
-        list->start = calloc(n + 1, sizeof *list->start);
-        list->at_m  = calloc(n + 1, sizeof *list->at_m);
-        list->n     = n;
-        if (list->start == NULL || list->at_m == NULL) {
+        free(list->reference_m);
+        list->start       = calloc(n + 1, sizeof *list->start);
+        list->reference_m = calloc(n + 1, sizeof *list->reference_m);
+        list->n           = n;
+        if (list->start == NULL || list->reference_m == NULL) {
             dig_neighbours_finish(list);
             return DIG_ENOMEM;
         }
@@ -255,10 +255,10 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
     double radius_max_m = 0.0;
     double margin_min_m = INFINITY;
     for (size_t i = 0; i < n; i++) {
-        radius_max_m = fmax(radius_max_m, grains->kind[grains->of[i]].radius_m);
+        radius_max_m = fmax(radius_max_m, grains->type[grains->type_of[i]].radius_m);
         margin_min_m = fmin(margin_min_m, margin_m[i]);
-        memcpy(list->at_m[i], grains->motion[i].x_m, 3 * sizeof(double));
-        list->at_m[i][3] = margin_m[i];
+        memcpy(list->reference_m[i], grains->motion[i].x_m, 3 * sizeof(double));
+        list->reference_m[i][3] = margin_m[i];
     }
     struct grid     g;
     enum dig_status status = fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), &g);
@@ -266,29 +266,29 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         dig_neighbours_finish(list);
         return status;
     }
-    struct spot *const spot = malloc((n + 1) * sizeof *spot);
-    if (spot == NULL) {
+    struct cell_grain *const cell_grain = malloc((n + 1) * sizeof *cell_grain);
+    if (cell_grain == NULL) {
         status = DIG_ENOMEM;
         goto done;
     }
     for (size_t k = 0; k < n; k++) {
-        spot[k] = look_up(grains, margin_m, g.member[k]);
+        cell_grain[k] = make_cell_grain(grains, margin_m, g.member[k]);
     }
     struct query q = {
-        .all          = spot,
+        .all          = cell_grain,
         .radius_max_m = radius_max_m,
         .half_m       = period_y_m > 0.0 ? 0.5 * period_y_m : (double)INFINITY,
     };
     size_t used = 0;
     for (size_t i = 0; i < n && status == DIG_OK; i++) {
         list->start[i] = (uint32_t)used;
-        q.own          = look_up(grains, margin_m, (uint32_t)i);
+        q.own          = make_cell_grain(grains, margin_m, (uint32_t)i);
         status         = search_images(&q, &g, period_y_m, list, &used);
     }
     list->start[n] = (uint32_t)used;
 
 done:
-    free(spot);
+    free(cell_grain);
     free(g.start);
     free(g.member);
     if (status != DIG_OK) {
@@ -304,6 +304,6 @@ void dig_neighbours_finish(struct dig_neighbours *const list)
     }
     free(list->start);
     free(list->other);
-    free(list->at_m);
+    free(list->reference_m);
     *list = (struct dig_neighbours){ 0 };
 }

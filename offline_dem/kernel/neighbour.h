@@ -15,17 +15,17 @@
 #include <stdint.h>
 
 struct dig_neighbours {
-    size_t    n;       // grains it was made for
-    uint32_t *start;   // [n + 1]: the pairs found by grain i are start[i] … start[i + 1] - 1
-    uint32_t *other;   // [start[n]]
-    size_t    room;    // of other
-    double (*at_m)[4]; // [n] position when the list was made, and the margin
+    size_t    n;     // grains it was made for
+    uint32_t *start; // [n + 1]: the pairs found by grain i are start[i] … start[i + 1] - 1
+    uint32_t *other; // [start[n]]
+    size_t    room;  // of other
+    double (*reference_m)[4]; // [n] position when the list was made, and the margin
 };
 
 /// Order of the grains along the cells of a grid of edge cell_m, rows of cells along x: order[k] is
 /// the grain that should stand at place k. Stable. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_neighbours_order(const struct dig_grains *grains, double cell_m,
-                                                    uint32_t order[]);
+DIG_MUST_CHECK enum dig_status dig_neighbours_sort(const struct dig_grains *grains, double cell_m,
+                                                   uint32_t order[]);
 
 /// Lists every pair once, but not those of one clump, under the grain with the larger margin (on a
 /// tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this

@@ -15,7 +15,7 @@
 
 #define DIG_LANES 8 // doubles of the widest vector; blocks are padded to it
 
-#define BODY __attribute__((always_inline)) static inline
+#define INLINED __attribute__((always_inline)) static inline
 
 // Every function below that passes vectors is inlined: how such arguments travel does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -24,32 +24,32 @@ typedef double  four __attribute__((vector_size(32)));
 typedef int64_t four_index __attribute__((vector_size(32)));
 typedef double  eight __attribute__((vector_size(64)));
 
-BODY four load_four(const double row[4])
+INLINED four load_four(const double row[4])
 {
     four v;
     memcpy(&v, row, sizeof v);
     return v;
 }
 
-BODY void store_four(double row[4], const four *const v)
+INLINED void store_four(double row[4], const four *const v)
 {
     memcpy(row, v, sizeof *v);
 }
 
-BODY eight load_eight(const double row[8])
+INLINED eight load_eight(const double row[8])
 {
     eight v;
     memcpy(&v, row, sizeof v);
     return v;
 }
 
-BODY void store_eight(double row[8], const eight *const v)
+INLINED void store_eight(double row[8], const eight *const v)
 {
     memcpy(row, v, sizeof *v);
 }
 
 // Rows a b c d become columns: (a0 b0 c0 d0), (a1 b1 c1 d1), …
-BODY void transpose_four(const four row[4], four column[4])
+INLINED void transpose_four(const four row[4], four column[4])
 {
     const four ab_even = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
     const four ab_odd  = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
@@ -62,18 +62,18 @@ BODY void transpose_four(const four row[4], four column[4])
 }
 
 // Even and odd pairs of doubles of a, then of b.
-BODY eight even_pairs(const eight *const a, const eight *const b)
+INLINED eight even_pairs(const eight *const a, const eight *const b)
 {
     return __builtin_shufflevector(*a, *b, 0, 1, 4, 5, 8, 9, 12, 13);
 }
 
-BODY eight odd_pairs(const eight *const a, const eight *const b)
+INLINED eight odd_pairs(const eight *const a, const eight *const b)
 {
     return __builtin_shufflevector(*a, *b, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
 // The same for eight rows of eight.
-BODY void transpose_eight(const eight row[8], eight column[8])
+INLINED void transpose_eight(const eight row[8], eight column[8])
 {
     eight even[4];
     eight odd[4];
@@ -98,7 +98,7 @@ BODY void transpose_eight(const eight row[8], eight column[8])
     column[7]                = odd_pairs(&odd_high[0], &odd_high[1]);
 }
 
-BODY void put_four(const four row[4], double (*const field)[DIG_BLOCK], const size_t c)
+INLINED void put_four(const four row[4], double (*const field)[DIG_BLOCK], const size_t c)
 {
     four column[4];
     transpose_four(row, column);
@@ -109,7 +109,7 @@ BODY void put_four(const four row[4], double (*const field)[DIG_BLOCK], const si
 }
 
 // Two vectors of three in a row: six columns.
-BODY void put_eight(const eight row[8], double (*const field)[DIG_BLOCK], const size_t c)
+INLINED void put_eight(const eight row[8], double (*const field)[DIG_BLOCK], const size_t c)
 {
     eight column[8];
     transpose_eight(row, column);
@@ -120,9 +120,9 @@ BODY void put_eight(const eight row[8], double (*const field)[DIG_BLOCK], const 
     }
 }
 
-BODY void gather_four(const uint32_t *const i, const uint32_t *const j,
-                      const struct dig_motion *const motion, const size_t c,
-                      struct dig_block *const block)
+INLINED void gather_four(const uint32_t *const i, const uint32_t *const j,
+                         const struct dig_motion *const motion, const size_t c,
+                         struct dig_block *const block)
 {
     four d[4];
     four v[4];
@@ -143,9 +143,9 @@ BODY void gather_four(const uint32_t *const i, const uint32_t *const j,
     put_four(wj, block->in + 9, c);
 }
 
-BODY void gather_eight(const uint32_t *const i, const uint32_t *const j,
-                       const struct dig_motion *const motion, const size_t c,
-                       struct dig_block *const block)
+INLINED void gather_eight(const uint32_t *const i, const uint32_t *const j,
+                          const struct dig_motion *const motion, const size_t c,
+                          struct dig_block *const block)
 {
     eight dv[8];
     eight w[8];
@@ -164,9 +164,9 @@ BODY void gather_eight(const uint32_t *const i, const uint32_t *const j,
 }
 
 // Beyond the last contact stands padding, which names grains that exist.
-BODY void gather(const bool wide, const struct dig_contacts *const list,
-                 const struct dig_motion *const motion, const size_t first, const size_t count,
-                 struct dig_block *const block)
+INLINED void gather(const bool wide, const struct dig_contacts *const list,
+                    const struct dig_motion *const motion, const size_t first, const size_t count,
+                    struct dig_block *const block)
 {
     const uint32_t *const i = list->i + first;
     const uint32_t *const j = list->j + first;
@@ -181,7 +181,7 @@ BODY void gather(const bool wide, const struct dig_contacts *const list,
     }
 }
 
-BODY void get_four(const double (*const field)[DIG_BLOCK], const size_t c, four row[4])
+INLINED void get_four(const double (*const field)[DIG_BLOCK], const size_t c, four row[4])
 {
     const four zero      = { 0.0, 0.0, 0.0, 0.0 };
     const four column[4] = { load_four(&field[0][c]), load_four(&field[1][c]),
@@ -189,21 +189,21 @@ BODY void get_four(const double (*const field)[DIG_BLOCK], const size_t c, four 
     transpose_four(column, row);
 }
 
-BODY void add_four(double row[4], const four *const v)
+INLINED void add_four(double row[4], const four *const v)
 {
     const four sum = load_four(row) + *v;
     store_four(row, &sum);
 }
 
-BODY void add_eight(double row[8], const eight *const v)
+INLINED void add_eight(double row[8], const eight *const v)
 {
     const eight sum = load_eight(row) + *v;
     store_eight(row, &sum);
 }
 
-BODY void scatter_four(const uint32_t *const i, const uint32_t *const     j,
-                       const double (*const out)[DIG_BLOCK], const size_t c,
-                       struct dig_load *const load)
+INLINED void scatter_four(const uint32_t *const i, const uint32_t *const     j,
+                          const double (*const out)[DIG_BLOCK], const size_t c,
+                          struct dig_load *const load)
 {
     four f[4];
     four ti[4];
@@ -224,9 +224,9 @@ BODY void scatter_four(const uint32_t *const i, const uint32_t *const     j,
 }
 
 // Torques stand behind forces.
-BODY void scatter_eight(const uint32_t *const i, const uint32_t *const     j,
-                        const double (*const out)[DIG_BLOCK], const size_t c,
-                        struct dig_load *const load)
+INLINED void scatter_eight(const uint32_t *const i, const uint32_t *const     j,
+                           const double (*const out)[DIG_BLOCK], const size_t c,
+                           struct dig_load *const load)
 {
     const eight zero = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
     const eight f[3] = { load_eight(&out[0][c]), load_eight(&out[1][c]), load_eight(&out[2][c]) };
@@ -257,9 +257,9 @@ BODY void scatter_eight(const uint32_t *const i, const uint32_t *const     j,
     }
 }
 
-BODY void scatter(const bool wide, const struct dig_contacts *const list,
-                  const struct dig_block *const block, const size_t first, const size_t count,
-                  struct dig_load *const load)
+INLINED void scatter(const bool wide, const struct dig_contacts *const list,
+                     const struct dig_block *const block, const size_t first, const size_t count,
+                     struct dig_load *const load)
 {
     const double(*const out)[DIG_BLOCK] = (const double(*)[DIG_BLOCK])block->out;
     const uint32_t *const i             = list->i + first;

@@ -18,7 +18,7 @@
 #include "offline_dem/law/law_general.h"
 
 // Lanes beyond the last contact: bodies far apart, which the law answers with zeros.
-BODY size_t pad(const size_t count, struct dig_block *const block)
+INLINED size_t pad(const size_t count, struct dig_block *const block)
 {
     const size_t padded = (count + DIG_LANES - 1) / DIG_LANES * DIG_LANES;
     for (size_t c = count; c < padded; c++) {
@@ -29,81 +29,84 @@ BODY size_t pad(const size_t count, struct dig_block *const block)
     return padded;
 }
 
-BODY struct dig_memory recall(double *const memories[DIG_MEMORIES], const size_t c)
+INLINED struct dig_contact_history load_history(double *const histories[DIG_HISTORY_VALUES],
+                                                const size_t  c)
 {
-    return (struct dig_memory){ memories[0][c], memories[1][c], memories[2][c],
-                                memories[3][c], memories[4][c], memories[5][c] };
+    return (struct dig_contact_history){ histories[0][c], histories[1][c], histories[2][c],
+                                         histories[3][c], histories[4][c], histories[5][c] };
 }
 
-BODY void remember(double *const memories[DIG_MEMORIES], const size_t c,
-                   const struct dig_memory memory)
+INLINED void store_history(double *const histories[DIG_HISTORY_VALUES], const size_t c,
+                           const struct dig_contact_history history)
 {
-    memories[0][c] = memory.sx_m;
-    memories[1][c] = memory.sy_m;
-    memories[2][c] = memory.sz_m;
-    memories[3][c] = memory.mx_Nm;
-    memories[4][c] = memory.my_Nm;
-    memories[5][c] = memory.mz_Nm;
+    histories[0][c] = history.sx_m;
+    histories[1][c] = history.sy_m;
+    histories[2][c] = history.sz_m;
+    histories[3][c] = history.mx_Nm;
+    histories[4][c] = history.my_Nm;
+    histories[5][c] = history.mz_Nm;
 }
 
-BODY void put_push(double (*const out)[DIG_BLOCK], const size_t c, const struct dig_push push)
+INLINED void store_force(double (*const out)[DIG_BLOCK], const size_t c,
+                         const struct dig_contact_force force)
 {
-    out[0][c] = push.fx_N;
-    out[1][c] = push.fy_N;
-    out[2][c] = push.fz_N;
-    out[3][c] = push.ix_Nm;
-    out[4][c] = push.iy_Nm;
-    out[5][c] = push.iz_Nm;
-    out[6][c] = push.jx_Nm;
-    out[7][c] = push.jy_Nm;
-    out[8][c] = push.jz_Nm;
+    out[0][c] = force.fx_N;
+    out[1][c] = force.fy_N;
+    out[2][c] = force.fz_N;
+    out[3][c] = force.ix_Nm;
+    out[4][c] = force.iy_Nm;
+    out[5][c] = force.iz_Nm;
+    out[6][c] = force.jx_Nm;
+    out[7][c] = force.jy_Nm;
+    out[8][c] = force.jz_Nm;
 }
 
-BODY struct dig_touch get_touch(double (*const in)[DIG_BLOCK], const size_t c)
+INLINED struct dig_kinematics load_kinematics(double (*const in)[DIG_BLOCK], const size_t c)
 {
-    return (struct dig_touch){ in[0][c], in[1][c], in[2][c], in[3][c], in[4][c],  in[5][c],
-                               in[6][c], in[7][c], in[8][c], in[9][c], in[10][c], in[11][c] };
+    return (struct dig_kinematics){ in[0][c], in[1][c], in[2][c], in[3][c], in[4][c],  in[5][c],
+                                    in[6][c], in[7][c], in[8][c], in[9][c], in[10][c], in[11][c] };
 }
 
-BODY void find_lines(const size_t padded, double (*const col)[DIG_BLOCK], double d_m[])
+INLINED void find_normals(const size_t padded, double (*const col)[DIG_BLOCK], double d_m[])
 {
 #pragma omp simd simdlen(8)
     for (size_t c = 0; c < padded; c++) {
-        const struct dig_line n = dig_law_line(col[0][c], col[1][c], col[2][c]);
-        col[0][c]               = n.nx;
-        col[1][c]               = n.ny;
-        col[2][c]               = n.nz;
-        d_m[c]                  = n.d_m;
+        const struct dig_contact_normal n = dig_law_normal(col[0][c], col[1][c], col[2][c]);
+        col[0][c]                         = n.nx;
+        col[1][c]                         = n.ny;
+        col[2][c]                         = n.nz;
+        d_m[c]                            = n.d_m;
     }
 }
 
-BODY void find_strains(const struct dig_law law, const double dt_s, const size_t padded,
-                       double *const memories[DIG_MEMORIES], double (*const col)[DIG_BLOCK],
-                       const double d_m[], int64_t may_cap[])
+INLINED void find_trials(const struct dig_law law, const double dt_s, const size_t padded,
+                         double *const histories[DIG_HISTORY_VALUES],
+                         double (*const col)[DIG_BLOCK], const double d_m[], int64_t may_cap[])
 {
 #pragma omp simd simdlen(8)
     for (size_t c = 0; c < padded; c++) {
-        const struct dig_line   n      = { col[0][c], col[1][c], col[2][c], d_m[c] };
-        struct dig_memory       memory = recall(memories, c);
-        const struct dig_strain strain = dig_law_strain(law, dt_s, n, get_touch(col, c), &memory);
-        remember(memories, c, memory);
-        col[3][c]  = strain.vx_mps;
-        col[4][c]  = strain.vy_mps;
-        col[5][c]  = strain.vz_mps;
-        col[6][c]  = strain.normal_N;
-        col[7][c]  = strain.spring2_m2;
-        col[8][c]  = strain.torque2_Nm2;
+        const struct dig_contact_normal n       = { col[0][c], col[1][c], col[2][c], d_m[c] };
+        struct dig_contact_history      history = load_history(histories, c);
+        const struct dig_trial          trial =
+            dig_law_trial(law, dt_s, n, load_kinematics(col, c), &history);
+        store_history(histories, c, history);
+        col[3][c]  = trial.vx_mps;
+        col[4][c]  = trial.vy_mps;
+        col[5][c]  = trial.vz_mps;
+        col[6][c]  = trial.normal_N;
+        col[7][c]  = trial.spring2_m2;
+        col[8][c]  = trial.torque2_Nm2;
         col[9][c]  = 1.0;
         col[10][c] = 1.0;
         col[11][c] = 1.0;
-        may_cap[c] = dig_law_may_cap(law, strain) & (n.d_m < law.reach_m);
+        may_cap[c] = dig_law_may_cap(law, trial) & (n.d_m < law.reach_m);
     }
 }
 
 // Roots and quotients only for the contacts that may need them, one in six of a bed at rest: these
 // are brought side by side.
-BODY void find_caps(const struct dig_law law, const size_t padded, double (*const col)[DIG_BLOCK],
-                    const int64_t may_cap[])
+INLINED void find_caps(const struct dig_law law, const size_t        padded,
+                       double (*const col)[DIG_BLOCK], const int64_t may_cap[])
 {
     uint32_t which[DIG_BLOCK + DIG_LANES];
     size_t   n = 0;
@@ -123,13 +126,13 @@ BODY void find_caps(const struct dig_law law, const size_t padded, double (*cons
         }
 #pragma omp simd simdlen(8)
         for (size_t l = 0; l < DIG_LANES; l++) {
-            const struct dig_strain strain = { .normal_N    = side[0][l],
-                                               .spring2_m2  = side[1][l],
-                                               .torque2_Nm2 = side[2][l] };
-            const struct dig_caps   caps   = dig_law_caps(law, strain);
-            side[3][l]                     = caps.spring;
-            side[4][l]                     = caps.damping;
-            side[5][l]                     = caps.torque;
+            const struct dig_trial trial = { .normal_N    = side[0][l],
+                                             .spring2_m2  = side[1][l],
+                                             .torque2_Nm2 = side[2][l] };
+            const struct dig_caps  caps  = dig_law_caps(law, trial);
+            side[3][l]                   = caps.spring;
+            side[4][l]                   = caps.damping;
+            side[5][l]                   = caps.torque;
         }
         for (size_t l = 0; l < DIG_LANES; l++) {
             col[9][which[k + l]]  = side[3][l];
@@ -139,56 +142,58 @@ BODY void find_caps(const struct dig_law law, const size_t padded, double (*cons
     }
 }
 
-BODY void find_pushes(const struct dig_law law, const size_t padded,
-                      double *const memories[DIG_MEMORIES], double (*const col)[DIG_BLOCK],
-                      const double  d_m[])
+INLINED void find_forces(const struct dig_law law, const size_t padded,
+                         double *const histories[DIG_HISTORY_VALUES],
+                         double (*const col)[DIG_BLOCK], const double d_m[])
 {
 #pragma omp simd simdlen(8)
     for (size_t c = 0; c < padded; c++) {
-        const struct dig_line   n      = { col[0][c], col[1][c], col[2][c], d_m[c] };
-        const struct dig_strain strain = {
-            .normal_N = col[6][c], .vx_mps = col[3][c], .vy_mps = col[4][c], .vz_mps = col[5][c]
+        const struct dig_contact_normal n     = { col[0][c], col[1][c], col[2][c], d_m[c] };
+        const struct dig_trial          trial = {
+                     .normal_N = col[6][c], .vx_mps = col[3][c], .vy_mps = col[4][c], .vz_mps = col[5][c]
         };
-        const struct dig_caps caps   = { col[9][c], col[10][c], col[11][c] };
-        struct dig_memory     memory = recall(memories, c);
-        const struct dig_push push   = dig_law_push(law, n, strain, caps, &memory);
-        remember(memories, c, memory);
-        put_push(col, c, push);
+        const struct dig_caps          caps    = { col[9][c], col[10][c], col[11][c] };
+        struct dig_contact_history     history = load_history(histories, c);
+        const struct dig_contact_force force   = dig_law_force(law, n, trial, caps, &history);
+        store_history(histories, c, history);
+        store_force(col, c, force);
     }
 }
 
-BODY void block_plain(const struct dig_law law, const double dt_s, const size_t count,
-                      double *const memories[DIG_MEMORIES], struct dig_block *const block)
+INLINED void block_plain(const struct dig_law law, const double dt_s, const size_t count,
+                         double *const histories[DIG_HISTORY_VALUES], struct dig_block *const block)
 {
     const size_t padded = pad(count, block);
-    find_lines(padded, block->in, block->d_m);
-    find_strains(law, dt_s, padded, memories, block->in, block->d_m, block->may_cap);
+    find_normals(padded, block->in, block->d_m);
+    find_trials(law, dt_s, padded, histories, block->in, block->d_m, block->may_cap);
     find_caps(law, padded, block->in, block->may_cap);
-    find_pushes(law, padded, memories, block->in, block->d_m);
+    find_forces(law, padded, histories, block->in, block->d_m);
 }
 
-BODY void block_general(const struct dig_law law, const double dt_s, const size_t count,
-                        double *const memories[DIG_MEMORIES], struct dig_block *const block)
+INLINED void block_general(const struct dig_law law, const double dt_s, const size_t count,
+                           double *const           histories[DIG_HISTORY_VALUES],
+                           struct dig_block *const block)
 {
     const size_t padded = pad(count, block);
 #pragma omp simd simdlen(8)
     for (size_t c = 0; c < padded; c++) {
-        struct dig_memory     memory = recall(memories, c);
-        const struct dig_push push   = dig_law_general(law, dt_s, get_touch(block->in, c), &memory);
-        remember(memories, c, memory);
-        put_push(block->out, c, push);
+        struct dig_contact_history     history = load_history(histories, c);
+        const struct dig_contact_force force =
+            dig_law_general(law, dt_s, load_kinematics(block->in, c), &history);
+        store_history(histories, c, history);
+        store_force(block->out, c, force);
     }
 }
 
 // `general` is a constant where this is inlined: the plain law pays nothing for the others.
-BODY void block_body(const bool general, const struct dig_law law, const double dt_s,
-                     const size_t count, double *const memories[DIG_MEMORIES],
-                     struct dig_block *const block)
+INLINED void block_body(const bool general, const struct dig_law law, const double dt_s,
+                        const size_t count, double *const histories[DIG_HISTORY_VALUES],
+                        struct dig_block *const block)
 {
     if (general) {
-        block_general(law, dt_s, count, memories, block);
+        block_general(law, dt_s, count, histories, block);
     } else {
-        block_plain(law, dt_s, count, memories, block);
+        block_plain(law, dt_s, count, histories, block);
     }
 }
 

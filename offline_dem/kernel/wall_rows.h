@@ -9,8 +9,8 @@
 
 // The distance of grains at x from walls, and d: along the normal, as long as that. A grain pressed
 // through a wall still stands on the right side of it.
-BODY void put_walls(const four wall[4], const four x[4], const double least_m,
-                    double (*const in)[DIG_BLOCK], const size_t c)
+INLINED void put_walls(const four wall[4], const four x[4], const double least_m,
+                       double (*const in)[DIG_BLOCK], const size_t c)
 {
     const four least = { least_m, least_m, least_m, least_m };
     four       n[4];
@@ -28,9 +28,9 @@ BODY void put_walls(const four wall[4], const four x[4], const double least_m,
 }
 
 // Beyond the last contact stands padding, which names a grain and a wall that exist.
-BODY void gather_walls(const struct dig_contacts *const list, const struct dig_wall wall[],
-                       const double radius_m, const struct dig_motion *const motion,
-                       const size_t first, const size_t count, struct dig_block *const block)
+INLINED void gather_walls(const struct dig_contacts *const list, const struct dig_wall wall[],
+                          const double radius_m, const struct dig_motion *const motion,
+                          const size_t first, const size_t count, struct dig_block *const block)
 {
     const four zero = { 0.0, 0.0, 0.0, 0.0 };
     for (size_t c = 0; c < count; c += 4) {
@@ -57,9 +57,9 @@ BODY void gather_walls(const struct dig_contacts *const list, const struct dig_w
 }
 
 // The walls' own load is the opposite, summed in the order of the contacts.
-BODY void scatter_walls(const struct dig_contacts *const list, const struct dig_block *const block,
-                        const size_t first, const size_t count, struct dig_load *const load,
-                        four *const on_walls_N)
+INLINED void scatter_walls(const struct dig_contacts *const list,
+                           const struct dig_block *const block, const size_t first,
+                           const size_t count, struct dig_load *const load, four *const on_walls_N)
 {
     const double(*const out)[DIG_BLOCK] = (const double(*)[DIG_BLOCK])block->out;
     for (size_t c = 0; c < count; c += 4) {

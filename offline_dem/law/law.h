@@ -31,7 +31,7 @@
 #include <stdbool.h>
 
 /// What a contact remembers while it lasts; zero when it begins.
-struct dig_memory {
+struct dig_contact_history {
     double sx_m, sy_m, sz_m;    // tangential displacement xi
     double mx_Nm, my_Nm, mz_Nm; // rolling torque M on j (and -M on i)
 };
@@ -71,7 +71,7 @@ struct dig_law_material {
 
 /// The relative state of two touching bodies: d = x_i - x_j, velocities of the centres (for a wall
 /// or plate: of its contact point) and rotations.
-struct dig_touch {
+struct dig_kinematics {
     double dx_m, dy_m, dz_m;
     double vx_mps, vy_mps, vz_mps; // v_i - v_j
     double ix_radps, iy_radps, iz_radps;
@@ -79,7 +79,7 @@ struct dig_touch {
 };
 
 /// What the contact does to i; j gets the opposite force and its own torque.
-struct dig_push {
+struct dig_contact_force {
     double fx_N, fy_N, fz_N;
     double ix_Nm, iy_Nm, iz_Nm;
     double jx_Nm, jy_Nm, jz_Nm;
@@ -163,12 +163,12 @@ static inline struct dig_law dig_law_wall(const struct dig_law_material *const m
 }
 
 /// The line of centres: the unit vector n from j to i, and their distance.
-struct dig_line {
+struct dig_contact_normal {
     double nx, ny, nz, d_m;
 };
 
 /// What the step makes of a contact before its springs are capped.
-struct dig_strain {
+struct dig_trial {
     double normal_N;
     double vx_mps, vy_mps, vz_mps; // slip of the contact point
     double spring2_m2;             // |xi|^2
@@ -185,18 +185,20 @@ struct dig_caps {
 // the same stage the processor works on the others meanwhile.
 #define DIG_LAW_STAGE DIG_BOTH __attribute__((always_inline)) static inline
 
-DIG_LAW_STAGE struct dig_line dig_law_line(const double dx_m, const double dy_m, const double dz_m)
+DIG_LAW_STAGE struct dig_contact_normal dig_law_normal(const double dx_m, const double dy_m,
+                                                       const double dz_m)
 {
     // The floor keeps a lane of padding from dividing by zero.
     const double d_m = sqrt(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m + 1e-300);
     const double inv = 1.0 / d_m;
-    return (struct dig_line){ dx_m * inv, dy_m * inv, dz_m * inv, d_m };
+    return (struct dig_contact_normal){ dx_m * inv, dy_m * inv, dz_m * inv, d_m };
 }
 
 /// The memory grows with the slip and the turning. Of the touch only velocities are read.
-DIG_LAW_STAGE struct dig_strain dig_law_strain(const struct dig_law law, const double dt_s,
-                                               const struct dig_line n, const struct dig_touch t,
-                                               struct dig_memory *const memory)
+DIG_LAW_STAGE struct dig_trial dig_law_trial(const struct dig_law law, const double dt_s,
+                                             const struct dig_contact_normal   n,
+                                             const struct dig_kinematics       t,
+                                             struct dig_contact_history *const history)
 {
     // Normal
     const double delta_m = law.reach_m - n.d_m;
@@ -213,9 +215,9 @@ DIG_LAW_STAGE struct dig_strain dig_law_strain(const struct dig_law law, const d
     const double vz   = t.vz_mps - vn_mps * n.nz - (wx * n.ny - wy * n.nx);
 
     // Tangential spring
-    double       sx = memory->sx_m + vx * dt_s;
-    double       sy = memory->sy_m + vy * dt_s;
-    double       sz = memory->sz_m + vz * dt_s;
+    double       sx = history->sx_m + vx * dt_s;
+    double       sy = history->sy_m + vy * dt_s;
+    double       sz = history->sz_m + vz * dt_s;
     const double sn = sx * n.nx + sy * n.ny + sz * n.nz;
     sx -= sn * n.nx;
     sy -= sn * n.ny;
@@ -227,12 +229,12 @@ DIG_LAW_STAGE struct dig_strain dig_law_strain(const struct dig_law law, const d
     double       rz = t.iz_radps - t.jz_radps;
     const double rn = rx * n.nx + ry * n.ny + rz * n.nz;
     const double kr = law.rolling_Nmprad * dt_s;
-    rx              = memory->mx_Nm + kr * (rx - rn * n.nx);
-    ry              = memory->my_Nm + kr * (ry - rn * n.ny);
-    rz              = memory->mz_Nm + kr * (rz - rn * n.nz);
+    rx              = history->mx_Nm + kr * (rx - rn * n.nx);
+    ry              = history->my_Nm + kr * (ry - rn * n.ny);
+    rz              = history->mz_Nm + kr * (rz - rn * n.nz);
 
-    *memory = (struct dig_memory){ sx, sy, sz, rx, ry, rz };
-    return (struct dig_strain){
+    *history = (struct dig_contact_history){ sx, sy, sz, rx, ry, rz };
+    return (struct dig_trial){
         .normal_N    = law.normal_Npm * delta_m - law.damping_Nspm * vn_mps,
         .vx_mps      = vx,
         .vy_mps      = vy,
@@ -243,24 +245,24 @@ DIG_LAW_STAGE struct dig_strain dig_law_strain(const struct dig_law law, const d
 }
 
 /// Whether dig_law_caps() may give less than 1, told without a root: never false when it does.
-DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_strain strain)
+DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_trial trial)
 {
     const double more     = 1.0 + 1e-12; // than all roundings on either side
-    const double load_N   = fabs(strain.normal_N);
+    const double load_N   = fabs(trial.normal_N);
     const double grip_N   = law.friction * load_N;
     const double limit_Nm = law.rolling_lever_m * load_N;
-    return (more * law.normal_Npm * law.normal_Npm * strain.spring2_m2 >= grip_N * grip_N) |
-           (more * strain.torque2_Nm2 >= limit_Nm * limit_Nm);
+    return (more * law.normal_Npm * law.normal_Npm * trial.spring2_m2 >= grip_N * grip_N) |
+           (more * trial.torque2_Nm2 >= limit_Nm * limit_Nm);
 }
 
 /// Of the strain the normal force and the two squares are read.
-DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struct dig_strain strain)
+DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struct dig_trial trial)
 {
-    const double load_N    = fabs(strain.normal_N);
-    const double spring_N  = law.normal_Npm * sqrt(strain.spring2_m2);
+    const double load_N    = fabs(trial.normal_N);
+    const double spring_N  = law.normal_Npm * sqrt(trial.spring2_m2);
     const double grip_N    = law.friction * load_N;
     const bool   slides    = spring_N > grip_N;
-    const double torque_Nm = sqrt(strain.torque2_Nm2);
+    const double torque_Nm = sqrt(trial.torque2_Nm2);
     const double limit_Nm  = law.rolling_lever_m * load_N;
     return (struct dig_caps){
         .spring  = slides ? grip_N / spring_N : 1.0,
@@ -271,39 +273,40 @@ DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struc
 
 /// Of the strain the normal force and the slip are read. Bodies that do not touch get zeros, and
 /// *memory is cleared.
-DIG_LAW_STAGE struct dig_push dig_law_push(const struct dig_law law, const struct dig_line n,
-                                           const struct dig_strain  strain,
-                                           const struct dig_caps    caps,
-                                           struct dig_memory *const memory)
+DIG_LAW_STAGE struct dig_contact_force dig_law_force(const struct dig_law              law,
+                                                     const struct dig_contact_normal   n,
+                                                     const struct dig_trial            trial,
+                                                     const struct dig_caps             caps,
+                                                     struct dig_contact_history *const history)
 {
     const bool   touching = n.d_m < law.reach_m;
     const double delta_m  = law.reach_m - n.d_m;
     const double ci_m     = law.lever_i_m - 0.5 * delta_m;
     const double cj_m     = law.lever_j_m > 0.0 ? law.lever_j_m - 0.5 * delta_m : 0.0;
 
-    const double sx = memory->sx_m * caps.spring;
-    const double sy = memory->sy_m * caps.spring;
-    const double sz = memory->sz_m * caps.spring;
-    const double rx = memory->mx_Nm * caps.torque;
-    const double ry = memory->my_Nm * caps.torque;
-    const double rz = memory->mz_Nm * caps.torque;
-    const double tx = -law.normal_Npm * sx - law.damping_Nspm * (strain.vx_mps * caps.damping);
-    const double ty = -law.normal_Npm * sy - law.damping_Nspm * (strain.vy_mps * caps.damping);
-    const double tz = -law.normal_Npm * sz - law.damping_Nspm * (strain.vz_mps * caps.damping);
+    const double sx = history->sx_m * caps.spring;
+    const double sy = history->sy_m * caps.spring;
+    const double sz = history->sz_m * caps.spring;
+    const double rx = history->mx_Nm * caps.torque;
+    const double ry = history->my_Nm * caps.torque;
+    const double rz = history->mz_Nm * caps.torque;
+    const double tx = -law.normal_Npm * sx - law.damping_Nspm * (trial.vx_mps * caps.damping);
+    const double ty = -law.normal_Npm * sy - law.damping_Nspm * (trial.vy_mps * caps.damping);
+    const double tz = -law.normal_Npm * sz - law.damping_Nspm * (trial.vz_mps * caps.damping);
     const double ax = n.ny * tz - n.nz * ty;
     const double ay = n.nz * tx - n.nx * tz;
     const double az = n.nx * ty - n.ny * tx;
 
-    memory->sx_m  = touching ? sx : 0.0;
-    memory->sy_m  = touching ? sy : 0.0;
-    memory->sz_m  = touching ? sz : 0.0;
-    memory->mx_Nm = touching ? rx : 0.0;
-    memory->my_Nm = touching ? ry : 0.0;
-    memory->mz_Nm = touching ? rz : 0.0;
-    return (struct dig_push){
-        .fx_N  = touching ? strain.normal_N * n.nx + tx : 0.0,
-        .fy_N  = touching ? strain.normal_N * n.ny + ty : 0.0,
-        .fz_N  = touching ? strain.normal_N * n.nz + tz : 0.0,
+    history->sx_m  = touching ? sx : 0.0;
+    history->sy_m  = touching ? sy : 0.0;
+    history->sz_m  = touching ? sz : 0.0;
+    history->mx_Nm = touching ? rx : 0.0;
+    history->my_Nm = touching ? ry : 0.0;
+    history->mz_Nm = touching ? rz : 0.0;
+    return (struct dig_contact_force){
+        .fx_N  = touching ? trial.normal_N * n.nx + tx : 0.0,
+        .fy_N  = touching ? trial.normal_N * n.ny + ty : 0.0,
+        .fz_N  = touching ? trial.normal_N * n.nz + tz : 0.0,
         .ix_Nm = touching ? -ci_m * ax - rx : 0.0,
         .iy_Nm = touching ? -ci_m * ay - ry : 0.0,
         .iz_Nm = touching ? -ci_m * az - rz : 0.0,
@@ -315,13 +318,13 @@ DIG_LAW_STAGE struct dig_push dig_law_push(const struct dig_law law, const struc
 
 /// One contact over one step: all stages. Bodies that do not touch get zeros, and *memory is
 /// cleared.
-DIG_LAW_STAGE struct dig_push dig_law_step(const struct dig_law law, const double dt_s,
-                                           const struct dig_touch   t,
-                                           struct dig_memory *const memory)
+DIG_LAW_STAGE struct dig_contact_force dig_law_step(const struct dig_law law, const double dt_s,
+                                                    const struct dig_kinematics       t,
+                                                    struct dig_contact_history *const history)
 {
-    const struct dig_line   n      = dig_law_line(t.dx_m, t.dy_m, t.dz_m);
-    const struct dig_strain strain = dig_law_strain(law, dt_s, n, t, memory);
-    return dig_law_push(law, n, strain, dig_law_caps(law, strain), memory);
+    const struct dig_contact_normal n     = dig_law_normal(t.dx_m, t.dy_m, t.dz_m);
+    const struct dig_trial          trial = dig_law_trial(law, dt_s, n, t, history);
+    return dig_law_force(law, n, trial, dig_law_caps(law, trial), history);
 }
 
 #endif // DIG_OFFLINE_DEM_LAW_LAW_H

@@ -34,9 +34,9 @@ DIG_LAW_STAGE double dig_law_pull_N(const struct dig_law law, const double d_m)
 }
 
 /// As dig_law_step(), for laws whose `general` is set. Costs a fifth more.
-DIG_LAW_STAGE struct dig_push dig_law_general(const struct dig_law law, const double dt_s,
-                                              const struct dig_touch   t,
-                                              struct dig_memory *const memory)
+DIG_LAW_STAGE struct dig_contact_force dig_law_general(const struct dig_law law, const double dt_s,
+                                                       const struct dig_kinematics       t,
+                                                       struct dig_contact_history *const history)
 {
     // The floors keep a lane of padding, and a grain that does not turn, from dividing by zero.
     const double d2_m2    = t.dx_m * t.dx_m + t.dy_m * t.dy_m + t.dz_m * t.dz_m + 1e-300;
@@ -78,9 +78,9 @@ DIG_LAW_STAGE struct dig_push dig_law_general(const struct dig_law law, const do
     const double vz   = t.vz_mps - vn_mps * nz - (wx * ny - wy * nx);
 
     // Tangential spring, capped
-    double       sx = memory->sx_m + vx * dt_s;
-    double       sy = memory->sy_m + vy * dt_s;
-    double       sz = memory->sz_m + vz * dt_s;
+    double       sx = history->sx_m + vx * dt_s;
+    double       sy = history->sy_m + vy * dt_s;
+    double       sz = history->sz_m + vz * dt_s;
     const double sn = sx * nx + sy * ny + sz * nz;
     sx -= sn * nx;
     sy -= sn * ny;
@@ -106,9 +106,9 @@ DIG_LAW_STAGE struct dig_push dig_law_general(const struct dig_law law, const do
     const double kr       = law.rolling_Nmprad * grown * dt_s;
     const double constant = law.rolling_lever_m * kn_Npm * delta_m / turn;
     const double gain     = epsd2 * kr + cdt * constant;
-    double       rx       = epsd2 * memory->mx_Nm + gain * (ox - on * nx);
-    double       ry       = epsd2 * memory->my_Nm + gain * (oy - on * ny);
-    double       rz       = epsd2 * memory->mz_Nm + gain * (oz - on * nz);
+    double       rx       = epsd2 * history->mx_Nm + gain * (ox - on * nx);
+    double       ry       = epsd2 * history->my_Nm + gain * (oy - on * ny);
+    double       rz       = epsd2 * history->mz_Nm + gain * (oz - on * nz);
     const double torque   = sqrt(rx * rx + ry * ry + rz * rz);
     const double limit_Nm = law.rolling_lever_m * load_N;
     const double over     = torque > limit_Nm ? limit_Nm / torque : 1.0;
@@ -117,17 +117,17 @@ DIG_LAW_STAGE struct dig_push dig_law_general(const struct dig_law law, const do
     ry *= cut;
     rz *= cut;
 
-    memory->sx_m  = touching ? sx : 0.0;
-    memory->sy_m  = touching ? sy : 0.0;
-    memory->sz_m  = touching ? sz : 0.0;
-    memory->mx_Nm = touching ? rx : 0.0;
-    memory->my_Nm = touching ? ry : 0.0;
-    memory->mz_Nm = touching ? rz : 0.0;
+    history->sx_m  = touching ? sx : 0.0;
+    history->sy_m  = touching ? sy : 0.0;
+    history->sz_m  = touching ? sz : 0.0;
+    history->mx_Nm = touching ? rx : 0.0;
+    history->my_Nm = touching ? ry : 0.0;
+    history->mz_Nm = touching ? rz : 0.0;
 
     const double ax = ny * tz - nz * ty;
     const double ay = nz * tx - nx * tz;
     const double az = nx * ty - ny * tx;
-    return (struct dig_push){
+    return (struct dig_contact_force){
         .fx_N  = touching ? total_N * nx + tx : 0.0,
         .fy_N  = touching ? total_N * ny + ty : 0.0,
         .fz_N  = touching ? total_N * nz + tz : 0.0,

@@ -9,10 +9,10 @@
 /// the distance itself. Only operations that every processor rounds alike, and no branch, so that a
 /// loop over it becomes vector code.
 DIG_BOTH static inline double dig_period_fold(const double y_m, const double period_m,
-                                              const double per_m)
+                                              const double inverse_period)
 {
     const double whole = 6755399441055744.0; // 1.5 x 2^52: what is added to it is rounded to units
-    return y_m - period_m * ((y_m * per_m + whole) - whole);
+    return y_m - period_m * ((y_m * inverse_period + whole) - whole);
 }
 
 /// 1 / period, 0 for none.

@@ -20,7 +20,8 @@ struct dig_rigid {
     double inverse_pkgm2[3][3]; // of the inertia, body axes
 };
 
-DIG_BOTH static inline void dig_rigid_turn(const double q[4], const double body[3], double world[3])
+DIG_BOTH static inline void dig_rigid_rotate(const double q[4], const double body[3],
+                                             double world[3])
 {
     const double u  = q[0];
     const double x  = q[1];
@@ -38,11 +39,11 @@ DIG_BOTH static inline void dig_rigid_turn(const double q[4], const double body[
 }
 
 /// World to body.
-DIG_BOTH static inline void dig_rigid_turn_back(const double q[4], const double world[3],
-                                                double body[3])
+DIG_BOTH static inline void dig_rigid_rotate_back(const double q[4], const double world[3],
+                                                  double body[3])
 {
     const double back[4] = { q[0], -q[1], -q[2], -q[3] };
-    dig_rigid_turn(back, world, body);
+    dig_rigid_rotate(back, world, body);
 }
 
 /// The rotation matrix as a unit quaternion.
@@ -71,22 +72,22 @@ DIG_BOTH static inline void dig_rigid_quaternion(const double r[3][3], double q[
 }
 
 /// The angular velocity that belongs to the angular momentum in this orientation.
-DIG_BOTH static inline void dig_rigid_spin(const struct dig_rigid *const body, const double q[4],
-                                           double w_radps[3])
+DIG_BOTH static inline void dig_rigid_angular_velocity(const struct dig_rigid *const body,
+                                                       const double q[4], double w_radps[3])
 {
     double l[3];
     double w[3];
-    dig_rigid_turn_back(q, body->l_Nms, l);
+    dig_rigid_rotate_back(q, body->l_Nms, l);
     for (int r = 0; r < 3; r++) {
         w[r] = body->inverse_pkgm2[r][0] * l[0] + body->inverse_pkgm2[r][1] * l[1] +
                body->inverse_pkgm2[r][2] * l[2];
     }
-    dig_rigid_turn(q, w, w_radps);
+    dig_rigid_rotate(q, w, w_radps);
 }
 
 /// q turned by w over dt.
-DIG_BOTH static inline void dig_rigid_rotate(const double q[4], const double w_radps[3],
-                                             const double dt_s, double turned[4])
+DIG_BOTH static inline void dig_rigid_integrate(const double q[4], const double w_radps[3],
+                                                const double dt_s, double turned[4])
 {
     const double speed =
         sqrt(w_radps[0] * w_radps[0] + w_radps[1] * w_radps[1] + w_radps[2] * w_radps[2]);
@@ -117,10 +118,10 @@ DIG_BOTH static inline void dig_rigid_step(struct dig_rigid *const body, const d
     double w[3];
     double half[4];
     double q[4];
-    dig_rigid_spin(body, body->q, w);
-    dig_rigid_rotate(body->q, w, 0.5 * dt_s, half);
-    dig_rigid_spin(body, half, body->w_radps);
-    dig_rigid_rotate(body->q, body->w_radps, dt_s, q);
+    dig_rigid_angular_velocity(body, body->q, w);
+    dig_rigid_integrate(body->q, w, 0.5 * dt_s, half);
+    dig_rigid_angular_velocity(body, half, body->w_radps);
+    dig_rigid_integrate(body->q, body->w_radps, dt_s, q);
     for (int k = 0; k < 4; k++) {
         body->q[k] = q[k];
     }

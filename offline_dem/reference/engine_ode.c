@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 // One dig under way.
-struct drive {
+struct run {
     const struct dig_trajectory *trajectory;
     const struct dig_world      *world; // grains as they were at the start
     struct dig_ode_scene        *ode;
@@ -17,7 +17,7 @@ struct drive {
     struct dig_tool              tool;
 };
 
-static enum dig_status refuse(struct dig_error *const error, const char *const key)
+static enum dig_status reject(struct dig_error *const error, const char *const key)
 {
     return dig_error_set(error, DIG_EINVAL, "%s: expected none with the ode engine", key);
 }
@@ -27,20 +27,20 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
 {
     const struct dig_bed_plan *const bed = &scene->bed;
     if (bed->clump.spheres > 0) {
-        return refuse(error, "clump");
+        return reject(error, "clump");
     }
     if (bed->periodic_y) {
-        return refuse(error, "periodic_y");
+        return reject(error, "periodic_y");
     }
     if (bed->earlier_digs > 0) {
-        return refuse(error, "earlier_digs");
+        return reject(error, "earlier_digs");
     }
-    return vtk_dir != NULL ? refuse(error, "pictures") : DIG_OK;
+    return vtk_dir != NULL ? reject(error, "pictures") : DIG_OK;
 }
 
 // A step with the bucket where the trajectory has it; the rates are those of the phase that ends at
 // or after time_s.
-static enum dig_status step(struct drive *const d, const double time_s,
+static enum dig_status step(struct run *const d, const double time_s,
                             struct dig_wrench *const on_tool)
 {
     const struct dig_pose         pose     = dig_trajectory_pose(d->trajectory, time_s);
@@ -52,21 +52,21 @@ static enum dig_status step(struct drive *const d, const double time_s,
     return dig_ode_bed_step(d->bed, &d->tool, on_tool);
 }
 
-static double carried_kg(const struct drive *const d)
+static double carried_kg(const struct run *const d)
 {
     const struct dig_grains *const grains = &d->world->grains;
     double                         sum_kg = 0.0;
     for (size_t i = 0; i < grains->n; i++) {
         const struct dig_motion motion = dig_ode_bed_motion(d->bed, i);
-        if (dig_tool_holds(&d->tool, motion.x_m)) {
-            sum_kg += grains->kind[grains->of[i]].mass_kg;
+        if (dig_tool_contains(&d->tool, motion.x_m)) {
+            sum_kg += grains->type[grains->type_of[i]].mass_kg;
         }
     }
     return sum_kg;
 }
 
 // Means over the steps first + 1 … first + window.
-static enum dig_status record_window(struct drive *const d, const size_t first, const size_t window,
+static enum dig_status record_window(struct run *const d, const size_t first, const size_t window,
                                      struct dig_force_row *const row)
 {
     const double      dt_s = d->world->dt_s;
@@ -100,7 +100,7 @@ static enum dig_status record_window(struct drive *const d, const size_t first, 
     return DIG_OK;
 }
 
-static enum dig_status record(struct drive *const d, const double output_s,
+static enum dig_status record(struct run *const d, const double output_s,
                               const struct dig_progress *const progress,
                               struct dig_recording *const      recording)
 {
@@ -118,7 +118,7 @@ static enum dig_status record(struct drive *const d, const double output_s,
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         status = record_window(d, r * window, window, &recording->row[r]);
         if (status == DIG_OK && progress != NULL &&
-            !progress->tell(progress->context, recording->row[r].t_s, duration_s)) {
+            !progress->report(progress->context, recording->row[r].t_s, duration_s)) {
             status = DIG_ESTALE;
         }
     }
@@ -145,12 +145,12 @@ static enum dig_status dig(const struct dig_scene *const  scene,
     if (ode == NULL) {
         return dig_setup_explain(DIG_ENOMEM, error);
     }
-    struct dig_grain_types kinds;
+    struct dig_grain_types types;
     struct dig_world       world;
     struct dig_recording   made = { 0 };
-    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &kinds, &world, error);
+    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &world, error);
     if (status == DIG_OK) {
-        struct drive d = {
+        struct run d = {
             .trajectory = trajectory,
             .world      = &world,
             .ode        = ode,

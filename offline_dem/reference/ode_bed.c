@@ -16,7 +16,7 @@ static void place_box(const struct dig_ode_bed *const bed)
     for (size_t k = 0; k < tool->bucket.points; k++) {
         const double body[3] = { tool->bucket.x_m[k], 0.0, tool->bucket.z_m[k] };
         double       world[3];
-        dig_tool_turn(tool, body, world);
+        dig_tool_rotate(tool, body, world);
         low[0]  = fmin(low[0], world[0]);
         low[2]  = fmin(low[2], world[2]);
         high[0] = fmax(high[0], world[0]);
@@ -35,17 +35,17 @@ static void place_rocks(struct dig_ode_bed *const bed)
         const double *const    x    = rock->body.x_m;
         memset(rock->f_N, 0, sizeof rock->f_N);
         memset(rock->t_Nm, 0, sizeof rock->t_Nm);
-        dGeomSetPosition(bed->stone[r], x[0], x[1], x[2]);
-        dGeomSetQuaternion(bed->stone[r], rock->body.q);
+        dGeomSetPosition(bed->rock_geom[r], x[0], x[1], x[2]);
+        dGeomSetQuaternion(bed->rock_geom[r], rock->body.q);
     }
 }
 
 enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig_tool *const tool,
                                  struct dig_wrench *const on_tool)
 {
-    bed->tool    = tool;
-    bed->on_tool = (struct dig_wrench){ 0 };
-    bed->share   = bed->started ? 1.0 : 0.5;
+    bed->tool          = tool;
+    bed->on_tool       = (struct dig_wrench){ 0 };
+    bed->kick_fraction = bed->started ? 1.0 : 0.5;
     dSpaceCollide(bed->grains_space, bed, dig_ode_contacts_grain);
     dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->walls_space, bed,
                    dig_ode_contacts_wall);
@@ -56,17 +56,18 @@ enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig
         place_box(bed);
         dSpaceCollide2((dGeomID)bed->grains_space, bed->tool_box, bed, dig_ode_contacts_tool);
     }
-    dig_ode_memory_turn(&bed->memory);
-    if (bed->short_of_memory) {
+    dig_ode_history_end_step(&bed->history);
+    if (bed->out_of_memory) {
         return DIG_ENOMEM;
     }
     const double *const g = bed->gravity_mps2;
-    dWorldSetGravity(bed->world, bed->share * g[0], bed->share * g[1], bed->share * g[2]);
+    dWorldSetGravity(bed->world, bed->kick_fraction * g[0], bed->kick_fraction * g[1],
+                     bed->kick_fraction * g[2]);
     if (!dWorldQuickStep(bed->world, bed->dt_s)) {
         return DIG_ENOMEM;
     }
     if (bed->scene != NULL) {
-        dig_ode_rocks_step(bed->scene, tool, bed->touch, bed->dt_s, bed->rock, &bed->on_tool);
+        dig_ode_rocks_step(bed->scene, tool, bed->rock_law, bed->dt_s, bed->rock, &bed->on_tool);
     }
     bed->started = true;
     *on_tool     = bed->on_tool;
@@ -87,21 +88,21 @@ struct dig_motion dig_ode_bed_motion(const struct dig_ode_bed *const bed, const 
     return motion;
 }
 
-static void add_grain(struct dig_ode_bed *const bed, const struct dig_kind *const kind,
+static void add_grain(struct dig_ode_bed *const bed, const struct dig_grain_type *const type,
                       const struct dig_motion *const m, const size_t i)
 {
     bed->body[i] = dBodyCreate(bed->world);
     dMass mass;
-    dMassSetParameters(&mass, kind->mass_kg, 0.0, 0.0, 0.0, kind->inertia_kgm2, kind->inertia_kgm2,
-                       kind->inertia_kgm2, 0.0, 0.0, 0.0);
+    dMassSetParameters(&mass, type->mass_kg, 0.0, 0.0, 0.0, type->inertia_kgm2, type->inertia_kgm2,
+                       type->inertia_kgm2, 0.0, 0.0, 0.0);
     dBodySetMass(bed->body[i], &mass);
     dBodySetPosition(bed->body[i], m->x_m[0], m->x_m[1], m->x_m[2]);
     dBodySetLinearVel(bed->body[i], m->v_mps[0], m->v_mps[1], m->v_mps[2]);
     dBodySetAngularVel(bed->body[i], m->w_radps[0], m->w_radps[1], m->w_radps[2]);
     dBodySetGyroscopicMode(bed->body[i], 0);
-    bed->ball[i] = dCreateSphere(bed->grains_space, kind->radius_m);
-    dGeomSetBody(bed->ball[i], bed->body[i]);
-    dGeomSetData(bed->ball[i], (void *)(uintptr_t)i); // NOLINT(performance-no-int-to-ptr)
+    bed->grain_geom[i] = dCreateSphere(bed->grains_space, type->radius_m);
+    dGeomSetBody(bed->grain_geom[i], bed->body[i]);
+    dGeomSetData(bed->grain_geom[i], (void *)(uintptr_t)i); // NOLINT(performance-no-int-to-ptr)
 }
 
 // Cells as large as the smallest grain to as large as the largest: the default levels are made for
@@ -110,9 +111,9 @@ static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *c
 {
     double least_m = INFINITY;
     double most_m  = 0.0;
-    for (size_t k = 0; k < grains->kinds; k++) {
-        least_m = fmin(least_m, 2.0 * grains->kind[k].radius_m);
-        most_m  = fmax(most_m, 2.0 * grains->kind[k].radius_m);
+    for (size_t k = 0; k < grains->types; k++) {
+        least_m = fmin(least_m, 2.0 * grains->type[k].radius_m);
+        most_m  = fmax(most_m, 2.0 * grains->type[k].radius_m);
     }
     bed->grains_space = dHashSpaceCreate(NULL);
     dHashSpaceSetLevels(bed->grains_space, (int)floor(log2(least_m)), (int)ceil(log2(most_m)));
@@ -126,13 +127,13 @@ static void add_rocks(struct dig_ode_bed *const bed, const struct dig_bodies *co
     bed->rocks = bodies->obstacles.rocks;
     bed->scene = bodies->ode;
     memcpy(bed->rock, bodies->obstacles.rock, sizeof bed->rock);
-    memcpy(bed->touch, bodies->touch, sizeof bed->touch);
+    memcpy(bed->rock_law, bodies->rock_law, sizeof bed->rock_law);
     for (size_t r = 0; r < bed->rocks; r++) {
         const double *const h = bed->rock[r].half_m;
-        bed->stone[r]         = bed->rock[r].shape == DIG_OBSTACLE_BOX
+        bed->rock_geom[r]     = bed->rock[r].shape == DIG_OBSTACLE_BOX
                                     ? dCreateBox(bed->rocks_space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
                                     : dCreateSphere(bed->rocks_space, h[0]);
-        dGeomSetData(bed->stone[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)
+        dGeomSetData(bed->rock_geom[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)
     }
 }
 
@@ -152,20 +153,20 @@ struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *const world)
     make_space(bed, grains);
     bed->dt_s = world->dt_s;
     memcpy(bed->gravity_mps2, world->gravity_mps2, sizeof bed->gravity_mps2);
-    memcpy(bed->kind, grains->kind, sizeof bed->kind);
+    memcpy(bed->type, grains->type, sizeof bed->type);
     memcpy(bed->pair_law, world->pair_law, sizeof bed->pair_law);
     memcpy(bed->wall_law, world->wall_law, sizeof bed->wall_law);
     memcpy(bed->tool_law, world->tool_law, sizeof bed->tool_law);
-    bed->body = calloc(bed->n + 1, sizeof(dBodyID));
-    bed->ball = calloc(bed->n + 1, sizeof(dGeomID));
-    bed->of   = calloc(bed->n + 1, sizeof *bed->of);
-    if (bed->body == NULL || bed->ball == NULL || bed->of == NULL) {
+    bed->body       = calloc(bed->n + 1, sizeof(dBodyID));
+    bed->grain_geom = calloc(bed->n + 1, sizeof(dGeomID));
+    bed->type_of    = calloc(bed->n + 1, sizeof *bed->type_of);
+    if (bed->body == NULL || bed->grain_geom == NULL || bed->type_of == NULL) {
         dig_ode_bed_destroy(bed);
         return NULL;
     }
-    memcpy(bed->of, grains->of, bed->n * sizeof *bed->of);
+    memcpy(bed->type_of, grains->type_of, bed->n * sizeof *bed->type_of);
     for (size_t i = 0; i < bed->n; i++) {
-        add_grain(bed, &grains->kind[grains->of[i]], &grains->motion[i], i);
+        add_grain(bed, &grains->type[grains->type_of[i]], &grains->motion[i], i);
     }
     for (size_t k = 0; k < world->walls; k++) {
         const struct dig_wall *const wall = &world->wall[k];
@@ -190,9 +191,9 @@ void dig_ode_bed_destroy(struct dig_ode_bed *const bed)
     dSpaceDestroy(bed->rocks_space);
     dWorldDestroy(bed->world);
     dCloseODE();
-    dig_ode_memory_finish(&bed->memory);
+    dig_ode_history_finish(&bed->history);
     free(bed->body);
-    free(bed->ball);
-    free(bed->of);
+    free(bed->grain_geom);
+    free(bed->type_of);
     free(bed);
 }

@@ -7,8 +7,9 @@
 // docs/adr/0002-tool-narrow-phase.md; which grains come near it, by ODE.
 //
 // ODE steps v += dt (F/m + g), x += dt v, which is the leap-frog of world.h; the first kick is half
-// of one. What the kernel does besides - lists, blocks, sorting, grains held still - is not done
-// here: both give the same motion until rounding has grown.
+// of one. What the kernel does besides (lists, blocks, sorting) is not done here: both give the
+// same motion until rounding has grown.
+// same motion until rounding has grown.
 
 #ifndef DIG_OFFLINE_DEM_REFERENCE_ODE_BED_H
 #define DIG_OFFLINE_DEM_REFERENCE_ODE_BED_H

@@ -1,18 +1,18 @@
 #include "offline_dem/reference/ode_contacts.h"
 
 #include "offline_dem/law/law_general.h"
-#include "offline_dem/reference/ode_touch.h"
+#include "offline_dem/reference/ode_plates.h"
 
 // Numbers of walls and rocks in contact memory, beyond any grain's.
 #define WALL_NUMBER 0xFFFF0000U
 #define ROCK_NUMBER 0xFFFF4000U
 
-static size_t number_of(dGeomID geom)
+static size_t index_of(dGeomID geom)
 {
     return (size_t)(uintptr_t)dGeomGetData(geom);
 }
 
-static void relative(dBodyID i, dBodyID j, struct dig_touch *const t)
+static void set_velocity(dBodyID i, dBodyID j, struct dig_kinematics *const t)
 {
     const dReal *const vi = dBodyGetLinearVel(i);
     const dReal *const wi = dBodyGetAngularVel(i);
@@ -34,31 +34,32 @@ static void relative(dBodyID i, dBodyID j, struct dig_touch *const t)
     }
 }
 
-static struct dig_push law_of(const struct dig_law *const law, const double dt_s,
-                              const struct dig_touch touch, struct dig_memory *const memory)
+static struct dig_contact_force law_of(const struct dig_law *const law, const double dt_s,
+                                       const struct dig_kinematics       kinematics,
+                                       struct dig_contact_history *const history)
 {
-    return law->general ? dig_law_general(*law, dt_s, touch, memory)
-                        : dig_law_step(*law, dt_s, touch, memory);
+    return law->general ? dig_law_general(*law, dt_s, kinematics, history)
+                        : dig_law_step(*law, dt_s, kinematics, history);
 }
 
 // Loads on i, scaled for a kick that is not a whole one.
-static void load_first(const struct dig_ode_bed *const bed, dBodyID i,
-                       const struct dig_push *const p)
+static void add_load_to_i(const struct dig_ode_bed *const bed, dBodyID i,
+                          const struct dig_contact_force *const p)
 {
-    const double s = bed->share;
+    const double s = bed->kick_fraction;
     dBodyAddForce(i, s * p->fx_N, s * p->fy_N, s * p->fz_N);
     dBodyAddTorque(i, s * p->ix_Nm, s * p->iy_Nm, s * p->iz_Nm);
 }
 
-static void load_second(const struct dig_ode_bed *const bed, dBodyID j,
-                        const struct dig_push *const p)
+static void add_load_to_j(const struct dig_ode_bed *const bed, dBodyID j,
+                          const struct dig_contact_force *const p)
 {
-    const double s = bed->share;
+    const double s = bed->kick_fraction;
     dBodyAddForce(j, -s * p->fx_N, -s * p->fy_N, -s * p->fz_N);
     dBodyAddTorque(j, s * p->jx_Nm, s * p->jy_Nm, s * p->jz_Nm);
 }
 
-static void set_distance(struct dig_touch *const t, const dContactGeom *const c,
+static void set_distance(struct dig_kinematics *const t, const dContactGeom *const c,
                          const double reach_m)
 {
     const double d_m = reach_m - c->depth;
@@ -69,67 +70,68 @@ static void set_distance(struct dig_touch *const t, const dContactGeom *const c,
 
 static bool comes_second(const struct dig_ode_bed *const bed, const size_t a, const size_t b)
 {
-    return bed->of[a] > bed->of[b] || (bed->of[a] == bed->of[b] && a > b);
+    return bed->type_of[a] > bed->type_of[b] || (bed->type_of[a] == bed->type_of[b] && a > b);
 }
 
 // Two grains whose boxes overlap. The law's i is the one of the lower kind, as in the kernel.
 void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
 {
     struct dig_ode_bed *const bed = data;
-    if (comes_second(bed, number_of(a), number_of(b))) {
+    if (comes_second(bed, index_of(a), index_of(b))) {
         dGeomID first = b;
         b             = a;
         a             = first;
     }
-    const size_t na = number_of(a);
-    const size_t nb = number_of(b);
+    const size_t na = index_of(a);
+    const size_t nb = index_of(b);
     dContactGeom contact;
     if (dCollide(a, b, 1, &contact, sizeof contact) == 0) {
         return;
     }
     const struct dig_law *const law =
-        &bed->pair_law[bed->of[na] * DIG_GRAIN_TYPES_MAX + bed->of[nb]];
-    struct dig_memory *const memory = dig_ode_memory_of(&bed->memory, (uint32_t)na, (uint32_t)nb);
-    if (memory == NULL) {
-        bed->short_of_memory = true;
+        &bed->pair_law[bed->type_of[na] * DIG_GRAIN_TYPES_MAX + bed->type_of[nb]];
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)na, (uint32_t)nb);
+    if (history == NULL) {
+        bed->out_of_memory = true;
         return;
     }
-    struct dig_touch touch = { 0 };
-    set_distance(&touch, &contact, law->reach_m);
-    relative(bed->body[na], bed->body[nb], &touch);
-    const struct dig_push push = law_of(law, bed->dt_s, touch, memory);
-    load_first(bed, bed->body[na], &push);
-    load_second(bed, bed->body[nb], &push);
+    struct dig_kinematics kinematics = { 0 };
+    set_distance(&kinematics, &contact, law->reach_m);
+    set_velocity(bed->body[na], bed->body[nb], &kinematics);
+    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    add_load_to_i(bed, bed->body[na], &force);
+    add_load_to_j(bed, bed->body[nb], &force);
 }
 
 void dig_ode_contacts_wall(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed  = data;
-    const bool                swap = dGeomGetClass(a) == dPlaneClass;
-    dGeomID                   ball = swap ? b : a;
-    dGeomID                   wall = swap ? a : b;
+    struct dig_ode_bed *const bed        = data;
+    const bool                swap       = dGeomGetClass(a) == dPlaneClass;
+    dGeomID                   grain_geom = swap ? b : a;
+    dGeomID                   wall       = swap ? a : b;
     dContactGeom              contact;
-    if (dCollide(ball, wall, 1, &contact, sizeof contact) == 0) {
+    if (dCollide(grain_geom, wall, 1, &contact, sizeof contact) == 0) {
         return;
     }
-    const size_t                i   = number_of(ball);
-    const struct dig_law *const law = &bed->wall_law[bed->of[i]];
-    struct dig_memory *const    memory =
-        dig_ode_memory_of(&bed->memory, (uint32_t)i, WALL_NUMBER + (uint32_t)number_of(wall));
-    if (memory == NULL) {
-        bed->short_of_memory = true;
+    const size_t                      i   = index_of(grain_geom);
+    const struct dig_law *const       law = &bed->wall_law[bed->type_of[i]];
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)i, WALL_NUMBER + (uint32_t)index_of(wall));
+    if (history == NULL) {
+        bed->out_of_memory = true;
         return;
     }
-    struct dig_touch touch = { 0 };
-    set_distance(&touch, &contact, law->reach_m);
-    relative(bed->body[i], NULL, &touch);
-    const struct dig_push push = law_of(law, bed->dt_s, touch, memory);
-    load_first(bed, bed->body[i], &push);
+    struct dig_kinematics kinematics = { 0 };
+    set_distance(&kinematics, &contact, law->reach_m);
+    set_velocity(bed->body[i], NULL, &kinematics);
+    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    add_load_to_i(bed, bed->body[i], &force);
 }
 
 // What a push does to the body that gets the other end of it, about the point the arm starts from.
-static void react(const struct dig_push *const p, const double arm_m[3], double f_N[3],
-                  double t_Nm[3])
+static void add_reaction(const struct dig_contact_force *const p, const double arm_m[3],
+                         double f_N[3], double t_Nm[3])
 {
     const double f[3] = { p->fx_N, p->fy_N, p->fz_N };
     const double t[3] = { p->jx_Nm, p->jy_Nm, p->jz_Nm };
@@ -144,78 +146,79 @@ static void react(const struct dig_push *const p, const double arm_m[3], double 
 // A grain and a rock whose boxes overlap.
 void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed   = data;
-    const bool                swap  = dGeomGetSpace(a) == bed->rocks_space;
-    dGeomID                   ball  = swap ? b : a;
-    dGeomID                   stone = swap ? a : b;
+    struct dig_ode_bed *const bed        = data;
+    const bool                swap       = dGeomGetSpace(a) == bed->rocks_space;
+    dGeomID                   grain_geom = swap ? b : a;
+    dGeomID                   rock_geom  = swap ? a : b;
     dContactGeom              contact;
-    if (dCollide(ball, stone, 1, &contact, sizeof contact) == 0) {
+    if (dCollide(grain_geom, rock_geom, 1, &contact, sizeof contact) == 0) {
         return;
     }
-    const size_t                i    = number_of(ball);
-    struct dig_rock *const      rock = &bed->rock[number_of(stone)];
-    const struct dig_law *const law  = &bed->wall_law[bed->of[i]];
-    struct dig_memory *const    memory =
-        dig_ode_memory_of(&bed->memory, (uint32_t)i, ROCK_NUMBER + (uint32_t)number_of(stone));
-    if (memory == NULL) {
-        bed->short_of_memory = true;
+    const size_t                      i    = index_of(grain_geom);
+    struct dig_rock *const            rock = &bed->rock[index_of(rock_geom)];
+    const struct dig_law *const       law  = &bed->wall_law[bed->type_of[i]];
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)i, ROCK_NUMBER + (uint32_t)index_of(rock_geom));
+    if (history == NULL) {
+        bed->out_of_memory = true;
         return;
     }
-    struct dig_touch touch = { 0 };
-    set_distance(&touch, &contact, law->reach_m);
-    relative(bed->body[i], NULL, &touch);
+    struct dig_kinematics kinematics = { 0 };
+    set_distance(&kinematics, &contact, law->reach_m);
+    set_velocity(bed->body[i], NULL, &kinematics);
     const dReal *const  x        = dBodyGetPosition(bed->body[i]);
     const double *const w        = rock->body.w_radps;
     const double *const v        = rock->body.v_mps;
-    const double        arm_m[3] = { x[0] - touch.dx_m - rock->body.x_m[0],
-                                     x[1] - touch.dy_m - rock->body.x_m[1],
-                                     x[2] - touch.dz_m - rock->body.x_m[2] };
-    touch.vx_mps -= v[0] + w[1] * arm_m[2] - w[2] * arm_m[1];
-    touch.vy_mps -= v[1] + w[2] * arm_m[0] - w[0] * arm_m[2];
-    touch.vz_mps -= v[2] + w[0] * arm_m[1] - w[1] * arm_m[0];
-    touch.jx_radps             = w[0];
-    touch.jy_radps             = w[1];
-    touch.jz_radps             = w[2];
-    const struct dig_push push = law_of(law, bed->dt_s, touch, memory);
-    load_first(bed, bed->body[i], &push);
-    react(&push, arm_m, rock->f_N, rock->t_Nm);
+    const double        arm_m[3] = { x[0] - kinematics.dx_m - rock->body.x_m[0],
+                                     x[1] - kinematics.dy_m - rock->body.x_m[1],
+                                     x[2] - kinematics.dz_m - rock->body.x_m[2] };
+    kinematics.vx_mps -= v[0] + w[1] * arm_m[2] - w[2] * arm_m[1];
+    kinematics.vy_mps -= v[1] + w[2] * arm_m[0] - w[0] * arm_m[2];
+    kinematics.vz_mps -= v[2] + w[0] * arm_m[1] - w[1] * arm_m[0];
+    kinematics.jx_radps                  = w[0];
+    kinematics.jy_radps                  = w[1];
+    kinematics.jz_radps                  = w[2];
+    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    add_load_to_i(bed, bed->body[i], &force);
+    add_reaction(&force, arm_m, rock->f_N, rock->t_Nm);
 }
 
 // One contact of a grain with the tool: point and memory are given.
-static void push_tool(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
-                      struct dig_ode_touch *const at)
+static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
+                           struct dig_ode_plate_contact *const at)
 {
     const struct dig_tool *const tool = bed->tool;
     const double away[3] = { body_m[0] - at->closest_m[0], body_m[1] - at->closest_m[1],
                              body_m[2] - at->closest_m[2] };
     double       d[3];
     double       arm[3];
-    dig_tool_turn(tool, away, d);
-    dig_tool_turn(tool, at->closest_m, arm);
-    struct dig_touch touch = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
-    relative(bed->body[i], NULL, &touch);
-    touch.vx_mps -= tool->vx_mps - tool->w_radps * arm[2];
-    touch.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
-    const struct dig_push p = law_of(&bed->tool_law[bed->of[i]], bed->dt_s, touch, &at->memory);
-    load_first(bed, bed->body[i], &p);
-    react(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
+    dig_tool_rotate(tool, away, d);
+    dig_tool_rotate(tool, at->closest_m, arm);
+    struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
+    set_velocity(bed->body[i], NULL, &kinematics);
+    kinematics.vx_mps -= tool->vx_mps - tool->w_radps * arm[2];
+    kinematics.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
+    const struct dig_contact_force p =
+        law_of(&bed->tool_law[bed->type_of[i]], bed->dt_s, kinematics, &at->history);
+    add_load_to_i(bed, bed->body[i], &p);
+    add_reaction(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
 }
 
 // A grain in the box about the tool.
 void dig_ode_contacts_tool(void *const data, dGeomID a, dGeomID b)
 {
     struct dig_ode_bed *const bed      = data;
-    const size_t              i        = number_of(a == bed->tool_box ? b : a);
-    const double              radius_m = bed->kind[bed->of[i]].radius_m;
+    const size_t              i        = index_of(a == bed->tool_box ? b : a);
+    const double              radius_m = bed->type[bed->type_of[i]].radius_m;
     double                    body_m[3];
     dig_tool_to_body(bed->tool, dBodyGetPosition(bed->body[i]), body_m);
-    struct dig_ode_touch at[DIG_PLATES_MAX];
-    const size_t         touches =
-        dig_ode_touch_find(bed->tool, body_m, radius_m, (uint32_t)i, &bed->memory, at);
+    struct dig_ode_plate_contact at[DIG_PLATES_MAX];
+    const size_t                 touches =
+        dig_ode_plates_find(bed->tool, body_m, radius_m, (uint32_t)i, &bed->history, at);
     for (size_t k = 0; k < touches; k++) {
-        push_tool(bed, i, body_m, &at[k]);
-        if (!dig_ode_touch_keep(&at[k], (uint32_t)i, &bed->memory)) {
-            bed->short_of_memory = true;
+        add_plate_load(bed, i, body_m, &at[k]);
+        if (!dig_ode_plates_store(&at[k], (uint32_t)i, &bed->history)) {
+            bed->out_of_memory = true;
         }
     }
 }

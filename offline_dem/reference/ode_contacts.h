@@ -4,7 +4,7 @@
 #ifndef DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
 #define DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
 
-#include "offline_dem/reference/ode_memory.h"
+#include "offline_dem/reference/ode_history.h"
 #include "offline_dem/world/ode_rocks.h"
 #include "offline_dem/world/world.h"
 
@@ -15,31 +15,31 @@ struct dig_ode_bed {
     dSpaceID grains_space, walls_space, rocks_space;
     dGeomID  tool_box;
     size_t   n;
-    dBodyID *body; // [n]
-    dGeomID *ball; // [n]
-    uint8_t *of;   // [n]
+    dBodyID *body;       // [n]
+    dGeomID *grain_geom; // [n]
+    uint8_t *type_of;    // [n]
 
     // Read from the world this was made from.
-    double          dt_s, gravity_mps2[3];
-    struct dig_kind kind[DIG_GRAIN_TYPES_MAX];
-    struct dig_law  pair_law[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX],
+    double                dt_s, gravity_mps2[3];
+    struct dig_grain_type type[DIG_GRAIN_TYPES_MAX];
+    struct dig_law        pair_law[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX],
         wall_law[DIG_GRAIN_TYPES_MAX], tool_law[DIG_GRAIN_TYPES_MAX];
 
     // Rocks: copies, which this bed moves.
-    size_t                rocks;
-    struct dig_rock       rock[DIG_OBSTACLES_MAX];
-    dGeomID               stone[DIG_OBSTACLES_MAX];
-    struct dig_rock_touch touch[DIG_OBSTACLES_MAX];
-    struct dig_ode_scene *scene; // moves them; NULL: all are fixed
+    size_t                      rocks;
+    struct dig_rock             rock[DIG_OBSTACLES_MAX];
+    dGeomID                     rock_geom[DIG_OBSTACLES_MAX];
+    struct dig_rock_contact_law rock_law[DIG_OBSTACLES_MAX];
+    struct dig_ode_scene       *scene; // moves them; NULL: all are fixed
 
-    struct dig_ode_memory memory;
-    bool                  started;
+    struct dig_ode_history history;
+    bool                   started;
 
     // Of the step under way.
     const struct dig_tool *tool;
     struct dig_wrench      on_tool;
-    double                 share; // of a kick
-    bool                   short_of_memory;
+    double                 kick_fraction; // of a kick
+    bool                   out_of_memory;
 };
 
 /// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and a

@@ -1,6 +1,6 @@
 #include "offline_dem/shapes/tool.h"
 
-#include "offline_dem/shapes/bucket_near.h"
+#include "offline_dem/shapes/bucket_surface.h"
 
 #include <math.h>
 
@@ -30,7 +30,7 @@ void dig_tool_closest(const struct dig_tool *const tool, const size_t plate, con
     dig_bucket_closest(&tool->bucket, plate, body_m, closest_m);
 }
 
-bool dig_tool_holds(const struct dig_tool *const tool, const double world_m[const 3])
+bool dig_tool_contains(const struct dig_tool *const tool, const double world_m[const 3])
 {
     double body_m[3];
     dig_tool_to_body(tool, world_m, body_m);

@@ -49,8 +49,8 @@ DIG_BOTH static inline void dig_tool_to_body(const struct dig_tool *const tool,
 }
 
 /// A direction, body to world.
-DIG_BOTH static inline void dig_tool_turn(const struct dig_tool *const tool, const double body[3],
-                                          double world[3])
+DIG_BOTH static inline void dig_tool_rotate(const struct dig_tool *const tool, const double body[3],
+                                            double world[3])
 {
     const double x = tool->cosine * body[0] - tool->sine * body[2];
     const double z = tool->sine * body[0] + tool->cosine * body[2];
@@ -65,7 +65,7 @@ void dig_tool_closest(const struct dig_tool *tool, size_t plate, const double bo
                       double closest_m[3]);
 
 /// True when a point of the world lies inside the profile's closed polygon and the width: carried.
-bool dig_tool_holds(const struct dig_tool *tool, const double world_m[3]);
+bool dig_tool_contains(const struct dig_tool *tool, const double world_m[3]);
 
 /// Farthest any point of the tool is in `to` from where it was in `from`: an upper bound.
 double dig_tool_travel_m(const struct dig_tool *tool, struct dig_pose from, struct dig_pose to);

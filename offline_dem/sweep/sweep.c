@@ -1,7 +1,7 @@
 #include "offline_dem/sweep/sweep.h"
 
+#include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/variant.h"
-#include "offline_dem/dig/watched_pour.h"
 #include "offline_dem/sweep/worker.h"
 
 #include <assert.h>
@@ -12,17 +12,34 @@
 #include <string.h>
 #include <time.h>
 
-#define ATTEMPTS_MAX 2 // of a bed whose worker was killed
-#define WAIT_ms      250
-#define TELL_EVERY_s 1.0
+#define ATTEMPTS_MAX   2 // of a bed whose worker was killed
+#define WAIT_ms        250
+#define REPORT_EVERY_s 1.0
+
+static enum dig_status pour(const struct dig_scene *const  scene,
+                            const struct dig_gravel *const gravel, const uint64_t seed,
+                            const struct dig_progress *const progress, struct dig_bed *const bed,
+                            struct dig_error *const error)
+{
+    return dig_bed_pour_checked(NULL, scene, gravel, seed, progress, bed, error);
+}
+
+static enum dig_status dig(const struct dig_scene *const  scene,
+                           const struct dig_gravel *const gravel, const struct dig_bed *const bed,
+                           const struct dig_trajectory *const trajectory, const char *const vtk_dir,
+                           const struct dig_progress *const progress,
+                           struct dig_recording *const recording, struct dig_error *const error)
+{
+    return dig_dig_run(NULL, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
+}
 
 struct dig_engine dig_engine_kernel(void)
 {
     return (struct dig_engine){
         .name       = "kernel",
         .version    = DIG_VERSION "+" DIG_NUMERICS,
-        .pour       = dig_bed_pour_watched,
-        .dig        = dig_dig_run,
+        .pour       = pour,
+        .dig        = dig,
         .bed_finish = dig_bed_finish,
         .vary       = dig_variant_make,
     };
@@ -40,14 +57,14 @@ struct sweep {
     size_t                          next; // job to be given out
     struct dig_worker              *worker;
     struct pollfd                  *poll;
-    double                          from_s, told_s;
+    double                          from_s, reported_s;
     size_t                          done_before; // when the sweep began
     bool                            stopping;
 };
 
 // The first failure is the one that is told; the sweep goes on with the other beds.
-static void note_failure(struct sweep *const s, const struct dig_job *const job, const size_t digs,
-                         const char *const why)
+static void record_failure(struct sweep *const s, const struct dig_job *const job,
+                           const size_t digs, const char *const why)
 {
     s->state->failed += digs;
     if (s->status == DIG_OK) {
@@ -84,18 +101,18 @@ static void update(struct sweep *const s)
     st->left_s         = mine > 0.0 ? st->elapsed_s * fmax(total - mine, 0.0) / mine : (double)NAN;
 }
 
-static void tell(struct sweep *const s, const bool now)
+static void report_progress(struct sweep *const s, const bool now)
 {
     const double at_s = dig_sweep_now_s();
-    if (s->options->tell != NULL && (now || at_s - s->told_s >= TELL_EVERY_s)) {
-        s->told_s = at_s;
+    if (s->options->report != NULL && (now || at_s - s->reported_s >= REPORT_EVERY_s)) {
+        s->reported_s = at_s;
         update(s);
-        s->options->tell(s->options->context, s->state);
+        s->options->report(s->options->context, s->state);
     }
 }
 
 // The digs of a job that are not stored: what a second attempt has to do.
-static void strike_out(struct dig_job *const job, const size_t trajectory)
+static void remove_dig(struct dig_job *const job, const size_t trajectory)
 {
     size_t kept = 0;
     for (size_t i = 0; i < job->digs; i++) {
@@ -142,7 +159,7 @@ static void take_message(struct sweep *const s, struct dig_worker *const w,
         struct dig_error      error  = { "" };
         const enum dig_status status = store_curve(s, w, m, rows, &error);
         if (status == DIG_EINVAL) {
-            note_failure(s, &w->job, 1, error.text); // a curve no table takes
+            record_failure(s, &w->job, 1, error.text); // a curve no table takes
             break;
         }
         if (status != DIG_OK) {
@@ -150,20 +167,20 @@ static void take_message(struct sweep *const s, struct dig_worker *const w,
             s->stopping = true;
             break;
         }
-        strike_out(&w->job, m->trajectory);
+        remove_dig(&w->job, m->trajectory);
         s->state->digs_done++;
-        tell(s, true);
+        report_progress(s, true);
         break;
     }
     case DIG_MESSAGE_FAILURE:
         w->ended = true;
-        note_failure(s, &w->job, w->job.digs, m->text);
+        record_failure(s, &w->job, w->job.digs, m->text);
         break;
     case DIG_MESSAGE_END: w->ended = true; break;
     }
 }
 
-static void drain(struct sweep *const s, struct dig_worker *const w)
+static void take_messages(struct sweep *const s, struct dig_worker *const w)
 {
     struct dig_message    message;
     struct dig_force_row *rows = NULL;
@@ -212,11 +229,11 @@ static void reap(struct sweep *const s, struct dig_worker *const w)
     } else if (attempts >= ATTEMPTS_MAX) {
         char why[80];
         (void)snprintf(why, sizeof why, "the worker was killed by signal %d, twice", signal);
-        note_failure(s, &job, job.digs, why);
+        record_failure(s, &job, job.digs, why);
     }
 }
 
-static void give_out(struct sweep *const s)
+static void start_workers(struct sweep *const s)
 {
     for (size_t i = 0; i < s->options->workers; i++) {
         if (s->worker[i].pid == 0 && s->next < s->queue.jobs && may_start(s)) {
@@ -235,7 +252,7 @@ static void stop_workers(struct sweep *const s)
 }
 
 // Waits for any worker to say something; false when there is none left.
-static bool listen_once(struct sweep *const s)
+static bool poll_workers(struct sweep *const s)
 {
     nfds_t running = 0;
     for (size_t i = 0; i < s->options->workers; i++) {
@@ -251,7 +268,7 @@ static bool listen_once(struct sweep *const s)
         struct dig_worker *const w = &s->worker[i];
         if (w->pid != 0) {
             const bool open = dig_worker_read(w);
-            drain(s, w);
+            take_messages(s, w);
             if (!open) {
                 reap(s, w);
             }
@@ -262,16 +279,16 @@ static bool listen_once(struct sweep *const s)
 
 static void run(struct sweep *const s)
 {
-    bool told_to_stop = false;
+    bool has_stopped_workers = false;
     do {
         s->stopping = s->stopping || (s->options->stop != NULL && *s->options->stop != 0);
-        if (s->stopping && !told_to_stop) {
+        if (s->stopping && !has_stopped_workers) {
             stop_workers(s);
-            told_to_stop = true;
+            has_stopped_workers = true;
         }
-        give_out(s);
-        tell(s, false);
-    } while (listen_once(s));
+        start_workers(s);
+        report_progress(s, false);
+    } while (poll_workers(s));
 }
 
 enum dig_status dig_sweep_run(const struct dig_scene *const         scene,

@@ -57,7 +57,7 @@ struct dig_sweep_options {
     // Set to non-zero by a signal handler: workers are stopped and what they finished is kept.
     const volatile sig_atomic_t *stop;
     // Called about every second and after each dig stored; NULL: not at all.
-    void (*tell)(void *context, const struct dig_sweep_state *state);
+    void (*report)(void *context, const struct dig_sweep_state *state);
     void *context;
 };
 

@@ -12,8 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define TELL_EVERY_s 0.5
-#define ROWS_MAX     1000000 // of one curve; more is a broken pipe's noise
+#define REPORT_EVERY_s 0.5
+#define ROWS_MAX       1000000 // of one curve; more is a broken pipe's noise
 
 double dig_sweep_now_s(void)
 {
@@ -29,10 +29,10 @@ struct child {
     const struct dig_job    *job;
     double                   deadline_s;
     int                      fd;
-    double                   total_s;  // simulated, over the whole job, as far as can be known
-    double                   before_s; // in what is finished
-    double                   share_s;  // of what is under way
-    double                   told_s;   // wall clock
+    double                   total_s;    // simulated, over the whole job, as far as can be known
+    double                   before_s;   // in what is finished
+    double                   current_s;  // of what is under way
+    double                   reported_s; // wall clock
 };
 
 static void send_all(const int fd, const void *const data, const size_t size)
@@ -49,16 +49,16 @@ static void send_all(const int fd, const void *const data, const size_t size)
     }
 }
 
-static int tell(void *const context, const double done_s, const double total_s)
+static int send_progress(void *const context, const double done_s, const double total_s)
 {
     struct child *const child = context;
     const double        now_s = dig_sweep_now_s();
-    if (now_s - child->told_s >= TELL_EVERY_s && total_s > 0.0) {
-        child->told_s                    = now_s;
+    if (now_s - child->reported_s >= REPORT_EVERY_s && total_s > 0.0) {
+        child->reported_s                = now_s;
         const struct dig_message message = {
             .kind = DIG_MESSAGE_PROGRESS,
             .fraction =
-                (child->before_s + child->share_s * fmin(done_s / total_s, 1.0)) / child->total_s,
+                (child->before_s + child->current_s * fmin(done_s / total_s, 1.0)) / child->total_s,
         };
         send_all(child->fd, &message, sizeof message);
     }
@@ -105,7 +105,7 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
         enum dig_status status = dig_approach_make(child->scene, &child->scene->trajectory[at],
                                                    &child->job->approach, &t, &error);
         if (status == DIG_OK) {
-            child->share_s = dig_trajectory_duration_s(&t);
+            child->current_s = dig_trajectory_duration_s(&t);
             status = child->engine->dig(child->scene, &child->job->gravel, bed, &t, NULL, progress,
                                         &recording, &error);
         }
@@ -113,7 +113,7 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
             send_failure(child, status, &error);
             return false;
         }
-        child->before_s += child->share_s;
+        child->before_s += child->current_s;
 
         const double             now_s   = dig_sweep_now_s();
         const struct dig_message message = {
@@ -132,8 +132,8 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
 }
 
 // The scene the job's bed is poured in: the plain one, or *varied, with the job's effect in it.
-static enum dig_status vary(struct child *const child, struct dig_scene *const varied,
-                            struct dig_error *const error)
+static enum dig_status apply_effect(struct child *const child, struct dig_scene *const varied,
+                                    struct dig_error *const error)
 {
     const struct dig_job *const job    = child->job;
     const int                   effect = dig_effect_find(job->effect);
@@ -154,14 +154,14 @@ static enum dig_status vary(struct child *const child, struct dig_scene *const v
 
 static void work(struct child *const child)
 {
-    const struct dig_progress progress = { tell, child };
+    const struct dig_progress progress = { send_progress, child };
     const double              from_s   = dig_sweep_now_s();
     struct dig_scene          varied;
     struct dig_bed            bed    = { 0 };
     struct dig_error          error  = { "" };
-    enum dig_status           status = vary(child, &varied, &error);
+    enum dig_status           status = apply_effect(child, &varied, &error);
     child->total_s                   = job_s(child->scene, child->job);
-    child->share_s                   = pouring_s(child->scene);
+    child->current_s                 = pouring_s(child->scene);
     if (status == DIG_OK) {
         status = child->engine->pour(child->scene, &child->job->gravel, child->job->seed, &progress,
                                      &bed, &error);
@@ -170,7 +170,7 @@ static void work(struct child *const child)
         send_failure(child, status, &error);
         return;
     }
-    child->before_s += child->share_s;
+    child->before_s += child->current_s;
     if (dig_all(child, &progress, &bed, from_s)) {
         const struct dig_message end = { .kind = DIG_MESSAGE_END };
         send_all(child->fd, &end, sizeof end);

@@ -26,7 +26,7 @@ static void place_clump(const double period_m, const struct dig_clump_shape *con
     dig_clump_orientation(shape, (const double(*)[3])at_m, rotation);
     dig_rigid_quaternion((const double(*)[3])rotation, clump->body.q);
     double arm[3];
-    dig_rigid_turn(clump->body.q, shape->at[0], arm);
+    dig_rigid_rotate(clump->body.q, shape->at[0], arm);
     for (int r = 0; r < 3; r++) {
         clump->body.x_m[r] = at_m[0][r] - clump->unit_m * arm[r];
         for (int c = 0; c < 3; c++) {
@@ -47,32 +47,32 @@ enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
         *bodies = NULL;
         return DIG_OK;
     }
-    const size_t             clumps = shape->spheres > 0 ? bed->grains / shape->spheres : 0;
-    struct dig_bodies *const made   = calloc(1, sizeof *made);
-    struct dig_clump_body   *clump  = calloc(clumps + 1, sizeof *clump);
-    uint32_t *const          of     = calloc(bed->grains + 1, sizeof *of);
-    if (made == NULL || clump == NULL || of == NULL) {
+    const size_t             clumps   = shape->spheres > 0 ? bed->grains / shape->spheres : 0;
+    struct dig_bodies *const made     = calloc(1, sizeof *made);
+    struct dig_clump_body   *clump    = calloc(clumps + 1, sizeof *clump);
+    uint32_t *const          clump_of = calloc(bed->grains + 1, sizeof *clump_of);
+    if (made == NULL || clump == NULL || clump_of == NULL) {
         free(made);
         free(clump);
-        free(of);
+        free(clump_of);
         return DIG_ENOMEM;
     }
     *made = (struct dig_bodies){
         .shape = *shape, .clumps = clumps, .clump = clump, .obstacles = dig_obstacles_make(scene)
     };
-    dig_obstacles_place(&made->obstacles, bed);
+    dig_obstacles_load_poses(&made->obstacles, bed);
     for (size_t b = 0; b < clumps; b++) {
         const size_t first = b * shape->spheres;
         place_clump(dig_scene_period_m(scene), shape, bed, first, body_kg[first], fall_mps,
                     &clump[b]);
         for (size_t k = 0; k < shape->spheres; k++) {
-            of[first + k] = (uint32_t)(b + 1);
+            clump_of[first + k] = (uint32_t)(b + 1);
         }
     }
     if (clumps > 0) {
-        grains->clump = of;
+        grains->clump = clump_of;
     } else {
-        free(of);
+        free(clump_of);
     }
     *bodies = made;
     return DIG_OK;
@@ -88,11 +88,11 @@ void dig_bodies_destroy(struct dig_bodies *const bodies)
     free(bodies);
 }
 
-enum dig_status dig_bodies_pick(struct dig_world *const world)
+enum dig_status dig_bodies_detect(struct dig_world *const world)
 {
     return world->bodies->obstacles.rocks == 0
                ? DIG_OK
-               : dig_obstacles_pick(&world->bodies->obstacles, world);
+               : dig_obstacles_detect(&world->bodies->obstacles, world);
 }
 
 static void step_clump(struct dig_world *const world, const struct dig_clump_shape *const shape,
@@ -107,11 +107,11 @@ static void step_clump(struct dig_world *const world, const struct dig_clump_sha
                    world->grains.motion);
 }
 
-void dig_bodies_push(struct dig_world *const world)
+void dig_bodies_apply_loads(struct dig_world *const world)
 {
     struct dig_bodies *const bodies = world->bodies;
     if (bodies->obstacles.rocks > 0) {
-        dig_obstacles_push(&bodies->obstacles, world);
+        dig_obstacles_add_loads(&bodies->obstacles, world);
     }
     for (size_t b = 0; b < bodies->clumps; b++) {
         if (!bodies->clump[b].gone) {
@@ -120,8 +120,8 @@ void dig_bodies_push(struct dig_world *const world)
     }
 }
 
-void dig_bodies_let_move(struct dig_bodies *const bodies, struct dig_ode_scene *const ode,
-                         const struct dig_law_material *const material)
+void dig_bodies_release_rocks(struct dig_bodies *const bodies, struct dig_ode_scene *const ode,
+                              const struct dig_law_material *const material)
 {
     struct dig_obstacles *const o = &bodies->obstacles;
     for (size_t i = 0; i < o->rocks; i++) {
@@ -133,26 +133,26 @@ void dig_bodies_let_move(struct dig_bodies *const bodies, struct dig_ode_scene *
         const double        least_m =
             rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
         const struct dig_law law = dig_law_wall(material, least_m, rock->body.mass_kg);
-        bodies->touch[i] =
-            (struct dig_rock_touch){ law.normal_Npm, law.damping_Nspm, law.friction };
+        bodies->rock_law[i] =
+            (struct dig_rock_contact_law){ law.normal_Npm, law.damping_Nspm, law.friction };
         bodies->ode = ode;
     }
     if (bodies->ode != NULL) {
-        dig_ode_rocks_put(ode, o->rocks, o->rock);
+        dig_ode_rocks_set(ode, o->rocks, o->rock);
     }
 }
 
-void dig_bodies_advance(struct dig_world *const world)
+void dig_bodies_step_rocks(struct dig_world *const world)
 {
     struct dig_bodies *const bodies = world->bodies;
     if (bodies->ode != NULL) {
-        dig_ode_rocks_step(bodies->ode, world->tool, bodies->touch, world->dt_s,
+        dig_ode_rocks_step(bodies->ode, world->tool, bodies->rock_law, world->dt_s,
                            bodies->obstacles.rock, &world->on_tool);
-        world->stale = world->stale || dig_obstacles_have_left(&bodies->obstacles);
+        world->stale = world->stale || dig_obstacles_left_margin(&bodies->obstacles);
     }
 }
 
-void dig_bodies_move(struct dig_bodies *const bodies, const uint32_t place[])
+void dig_bodies_renumber(struct dig_bodies *const bodies, const uint32_t new_index[])
 {
     if (bodies == NULL) {
         return;
@@ -160,9 +160,9 @@ void dig_bodies_move(struct dig_bodies *const bodies, const uint32_t place[])
     for (size_t b = 0; b < bodies->clumps; b++) {
         struct dig_clump_body *const clump = &bodies->clump[b];
         for (size_t k = 0; k < bodies->shape.spheres && !clump->gone; k++) {
-            clump->member[k] = place[clump->member[k]];
+            clump->member[k] = new_index[clump->member[k]];
             clump->gone      = clump->member[k] == UINT32_MAX;
         }
     }
-    dig_obstacles_move(&bodies->obstacles, place);
+    dig_obstacles_renumber(&bodies->obstacles, new_index);
 }

@@ -6,11 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HELD 0x80000000U // marks a place in a list of held contacts
-
 // The kernel works in fours: beyond the last contact, where grains may stand that are gone by now,
 // it is to find a grain that exists.
-static void pad(struct dig_contacts *const list)
+static void pad_list(struct dig_contacts *const list)
 {
     for (size_t c = list->n; c % 8 != 0; c++) {
         list->i[c] = 0;
@@ -19,15 +17,15 @@ static void pad(struct dig_contacts *const list)
 }
 
 // Puts the fresh lists in the place of the old, or gives them up. The others are filled next time.
-static void adopt(const enum dig_status status, const size_t lists, struct dig_contacts old[],
-                  struct dig_contacts fresh[])
+static void swap_lists(const enum dig_status status, const size_t lists, struct dig_contacts old[],
+                       struct dig_contacts fresh[])
 {
     for (size_t l = 0; l < lists; l++) {
         if (status == DIG_OK) {
             const struct dig_contacts before = old[l];
             old[l]                           = fresh[l];
             fresh[l]                         = before;
-            pad(&old[l]);
+            pad_list(&old[l]);
         }
         fresh[l].n = 0;
     }
@@ -52,129 +50,105 @@ static enum dig_status make_room(uint32_t **const table, size_t *const room, con
 }
 
 // Writes where each contact of a list stands, or all ones again.
-static void index_list(const struct dig_contacts *const list, const uint32_t mark, const bool clear,
-                       uint32_t was[])
+static void index_list(const struct dig_contacts *const list, const bool clear, uint32_t old[])
 {
     for (size_t c = 0; c < list->n; c++) {
-        if (list->key[c] != DIG_NO_SLOT) {
-            was[list->key[c]] = clear ? UINT32_MAX : ((uint32_t)c | mark);
+        if (list->slot[c] != DIG_NO_SLOT) {
+            old[list->slot[c]] = clear ? UINT32_MAX : (uint32_t)c;
         }
     }
 }
 
-static void index_pairs(struct dig_world *const w, const bool all, const bool clear)
+static void index_pairs(struct dig_world *const w, const bool clear)
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        index_list(&w->pair[l], 0, clear, w->pick.was_pair);
-        if (all) {
-            index_list(&w->held_pair[l], HELD, clear, w->pick.was_pair);
-        }
+        index_list(&w->pair[l], clear, w->detection.old_pair);
     }
 }
 
 // The pairs of grain i that are close: written whether they are or not, because a branch would be
 // guessed wrong every third time.
-static size_t find_close(const struct dig_world *const w, const uint32_t i, uint32_t close[])
+static size_t find_near_pairs(const struct dig_world *const w, const uint32_t i,
+                              uint32_t near_pairs[])
 {
-    const struct dig_grains *const     g     = &w->grains;
-    const struct dig_neighbours *const near  = &w->near_list;
-    const double *const                x     = g->motion[i].x_m;
-    const double                       own_m = g->kind[g->of[i]].radius_m + w->at_m[i][3];
-    const double                       per_m = dig_period_inverse(w->period_y_m);
-    size_t                             count = 0;
-    for (uint32_t s = near->start[i]; s < near->start[i + 1]; s++) {
-        const uint32_t      j       = near->other[s];
-        const double *const y       = g->motion[j].x_m;
-        const double        dy_m    = dig_period_fold(x[1] - y[1], w->period_y_m, per_m);
-        const double        d[3]    = { x[0] - y[0], dy_m, x[2] - y[2] };
-        const double        reach_m = own_m + g->kind[g->of[j]].radius_m + w->at_m[j][3];
-        close[count]                = s;
+    const struct dig_grains *const     g          = &w->grains;
+    const struct dig_neighbours *const neighbours = &w->neighbours;
+    const double *const                x          = g->motion[i].x_m;
+    const double own_m          = g->type[g->type_of[i]].radius_m + w->reference_m[i][3];
+    const double inverse_period = dig_period_inverse(w->period_y_m);
+    size_t       count          = 0;
+    for (uint32_t s = neighbours->start[i]; s < neighbours->start[i + 1]; s++) {
+        const uint32_t      j    = neighbours->other[s];
+        const double *const y    = g->motion[j].x_m;
+        const double        dy_m = dig_period_fold(x[1] - y[1], w->period_y_m, inverse_period);
+        const double        d[3] = { x[0] - y[0], dy_m, x[2] - y[2] };
+        const double reach_m     = own_m + g->type[g->type_of[j]].radius_m + w->reference_m[j][3];
+        near_pairs[count]        = s;
         count += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m;
     }
     return count;
 }
 
 // One pair to the list it belongs in. Grains of unlike kinds stand in the order of their kinds.
-static enum dig_status add_pair(struct dig_world *const w, const uint32_t i, const uint32_t s,
-                                const bool all)
+static enum dig_status add_pair(struct dig_world *const w, const uint32_t i, const uint32_t s)
 {
-    const uint8_t *const of   = w->grains.of;
-    const uint32_t       j    = w->near_list.other[s];
-    const bool           held = dig_rest_holds(&w->rest, i) && dig_rest_holds(&w->rest, j);
-    if (held && !all) {
-        return DIG_OK;
-    }
-    const bool     turn = of[i] > of[j];
-    const uint32_t a    = turn ? j : i;
-    const uint32_t b    = turn ? i : j;
-    const size_t   l    = (size_t)of[a] * DIG_GRAIN_TYPES_MAX + of[b];
-    const uint32_t was  = w->pick.was_pair[s];
-
-    const struct dig_contacts *const from = was == DIG_NO_SLOT  ? NULL
-                                            : (was & HELD) != 0 ? &w->held_pair[l]
-                                                                : &w->pair[l];
-    return dig_contacts_add(held ? &w->pick.held_pair[l] : &w->pick.pair[l], a, b, s, from,
-                            was & ~HELD);
+    const uint8_t *const type_of = w->grains.type_of;
+    const uint32_t       j       = w->neighbours.other[s];
+    const bool           swapped = type_of[i] > type_of[j];
+    const uint32_t       a       = swapped ? j : i;
+    const uint32_t       b       = swapped ? i : j;
+    const size_t         l       = (size_t)type_of[a] * DIG_GRAIN_TYPES_MAX + type_of[b];
+    const uint32_t       old     = w->detection.old_pair[s];
+    return dig_contacts_add(&w->detection.pair[l], a, b, s, old == DIG_NO_SLOT ? NULL : &w->pair[l],
+                            old);
 }
 
-enum dig_status dig_contact_detection_pairs(struct dig_world *const w, const bool all)
+enum dig_status dig_contact_detection_pairs(struct dig_world *const w)
 {
-    const size_t n      = w->grains.n;
-    const size_t slots  = w->near_list.start[n];
-    const bool   rested = w->rest.grain != NULL;
-    if (make_room(&w->pick.was_pair, &w->pick.pairs, slots + 1) != DIG_OK ||
-        make_room(&w->pick.close, &w->pick.closes, slots + 1) != DIG_OK) {
+    const size_t n     = w->grains.n;
+    const size_t slots = w->neighbours.start[n];
+    if (make_room(&w->detection.old_pair, &w->detection.pair_room, slots + 1) != DIG_OK ||
+        make_room(&w->detection.near_pairs, &w->detection.near_room, slots + 1) != DIG_OK) {
         return DIG_ENOMEM;
     }
-    index_pairs(w, all, false);
+    index_pairs(w, false);
     enum dig_status status = DIG_OK;
     for (uint32_t i = 0; i < n && status == DIG_OK; i++) {
-        if (rested && !all && !w->rest.grain[i].loose) {
-            continue;
-        }
-        const size_t count = find_close(w, i, w->pick.close);
+        const size_t count = find_near_pairs(w, i, w->detection.near_pairs);
         for (size_t c = 0; c < count && status == DIG_OK; c++) {
-            status = add_pair(w, i, w->pick.close[c], all);
+            status = add_pair(w, i, w->detection.near_pairs[c]);
         }
     }
-    index_pairs(w, all, true);
-    adopt(status, DIG_PAIR_LISTS, w->pair, w->pick.pair);
-    if (all) {
-        adopt(status, DIG_PAIR_LISTS, w->held_pair, w->pick.held_pair);
-    }
+    index_pairs(w, true);
+    swap_lists(status, DIG_PAIR_LISTS, w->pair, w->detection.pair);
     return status;
 }
 
 static enum dig_status add_surface(struct dig_world *const w, const uint32_t i,
-                                   const size_t surface, const uint32_t known[])
+                                   const size_t surface, const uint32_t old_index[])
 {
-    const size_t   l    = w->grains.of[i] + (surface < w->walls ? 0U : (size_t)DIG_GRAIN_TYPES_MAX);
-    const bool     held = dig_rest_holds(&w->rest, i);
-    const uint32_t was  = known[surface];
-
-    const struct dig_contacts *const from = was == DIG_NO_SLOT  ? NULL
-                                            : (was & HELD) != 0 ? &w->held_surface[l]
-                                                                : &w->surface[l];
-    return dig_contacts_add(held ? &w->pick.held_surface[l] : &w->pick.surface[l], i,
-                            (uint32_t)surface, (uint32_t)surface, from, was & ~HELD);
+    const size_t l = w->grains.type_of[i] + (surface < w->walls ? 0U : (size_t)DIG_GRAIN_TYPES_MAX);
+    const uint32_t old = old_index[surface];
+    return dig_contacts_add(&w->detection.surface[l], i, (uint32_t)surface, (uint32_t)surface,
+                            old == DIG_NO_SLOT ? NULL : &w->surface[l], old);
 }
 
-static enum dig_status pick_walls(struct dig_world *const w, const uint32_t i, const double reach_m,
-                                  const uint32_t known[])
+static enum dig_status detect_walls(struct dig_world *const w, const uint32_t i,
+                                    const double reach_m, const uint32_t old_index[])
 {
     const double *const x      = w->grains.motion[i].x_m;
     enum dig_status     status = DIG_OK;
     for (size_t s = 0; s < w->walls && status == DIG_OK; s++) {
         const double *const n = w->wall[s].normal;
         if (n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - w->wall[s].offset_m < reach_m) {
-            status = add_surface(w, i, s, known);
+            status = add_surface(w, i, s, old_index);
         }
     }
     return status;
 }
 
-static enum dig_status pick_plates(struct dig_world *const w, const uint32_t i,
-                                   const double reach_m, const uint32_t known[])
+static enum dig_status detect_plates(struct dig_world *const w, const uint32_t i,
+                                     const double reach_m, const uint32_t old_index[])
 {
     const struct dig_tool *const tool  = w->tool;
     const double *const          x     = w->grains.motion[i].x_m;
@@ -193,54 +167,46 @@ static enum dig_status pick_plates(struct dig_world *const w, const uint32_t i,
         dig_tool_closest(tool, p, body_m, c);
         const double d[3] = { body_m[0] - c[0], body_m[1] - c[1], body_m[2] - c[2] };
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m) {
-            status = add_surface(w, i, w->walls + p, known);
+            status = add_surface(w, i, w->walls + p, old_index);
         }
     }
     return status;
 }
 
-static void index_surfaces(struct dig_world *const w, const size_t surfaces, const bool all,
-                           const bool clear)
+static void index_surfaces(struct dig_world *const w, const size_t surfaces, const bool clear)
 {
-    for (size_t l = 0; l < 2 * DIG_SURFACE_LISTS; l++) {
-        const bool                       held = l >= DIG_SURFACE_LISTS;
-        const struct dig_contacts *const list =
-            held ? &w->held_surface[l - DIG_SURFACE_LISTS] : &w->surface[l];
-        for (size_t c = 0; c < list->n && (all || !held); c++) {
+    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
+        const struct dig_contacts *const list = &w->surface[l];
+        for (size_t c = 0; c < list->n; c++) {
             // Plates are beyond the end when the tool has been taken away.
             if (list->j[c] < surfaces) {
-                w->pick.was_surface[list->i[c] * surfaces + list->j[c]] =
-                    clear ? UINT32_MAX : ((uint32_t)c | (held ? HELD : 0));
+                w->detection.old_surface[list->i[c] * surfaces + list->j[c]] =
+                    clear ? UINT32_MAX : (uint32_t)c;
             }
         }
     }
 }
 
-enum dig_status dig_contact_detection_surfaces(struct dig_world *const w, const bool all)
+enum dig_status dig_contact_detection_surfaces(struct dig_world *const w)
 {
     const struct dig_grains *const g        = &w->grains;
     const size_t                   surfaces = w->walls + (w->tool != NULL ? w->tool->plates : 0);
-    if (make_room(&w->pick.was_surface, &w->pick.surfaces, g->n * surfaces + 1) != DIG_OK) {
+    if (make_room(&w->detection.old_surface, &w->detection.surface_room, g->n * surfaces + 1) !=
+        DIG_OK) {
         return DIG_ENOMEM;
     }
-    index_surfaces(w, surfaces, all, false);
+    index_surfaces(w, surfaces, false);
     enum dig_status status = DIG_OK;
     for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
-        if (!all && dig_rest_holds(&w->rest, i)) {
-            continue;
-        }
-        const double          reach_m = g->kind[g->of[i]].radius_m + w->at_m[i][3];
-        const uint32_t *const known   = w->pick.was_surface + i * surfaces;
-        status                        = pick_walls(w, i, reach_m, known);
+        const double          reach_m   = g->type[g->type_of[i]].radius_m + w->reference_m[i][3];
+        const uint32_t *const old_index = w->detection.old_surface + i * surfaces;
+        status                          = detect_walls(w, i, reach_m, old_index);
         if (w->tool != NULL && status == DIG_OK) {
-            status = pick_plates(w, i, reach_m + w->tool_margin_m, known);
+            status = detect_plates(w, i, reach_m + w->tool_margin_m, old_index);
         }
     }
-    index_surfaces(w, surfaces, all, true);
-    adopt(status, DIG_SURFACE_LISTS, w->surface, w->pick.surface);
-    if (all) {
-        adopt(status, DIG_SURFACE_LISTS, w->held_surface, w->pick.held_surface);
-    }
+    index_surfaces(w, surfaces, true);
+    swap_lists(status, DIG_SURFACE_LISTS, w->surface, w->detection.surface);
     return status;
 }
 
@@ -251,14 +217,12 @@ static void finish_lists(const size_t lists, struct dig_contacts list[])
     }
 }
 
-void dig_contact_detection_finish(struct dig_contact_detection *const pick)
+void dig_contact_detection_finish(struct dig_contact_detection *const detection)
 {
-    free(pick->was_pair);
-    free(pick->was_surface);
-    free(pick->close);
-    finish_lists(DIG_PAIR_LISTS, pick->pair);
-    finish_lists(DIG_PAIR_LISTS, pick->held_pair);
-    finish_lists(DIG_SURFACE_LISTS, pick->surface);
-    finish_lists(DIG_SURFACE_LISTS, pick->held_surface);
-    *pick = (struct dig_contact_detection){ 0 };
+    free(detection->old_pair);
+    free(detection->old_surface);
+    free(detection->near_pairs);
+    finish_lists(DIG_PAIR_LISTS, detection->pair);
+    finish_lists(DIG_SURFACE_LISTS, detection->surface);
+    *detection = (struct dig_contact_detection){ 0 };
 }

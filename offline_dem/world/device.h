@@ -10,7 +10,7 @@
 //
 // What a thread does stands in device_pair.h, device_surfaces.h and device_grain.h, in C for both
 // sides: a device that rounds as the processor does gives the same bits as the loop of
-// device_host.c, which tests run; but for clumps, whose sines are the device's own.
+// tests/offline_dem/host_device.c; but for clumps, whose sines are the device's own.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_DEVICE_H
 #define DIG_OFFLINE_DEM_WORLD_DEVICE_H
@@ -19,7 +19,7 @@
 #include "offline_dem/kernel/grains.h"
 #include "offline_dem/law/law.h"
 #include "offline_dem/law/wall.h"
-#include "offline_dem/shapes/rock_near.h"
+#include "offline_dem/shapes/rock_surface.h"
 #include "offline_dem/shapes/tool.h"
 
 #include <stdbool.h>
@@ -37,52 +37,52 @@
 /// the place of the neighbour list, under its row grain.
 struct dig_device_view {
     uint32_t n, pairs, clumps;
-    uint32_t surfaces_used; // numbers below it: as many rows of surface count
+    uint32_t surface_rows; // numbers below it: as many rows of surface count
 
     // Fixed between two uploads.
-    const uint8_t *of;               // [n] kinds
-    const double (*at_m)[4];         // [n] where the list was made, and the margin
-    uint32_t       *row;             // [pairs] the grain a pair stands under, and
-    const uint32_t *other;           // [pairs] the other one
-    uint32_t       *first;           // [n + 1] a grain's pushes are first[i] … first[i + 1] - 1
-    uint32_t (*push_of)[2];          // [pairs] places of the pushes on row and on other
-    const struct dig_law  *pair_law; // [DIG_DEVICE_LAWS] row's kind x DIG_GRAIN_TYPES_MAX + other's
-    const struct dig_law  *wall_law; // [DIG_GRAIN_TYPES_MAX]
-    const struct dig_law  *tool_law; // [DIG_GRAIN_TYPES_MAX]
-    const struct dig_kind *kind;     // [DIG_GRAIN_TYPES_MAX]
+    const uint8_t *type_of;         // [n] kinds
+    const double (*reference_m)[4]; // [n] where the list was made, and the margin
+    uint32_t       *pair_i;         // [pairs] the grain a pair stands under, and
+    const uint32_t *pair_j;         // [pairs] the other one
+    uint32_t       *load_start;     // [n + 1] a grain's pushes are first[i] … first[i + 1] - 1
+    uint32_t (*load_index)[2];      // [pairs] places of the pushes on row and on other
+    const struct dig_law *pair_law; // [DIG_DEVICE_LAWS] row's kind x DIG_GRAIN_TYPES_MAX + other's
+    const struct dig_law *wall_law; // [DIG_GRAIN_TYPES_MAX]
+    const struct dig_law *tool_law; // [DIG_GRAIN_TYPES_MAX]
+    const struct dig_grain_type  *type;  // [DIG_GRAIN_TYPES_MAX]
     const struct dig_clump_shape *shape; // of all clumps
 
     // State.
-    struct dig_motion     *motion;    // [n]
-    struct dig_memory     *memory;    // [pairs]
-    uint8_t               *touching;  // [2 pairs] of a push: whether its pair touches
-    struct dig_load       *push;      // [2 pairs] of those that do
-    struct dig_memory     *surface;   // [surfaces_used][n]
-    uint64_t              *surfaces;  // [n] bit s: touches surface s
-    struct dig_load       *outside;   // [n] what walls, tool and rocks do to a grain
-    struct dig_wrench     *on_tool;   // [n] sum over steps of what each grain does to the tool
-    struct dig_clump_body *clump;     // [clumps]
-    uint32_t              *attention; // [DIG_ATTENTIONS] set when some grain …
+    struct dig_motion          *motion;          // [n]
+    struct dig_contact_history *pair_history;    // [pairs]
+    uint8_t                    *touching;        // [2 pairs] of a push: whether its pair touches
+    struct dig_load            *pair_load;       // [2 pairs] of those that do
+    struct dig_contact_history *surface_history; // [surfaces_used][n]
+    uint64_t                   *surface_mask;    // [n] bit s: touches surface s
+    struct dig_load            *surface_load;    // [n] what walls, tool and rocks do to a grain
+    struct dig_wrench          *on_tool; // [n] sum over steps of what each grain does to the tool
+    struct dig_clump_body      *clump;   // [clumps]
+    uint32_t                   *margin_flag; // [DIG_MARGIN_FLAGS] set when some grain …
 };
 
-enum dig_attention {
-    DIG_ATTENTION_SOON, // … will leave its margin within the steps announced
-    DIG_ATTENTION_LEFT, // … has left it, or is nowhere: pairs may have been missed
-    DIG_ATTENTIONS
+enum dig_margin_flag {
+    DIG_MARGIN_NEARLY_LEFT, // … will leave its margin within the steps announced
+    DIG_MARGIN_LEFT,        // … has left it, or is nowhere: pairs may have been missed
+    DIG_MARGIN_FLAGS
 };
 
 /// One step. The tool stands where it is at the time of the present positions.
 struct dig_device_step {
-    double                kick_s, dt_s;
-    double                ahead_s; // how long until attention is asked for again
-    double                gravity_mps2[3];
-    double                period_y_m, per_m; // 0: sides; and the inverse
-    uint32_t              walls;
-    struct dig_wall       wall[DIG_WALLS_MAX];
-    uint32_t              rocks;
-    struct dig_rock_place rock[DIG_OBSTACLES_MAX]; // fixed
-    bool                  digs;                    // whether there is a tool
-    struct dig_tool       tool;
+    double                  kick_s, dt_s;
+    double                  horizon_s; // how long until attention is asked for again
+    double                  gravity_mps2[3];
+    double                  period_y_m, inverse_period; // 0: sides; and the inverse
+    uint32_t                walls;
+    struct dig_wall         wall[DIG_WALLS_MAX];
+    uint32_t                rocks;
+    struct dig_rock_surface rock[DIG_OBSTACLES_MAX]; // fixed
+    bool                    has_tool;                // whether there is a tool
+    struct dig_tool         tool;
 };
 
 /// What a device can do. Every function returns DIG_ENOMEM when the device's memory is short and
@@ -98,7 +98,8 @@ struct dig_device {
     enum dig_status (*step)(struct dig_device *device, const struct dig_device_step *step);
 
     /// Waits for all steps; then what they called for.
-    enum dig_status (*attend)(struct dig_device *device, uint32_t attention[DIG_ATTENTIONS]);
+    enum dig_status (*poll_margins)(struct dig_device *device,
+                                    uint32_t           margin_flag[DIG_MARGIN_FLAGS]);
 
     /// Waits for all steps; then fills motion, clump and on_tool of the view that was uploaded and
     /// clears the device's on_tool. With `all` the memories, touching, surface and surfaces, too.

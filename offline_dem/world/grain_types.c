@@ -22,12 +22,6 @@ static struct own own_of(const struct dig_scene *const scene, const struct dig_g
     return (struct own){ m->friction, m->rolling, m->density_kgpm3, m->restitution };
 }
 
-double dig_grain_types_density(const struct dig_scene *const  scene,
-                               const struct dig_gravel *const gravel, const size_t material)
-{
-    return own_of(scene, gravel, material).density_kgpm3;
-}
-
 struct dig_law_material dig_grain_types_between(const struct dig_scene *const  scene,
                                                 const struct dig_gravel *const gravel,
                                                 const size_t a, const size_t b)
@@ -75,23 +69,23 @@ static double sphere_m3(const double radius_m)
 
 // The kind of a grain, or a new one; DIG_GRAIN_TYPES_MAX when there is no room. Radii from one file
 // or one pouring are equal to the bit, or nearly.
-static size_t find_kind(struct dig_grain_types *const kinds, const struct dig_kind kind,
+static size_t find_kind(struct dig_grain_types *const types, const struct dig_grain_type type,
                         const size_t material, const double contact_kg)
 {
-    for (size_t k = 0; k < kinds->kinds; k++) {
-        if (fabs(kinds->kind[k].radius_m - kind.radius_m) <= 1e-9 * kind.radius_m &&
-            fabs(kinds->contact_kg[k] - contact_kg) <= 1e-6 * contact_kg &&
-            kinds->material[k] == material) {
+    for (size_t k = 0; k < types->types; k++) {
+        if (fabs(types->type[k].radius_m - type.radius_m) <= 1e-9 * type.radius_m &&
+            fabs(types->contact_kg[k] - contact_kg) <= 1e-6 * contact_kg &&
+            types->material[k] == material) {
             return k;
         }
     }
-    if (kinds->kinds == DIG_GRAIN_TYPES_MAX) {
+    if (types->types == DIG_GRAIN_TYPES_MAX) {
         return DIG_GRAIN_TYPES_MAX;
     }
-    const size_t k       = kinds->kinds++;
-    kinds->kind[k]       = kind;
-    kinds->material[k]   = material;
-    kinds->contact_kg[k] = contact_kg;
+    const size_t k       = types->types++;
+    types->type[k]       = type;
+    types->material[k]   = material;
+    types->contact_kg[k] = contact_kg;
     return k;
 }
 
@@ -124,7 +118,7 @@ static enum dig_status make_kind(const struct dig_scene *const       scene,
                                  const struct dig_gravel *const      gravel,
                                  const struct dig_bed *const         bed,
                                  const struct dig_clump_shape *const shape, const size_t i,
-                                 struct dig_kind *const kind, double *const contact_kg,
+                                 struct dig_grain_type *const type, double *const contact_kg,
                                  struct dig_error *const error)
 {
     const double radius_m = bed->radius_m[i];
@@ -138,7 +132,7 @@ static enum dig_status make_kind(const struct dig_scene *const       scene,
                              "bed: grain %zu: material %zu, expected one of the scene's %zu", i,
                              material, scene->bed.materials + 1);
     }
-    const double density_kgpm3 = dig_grain_types_density(scene, gravel, material);
+    const double density_kgpm3 = own_of(scene, gravel, material).density_kgpm3;
     double       mass_kg       = density_kgpm3 * sphere_m3(radius_m);
     *contact_kg                = mass_kg;
     if (shape->spheres > 0) {
@@ -155,10 +149,10 @@ static enum dig_status make_kind(const struct dig_scene *const       scene,
         return dig_error_set(error, DIG_EINVAL,
                              "bed: holds clumps, expected spheres as in the scene");
     }
-    *kind = (struct dig_kind){ .radius_m     = radius_m,
-                               .mass_kg      = mass_kg,
-                               .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
-                               .driven       = shape->spheres > 0 };
+    *type = (struct dig_grain_type){ .radius_m     = radius_m,
+                                     .mass_kg      = mass_kg,
+                                     .inertia_kgm2 = 0.4 * mass_kg * radius_m * radius_m,
+                                     .driven       = shape->spheres > 0 };
     return DIG_OK;
 }
 
@@ -166,45 +160,45 @@ enum dig_status dig_grain_types_find(const struct dig_scene *const       scene,
                                      const struct dig_gravel *const      gravel,
                                      const struct dig_bed *const         bed,
                                      const struct dig_clump_shape *const shape,
-                                     struct dig_grain_types *const kinds, uint8_t of[],
+                                     struct dig_grain_types *const types, uint8_t type_of[],
                                      struct dig_error *const error)
 {
     struct dig_grain_types made = { 0 };
     for (size_t i = 0; i < bed->grains; i++) {
-        struct dig_kind       kind       = { 0 };
+        struct dig_grain_type type       = { 0 };
         double                contact_kg = 0.0;
         const enum dig_status status =
-            make_kind(scene, gravel, bed, shape, i, &kind, &contact_kg, error);
+            make_kind(scene, gravel, bed, shape, i, &type, &contact_kg, error);
         if (status != DIG_OK) {
             return status;
         }
         const size_t material = bed->material == NULL ? 0 : bed->material[i];
-        const size_t k        = find_kind(&made, kind, material, contact_kg);
+        const size_t k        = find_kind(&made, type, material, contact_kg);
         if (k == DIG_GRAIN_TYPES_MAX) {
             return dig_error_set(error, DIG_EINVAL,
                                  "bed: more than %d sizes and materials, expected fewer",
                                  DIG_GRAIN_TYPES_MAX);
         }
-        of[i] = (uint8_t)k;
+        type_of[i] = (uint8_t)k;
     }
-    *kinds = made;
+    *types = made;
     return DIG_OK;
 }
 
 void dig_grain_types_set_laws(const struct dig_scene *const       scene,
                               const struct dig_gravel *const      gravel,
-                              const struct dig_grain_types *const kinds,
+                              const struct dig_grain_types *const types,
                               struct dig_world *const             world)
 {
-    for (size_t a = 0; a < kinds->kinds; a++) {
-        const size_t ma   = kinds->material[a];
-        const double ra_m = kinds->kind[a].radius_m;
-        const double a_kg = kinds->contact_kg[a];
-        for (size_t b = a; b < kinds->kinds; b++) {
+    for (size_t a = 0; a < types->types; a++) {
+        const size_t ma   = types->material[a];
+        const double ra_m = types->type[a].radius_m;
+        const double a_kg = types->contact_kg[a];
+        for (size_t b = a; b < types->types; b++) {
             const struct dig_law_material between =
-                dig_grain_types_between(scene, gravel, ma, kinds->material[b]);
+                dig_grain_types_between(scene, gravel, ma, types->material[b]);
             world->pair_law[a * DIG_GRAIN_TYPES_MAX + b] =
-                dig_law_pair(&between, ra_m, kinds->kind[b].radius_m, a_kg, kinds->contact_kg[b]);
+                dig_law_pair(&between, ra_m, types->type[b].radius_m, a_kg, types->contact_kg[b]);
         }
         const struct dig_law_material wall =
             dig_grain_types_between(scene, gravel, ma, DIG_MATERIAL_WALLS);
@@ -217,19 +211,19 @@ void dig_grain_types_set_laws(const struct dig_scene *const       scene,
 
 double dig_grain_types_time_step_s(const struct dig_scene *const       scene,
                                    const struct dig_gravel *const      gravel,
-                                   const struct dig_grain_types *const kinds)
+                                   const struct dig_grain_types *const types)
 {
     if (scene->time_step_s > 0.0) {
         return scene->time_step_s;
     }
     double least_s = INFINITY;
-    for (size_t k = 0; k < kinds->kinds; k++) {
+    for (size_t k = 0; k < types->types; k++) {
         const struct dig_law_material own =
-            dig_grain_types_between(scene, gravel, kinds->material[k], kinds->material[k]);
+            dig_grain_types_between(scene, gravel, types->material[k], types->material[k]);
         least_s =
             fmin(least_s,
-                 dig_time_step_limit_s(&own, kinds->kind[k].radius_m,
-                                       dig_grain_types_density(scene, gravel, kinds->material[k])));
+                 dig_time_step_limit_s(&own, types->type[k].radius_m,
+                                       own_of(scene, gravel, types->material[k]).density_kgpm3));
     }
     return least_s;
 }

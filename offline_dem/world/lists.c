@@ -9,9 +9,9 @@
 #include <string.h>
 
 // The margins trade rebuilds against idle contacts; measured on a bed of 7000 grains being dug.
-static const struct dig_skin near_skin = { 0.16, 100.0, INFINITY };
-#define CONTACT_RADII 0.008
-#define CONTACT_STEPS 20
+static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
+#define CONTACT_MARGIN_RADII 0.008
+#define CONTACT_MARGIN_STEPS 20
 
 static double speed(const struct dig_motion *const m)
 {
@@ -21,39 +21,38 @@ static double speed(const struct dig_motion *const m)
 static double contact_margin(const struct dig_world *const w, const size_t i)
 {
     const struct dig_grains *const g = &w->grains;
-    return CONTACT_RADII * g->kind[g->of[i]].radius_m +
-           CONTACT_STEPS * w->dt_s * speed(&g->motion[i]);
+    return CONTACT_MARGIN_RADII * g->type[g->type_of[i]].radius_m +
+           CONTACT_MARGIN_STEPS * w->dt_s * speed(&g->motion[i]);
 }
 
-static void move_list(struct dig_contacts *const list, const bool pairs, const uint32_t place[])
+static void renumber_list(struct dig_contacts *const list, const bool pairs,
+                          const uint32_t new_index[])
 {
     size_t kept = 0;
     for (size_t c = 0; c < list->n; c++) {
-        const uint32_t i = place[list->i[c]];
-        const uint32_t j = pairs ? place[list->j[c]] : list->j[c];
+        const uint32_t i = new_index[list->i[c]];
+        const uint32_t j = pairs ? new_index[list->j[c]] : list->j[c];
         if (i == DIG_NO_SLOT || j == DIG_NO_SLOT) {
             continue;
         }
-        list->i[kept]   = i;
-        list->j[kept]   = j;
-        list->key[kept] = DIG_NO_SLOT;
-        for (int m = 0; m < DIG_MEMORIES; m++) {
-            list->memory[m][kept] = list->memory[m][c];
+        list->i[kept]    = i;
+        list->j[kept]    = j;
+        list->slot[kept] = DIG_NO_SLOT;
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][kept] = list->history[m][c];
         }
         kept++;
     }
     list->n = kept;
 }
 
-void dig_lists_move(struct dig_world *const w, const uint32_t place[])
+void dig_lists_renumber(struct dig_world *const w, const uint32_t new_index[])
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        move_list(&w->pair[l], true, place);
-        move_list(&w->held_pair[l], true, place);
+        renumber_list(&w->pair[l], true, new_index);
     }
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
-        move_list(&w->surface[l], false, place);
-        move_list(&w->held_surface[l], false, place);
+        renumber_list(&w->surface[l], false, new_index);
     }
 }
 
@@ -81,76 +80,71 @@ static void find_slots(const struct dig_neighbours *const near, const bool like,
             if (like && slot != DIG_NO_SLOT) {
                 list->i[c] = j;
                 list->j[c] = i;
-                for (int m = 0; m < DIG_MEMORIES; m++) {
-                    list->memory[m][c] = -list->memory[m][c];
+                for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+                    list->history[m][c] = -list->history[m][c];
                 }
             }
         }
-        list->key[c] = slot;
+        list->slot[c] = slot;
     }
 }
 
 // Brings back what has left through a side that is one with the other.
 static void wrap(struct dig_world *const w)
 {
-    const double per_m = dig_period_inverse(w->period_y_m);
+    const double inverse_period = dig_period_inverse(w->period_y_m);
     for (size_t i = 0; i < w->grains.n && w->period_y_m > 0.0; i++) {
         double *const y_m = &w->grains.motion[i].x_m[1];
-        *y_m              = dig_period_fold(*y_m, w->period_y_m, per_m);
+        *y_m              = dig_period_fold(*y_m, w->period_y_m, inverse_period);
     }
 }
 
-enum dig_status dig_lists_renew(struct dig_world *const w, const struct dig_skin skin)
+enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_skin skin)
 {
-    const size_t    n      = w->grains.n;
-    uint32_t *const order  = malloc((n + 1) * sizeof *order);
-    uint32_t *const place  = calloc(n + 1, sizeof *place);
-    double *const   margin = malloc((n + 1) * sizeof *margin);
-    enum dig_status status = DIG_ENOMEM;
-    if (order == NULL || place == NULL || margin == NULL) {
+    const size_t    n         = w->grains.n;
+    uint32_t *const order     = malloc((n + 1) * sizeof *order);
+    uint32_t *const new_index = calloc(n + 1, sizeof *new_index);
+    double *const   margin    = malloc((n + 1) * sizeof *margin);
+    enum dig_status status    = DIG_ENOMEM;
+    if (order == NULL || new_index == NULL || margin == NULL) {
         goto done;
     }
     wrap(w);
     double radius_max_m = 0.0;
-    for (size_t k = 0; k < w->grains.kinds; k++) {
-        radius_max_m = fmax(radius_max_m, w->grains.kind[k].radius_m);
+    for (size_t k = 0; k < w->grains.types; k++) {
+        radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    status = dig_neighbours_order(&w->grains, 2.0 * radius_max_m, order);
+    status = dig_neighbours_sort(&w->grains, 2.0 * radius_max_m, order);
     if (status != DIG_OK) {
         goto done;
     }
     for (size_t k = 0; k < n; k++) {
-        place[order[k]] = (uint32_t)k;
-    }
-    status = dig_rest_move(w, place);
-    if (status != DIG_OK) {
-        goto done;
+        new_index[order[k]] = (uint32_t)k;
     }
     status = dig_grains_reorder(&w->grains, order);
     if (status != DIG_OK) {
         goto done;
     }
-    dig_lists_move(w, place);
-    dig_bodies_move(w->bodies, place);
+    dig_lists_renumber(w, new_index);
+    dig_bodies_renumber(w->bodies, new_index);
     for (size_t i = 0; i < n; i++) {
-        const double radius_m = w->grains.kind[w->grains.of[i]].radius_m;
+        const double radius_m = w->grains.type[w->grains.type_of[i]].radius_m;
         const double moving_m = skin.steps * w->dt_s * speed(&w->grains.motion[i]);
         margin[i]             = fmin(skin.radii * radius_m + moving_m, skin.most_radii * radius_m);
     }
-    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->near_list);
+    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->neighbours);
     if (status != DIG_OK) {
         goto done;
     }
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         const bool like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
-        find_slots(&w->near_list, like, &w->pair[l]);
-        find_slots(&w->near_list, like, &w->held_pair[l]);
+        find_slots(&w->neighbours, like, &w->pair[l]);
     }
     w->list_rebuilds++;
 
 done:
     free(order);
-    free(place);
+    free(new_index);
     free(margin);
     return status;
 }
@@ -159,14 +153,14 @@ done:
 // margin it is to have now, fit into the margin it had then.
 static bool is_covered(const struct dig_world *const w)
 {
-    if (w->near_list.n != w->grains.n || w->near_list.start == NULL) {
+    if (w->neighbours.n != w->grains.n || w->neighbours.start == NULL) {
         return false;
     }
     for (size_t i = 0; i < w->grains.n; i++) {
         const double *const x    = w->grains.motion[i].x_m;
-        const double *const was  = w->near_list.at_m[i];
+        const double *const was  = w->neighbours.reference_m[i];
         const double        d[3] = { x[0] - was[0], x[1] - was[1], x[2] - was[2] };
-        const double        left = was[3] - w->at_m[i][3];
+        const double        left = was[3] - w->reference_m[i][3];
         if (!(left > 0.0 && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < left * left)) {
             return false;
         }
@@ -177,52 +171,46 @@ static bool is_covered(const struct dig_world *const w)
 static void set_margins(struct dig_world *const w)
 {
     for (size_t i = 0; i < w->grains.n; i++) {
-        memcpy(w->at_m[i], w->grains.motion[i].x_m, 3 * sizeof(double));
-        w->at_m[i][3] = contact_margin(w, i);
+        memcpy(w->reference_m[i], w->grains.motion[i].x_m, 3 * sizeof(double));
+        w->reference_m[i][3] = contact_margin(w, i);
     }
     if (w->tool != NULL) {
         const double speed_mps =
             hypot(w->tool->vx_mps, w->tool->vz_mps) + w->tool->radius_m * fabs(w->tool->w_radps);
-        w->tool_at = w->tool->pose;
-        w->tool_margin_m =
-            CONTACT_RADII * w->grains.kind[0].radius_m + 2.0 * CONTACT_STEPS * w->dt_s * speed_mps;
+        w->tool_reference = w->tool->pose;
+        w->tool_margin_m  = CONTACT_MARGIN_RADII * w->grains.type[0].radius_m +
+                           2.0 * CONTACT_MARGIN_STEPS * w->dt_s * speed_mps;
     }
 }
 
 enum dig_status dig_lists_update(struct dig_world *const w)
 {
     const size_t n = w->grains.n;
-    if (w->at_room < n + 1) {
-        double(*const at)[4] = realloc(w->at_m, (n + 1) * sizeof *at);
-        if (at == NULL) {
+    if (w->reference_room < n + 1) {
+        double(*const reference)[4] = realloc(w->reference_m, (n + 1) * sizeof *reference);
+        if (reference == NULL) {
             return DIG_ENOMEM;
         }
-        w->at_m    = at;
-        w->at_room = n + 1;
+        w->reference_m    = reference;
+        w->reference_room = n + 1;
     }
-    bool all = w->rest.changed;
     set_margins(w);
     if (!is_covered(w)) {
-        const enum dig_status status = dig_lists_renew(w, near_skin);
+        const enum dig_status status = dig_lists_rebuild(w, neighbour_skin);
         if (status != DIG_OK) {
             return status;
         }
         set_margins(w);
-        all = true;
     }
-    if (all) {
-        dig_rest_mark(w);
-    }
-    enum dig_status status = dig_contact_detection_pairs(w, all);
+    enum dig_status status = dig_contact_detection_pairs(w);
     if (status == DIG_OK) {
-        status = dig_contact_detection_surfaces(w, all);
+        status = dig_contact_detection_surfaces(w);
     }
     if (status == DIG_OK && w->bodies != NULL) {
-        status = dig_bodies_pick(w);
+        status = dig_bodies_detect(w);
     }
     if (status == DIG_OK) {
-        w->stale        = false;
-        w->rest.changed = false;
+        w->stale = false;
         w->contact_rebuilds++;
     }
     return status;
@@ -232,16 +220,13 @@ void dig_lists_finish(struct dig_world *const w)
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         dig_contacts_finish(&w->pair[l]);
-        dig_contacts_finish(&w->held_pair[l]);
     }
     for (size_t k = 0; k < DIG_SURFACE_LISTS; k++) {
         dig_contacts_finish(&w->surface[k]);
-        dig_contacts_finish(&w->held_surface[k]);
     }
-    dig_contact_detection_finish(&w->pick);
-    dig_rest_finish(&w->rest);
-    dig_neighbours_finish(&w->near_list);
-    free(w->at_m);
-    w->at_m    = NULL;
-    w->at_room = 0;
+    dig_contact_detection_finish(&w->detection);
+    dig_neighbours_finish(&w->neighbours);
+    free(w->reference_m);
+    w->reference_m    = NULL;
+    w->reference_room = 0;
 }

@@ -19,10 +19,10 @@ struct dig_skin {
 /// Sorts the grains along cells and remakes the neighbour list. Contacts in the lists follow: their
 /// key is their place in the neighbour list, or UINT32_MAX, and pairs of one kind are turned to
 /// stand as they stand there. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lists_renew(struct dig_world *world, struct dig_skin skin);
+DIG_MUST_CHECK enum dig_status dig_lists_rebuild(struct dig_world *world, struct dig_skin skin);
 
 /// Follows grains to new places: place[old index] is the new one, UINT32_MAX: gone.
-void dig_lists_move(struct dig_world *world, const uint32_t place[]);
+void dig_lists_renumber(struct dig_world *world, const uint32_t new_index[]);
 
 void dig_lists_finish(struct dig_world *world);
 

@@ -45,7 +45,8 @@ struct dig_obstacles dig_obstacles_make(const struct dig_scene *const scene)
     return made;
 }
 
-void dig_obstacles_place(struct dig_obstacles *const obstacles, const struct dig_bed *const bed)
+void dig_obstacles_load_poses(struct dig_obstacles *const obstacles,
+                              const struct dig_bed *const bed)
 {
     for (size_t i = 0; i < obstacles->rocks && i < bed->rocks; i++) {
         memcpy(obstacles->rock[i].body.x_m, bed->rock[i].x_m, sizeof bed->rock[i].x_m);
@@ -53,7 +54,8 @@ void dig_obstacles_place(struct dig_obstacles *const obstacles, const struct dig
     }
 }
 
-void dig_obstacles_tell(const struct dig_obstacles *const obstacles, struct dig_bed *const bed)
+void dig_obstacles_save_poses(const struct dig_obstacles *const obstacles,
+                              struct dig_bed *const             bed)
 {
     bed->rocks = obstacles->rocks;
     for (size_t i = 0; i < obstacles->rocks; i++) {
@@ -62,30 +64,30 @@ void dig_obstacles_tell(const struct dig_obstacles *const obstacles, struct dig_
     }
 }
 
-struct dig_rock_place dig_rock_place(const struct dig_rock *const rock)
+struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *const rock)
 {
-    struct dig_rock_place place = { .shape = rock->shape };
-    memcpy(place.half_m, rock->half_m, sizeof place.half_m);
-    memcpy(place.x_m, rock->body.x_m, sizeof place.x_m);
-    memcpy(place.q, rock->body.q, sizeof place.q);
-    return place;
+    struct dig_rock_surface new_index = { .shape = rock->shape };
+    memcpy(new_index.half_m, rock->half_m, sizeof new_index.half_m);
+    memcpy(new_index.x_m, rock->body.x_m, sizeof new_index.x_m);
+    memcpy(new_index.q, rock->body.q, sizeof new_index.q);
+    return new_index;
 }
 
 double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], double closest_m[3])
 {
-    const struct dig_rock_place place = dig_rock_place(rock);
-    return dig_rock_near(&place, p_m, closest_m);
+    const struct dig_rock_surface new_index = dig_rock_surface_of(rock);
+    return dig_rock_surface_closest(&new_index, p_m, closest_m);
 }
 
 // Where a grain is, as the rock sees it: in its image that is nearest along y.
-static void look_at(const struct dig_world *const world, const struct dig_rock *const rock,
-                    const double x_m[], double seen_m[3])
+static void nearest_image(const struct dig_world *const world, const struct dig_rock *const rock,
+                          const double x_m[], double image_m[3])
 {
     const double y_m = rock->body.x_m[1];
-    memcpy(seen_m, x_m, 3 * sizeof *seen_m);
+    memcpy(image_m, x_m, 3 * sizeof *image_m);
     if (world->period_y_m > 0.0) {
-        seen_m[1] = y_m + dig_period_fold(x_m[1] - y_m, world->period_y_m,
-                                          dig_period_inverse(world->period_y_m));
+        image_m[1] = y_m + dig_period_fold(x_m[1] - y_m, world->period_y_m,
+                                           dig_period_inverse(world->period_y_m));
     }
 }
 
@@ -95,7 +97,7 @@ static double length(const double v[3])
 }
 
 // How far from the centre turning moves the surface.
-static double arm_of(const struct dig_rock *const rock)
+static double turning_radius_m(const struct dig_rock *const rock)
 {
     return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
 }
@@ -108,63 +110,64 @@ static void set_margins(struct dig_obstacles *const o, const double dt_s)
         const double                 least_m =
             rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
         const double speed_mps =
-            length(rock->body.v_mps) + arm_of(rock) * length(rock->body.w_radps);
-        o->was[r] = dig_rock_place(rock);
+            length(rock->body.v_mps) + turning_radius_m(rock) * length(rock->body.w_radps);
+        o->reference[r] = dig_rock_surface_of(rock);
         o->margin_m[r] =
             rock->movable ? MARGIN_SHARE * least_m + MARGIN_STEPS * dt_s * speed_mps : 0.0;
     }
 }
 
-bool dig_obstacles_have_left(const struct dig_obstacles *const o)
+bool dig_obstacles_left_margin(const struct dig_obstacles *const o)
 {
     for (size_t r = 0; r < o->rocks; r++) {
         const struct dig_rigid *const body = &o->rock[r].body;
-        const double *const           x    = o->was[r].x_m;
-        const double *const           q    = o->was[r].q;
+        const double *const           x    = o->reference[r].x_m;
+        const double *const           q    = o->reference[r].q;
         const double d[3]   = { body->x_m[0] - x[0], body->x_m[1] - x[1], body->x_m[2] - x[2] };
         const double cosine = body->q[0] * q[0] + body->q[1] * q[1] + body->q[2] * q[2] +
                               body->q[3] * q[3]; // of half the angle it has turned
         const double chord = 2.0 * sqrt(fmax(0.0, 1.0 - cosine * cosine));
         // Negated, so that a place that is not a number counts as having left.
-        if (o->rock[r].movable && !(length(d) + chord * arm_of(&o->rock[r]) <= o->margin_m[r])) {
+        if (o->rock[r].movable &&
+            !(length(d) + chord * turning_radius_m(&o->rock[r]) <= o->margin_m[r])) {
             return true;
         }
     }
     return false;
 }
 
-enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
-                                   const struct dig_world *const world)
+enum dig_status dig_obstacles_detect(struct dig_obstacles *const   o,
+                                     const struct dig_world *const world)
 {
     set_margins(o, world->dt_s);
     const struct dig_grains *const g   = &world->grains;
-    uint32_t *const                was = malloc((g->n * o->rocks + 1) * sizeof *was);
-    if (was == NULL) {
+    uint32_t *const                old = malloc((g->n * o->rocks + 1) * sizeof *old);
+    if (old == NULL) {
         return DIG_ENOMEM;
     }
-    memset(was, 0xff, g->n * o->rocks * sizeof *was);
+    memset(old, 0xff, g->n * o->rocks * sizeof *old);
     for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
         for (size_t c = 0; c < o->contact[k].n; c++) {
-            was[o->contact[k].i[c] * o->rocks + o->contact[k].j[c]] = (uint32_t)c;
+            old[o->contact[k].i[c] * o->rocks + o->contact[k].j[c]] = (uint32_t)c;
         }
     }
     struct dig_contacts fresh[DIG_GRAIN_TYPES_MAX] = { 0 };
     enum dig_status     status                     = DIG_OK;
     for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
-        const size_t kind    = g->of[i];
-        const double reach_m = g->kind[kind].radius_m + world->at_m[i][3];
+        const size_t type    = g->type_of[i];
+        const double reach_m = g->type[type].radius_m + world->reference_m[i][3];
         for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
             double closest_m[3];
-            double seen_m[3];
-            look_at(world, &o->rock[r], g->motion[i].x_m, seen_m);
-            if (dig_rock_closest(&o->rock[r], seen_m, closest_m) < reach_m + o->margin_m[r]) {
-                const uint32_t at = was[i * o->rocks + r];
-                status            = dig_contacts_add(&fresh[kind], i, r, r,
-                                          at == UINT32_MAX ? NULL : &o->contact[kind], at);
+            double image_m[3];
+            nearest_image(world, &o->rock[r], g->motion[i].x_m, image_m);
+            if (dig_rock_closest(&o->rock[r], image_m, closest_m) < reach_m + o->margin_m[r]) {
+                const uint32_t at = old[i * o->rocks + r];
+                status            = dig_contacts_add(&fresh[type], i, r, r,
+                                          at == UINT32_MAX ? NULL : &o->contact[type], at);
             }
         }
     }
-    free(was);
+    free(old);
     for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
         if (status == DIG_OK) {
             dig_contacts_finish(&o->contact[k]);
@@ -176,16 +179,16 @@ enum dig_status dig_obstacles_pick(struct dig_obstacles *const   o,
     return status;
 }
 
-static void fill(const struct dig_world *const world, const struct dig_rock *const rock,
-                 const struct dig_motion *const m, const double radius_m, const size_t c,
-                 struct dig_block *const block, double arm_m[3])
+static void fill_block(const struct dig_world *const world, const struct dig_rock *const rock,
+                       const struct dig_motion *const m, const double radius_m, const size_t c,
+                       struct dig_block *const block, double arm_m[3])
 {
-    double                      closest_m[3];
-    double                      seen_m[3];
-    double                      d_m[3];
-    const struct dig_rock_place place = dig_rock_place(rock);
-    look_at(world, rock, m->x_m, seen_m);
-    dig_rock_apart(&place, seen_m, radius_m, closest_m, d_m);
+    double                        closest_m[3];
+    double                        image_m[3];
+    double                        d_m[3];
+    const struct dig_rock_surface new_index = dig_rock_surface_of(rock);
+    nearest_image(world, rock, m->x_m, image_m);
+    dig_rock_surface_separation(&new_index, image_m, radius_m, closest_m, d_m);
     const double *const w = rock->body.w_radps;
     for (int k = 0; k < 3; k++) {
         arm_m[k] = closest_m[k] - rock->body.x_m[k];
@@ -200,9 +203,10 @@ static void fill(const struct dig_world *const world, const struct dig_rock *con
     }
 }
 
-static void apply(struct dig_world *const world, struct dig_obstacles *const o,
-                  const struct dig_contacts *const list, const size_t first, const size_t count,
-                  const struct dig_block *const block, const double arm_m[DIG_BLOCK][3])
+static void apply_block(struct dig_world *const world, struct dig_obstacles *const o,
+                        const struct dig_contacts *const list, const size_t first,
+                        const size_t count, const struct dig_block *const block,
+                        const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
         struct dig_load *const load = &world->grains.load[list->i[first + c]];
@@ -218,52 +222,53 @@ static void apply(struct dig_world *const world, struct dig_obstacles *const o,
     }
 }
 
-void dig_obstacles_push(struct dig_obstacles *const o, struct dig_world *const world)
+void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *const world)
 {
     for (size_t r = 0; r < o->rocks; r++) {
         memset(o->rock[r].f_N, 0, sizeof o->rock[r].f_N);
         memset(o->rock[r].t_Nm, 0, sizeof o->rock[r].t_Nm);
     }
-    for (size_t kind = 0; kind < world->grains.kinds; kind++) {
-        struct dig_contacts *const list     = &o->contact[kind];
-        const double               radius_m = world->grains.kind[kind].radius_m;
+    for (size_t type = 0; type < world->grains.types; type++) {
+        struct dig_contacts *const list     = &o->contact[type];
+        const double               radius_m = world->grains.type[type].radius_m;
         for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
             const size_t     left  = list->n - first;
             const size_t     count = left < DIG_BLOCK ? left : DIG_BLOCK;
             struct dig_block block;
             double           arm_m[DIG_BLOCK][3];
-            double           memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
+            double           history[DIG_HISTORY_VALUES][DIG_BLOCK] = { { 0.0 } };
             for (size_t c = 0; c < count; c++) {
-                fill(world, &o->rock[list->j[first + c]], &world->grains.motion[list->i[first + c]],
-                     radius_m, c, &block, arm_m[c]);
+                fill_block(world, &o->rock[list->j[first + c]],
+                           &world->grains.motion[list->i[first + c]], radius_m, c, &block,
+                           arm_m[c]);
             }
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+                memcpy(history[m], list->history[m] + first, count * sizeof(double));
             }
-            dig_kernel_block(world->isa, &world->wall_law[kind], world->dt_s, count, memory,
+            dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, count, history,
                              &block);
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+                memcpy(list->history[m] + first, history[m], count * sizeof(double));
             }
-            apply(world, o, list, first, count, &block, (const double(*)[3])arm_m);
+            apply_block(world, o, list, first, count, &block, (const double(*)[3])arm_m);
         }
     }
 }
 
-void dig_obstacles_move(struct dig_obstacles *const o, const uint32_t place[])
+void dig_obstacles_renumber(struct dig_obstacles *const o, const uint32_t new_index[])
 {
     for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
         struct dig_contacts *const list = &o->contact[k];
         size_t                     kept = 0;
         for (size_t c = 0; c < list->n; c++) {
-            if (place[list->i[c]] == UINT32_MAX) {
+            if (new_index[list->i[c]] == UINT32_MAX) {
                 continue;
             }
-            list->i[kept]   = place[list->i[c]];
-            list->j[kept]   = list->j[c];
-            list->key[kept] = list->key[c];
-            for (int m = 0; m < DIG_MEMORIES; m++) {
-                list->memory[m][kept] = list->memory[m][c];
+            list->i[kept]    = new_index[list->i[c]];
+            list->j[kept]    = list->j[c];
+            list->slot[kept] = list->slot[c];
+            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+                list->history[m][kept] = list->history[m][c];
             }
             kept++;
         }

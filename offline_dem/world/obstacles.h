@@ -6,7 +6,7 @@
 #include "core/scene.h"
 #include "offline_dem/kernel/bed.h"
 #include "offline_dem/law/rigid.h"
-#include "offline_dem/shapes/rock_near.h"
+#include "offline_dem/shapes/rock_surface.h"
 #include "offline_dem/world/world.h"
 
 /// One rock: its shape, where it is, and what the grains did to it in the last step.
@@ -25,29 +25,29 @@ struct dig_obstacles {
 
     // Where each rock was when these were picked, and how far its surface may go until they are
     // picked anew.
-    struct dig_rock_place was[DIG_OBSTACLES_MAX];
-    double                margin_m[DIG_OBSTACLES_MAX];
+    struct dig_rock_surface reference[DIG_OBSTACLES_MAX];
+    double                  margin_m[DIG_OBSTACLES_MAX];
 };
 
 /// The scene's obstacles where the scene has them. Owns nothing yet.
 struct dig_obstacles dig_obstacles_make(const struct dig_scene *scene);
 
 /// Puts them where the bed has them, and writes into the bed where they are.
-void dig_obstacles_place(struct dig_obstacles *obstacles, const struct dig_bed *bed);
-void dig_obstacles_tell(const struct dig_obstacles *obstacles, struct dig_bed *bed);
+void dig_obstacles_load_poses(struct dig_obstacles *obstacles, const struct dig_bed *bed);
+void dig_obstacles_save_poses(const struct dig_obstacles *obstacles, struct dig_bed *bed);
 
-struct dig_rock_place dig_rock_place(const struct dig_rock *rock);
+struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *rock);
 
 /// The point of the rock's surface that is closest to p_m, and the distance to it: negative inside.
 double dig_rock_closest(const struct dig_rock *rock, const double p_m[3], double closest_m[3]);
 
 /// As the calls of offline_dem/world/bodies.h.
-DIG_MUST_CHECK enum dig_status dig_obstacles_pick(struct dig_obstacles   *obstacles,
-                                                  const struct dig_world *world);
+DIG_MUST_CHECK enum dig_status dig_obstacles_detect(struct dig_obstacles   *obstacles,
+                                                    const struct dig_world *world);
 /// Whether a rock has left its margin: a grain it has come to may not be among the contacts.
-bool dig_obstacles_have_left(const struct dig_obstacles *obstacles);
-void dig_obstacles_push(struct dig_obstacles *obstacles, struct dig_world *world);
-void dig_obstacles_move(struct dig_obstacles *obstacles, const uint32_t place[]);
+bool dig_obstacles_left_margin(const struct dig_obstacles *obstacles);
+void dig_obstacles_add_loads(struct dig_obstacles *obstacles, struct dig_world *world);
+void dig_obstacles_renumber(struct dig_obstacles *obstacles, const uint32_t new_index[]);
 
 void dig_obstacles_finish(struct dig_obstacles *obstacles);
 

@@ -8,12 +8,12 @@
 #define CONTACTS_MAX 8 // of one pair of geometries
 
 // One step: the contacts found, and what the bucket feels of them.
-struct meeting {
-    struct dig_ode_scene        *ode;
-    const struct dig_rock_touch *touch;
-    double                       dt_s;
-    size_t                       felt;
-    dJointFeedback               feedback[DIG_OBSTACLES_MAX * CONTACTS_MAX];
+struct rock_step {
+    struct dig_ode_scene              *ode;
+    const struct dig_rock_contact_law *law;
+    double                             dt_s;
+    size_t                             joints;
+    dJointFeedback                     feedback[DIG_OBSTACLES_MAX * CONTACTS_MAX];
 };
 
 static void remove_all(struct dig_ode_scene *const ode)
@@ -46,7 +46,7 @@ static dBodyID make_body(struct dig_ode_scene *const ode, const struct dig_rock 
     return body;
 }
 
-void dig_ode_rocks_put(struct dig_ode_scene *const ode, const size_t rocks,
+void dig_ode_rocks_set(struct dig_ode_scene *const ode, const size_t rocks,
                        const struct dig_rock rock[])
 {
     remove_all(ode);
@@ -75,48 +75,50 @@ static size_t rock_of(const struct dig_ode_scene *const ode, dGeomID geom)
 }
 
 // A joint that gives way as the law's spring and damper do, over one step.
-static dJointID join(struct meeting *const m, const dContactGeom *const at, const size_t rock,
-                     dBodyID a, dBodyID b)
+static dJointID add_joint(struct rock_step *const m, const dContactGeom *const at,
+                          const size_t rock, dBodyID a, dBodyID b)
 {
-    const struct dig_rock_touch *const t       = &m->touch[rock];
-    const double                       give    = m->dt_s * t->normal_Npm + t->damping_Nspm;
-    dContact                           contact = { .geom = *at };
+    const struct dig_rock_contact_law *const t        = &m->law[rock];
+    const double                             softness = m->dt_s * t->normal_Npm + t->damping_Nspm;
+    dContact                                 contact  = { .geom = *at };
     contact.surface.mode     = dContactSoftERP | dContactSoftCFM | dContactApprox1;
     contact.surface.mu       = t->friction;
-    contact.surface.soft_erp = m->dt_s * t->normal_Npm / give;
-    contact.surface.soft_cfm = 1.0 / give;
-    dJointID joint           = dJointCreateContact(m->ode->world, m->ode->touching, &contact);
+    contact.surface.soft_erp = m->dt_s * t->normal_Npm / softness;
+    contact.surface.soft_cfm = 1.0 / softness;
+    dJointID joint           = dJointCreateContact(m->ode->world, m->ode->contact_joints, &contact);
     dJointAttach(joint, a, b);
     return joint;
 }
 
-static void meet(void *const data, dGeomID a, dGeomID b)
+static void collide(void *const data, dGeomID a, dGeomID b)
 {
-    struct meeting *const m     = data;
-    const bool            turn  = dGeomGetData(a) == NULL;
-    dGeomID               rock  = turn ? b : a;
-    dGeomID               other = turn ? a : b;
-    dContactGeom          found[CONTACTS_MAX];
+    struct rock_step *const m       = data;
+    const bool              swapped = dGeomGetData(a) == NULL;
+    dGeomID                 rock    = swapped ? b : a;
+    dGeomID                 other   = swapped ? a : b;
+    dContactGeom            found[CONTACTS_MAX];
     if (dGeomGetBody(rock) == NULL && dGeomGetBody(other) == NULL) {
         return;
     }
     const int count = dCollide(rock, other, CONTACTS_MAX, found, sizeof found[0]);
     for (int c = 0; c < count; c++) {
-        (void)join(m, &found[c], rock_of(m->ode, rock), dGeomGetBody(rock), dGeomGetBody(other));
+        (void)add_joint(m, &found[c], rock_of(m->ode, rock), dGeomGetBody(rock),
+                        dGeomGetBody(other));
     }
 }
 
-static void feel(struct meeting *const m, const dContactGeom *const at, const size_t rock)
+static void add_bucket_joint(struct rock_step *const m, const dContactGeom *const at,
+                             const size_t rock)
 {
-    if (m->felt < sizeof m->feedback / sizeof m->feedback[0]) {
-        dJointID joint = join(m, at, rock, m->ode->body[rock], m->ode->bucket);
-        dJointSetFeedback(joint, &m->feedback[m->felt++]);
+    if (m->joints < sizeof m->feedback / sizeof m->feedback[0]) {
+        dJointID joint = add_joint(m, at, rock, m->ode->body[rock], m->ode->bucket);
+        dJointSetFeedback(joint, &m->feedback[m->joints++]);
     }
 }
 
 // A sphere meets the plates as grains do: at the closest point of the tool.
-static void meet_plates(struct meeting *const m, const struct dig_tool *const tool,
-                        const struct dig_rock *const rock, const size_t number)
+static void collide_plates(struct rock_step *const m, const struct dig_tool *const tool,
+                           const struct dig_rock *const rock, const size_t number)
 {
     double body_m[3];
     double least_m    = INFINITY;
@@ -138,8 +140,8 @@ static void meet_plates(struct meeting *const m, const struct dig_tool *const to
                              body_m[2] - closest[2] };
     double       normal[3];
     double       arm_m[3];
-    dig_tool_turn(tool, away, normal);
-    dig_tool_turn(tool, closest, arm_m);
+    dig_tool_rotate(tool, away, normal);
+    dig_tool_rotate(tool, closest, arm_m);
     dContactGeom at = { .depth = rock->half_m[0] - least_m };
     for (int k = 0; k < 3; k++) {
         at.normal[k] = normal[k] / least_m;
@@ -147,17 +149,17 @@ static void meet_plates(struct meeting *const m, const struct dig_tool *const to
     }
     at.pos[0] += tool->pose.x_m;
     at.pos[2] += tool->pose.z_m;
-    feel(m, &at, number);
+    add_bucket_joint(m, &at, number);
 }
 
 // A box meets the triangles of the bucket.
-static void meet_shell(struct meeting *const m, const size_t rock)
+static void collide_bucket(struct rock_step *const m, const size_t rock)
 {
     dContactGeom found[CONTACTS_MAX];
     const int    count =
         dCollide(m->ode->rock[rock], m->ode->shell, CONTACTS_MAX, found, sizeof found[0]);
     for (int c = 0; c < count; c++) {
-        feel(m, &found[c], rock);
+        add_bucket_joint(m, &found[c], rock);
     }
 }
 
@@ -175,31 +177,31 @@ static void read_back(const struct dig_ode_scene *const ode, struct dig_rock roc
 }
 
 void dig_ode_rocks_step(struct dig_ode_scene *const ode, const struct dig_tool *const tool,
-                        const struct dig_rock_touch touch[], const double dt_s,
+                        const struct dig_rock_contact_law law[], const double dt_s,
                         struct dig_rock rock[], struct dig_wrench *const on_tool)
 {
-    struct meeting m = { .ode = ode, .touch = touch, .dt_s = dt_s };
-    dSpaceCollide(ode->rocks, &m, meet);
-    dSpaceCollide2((dGeomID)ode->rocks, (dGeomID)ode->walls, &m, meet);
+    struct rock_step m = { .ode = ode, .law = law, .dt_s = dt_s };
+    dSpaceCollide(ode->rocks, &m, collide);
+    dSpaceCollide2((dGeomID)ode->rocks, (dGeomID)ode->walls, &m, collide);
     for (size_t i = 0; i < ode->count; i++) {
         if (ode->body[i] == NULL) {
             continue;
         }
         if (tool != NULL && rock[i].shape == DIG_OBSTACLE_SPHERE) {
-            meet_plates(&m, tool, &rock[i], i);
+            collide_plates(&m, tool, &rock[i], i);
         } else if (tool != NULL) {
-            meet_shell(&m, i);
+            collide_bucket(&m, i);
         }
         dBodyAddForce(ode->body[i], rock[i].f_N[0], rock[i].f_N[1], rock[i].f_N[2]);
         dBodyAddTorque(ode->body[i], rock[i].t_Nm[0], rock[i].t_Nm[1], rock[i].t_Nm[2]);
     }
     dWorldStep(ode->world, dt_s);
-    for (size_t i = 0; i < m.felt; i++) {
+    for (size_t i = 0; i < m.joints; i++) {
         for (int k = 0; k < 3; k++) {
             on_tool->f_N[k] += m.feedback[i].f2[k];
             on_tool->t_Nm[k] += m.feedback[i].t2[k];
         }
     }
-    dJointGroupEmpty(ode->touching);
+    dJointGroupEmpty(ode->contact_joints);
     read_back(ode, rock);
 }

@@ -74,9 +74,8 @@ struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *const scene)
     ode->bucket = dBodyCreate(ode->world);
     dBodySetKinematic(ode->bucket);
     dGeomSetBody(ode->shell, ode->bucket);
-    ode->sphere   = dCreateSphere(NULL, 1.0);
-    ode->rocks    = dSimpleSpaceCreate(NULL);
-    ode->touching = dJointGroupCreate(0);
+    ode->rocks          = dSimpleSpaceCreate(NULL);
+    ode->contact_joints = dJointGroupCreate(0);
     return ode;
 }
 
@@ -85,11 +84,10 @@ void dig_ode_scene_destroy(struct dig_ode_scene *const ode)
     if (ode == NULL) {
         return;
     }
-    dGeomDestroy(ode->sphere);
     dGeomDestroy(ode->shell);
     dGeomTriMeshDataDestroy(ode->mesh);
     dSpaceDestroy(ode->walls);
-    dJointGroupDestroy(ode->touching);
+    dJointGroupDestroy(ode->contact_joints);
     dSpaceDestroy(ode->rocks);
     dWorldDestroy(ode->world);
     dCloseODE();
@@ -126,24 +124,4 @@ size_t dig_ode_scene_walls(const struct dig_ode_scene *const ode, struct dig_wal
         wall[k] = (struct dig_wall){ { plane[0], plane[1], plane[2] }, plane[3] };
     }
     return ode->planes;
-}
-
-size_t dig_ode_scene_collide(struct dig_ode_scene *const ode, const double centre_m[3],
-                             const double radius_m, const size_t room,
-                             struct dig_ode_contact contact[])
-{
-    dContactGeom found[64];
-    const int    most = room < 64 ? (int)room : 64;
-    dGeomSphereSetRadius(ode->sphere, radius_m);
-    dGeomSetPosition(ode->sphere, centre_m[0], centre_m[1], centre_m[2]);
-    const int count = dCollide(ode->sphere, ode->shell, most, found, sizeof found[0]);
-    for (int c = 0; c < count; c++) {
-        // ODE's normal points into the first geometry, the sphere.
-        for (int k = 0; k < 3; k++) {
-            contact[c].position_m[k] = found[c].pos[k];
-            contact[c].normal[k]     = found[c].normal[k];
-        }
-        contact[c].depth_m = found[c].depth;
-    }
-    return (size_t)count;
 }

@@ -1,8 +1,5 @@
 // The scene in the Open Dynamics Engine: the bucket as a kinematic body whose geometry is made from
 // its profile, the walls as planes in a space of their own. What grains meet is read from here.
-//
-// dig_ode_scene_collide() is ODE's narrow phase between one sphere and the bucket. The grain kernel
-// does not use it (docs/adr/0002-tool-narrow-phase.md): tests hold our own against it.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_ODE_SCENE_H
 #define DIG_OFFLINE_DEM_WORLD_ODE_SCENE_H
@@ -15,14 +12,6 @@
 #include <stddef.h>
 
 struct dig_ode_scene; // one ODE world; not to be shared between threads
-
-/// A contact of a sphere with the bucket, as ODE sees it: world frame, the normal from the bucket
-/// into the sphere.
-struct dig_ode_contact {
-    double position_m[3];
-    double normal[3];
-    double depth_m;
-};
 
 /// NULL when memory is short. The bucket stands at pin (0, 0, 0), theta 0, at rest.
 struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *scene);
@@ -39,9 +28,5 @@ void dig_ode_scene_read(const struct dig_ode_scene *ode, struct dig_tool *tool);
 
 /// Reads the planes into wall[DIG_WALLS_MAX]; returns how many.
 size_t dig_ode_scene_walls(const struct dig_ode_scene *ode, struct dig_wall wall[]);
-
-/// dCollide of a sphere with the bucket's triangles; returns how many contacts, at most `room`.
-size_t dig_ode_scene_collide(struct dig_ode_scene *ode, const double centre_m[3], double radius_m,
-                             size_t room, struct dig_ode_contact contact[]);
 
 #endif // DIG_OFFLINE_DEM_WORLD_ODE_SCENE_H

@@ -20,7 +20,6 @@ struct dig_ode_scene {
     size_t         planes; // of them
     dBodyID        bucket;
     dGeomID        shell;
-    dGeomID        sphere; // moved to wherever a collision is asked for
     dTriMeshDataID mesh;
     // ODE keeps pointers to these.
     double       vertex[DIG_ODE_VERTICES_MAX][3];
@@ -28,7 +27,7 @@ struct dig_ode_scene {
     unsigned int vertices, triangles;
     // Rocks: those that are fixed have a geometry and no body.
     dSpaceID      rocks;
-    dJointGroupID touching; // contacts of the step under way
+    dJointGroupID contact_joints; // contacts of the step under way
     size_t        count;
     dGeomID       rock[DIG_OBSTACLES_MAX];
     dBodyID       body[DIG_OBSTACLES_MAX];

@@ -12,12 +12,12 @@
 /// world meanwhile. The world has no bodies. DIG_ENOMEM leaves it with the kernel.
 DIG_MUST_CHECK enum dig_status dig_offload(struct dig_world *world, struct dig_device *device);
 
-/// What dig_world_step(), dig_world_look() and dig_world_fetch() do in an offloaded world. A grain
-/// that outruns its margin between two looks at it is DIG_EINVAL, as one that moves its radius in a
-/// step is.
+/// What dig_world_step(), dig_world_sync_motion() and dig_world_sync() do in an offloaded world. A
+/// grain that outruns its margin between two looks at it is DIG_EINVAL, as one that moves its
+/// radius in a step is.
 DIG_MUST_CHECK enum dig_status dig_offloaded_step(struct dig_world *world);
-DIG_MUST_CHECK enum dig_status dig_offloaded_look(struct dig_world *world);
-DIG_MUST_CHECK enum dig_status dig_offloaded_fetch(struct dig_world *world);
+DIG_MUST_CHECK enum dig_status dig_offloaded_sync_motion(struct dig_world *world);
+DIG_MUST_CHECK enum dig_status dig_offloaded_sync(struct dig_world *world);
 
 /// NULL is allowed. The device stays its owner's.
 void dig_offloaded_destroy(struct dig_offloaded *offloaded);

@@ -12,7 +12,7 @@ struct near_plates {
     size_t plate[DIG_PLATES_MAX];
     double closest_m[DIG_PLATES_MAX][3]; // body frame
     double distance_m[DIG_PLATES_MAX];
-    bool   counts[DIG_PLATES_MAX];
+    bool   is_contact[DIG_PLATES_MAX];
 };
 
 static double distance(const double a[3], const double b[3])
@@ -21,10 +21,10 @@ static double distance(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-static bool remembers(const struct dig_contacts *const list, const size_t c)
+static bool has_history(const struct dig_contacts *const list, const size_t c)
 {
-    for (int m = 0; m < DIG_MEMORIES; m++) {
-        if (fabs(list->memory[m][c]) > 0.0) {
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        if (fabs(list->history[m][c]) > 0.0) {
             return true;
         }
     }
@@ -32,12 +32,12 @@ static bool remembers(const struct dig_contacts *const list, const size_t c)
 }
 
 // What `from` remembers goes to `to`, unless that knows something itself.
-static void hand_over(struct dig_contacts *const list, const size_t from, const size_t to)
+static void move_history(struct dig_contacts *const list, const size_t from, const size_t to)
 {
-    if (!remembers(list, to)) {
-        for (int m = 0; m < DIG_MEMORIES; m++) {
-            list->memory[m][to]   = list->memory[m][from];
-            list->memory[m][from] = 0.0;
+    if (!has_history(list, to)) {
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][to]   = list->history[m][from];
+            list->history[m][from] = 0.0;
         }
     }
 }
@@ -48,8 +48,9 @@ static void resolve_edges(const struct dig_tool *const tool, const double radius
 {
     const double same_m = 1e-6 * radius_m;
     for (size_t p = 0; p < near->count; p++) {
-        for (size_t q = 0; q < near->count && near->counts[p]; q++) {
-            if (q == p || !near->counts[q] || near->distance_m[q] > near->distance_m[p] + same_m) {
+        for (size_t q = 0; q < near->count && near->is_contact[p]; q++) {
+            if (q == p || !near->is_contact[q] ||
+                near->distance_m[q] > near->distance_m[p] + same_m) {
                 continue;
             }
             // Does p's closest point lie on q as well?
@@ -60,19 +61,19 @@ static void resolve_edges(const struct dig_tool *const tool, const double radius
             }
             // On a tie the contact stays with the plate that had it; then with the first.
             const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
-            if (tie && (remembers(list, near->contact[p]) ||
-                        (!remembers(list, near->contact[q]) && p < q))) {
-                near->counts[q] = false;
+            if (tie && (has_history(list, near->contact[p]) ||
+                        (!has_history(list, near->contact[q]) && p < q))) {
+                near->is_contact[q] = false;
                 continue;
             }
-            hand_over(list, near->contact[p], near->contact[q]);
-            near->counts[p] = false;
+            move_history(list, near->contact[p], near->contact[q]);
+            near->is_contact[p] = false;
         }
     }
 }
 
-static void fill(struct dig_block *const block, const size_t c, const struct dig_motion *const m,
-                 const double d[3], const double v[3])
+static void fill_contact(struct dig_block *const block, const size_t c,
+                         const struct dig_motion *const m, const double d[3], const double v[3])
 {
     for (int k = 0; k < 3; k++) {
         block->in[k][c]     = d[k];
@@ -90,11 +91,11 @@ static void fill_plate(const struct dig_tool *const tool, const double body_m[3]
     const double away[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
                              body_m[2] - closest_m[2] };
     double       d[3];
-    dig_tool_turn(tool, away, d);
-    dig_tool_turn(tool, closest_m, arm_m);
+    dig_tool_rotate(tool, away, d);
+    dig_tool_rotate(tool, closest_m, arm_m);
     const double v[3] = { tool->vx_mps - tool->w_radps * arm_m[2], 0.0,
                           tool->vz_mps + tool->w_radps * arm_m[0] };
-    fill(block, c, m, d, v);
+    fill_contact(block, c, m, d, v);
 }
 
 // The candidates of one grain, contacts c … of the list; returns how many.
@@ -118,8 +119,8 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
         near.contact[k]    = first + c + used;
         near.plate[k]      = plate;
         near.distance_m[k] = distance(body_m, near.closest_m[k]);
-        near.counts[k]     = near.distance_m[k] < radius_m;
-        in_use += near.counts[k];
+        near.is_contact[k] = near.distance_m[k] < radius_m;
+        in_use += near.is_contact[k];
         near.count++;
         used++;
     }
@@ -127,20 +128,20 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
         resolve_edges(w->tool, radius_m, &near, list);
     }
     for (size_t k = 0; k < near.count; k++) {
-        if (near.counts[k]) {
+        if (near.is_contact[k]) {
             fill_plate(w->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
         } else {
-            fill(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
-                 (const double[3]){ 0.0, 0.0, 0.0 });
+            fill_contact(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
+                         (const double[3]){ 0.0, 0.0, 0.0 });
             memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
         }
     }
     return used;
 }
 
-static void apply(struct dig_world *const w, const struct dig_contacts *const list,
-                  const size_t first, const size_t count, const struct dig_block *const block,
-                  const double arm_m[DIG_BLOCK][3])
+static void add_loads(struct dig_world *const w, const struct dig_contacts *const list,
+                      const size_t first, const size_t count, const struct dig_block *const block,
+                      const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
         struct dig_load *const load = &w->grains.load[list->i[first + c]];
@@ -175,10 +176,9 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-// One list of contacts of grains of one radius with the plates. Contacts of held grains remember
-// nothing new.
+// One list of contacts of grains of one radius with the plates.
 static void step_plates(struct dig_world *const w, const struct dig_law *const law,
-                        const double radius_m, const bool held, struct dig_contacts *const list)
+                        const double radius_m, struct dig_contacts *const list)
 {
     for (size_t first = 0; first < list->n;) {
         const size_t     count = block_length(list, first);
@@ -187,39 +187,31 @@ static void step_plates(struct dig_world *const w, const struct dig_law *const l
         for (size_t c = 0; c < count;) {
             c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
         }
-        double memory[DIG_MEMORIES][DIG_BLOCK] = { { 0.0 } };
-        for (int m = 0; m < DIG_MEMORIES; m++) {
-            memcpy(memory[m], list->memory[m] + first, count * sizeof(double));
+        double history[DIG_HISTORY_VALUES][DIG_BLOCK] = { { 0.0 } };
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            memcpy(history[m], list->history[m] + first, count * sizeof(double));
         }
-        dig_kernel_block(w->isa, law, w->dt_s, count, memory, &block);
-        for (int m = 0; m < DIG_MEMORIES && !held; m++) {
-            memcpy(list->memory[m] + first, memory[m], count * sizeof(double));
+        dig_kernel_block(w->isa, law, w->dt_s, count, history, &block);
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            memcpy(list->history[m] + first, history[m], count * sizeof(double));
         }
-        apply(w, list, first, count, &block, (const double(*)[3])arm_m);
+        add_loads(w, list, first, count, &block, (const double(*)[3])arm_m);
         first += count;
     }
 }
 
-void dig_surfaces_step(struct dig_world *const w, const bool held)
+void dig_surfaces_add_loads(struct dig_world *const w)
 {
     w->on_tool  = (struct dig_wrench){ 0 };
     w->on_walls = (struct dig_wrench){ 0 };
-    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
-        const struct dig_law *const law = &w->wall_law[kind];
-        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, false, &w->surface[kind], &w->grains,
+    for (size_t type = 0; type < w->grains.types; type++) {
+        const struct dig_law *const law = &w->wall_law[type];
+        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, &w->surface[type], &w->grains,
                          w->on_walls.f_N);
-        if (held) {
-            dig_kernel_walls(w->isa, law, w->dt_s, w->wall, true, &w->held_surface[kind],
-                             &w->grains, w->on_walls.f_N);
-        }
     }
-    for (size_t kind = 0; kind < w->grains.kinds; kind++) {
-        const double                radius_m = w->grains.kind[kind].radius_m;
-        const struct dig_law *const law      = &w->tool_law[kind];
-        const size_t                l        = DIG_GRAIN_TYPES_MAX + kind;
-        step_plates(w, law, radius_m, false, &w->surface[l]);
-        if (held) {
-            step_plates(w, law, radius_m, true, &w->held_surface[l]);
-        }
+    for (size_t type = 0; type < w->grains.types; type++) {
+        const double                radius_m = w->grains.type[type].radius_m;
+        const struct dig_law *const law      = &w->tool_law[type];
+        step_plates(w, law, radius_m, &w->surface[DIG_GRAIN_TYPES_MAX + type]);
     }
 }

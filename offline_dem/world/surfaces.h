@@ -10,8 +10,7 @@
 
 #include "offline_dem/world/world.h"
 
-/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls; those of held
-/// grains only where `held`.
-void dig_surfaces_step(struct dig_world *world, bool held);
+/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls.
+void dig_surfaces_add_loads(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_WORLD_SURFACES_H

@@ -16,72 +16,42 @@ void dig_world_init(struct dig_world *const world, struct dig_grains *const grai
     *grains       = (struct dig_grains){ 0 };
 }
 
-void dig_world_set_material(struct dig_world *const              world,
-                            const struct dig_law_material *const material)
-{
-    const struct dig_grains *const g = &world->grains;
-    for (size_t a = 0; a < g->kinds; a++) {
-        const struct dig_kind ka = g->kind[a];
-        for (size_t b = a; b < g->kinds; b++) {
-            const struct dig_kind kb = g->kind[b];
-            world->pair_law[a * DIG_GRAIN_TYPES_MAX + b] =
-                dig_law_pair(material, ka.radius_m, kb.radius_m, ka.mass_kg, kb.mass_kg);
-        }
-        world->wall_law[a] = dig_law_wall(material, ka.radius_m, ka.mass_kg);
-        world->tool_law[a] = world->wall_law[a];
-    }
-}
-
-void dig_world_touched(struct dig_world *const world)
+void dig_world_mark_stale(struct dig_world *const world)
 {
     world->stale = true;
 }
 
 enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char drop[])
 {
-    const enum dig_status here = dig_world_fetch(w);
+    const enum dig_status here = dig_world_sync(w);
     if (here != DIG_OK) {
         return here;
     }
-    uint32_t *const place = malloc((w->grains.n + 1) * sizeof *place);
-    if (place == NULL) {
+    uint32_t *const new_index = malloc((w->grains.n + 1) * sizeof *new_index);
+    if (new_index == NULL) {
         return DIG_ENOMEM;
     }
     uint32_t kept = 0;
     for (size_t i = 0; i < w->grains.n; i++) {
-        place[i] = drop[i] ? UINT32_MAX : kept++;
+        new_index[i] = drop[i] ? UINT32_MAX : kept++;
     }
-    dig_lists_move(w, place);
-    dig_bodies_move(w->bodies, place);
-    const enum dig_status status = dig_rest_move(w, place);
-    free(place);
-    if (status != DIG_OK) {
-        return status;
-    }
+    dig_lists_renumber(w, new_index);
+    dig_bodies_renumber(w->bodies, new_index);
+    free(new_index);
     dig_grains_drop(&w->grains, drop);
     // The neighbour list still counts the grains there were: it is remade before it is used.
-    dig_neighbours_finish(&w->near_list);
+    dig_neighbours_finish(&w->neighbours);
     w->stale = true;
     return DIG_OK;
 }
 
-// Before a look, loads of held grains are what is left of the steps since the last one.
-static void push_pairs(struct dig_world *const w, const bool held)
+static void add_pair_loads(struct dig_world *const w)
 {
-    for (size_t i = 0; held && i < w->grains.n && w->rest.grain != NULL; i++) {
-        if (w->rest.grain[i].held) {
-            w->grains.load[i] = (struct dig_load){ 0 };
-        }
-    }
-    for (size_t a = 0; a < w->grains.kinds; a++) {
-        for (size_t b = a; b < w->grains.kinds; b++) {
+    for (size_t a = 0; a < w->grains.types; a++) {
+        for (size_t b = a; b < w->grains.types; b++) {
             const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
             dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l],
                              &w->grains);
-            if (held) {
-                dig_kernel_still(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->held_pair[l],
-                                 &w->grains);
-            }
         }
     }
 }
@@ -100,7 +70,7 @@ enum dig_status dig_world_step(struct dig_world *const w)
         return dig_offloaded_step(w);
     }
     if (w->tool != NULL && !w->stale &&
-        dig_tool_travel_m(w->tool, w->tool_at, w->tool->pose) > w->tool_margin_m) {
+        dig_tool_travel_m(w->tool, w->tool_reference, w->tool->pose) > w->tool_margin_m) {
         w->stale = true;
     }
     if (w->stale) {
@@ -112,24 +82,15 @@ enum dig_status dig_world_step(struct dig_world *const w)
             return status;
         }
     }
-    const bool look = dig_rest_is_due(w);
-    push_pairs(w, look);
-    dig_surfaces_step(w, look);
+    add_pair_loads(w);
+    dig_surfaces_add_loads(w);
     if (w->bodies != NULL) {
-        dig_bodies_push(w);
+        dig_bodies_apply_loads(w);
     }
-    if (look) {
-        const enum dig_status status = dig_rest_look(w);
-        if (status != DIG_OK) {
-            return status;
-        }
-    }
-    const bool left =
-        dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s, w->dt_s,
-                           (const double(*)[4])w->at_m, w->rest.awakes, w->rest.awake, &w->grains);
-    w->stale = w->rest.changed || left;
+    w->stale = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
+                                  w->dt_s, (const double(*)[4])w->reference_m, &w->grains);
     if (w->bodies != NULL) {
-        dig_bodies_advance(w);
+        dig_bodies_step_rocks(w);
     }
     add_wrench(&w->on_tool, &w->sum_tool);
     w->started = true;
@@ -139,7 +100,7 @@ enum dig_status dig_world_step(struct dig_world *const w)
 
 enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wrench *const wrench)
 {
-    const enum dig_status status = dig_world_look(w);
+    const enum dig_status status = dig_world_sync_motion(w);
     if (status == DIG_OK) {
         *wrench     = w->sum_tool;
         w->sum_tool = (struct dig_wrench){ 0 };
@@ -147,14 +108,14 @@ enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wren
     return status;
 }
 
-enum dig_status dig_world_look(struct dig_world *const w)
+enum dig_status dig_world_sync_motion(struct dig_world *const w)
 {
-    return w->offloaded == NULL ? DIG_OK : dig_offloaded_look(w);
+    return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync_motion(w);
 }
 
-enum dig_status dig_world_fetch(struct dig_world *const w)
+enum dig_status dig_world_sync(struct dig_world *const w)
 {
-    return w->offloaded == NULL ? DIG_OK : dig_offloaded_fetch(w);
+    return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync(w);
 }
 
 void dig_world_finish(struct dig_world *const world)

@@ -13,7 +13,6 @@
 #include "offline_dem/law/law.h"
 #include "offline_dem/law/wall.h"
 #include "offline_dem/shapes/tool.h"
-#include "offline_dem/world/rest.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,10 +26,10 @@ struct dig_offloaded;
 /// Memory of contact_detection.c, kept from pick to pick: where each pair and surface stands in the
 /// lists that are being replaced (all ones in between), and the lists to fill.
 struct dig_contact_detection {
-    uint32_t           *was_pair, *was_surface, *close;
-    size_t              pairs, surfaces, closes; // room
-    struct dig_contacts pair[DIG_PAIR_LISTS], held_pair[DIG_PAIR_LISTS];
-    struct dig_contacts surface[DIG_SURFACE_LISTS], held_surface[DIG_SURFACE_LISTS];
+    uint32_t           *old_pair, *old_surface, *near_pairs;
+    size_t              pair_room, surface_room, near_room; // room
+    struct dig_contacts pair[DIG_PAIR_LISTS];
+    struct dig_contacts surface[DIG_SURFACE_LISTS];
 };
 
 struct dig_world {
@@ -47,7 +46,6 @@ struct dig_world {
     enum dig_isa    isa;
     double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
                        // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
-    double freeze;     // what a grain that is held still may be pushed, rest.h; 0: none is held
 
     // May be placed between steps; NULL: no tool.
     struct dig_tool *tool;
@@ -67,19 +65,15 @@ struct dig_world {
     struct dig_wrench on_walls; // of the last step of the kernel
 
     // Lists and their validity.
-    struct dig_neighbours near_list;
+    struct dig_neighbours neighbours;
     struct dig_contacts
         pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // kind_i * KINDS_MAX + kind_j
     struct dig_contacts surface[DIG_SURFACE_LISTS];      // kind with wall j; KINDS_MAX + kind with
                                                          // plate j - walls
-    // Contacts of held grains among themselves, and with walls: worked out at looks only.
-    struct dig_contacts          held_pair[DIG_PAIR_LISTS];
-    struct dig_contacts          held_surface[DIG_SURFACE_LISTS];
-    struct dig_rest              rest;
-    struct dig_contact_detection pick;
-    double (*at_m)[4]; // [n] where the lists were made
-    size_t          at_room;
-    struct dig_pose tool_at;
+    struct dig_contact_detection detection;
+    double (*reference_m)[4]; // [n] where the lists were made
+    size_t          reference_room;
+    struct dig_pose tool_reference;
     double          tool_margin_m;
     bool            stale;
     size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
@@ -89,13 +83,9 @@ struct dig_world {
 /// laws before the first step.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);
 
-/// Gives every pair of kinds, and every kind with walls and tool, the laws of one material. After
-/// dig_world_init(); a caller with several materials overwrites what differs.
-void dig_world_set_material(struct dig_world *world, const struct dig_law_material *material);
-
 /// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
 /// remade before the next step. Contacts stay with their grains.
-void dig_world_touched(struct dig_world *world);
+void dig_world_mark_stale(struct dig_world *world);
 
 /// Removes grains for which drop[i] is not 0; the contacts between the others remember.
 DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const unsigned char drop[]);
@@ -111,10 +101,10 @@ DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
 
 /// Before motions are read: brings them here from where they are. Nothing to do, and no failure,
 /// where the kernel steps.
-DIG_MUST_CHECK enum dig_status dig_world_look(struct dig_world *world);
+DIG_MUST_CHECK enum dig_status dig_world_sync_motion(struct dig_world *world);
 
 /// The same before motions are written, or grains taken out: the contacts come, too.
-DIG_MUST_CHECK enum dig_status dig_world_fetch(struct dig_world *world);
+DIG_MUST_CHECK enum dig_status dig_world_sync(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);
 

@@ -8,6 +8,7 @@
 
 #include "offline_dem/law/random.h"
 #include "offline_dem/world/world.h"
+#include "tests/dem_grains.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -44,7 +45,7 @@ static void build(struct dig_world *const world, struct dig_grains *const grains
     world->walls                 = sizeof wall / sizeof wall[0];
     memcpy(world->wall, wall, sizeof wall);
     dig_world_init(world, grains);
-    dig_world_set_material(world, &gravel);
+    dem_set_material(world, &gravel);
 }
 
 static int run(struct dig_world *const world, const size_t steps)
@@ -68,7 +69,7 @@ static int place(const size_t n, const double x[], struct dig_grains *const grai
         radius_m[i] = RADIUS_m;
     }
     const enum dig_status status =
-        dig_grains_create(n, x, x + n, x + 2 * n, radius_m, 2500.0, grains);
+        dem_create_grains(n, x, x + n, x + 2 * n, radius_m, 2500.0, grains);
     free(radius_m);
     return status == DIG_OK ? 0 : 1;
 }

@@ -46,8 +46,8 @@ static double unit_J(const struct dig_world *const world)
 {
     double sum_J = 0.0;
     for (size_t i = 0; i < world->grains.n; i++) {
-        const struct dig_kind *const kind = &world->grains.kind[world->grains.of[i]];
-        sum_J += kind->mass_kg * -world->gravity_mps2[2] * kind->radius_m;
+        const struct dig_grain_type *const type = &world->grains.type[world->grains.type_of[i]];
+        sum_J += type->mass_kg * -world->gravity_mps2[2] * type->radius_m;
     }
     return sum_J;
 }
@@ -77,13 +77,13 @@ static enum dig_status rest(const struct dig_scene *const scene, const struct di
                             struct row *const row, struct dig_error *const error)
 {
     struct dig_bed         bed    = { 0 };
-    struct dig_grain_types kinds  = { 0 };
+    struct dig_grain_types types  = { 0 };
     struct dig_world       world  = { 0 };
     struct dig_ode_scene  *ode    = dig_ode_scene_create(scene);
     enum dig_status        status = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
-                                                : dig_bed_pour(scene, g, 1, NULL, &bed, error);
+                                                : dig_bed_pour(NULL, scene, g, 1, NULL, &bed, error);
     if (status == DIG_OK) {
-        status = dig_setup_world(scene, g, ode, &bed, 0.0, &kinds, &world, error);
+        status = dig_setup_world(scene, g, ode, &bed, 0.0, &types, &world, error);
     }
     if (status == DIG_OK) {
         status = watch(&world, row);

@@ -68,8 +68,8 @@ struct tolerance {
 static inline void follow(struct dig_world *const world, const char *const path,
                           const struct tolerance tolerance)
 {
-    struct table *const   table = read_table(path);
-    const struct dig_kind kind  = world->grains.kind[world->grains.of[0]];
+    struct table *const         table = read_table(path);
+    const struct dig_grain_type type  = world->grains.type[world->grains.type_of[0]];
     assert_true(table->rows > 40 && table->columns == 16);
     for (size_t s = 0; s < table->rows; s++) {
         const double *const     row    = table->value[s];
@@ -79,9 +79,9 @@ static inline void follow(struct dig_world *const world, const char *const path,
         const struct dig_motion after  = *dem_grain(world, 0);
         const double            kick_s = s == 0 ? 0.5 * world->dt_s : world->dt_s;
         for (int k = 0; k < 3; k++) {
-            const double force_N = kind.mass_kg * (after.v_mps[k] - before.v_mps[k]) / kick_s;
+            const double force_N = type.mass_kg * (after.v_mps[k] - before.v_mps[k]) / kick_s;
             const double torque_Nm =
-                kind.inertia_kgm2 * (after.w_radps[k] - before.w_radps[k]) / kick_s;
+                type.inertia_kgm2 * (after.w_radps[k] - before.w_radps[k]) / kick_s;
             assert_close(before.x_m[k], row[1 + k], tolerance.x_m);
             assert_close(force_N, row[10 + k], tolerance.f_N);
             assert_close(torque_Nm, row[13 + k], tolerance.t_Nm);

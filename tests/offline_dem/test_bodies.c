@@ -47,11 +47,11 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
     assert_int_equal(dig_bed_create(clumps * n, false, shape.spheres > 0, &bed), DIG_OK);
     for (size_t b = 0; b < clumps; b++) {
         double q[4] = { 1.0, 0.0, 0.0, 0.0 };
-        dig_rigid_rotate(q, turned[b], 1.0, q);
+        dig_rigid_integrate(q, turned[b], 1.0, q);
         for (size_t k = 0; k < n; k++) {
             double arm[3] = { 0.0, 0.0, 0.0 };
             if (shape.spheres > 0) {
-                dig_rigid_turn(q, shape.at[k], arm);
+                dig_rigid_rotate(q, shape.at[k], arm);
                 bed.clump[b * n + k] = (uint32_t)(b + 1);
             }
             bed.x_m[b * n + k]      = at_m[b][0] + 2.0 * GRAIN_m * arm[0];
@@ -61,11 +61,11 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
         }
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct dig_grain_types      kinds;
+    struct dig_grain_types      types;
     struct dig_world            world;
     struct dig_error            error = { "" };
     assert_non_null(ode);
-    if (dig_setup_world(scene, &gravel, ode, &bed, 0.0, &kinds, &world, &error) != DIG_OK) {
+    if (dig_setup_world(scene, &gravel, ode, &bed, 0.0, &types, &world, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     if (world.bodies == NULL || world.bodies->ode == NULL) {
@@ -93,7 +93,7 @@ static void a_clump_weighs_what_its_volume_weighs_and_falls_like_it(void **state
     assert_close(c->body.mass_kg, GRAIN_kg, 1e-12);
     double shares_kg = 0.0;
     for (size_t i = 0; i < 3; i++) {
-        shares_kg += world.grains.kind[world.grains.of[i]].mass_kg;
+        shares_kg += world.grains.type[world.grains.type_of[i]].mass_kg;
     }
     assert_close(shares_kg, GRAIN_kg, 1e-12);
     dem_run(&world, 10000);
@@ -101,7 +101,7 @@ static void a_clump_weighs_what_its_volume_weighs_and_falls_like_it(void **state
     // The spheres are where the body has them.
     for (size_t k = 0; k < 3; k++) {
         double arm[3];
-        dig_rigid_turn(c->body.q, world.bodies->shape.at[k], arm);
+        dig_rigid_rotate(c->body.q, world.bodies->shape.at[k], arm);
         for (int a = 0; a < 3; a++) {
             assert_close(world.grains.motion[c->member[k]].x_m[a],
                          c->body.x_m[a] + c->unit_m * arm[a], 1e-13);
@@ -162,11 +162,11 @@ static void clumps_that_collide_conserve_momentum(void **state)
 // The same clump as a body of the Open Dynamics Engine, pushed by the law of its spheres with the
 // floor, at a step so small that the engine's first order does not matter.
 struct other {
-    dWorldID               world;
-    dBodyID                body;
-    struct dig_clump_shape shape;
-    struct dig_law         law[3];
-    struct dig_memory      memory[3];
+    dWorldID                   world;
+    dBodyID                    body;
+    struct dig_clump_shape     shape;
+    struct dig_law             law[3];
+    struct dig_contact_history history[3];
 };
 
 static void push_other(struct other *const o, const double dt_s)
@@ -177,10 +177,10 @@ static void push_other(struct other *const o, const double dt_s)
         dVector3            x, v;
         dBodyGetRelPointPos(o->body, d * at[0], d * at[1], d * at[2], x);
         dBodyGetRelPointVel(o->body, d * at[0], d * at[1], d * at[2], v);
-        const dReal *const     w     = dBodyGetAngularVel(o->body);
-        const struct dig_touch touch = { 0.0,  0.0,  x[2], v[0], v[1], v[2],
-                                         w[0], w[1], w[2], 0.0,  0.0,  0.0 };
-        const struct dig_push  push  = dig_law_step(o->law[k], dt_s, touch, &o->memory[k]);
+        const dReal *const             w     = dBodyGetAngularVel(o->body);
+        const struct dig_kinematics    touch = { 0.0,  0.0,  x[2], v[0], v[1], v[2],
+                                                 w[0], w[1], w[2], 0.0,  0.0,  0.0 };
+        const struct dig_contact_force push  = dig_law_step(o->law[k], dt_s, touch, &o->history[k]);
         dBodyAddForceAtPos(o->body, push.fx_N, push.fy_N, push.fz_N, x[0], x[1], x[2]);
         dBodyAddTorque(o->body, push.ix_Nm, push.iy_Nm, push.iz_Nm);
     }
@@ -203,7 +203,7 @@ static struct other make_other(const struct dig_world *const ours)
     dBodySetPosition(o.body, body->x_m[0], body->x_m[1], body->x_m[2]);
     dBodySetQuaternion(o.body, body->q);
     for (size_t k = 0; k < 3; k++) {
-        o.law[k] = ours->wall_law[ours->grains.of[k]];
+        o.law[k] = ours->wall_law[ours->grains.type_of[k]];
     }
     return o;
 }
@@ -279,7 +279,7 @@ static void the_closest_point_of_a_rock_is_the_closest(void **state)
                                                        .size_m   = { 0.2, 0.4, 0.6 } };
     struct dig_obstacles o    = dig_obstacles_make(&scene);
     const double         w[3] = { 0.5, -0.3, 0.9 };
-    dig_rigid_rotate(o.rock[0].body.q, w, 1.0, o.rock[0].body.q);
+    dig_rigid_integrate(o.rock[0].body.q, w, 1.0, o.rock[0].body.q);
     const double p[3][3] = { { 0.5, 0.2, 0.9 }, { 0.1, 0.45, 0.3 }, { 0.12, 0.25, 0.3 } };
     for (size_t i = 0; i < 3; i++) {
         double       closest[3];
@@ -293,7 +293,7 @@ static void the_closest_point_of_a_rock_is_the_closest(void **state)
                     b[face / 2]           = face % 2 ? half[face / 2] : -half[face / 2];
                     b[(face / 2 + 1) % 3] = (u / 50.0 - 1.0) * half[(face / 2 + 1) % 3];
                     b[(face / 2 + 2) % 3] = (v / 50.0 - 1.0) * half[(face / 2 + 2) % 3];
-                    dig_rigid_turn(o.rock[0].body.q, b, x);
+                    dig_rigid_rotate(o.rock[0].body.q, b, x);
                     least = fmin(least, hypot(hypot(x[0] + 0.1 - p[i][0], x[1] + 0.2 - p[i][1]),
                                               x[2] + 0.3 - p[i][2]));
                 }
@@ -362,7 +362,7 @@ static void a_rock_that_comes_is_felt_in_the_step_it_arrives(void **state)
         struct dig_rock *rock     = &world.bodies->obstacles.rock[0];
         rock->body.v_mps[2]       = i == 0 ? 0.4 : 0.0;
         rock->body.w_radps[0]     = i == 0 ? 0.0 : 20.0;
-        dig_ode_rocks_put(world.bodies->ode, 1, rock);
+        dig_ode_rocks_set(world.bodies->ode, 1, rock);
         double apart_m = INFINITY;
         for (int s = 0; s < 2000 && apart_m >= GRAIN_m; s++) {
             double closest_m[3];

@@ -122,10 +122,10 @@ static void the_way_a_clump_lies_is_found_from_its_spheres(void **state)
         const double                 w[3] = { dig_random_between(&random, -3.0, 3.0),
                                               dig_random_between(&random, -3.0, 3.0),
                                               dig_random_between(&random, -3.0, 3.0) };
-        dig_rigid_rotate(q, w, 1.0, q);
+        dig_rigid_integrate(q, w, 1.0, q);
         double at_m[DIG_CLUMP_MAX][3], rotation[3][3], found[4];
         for (size_t k = 0; k < s.spheres; k++) {
-            dig_rigid_turn(q, s.at[k], at_m[k]);
+            dig_rigid_rotate(q, s.at[k], at_m[k]);
             for (int a = 0; a < 3; a++) {
                 at_m[k][a] = 0.01 * at_m[k][a] + 0.3;
             }
@@ -134,7 +134,7 @@ static void the_way_a_clump_lies_is_found_from_its_spheres(void **state)
         dig_rigid_quaternion((const double(*)[3])rotation, found);
         for (size_t k = 0; k < s.spheres; k++) {
             double back[3];
-            dig_rigid_turn(found, s.at[k], back);
+            dig_rigid_rotate(found, s.at[k], back);
             for (int a = 0; a < 3; a++) {
                 assert_close(0.01 * back[a] + 0.3, at_m[k][a], 1e-12);
             }
@@ -155,7 +155,7 @@ static struct dig_rigid free_body(void)
 static double energy_J(const struct dig_rigid *const b)
 {
     double l[3], sum = 0.0;
-    dig_rigid_turn_back(b->q, b->l_Nms, l);
+    dig_rigid_rotate_back(b->q, b->l_Nms, l);
     for (int k = 0; k < 3; k++) {
         sum += 0.5 * l[k] * l[k] * b->inverse_pkgm2[k][k];
     }
@@ -180,7 +180,7 @@ static void a_tumbling_body_keeps_its_energy(void **state)
             error[fine]       = fmax(error[fine], fabs(energy_J(&b) - start) / start);
             const double y[3] = { 0.0, 1.0, 0.0 };
             double       axis[3];
-            dig_rigid_turn(b.q, y, axis);
+            dig_rigid_rotate(b.q, y, axis);
             tumbled = tumbled || axis[1] < 0.0;
         }
         assert_true(tumbled);

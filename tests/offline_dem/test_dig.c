@@ -3,6 +3,7 @@
 #include "tests/dem_fixture.h"
 
 #include "offline_dem/dig/dig.h"
+#include "offline_dem/world/grain_types.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +30,7 @@ static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 static struct dig_bed pour(const struct dig_scene *const scene)
 {
     struct dig_bed bed;
-    assert_int_equal(dig_bed_pour(scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
     return bed;
 }
 
@@ -40,7 +41,7 @@ static void a_dig_is_recorded_from_air_to_its_end(void **state)
     const struct dig_trajectory *const t     = &scene.trajectory[0];
     struct dig_bed                     bed   = pour(&scene);
     struct dig_recording               r     = { 0 };
-    assert_int_equal(dig_dig_run(&scene, &gravel, &bed, t, NULL, NULL, &r, NULL), DIG_OK);
+    assert_int_equal(dig_dig_run(NULL, &scene, &gravel, &bed, t, NULL, NULL, &r, NULL), DIG_OK);
     assert_int_equal(r.rows, 120);
     for (size_t k = 0; k < r.rows; k++) {
         // A window holds the forces after its first to after its last step.
@@ -76,7 +77,7 @@ static void the_same_dig_twice_gives_the_same_bits(void **state)
     struct dig_recording   r[2]  = { { 0 }, { 0 } };
     for (int k = 0; k < 2; k++) {
         assert_int_equal(
-            dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
+            dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
             DIG_OK);
     }
     assert_int_equal(r[0].rows, r[1].rows);
@@ -91,8 +92,9 @@ static void expect_refusal(const struct dig_scene *const scene, const struct dig
 {
     struct dig_recording r     = { .rows = 77 };
     struct dig_error     error = { { 0 } };
-    assert_int_equal(dig_dig_run(scene, g, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
-                     DIG_EINVAL);
+    assert_int_equal(
+        dig_dig_run(NULL, scene, g, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
+        DIG_EINVAL);
     assert_int_equal(r.rows, 77);
     assert_null(r.row);
     if (strstr(error.text, word) == NULL) {
@@ -115,7 +117,7 @@ static void what_cannot_be_computed_is_refused_by_name(void **state)
 
     struct dig_bed   poured = { .grains = 77 };
     struct dig_error error  = { { 0 } };
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, NULL, &poured, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &poured, &error), DIG_EINVAL);
     assert_int_equal(poured.grains, 77);
     assert_non_null(strstr(error.text, "young_Pa"));
 
@@ -172,7 +174,8 @@ static void a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not(void 
     const struct dig_bed empty = { 0 };
     struct dig_recording r     = { 0 };
     assert_int_equal(
-        dig_dig_run(&scene, &gravel, &empty, &scene.trajectory[0], NULL, NULL, &r, NULL), DIG_OK);
+        dig_dig_run(NULL, &scene, &gravel, &empty, &scene.trajectory[0], NULL, NULL, &r, NULL),
+        DIG_OK);
     for (size_t k = 0; k < r.rows; k++) {
         assert_close(r.row[k].Fx_N, 0.0, 0.0);
         assert_close(r.row[k].My_Nm, 0.0, 0.0);
@@ -181,7 +184,7 @@ static void a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not(void 
 
     struct dig_error            error = { { 0 } };
     const struct dig_trajectory none  = { .name = "none" };
-    assert_int_equal(dig_dig_run(&scene, &gravel, &empty, &none, NULL, NULL, &r, &error),
+    assert_int_equal(dig_dig_run(NULL, &scene, &gravel, &empty, &none, NULL, NULL, &r, &error),
                      DIG_EINVAL);
     assert_non_null(strstr(error.text, "trajectory"));
     assert_null(r.row);
@@ -201,7 +204,7 @@ static void a_dig_that_is_stopped_writes_nothing(void **state)
     int                       calls    = 0;
     const struct dig_progress progress = { stop_soon, &calls };
     struct dig_bed            bed      = { .grains = 77 };
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, &progress, &bed, NULL), DIG_ESTALE);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, &progress, &bed, NULL), DIG_ESTALE);
     assert_int_equal(bed.grains, 77);
     assert_int_equal(calls, 3);
 
@@ -209,7 +212,7 @@ static void a_dig_that_is_stopped_writes_nothing(void **state)
     calls                  = 0;
     struct dig_recording r = { .rows = 77 };
     assert_int_equal(
-        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, &progress, &r, NULL),
+        dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, &progress, &r, NULL),
         DIG_ESTALE);
     assert_int_equal(r.rows, 77);
     assert_int_equal(calls, 3);
@@ -226,7 +229,8 @@ static void pictures_are_written_where_they_are_wanted(void **state)
     struct dig_recording   made  = { 0 };
     assert_non_null(mkdtemp(dir));
     assert_int_equal(
-        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL), DIG_OK);
+        dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL),
+        DIG_OK);
     dig_recording_finish(&made);
     const char *const name[] = { "grains", "bucket" };
     for (int frame = 0; frame < 6; frame++) {
@@ -259,8 +263,18 @@ static void pictures_are_written_where_they_are_wanted(void **state)
     // The folder is gone: the dig says so and writes nothing.
     made = (struct dig_recording){ .rows = 77 };
     assert_int_equal(
-        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL), DIG_EIO);
+        dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], dir, NULL, &made, NULL),
+        DIG_EIO);
     assert_int_equal(made.rows, 77);
+}
+
+static double step_of(const struct dig_scene *const scene)
+{
+    const struct dig_gravel      dense = { { [DIG_AXIS_DENSITY_kgpm3] = DENSITY } };
+    const struct dig_grain_types types = {
+        .types = 1, .type = { { .radius_m = 0.5 * scene->material.diameter_m } }
+    };
+    return dig_grain_types_time_step_s(scene, &dense, &types);
 }
 
 // Measured on beds of the reference: quiet at 3.1e-5 s for 5 MPa and 1.25e-5 s for 150 MPa, warming
@@ -269,16 +283,16 @@ static void the_derived_step_is_short_enough_and_not_wasteful(void **state)
 {
     (void)state;
     struct dig_scene scene = small_scene();
-    assert_close(dig_time_step_s(&scene, DENSITY), STEP_s, 0.0);
+    assert_close(step_of(&scene), STEP_s, 0.0);
     scene.time_step_s   = 0.0;
-    const double soft_s = dig_time_step_s(&scene, DENSITY);
+    const double soft_s = step_of(&scene);
     assert_true(soft_s > 2.5e-5 && soft_s < 6e-5);
     scene.material.young_Pa = 1.5e8;
-    const double stiff_s    = dig_time_step_s(&scene, DENSITY);
+    const double stiff_s    = step_of(&scene);
     assert_true(stiff_s > 0.8e-5 && stiff_s <= 1.25e-5);
     // A grain half as large has half the time.
     scene.material.diameter_m *= 0.5;
-    assert_close(dig_time_step_s(&scene, DENSITY), 0.5 * stiff_s, 1e-3 * stiff_s);
+    assert_close(step_of(&scene), 0.5 * stiff_s, 1e-3 * stiff_s);
 }
 
 int main(void)

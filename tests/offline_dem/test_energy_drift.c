@@ -2,9 +2,9 @@
 
 #include "tests/dem_fixture.h"
 
+#include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/dig/energy_drift.h"
-#include "offline_dem/dig/watched_pour.h"
 
 #define WATCH_s  0.06
 #define SETTLE_s 0.3
@@ -16,7 +16,7 @@ static int pour(void **state)
     (void)state;
     const struct dig_scene  scene  = dem_small_scene();
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
-    return dig_bed_pour(&scene, &gravel, 3, NULL, &poured, NULL);
+    return dig_bed_pour(NULL, &scene, &gravel, 3, NULL, &poured, NULL);
 }
 
 static int empty(void **state)
@@ -57,7 +57,7 @@ static bool heats(const double step_s, const double fall_mps, const double watch
     struct dig_world world = make_bed(fall_mps);
     world.dt_s             = step_s;
     bool found             = false;
-    assert_int_equal(dig_energy_drift_watch(&world, (size_t)(watch_s / step_s), &found), DIG_OK);
+    assert_int_equal(dig_energy_drift_detect(&world, (size_t)(watch_s / step_s), &found), DIG_OK);
     dig_world_finish(&world);
     return found;
 }
@@ -89,7 +89,7 @@ static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
     struct dig_world world = make_bed(0.0);
     world.dt_s             = 5e-3;
     bool found             = false;
-    assert_int_equal(dig_energy_drift_watch(&world, 3000, &found), DIG_EINVAL);
+    assert_int_equal(dig_energy_drift_detect(&world, 3000, &found), DIG_EINVAL);
     assert_false(found);
     dig_world_finish(&world);
 }
@@ -102,13 +102,14 @@ static void a_scene_whose_step_heats_is_refused_by_name(void **state)
     struct dig_error        error  = { "" };
     struct dig_bed          bed    = { 0 };
     scene.time_step_s              = 1.2e-4;
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_pour_checked(NULL, &scene, &gravel, 3, NULL, &bed, &error),
+                     DIG_EINVAL);
     assert_non_null(
         strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving, expected at"));
     assert_null(bed.x_m);
 
     scene.may_tremble = true;
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
+    assert_int_equal(dig_bed_pour_checked(NULL, &scene, &gravel, 3, NULL, &bed, &error), DIG_OK);
     dig_bed_finish(&bed);
 }
 
@@ -119,22 +120,22 @@ static void a_bed_poured_elsewhere_is_refused_as_one_poured_here(void **state)
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     struct dig_scene        scene  = dem_small_scene();
     struct dig_error        error  = { "" };
-    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_OK);
+    assert_int_equal(dig_bed_check(&scene, &gravel, &poured, &error), DIG_OK);
 
     scene.time_step_s = 1.2e-4;
-    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_check(&scene, &gravel, &poured, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, "time_step_s: 0.00012 keeps a resting bed moving"));
     scene.may_tremble = true;
-    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_OK);
+    assert_int_equal(dig_bed_check(&scene, &gravel, &poured, &error), DIG_OK);
 
     scene            = dem_small_scene();
     const double x_m = poured.x_m[7];
     poured.x_m[7]    = 5.5;
-    assert_int_equal(dig_bed_watch(&scene, &gravel, &poured, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_check(&scene, &gravel, &poured, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, "bed: grain 7 at (5.5, "));
     poured.x_m[7] = x_m;
     assert_int_equal(
-        dig_bed_watch(&scene, &(struct dig_gravel){ { -1.0, 0.5, DENSITY } }, &poured, &error),
+        dig_bed_check(&scene, &(struct dig_gravel){ { -1.0, 0.5, DENSITY } }, &poured, &error),
         DIG_EINVAL);
     assert_non_null(strstr(error.text, "friction"));
 }
@@ -145,7 +146,7 @@ static void what_is_watched_is_poured_as_ever(void **state)
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     const struct dig_scene  scene  = dem_small_scene();
     struct dig_bed          bed    = { 0 };
-    assert_int_equal(dig_bed_pour_watched(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour_checked(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
     assert_int_equal(bed.grains, poured.grains);
     assert_memory_equal(bed.x_m, poured.x_m, bed.grains * sizeof *bed.x_m);
     dig_bed_finish(&bed);

@@ -75,7 +75,7 @@ static uint64_t dig(const enum dig_isa isa)
     world.isa                      = isa;
     dem_run(&world, 1200);
     world.tool = &tool;
-    dig_world_touched(&world);
+    dig_world_mark_stale(&world);
     uint64_t hash   = UINT64_C(14695981039346656037);
     double   push_N = 0.0;
     for (int s = 0; s < 1600; s++) {
@@ -103,7 +103,7 @@ static void a_short_dig_keeps_its_bits(void **state)
     for (enum dig_isa isa = DIG_ISA_BASE; isa <= dig_kernel_best(); isa++) {
         const uint64_t hash = dig(isa);
         if (hash != UINT64_C(0xdd76c5a58b508d51)) {
-            fail_msg("%s: %016llx", dig_kernel_name(isa), (unsigned long long)hash);
+            fail_msg("variant %d: %016llx", (int)isa, (unsigned long long)hash);
         }
     }
 }

@@ -63,7 +63,7 @@ static size_t touching(const struct dig_world *const world)
 {
     size_t count = 0;
     for (size_t c = 0; c < world->pair[0].n; c++) {
-        count += fabs(world->pair[0].memory[0][c]) > 0.0;
+        count += fabs(world->pair[0].history[0][c]) > 0.0;
     }
     return count;
 }
@@ -80,8 +80,8 @@ static void every_variant_gives_the_same_bits(void **state)
         dem_run(&other, 600);
         assert_memory_equal(first.grains.motion, other.grains.motion,
                             GRAINS * sizeof *first.grains.motion);
-        assert_memory_equal(first.grains.name, other.grains.name,
-                            GRAINS * sizeof *first.grains.name);
+        assert_memory_equal(first.grains.id, other.grains.id,
+                            GRAINS * sizeof *first.grains.id);
         dig_world_finish(&other);
     }
     dig_world_finish(&first);
@@ -121,12 +121,12 @@ static void grains_of_two_sizes_keep_momentum_too(void **state)
         x[3][i] = dig_random_next(&random) % 2 == 0 ? GRAIN_m : 0.7 * GRAIN_m;
     }
     struct dig_grains grains;
-    assert_int_equal(dig_grains_create(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
+    assert_int_equal(dem_create_grains(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
     const struct dig_law_material material = dem_material(0.5, 0.3);
     struct dig_world              world    = { .dt_s = STEP_s };
     dig_world_init(&world, &grains);
-    dig_world_set_material(&world, &material);
-    assert_int_equal(world.grains.kinds, 2);
+    dem_set_material(&world, &material);
+    assert_int_equal(world.grains.types, 2);
     for (size_t i = 0; i < 64; i++) {
         for (size_t k = 0; k < 3; k++) {
             world.grains.motion[i].v_mps[k] =
@@ -138,7 +138,7 @@ static void grains_of_two_sizes_keep_momentum_too(void **state)
     size_t mixed   = 0;
     for (int when = 0; when < 2; when++) {
         for (size_t i = 0; i < 64; i++) {
-            const double m_kg = world.grains.kind[world.grains.of[i]].mass_kg;
+            const double m_kg = world.grains.type[world.grains.type_of[i]].mass_kg;
             for (size_t k = 0; k < 3; k++) {
                 p[when][k] += m_kg * world.grains.motion[i].v_mps[k];
             }
@@ -174,7 +174,7 @@ static void without_damping_and_friction_energy_comes_back(void **state)
     struct dig_law_material smooth = dem_material(0.0, 0.0);
     smooth.restitution             = 0.999999;
     struct dig_world world         = make_cloud(4, 0.5);
-    dig_world_set_material(&world, &smooth);
+    dem_set_material(&world, &smooth);
     world.dt_s           = STEP_s / 4.0;
     const double first_J = dig_grains_kinetic_J(&world.grains);
     dem_run(&world, 16000);
@@ -191,8 +191,8 @@ static void lists_can_be_remade_at_any_time(void **state)
     struct dig_world lazy  = make_cloud(5, 0.3);
     struct dig_world eager = make_cloud(5, 0.3);
     for (int s = 0; s < 120; s++) {
-        dig_neighbours_finish(&eager.near_list);
-        dig_world_touched(&eager);
+        dig_neighbours_finish(&eager.neighbours);
+        dig_world_mark_stale(&eager);
         dem_run(&eager, 1);
     }
     dem_run(&lazy, 120);
@@ -257,17 +257,17 @@ static void grains_taken_out_leave_the_others_contacts_alone(void **state)
     unsigned char drop[4] = { 0 };
     double        before  = 0.0;
     for (size_t c = 0; c < world.pair[0].n; c++) {
-        before += fabs(world.pair[0].memory[0][c]);
+        before += fabs(world.pair[0].history[0][c]);
     }
     for (size_t i = 0; i < 4; i++) {
-        drop[i] = world.grains.name[i] == 0;
+        drop[i] = world.grains.id[i] == 0;
     }
     assert_int_equal(dig_world_drop(&world, drop), DIG_OK);
     assert_int_equal(world.grains.n, 3);
     dem_run(&world, 1);
     double after = 0.0;
     for (size_t c = 0; c < world.pair[0].n; c++) {
-        after += fabs(world.pair[0].memory[0][c]);
+        after += fabs(world.pair[0].history[0][c]);
     }
     assert_true(before > 0.0);
     assert_close(after / before, 1.0, 0.1);

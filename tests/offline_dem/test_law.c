@@ -41,39 +41,41 @@ static void two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall(void **
 static void no_touch_is_no_force_and_no_memory(void **state)
 {
     (void)state;
-    const struct dig_law_material m      = dem_material(0.5, 0.5);
-    const struct dig_law          law    = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
-    struct dig_memory             memory = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
-    const struct dig_touch  apart = { .dx_m = 2.0001 * GRAIN_m, .vx_mps = -1.0, .iy_radps = 5.0 };
-    const struct dig_push   push  = dig_law_step(law, STEP_s, apart, &memory);
-    const struct dig_push   none  = { 0 };
-    const struct dig_memory blank = { 0 };
+    const struct dig_law_material    m   = dem_material(0.5, 0.5);
+    const struct dig_law             law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
+    struct dig_contact_history       history = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
+    const struct dig_kinematics      apart   = { .dx_m     = 2.0001 * GRAIN_m,
+                                                 .vx_mps   = -1.0,
+                                                 .iy_radps = 5.0 };
+    const struct dig_contact_force   push    = dig_law_step(law, STEP_s, apart, &history);
+    const struct dig_contact_force   none    = { 0 };
+    const struct dig_contact_history blank   = { 0 };
     assert_memory_equal(&push, &none, sizeof push);
-    assert_memory_equal(&memory, &blank, sizeof memory);
+    assert_memory_equal(&history, &blank, sizeof history);
 }
 
 // However far it slips, friction is mu |F_n|; however far it rolls, the torque is mu_r R* |F_n|.
 static void friction_and_rolling_torque_are_capped(void **state)
 {
     (void)state;
-    const struct dig_law_material m      = dem_material(0.3, 0.2);
-    const struct dig_law          law    = dig_law_wall(&m, GRAIN_m, GRAIN_kg);
-    struct dig_memory             memory = { 0 };
-    const struct dig_touch        t      = { .dz_m     = 0.99 * GRAIN_m,
-                                             .vx_mps   = 0.4,
-                                             .vy_mps   = -0.3,
-                                             .ix_radps = 30.0,
-                                             .iy_radps = 40.0,
-                                             .iz_radps = 99.0 };
-    struct dig_push               push   = { 0 };
+    const struct dig_law_material m       = dem_material(0.3, 0.2);
+    const struct dig_law          law     = dig_law_wall(&m, GRAIN_m, GRAIN_kg);
+    struct dig_contact_history    history = { 0 };
+    const struct dig_kinematics   t       = { .dz_m     = 0.99 * GRAIN_m,
+                                              .vx_mps   = 0.4,
+                                              .vy_mps   = -0.3,
+                                              .ix_radps = 30.0,
+                                              .iy_radps = 40.0,
+                                              .iz_radps = 99.0 };
+    struct dig_contact_force      push    = { 0 };
     for (int k = 0; k < 500; k++) {
-        push = dig_law_step(law, STEP_s, t, &memory);
+        push = dig_law_step(law, STEP_s, t, &history);
     }
     assert_true(push.fz_N > 0.0);
     assert_close(hypot(push.fx_N, push.fy_N), 0.3 * push.fz_N, 1e-12);
-    assert_close(hypot(memory.mx_Nm, memory.my_Nm), 0.2 * GRAIN_m * push.fz_N, 1e-15);
-    assert_close(memory.mz_Nm, 0.0, 0.0); // spin about the normal is free
-    assert_close(memory.sz_m, 0.0, 1e-20);
+    assert_close(hypot(history.mx_Nm, history.my_Nm), 0.2 * GRAIN_m * push.fz_N, 1e-15);
+    assert_close(history.mz_Nm, 0.0, 0.0); // spin about the normal is free
+    assert_close(history.sz_m, 0.0, 1e-20);
 }
 
 // Turning the whole picture turns the answer.
@@ -82,14 +84,14 @@ static void the_law_knows_no_direction(void **state)
     (void)state;
     const struct dig_law_material m   = dem_material(0.4, 0.4);
     const struct dig_law          law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
-    struct dig_memory             a   = { 1e-6, -2e-6, 5e-7, 1e-6, 2e-6, -3e-6 };
+    struct dig_contact_history    a   = { 1e-6, -2e-6, 5e-7, 1e-6, 2e-6, -3e-6 };
     // x -> y -> z -> x
-    struct dig_memory      b = { a.sz_m, a.sx_m, a.sy_m, a.mz_Nm, a.mx_Nm, a.my_Nm };
-    const double           d = 1.98 * GRAIN_m / sqrt(14.0);
-    const struct dig_touch s = { d, 2 * d, 3 * d, 0.1, -0.2, 0.05, 3, 5, -7, -2, 8, 1 };
-    const struct dig_touch t = { 3 * d, d, 2 * d, 0.05, 0.1, -0.2, -7, 3, 5, 1, -2, 8 };
-    const struct dig_push  p = dig_law_step(law, STEP_s, s, &a);
-    const struct dig_push  q = dig_law_step(law, STEP_s, t, &b);
+    struct dig_contact_history     b = { a.sz_m, a.sx_m, a.sy_m, a.mz_Nm, a.mx_Nm, a.my_Nm };
+    const double                   d = 1.98 * GRAIN_m / sqrt(14.0);
+    const struct dig_kinematics    s = { d, 2 * d, 3 * d, 0.1, -0.2, 0.05, 3, 5, -7, -2, 8, 1 };
+    const struct dig_kinematics    t = { 3 * d, d, 2 * d, 0.05, 0.1, -0.2, -7, 3, 5, 1, -2, 8 };
+    const struct dig_contact_force p = dig_law_step(law, STEP_s, s, &a);
+    const struct dig_contact_force q = dig_law_step(law, STEP_s, t, &b);
     assert_close(q.fy_N, p.fx_N, 1e-14);
     assert_close(q.fz_N, p.fy_N, 1e-14);
     assert_close(q.fx_N, p.fz_N, 1e-14);
@@ -108,13 +110,13 @@ static void no_cap_is_missed_for_want_of_a_root(void **state)
     struct dig_random             random = { .state = 7 };
     size_t                        capped = 0;
     for (int k = 0; k < 20000; k++) {
-        const double      load_N  = pow(10.0, dig_random_between(&random, -9.0, 3.0));
-        const double      grip_m  = law.friction * load_N / law.normal_Npm;
-        const double      most_Nm = law.rolling_lever_m * load_N;
-        const double      off     = dig_random_between(&random, -4.0, 4.0) * 0x1p-52;
-        struct dig_strain s       = { .normal_N    = k % 2 == 0 ? load_N : -load_N,
-                                      .spring2_m2  = 0.99 * grip_m * grip_m,
-                                      .torque2_Nm2 = 0.99 * most_Nm * most_Nm };
+        const double     load_N  = pow(10.0, dig_random_between(&random, -9.0, 3.0));
+        const double     grip_m  = law.friction * load_N / law.normal_Npm;
+        const double     most_Nm = law.rolling_lever_m * load_N;
+        const double     off     = dig_random_between(&random, -4.0, 4.0) * 0x1p-52;
+        struct dig_trial s       = { .normal_N    = k % 2 == 0 ? load_N : -load_N,
+                                     .spring2_m2  = 0.99 * grip_m * grip_m,
+                                     .torque2_Nm2 = 0.99 * most_Nm * most_Nm };
         assert_false(dig_law_may_cap(law, s));
         s.spring2_m2 = grip_m * grip_m * (1.0 + off);
         assert_true(dig_law_may_cap(law, s) || !(dig_law_caps(law, s).spring < 1.0));

@@ -30,11 +30,11 @@ static struct dig_world two(const double distance_m, const double large_m, const
     const double             x[2][3] = { { 0.0, 0.0, 0.0 }, { distance_m, 0.0, 0.0 } };
     struct dig_world         world   = dem_world(2, x, dem_material(0.5, 0.5));
     struct dig_grains *const g       = &world.grains;
-    g->kinds                         = 2;
-    g->kind[1].radius_m              = large_m;
-    g->kind[1].mass_kg               = dense * 4.0 / 3.0 * DIG_PI * large_m * large_m * large_m;
-    g->kind[1].inertia_kgm2          = 0.4 * g->kind[1].mass_kg * large_m * large_m;
-    g->of[1]                         = 1;
+    g->types                         = 2;
+    g->type[1].radius_m              = large_m;
+    g->type[1].mass_kg               = dense * 4.0 / 3.0 * DIG_PI * large_m * large_m * large_m;
+    g->type[1].inertia_kgm2          = 0.4 * g->type[1].mass_kg * large_m * large_m;
+    g->type_of[1]                    = 1;
     world.dt_s                       = FINE_s;
     return world;
 }
@@ -42,7 +42,7 @@ static struct dig_world two(const double distance_m, const double large_m, const
 // Runs until the grains have met and parted. Deepest overlap and time of contact.
 static void collide(struct dig_world *const world, double *const deepest_m, double *const contact_s)
 {
-    const double reach_m = world->grains.kind[0].radius_m + world->grains.kind[1].radius_m;
+    const double reach_m = world->grains.type[0].radius_m + world->grains.type[1].radius_m;
     size_t       steps   = 0;
     *deepest_m           = 0.0;
     for (size_t s = 0; s < 20000; s++) {
@@ -68,10 +68,10 @@ static void hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found(void **stat
         const double     rj    = large_m[k / 2];
         const double     v     = speed[k % 2];
         struct dig_world world = two(1.001 * (GRAIN_m + rj), rj, 4000.0);
-        dig_world_set_material(&world, &m);
+        dem_set_material(&world, &m);
         world.grains.motion[0].v_mps[0] = v;
-        const double mi                 = world.grains.kind[0].mass_kg;
-        const double mj                 = world.grains.kind[1].mass_kg;
+        const double mi                 = world.grains.type[0].mass_kg;
+        const double mj                 = world.grains.type[1].mass_kg;
         double       deepest_m;
         double       contact_s;
         collide(&world, &deepest_m, &contact_s);
@@ -98,7 +98,7 @@ static void hertz_spheres_part_with_their_restitution_at_any_speed(void **state)
         struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
         m.restitution             = e[k / 2];
         struct dig_world world    = two(2.6 * GRAIN_m, 1.5 * GRAIN_m, 1500.0);
-        dig_world_set_material(&world, &m);
+        dem_set_material(&world, &m);
         world.grains.motion[0].v_mps[0] = speed[k % 2];
         double deepest_m;
         double contact_s;
@@ -115,20 +115,20 @@ static void hertz_spheres_part_with_their_restitution_at_any_speed(void **state)
 static void mindlin_is_softer_sideways_by_poissons_ratio(void **state)
 {
     (void)state;
-    const struct dig_law_material m      = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
-    const struct dig_law          law    = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
-    const double                  d_m    = 1.99 * GRAIN_m;
-    const double                  h_m    = 1e-9;
-    struct dig_memory             memory = { 0 };
-    struct dig_touch              t      = { .dx_m = d_m };
-    const struct dig_push         at     = dig_law_general(law, FINE_s, t, &memory);
-    t.dx_m                               = d_m - h_m;
-    const struct dig_push deeper         = dig_law_general(law, FINE_s, t, &memory);
-    memory                               = (struct dig_memory){ .sy_m = h_m };
-    t.dx_m                               = d_m;
-    const struct dig_push aside          = dig_law_general(law, FINE_s, t, &memory);
-    const double          head_on        = (deeper.fx_N - at.fx_N) / h_m;
-    const double          sideways       = -aside.fy_N / h_m;
+    const struct dig_law_material  m       = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
+    const struct dig_law           law     = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
+    const double                   d_m     = 1.99 * GRAIN_m;
+    const double                   h_m     = 1e-9;
+    struct dig_contact_history     history = { 0 };
+    struct dig_kinematics          t       = { .dx_m = d_m };
+    const struct dig_contact_force at      = dig_law_general(law, FINE_s, t, &history);
+    t.dx_m                                 = d_m - h_m;
+    const struct dig_contact_force deeper  = dig_law_general(law, FINE_s, t, &history);
+    history                                = (struct dig_contact_history){ .sy_m = h_m };
+    t.dx_m                                 = d_m;
+    const struct dig_contact_force aside   = dig_law_general(law, FINE_s, t, &history);
+    const double                   head_on = (deeper.fx_N - at.fx_N) / h_m;
+    const double                   sideways = -aside.fy_N / h_m;
     assert_close(sideways / head_on, 2.0 * (1.0 - 0.2) / (2.0 - 0.2), 1e-4);
 }
 
@@ -221,7 +221,7 @@ static void glued_grains_rest_where_push_and_pull_balance(void **state)
     m.cohesion_Jpm3           = PULL_Jpm3;
     const double     rj       = 1.5 * GRAIN_m;
     struct dig_world world    = two((GRAIN_m + rj) * (1.0 - 1e-6), rj, DENSITY);
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     dem_run_for(&world, 0.05);
     const double apart_m   = dem_grain(&world, 1)->x_m[0] - dem_grain(&world, 0)->x_m[0];
     const double overlap_m = GRAIN_m + rj - apart_m;
@@ -276,7 +276,7 @@ static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state
     m.rolling                 = 0.4;
     m.cohesion_Jpm3           = PULL_Jpm3;
     struct dig_world world    = two(2.7 * GRAIN_m, 1.6 * GRAIN_m, 4000.0);
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     struct dig_motion *const motion = world.grains.motion;
     motion[0].x_m[1]                = 0.8 * GRAIN_m;
     motion[0].v_mps[0]              = 0.7;
@@ -288,14 +288,14 @@ static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state
         memset(sum[k], 0, sizeof sum[k]);
         for (uint32_t i = 0; i < 2; i++) {
             const struct dig_motion *const b    = dem_grain(&world, i);
-            const struct dig_kind          kind = world.grains.kind[i];
+            const struct dig_grain_type    type = world.grains.type[i];
             for (size_t a = 0; a < 3; a++) {
                 const size_t n = (a + 1) % 3;
                 const size_t o = (a + 2) % 3;
-                sum[k][a] += kind.mass_kg * b->v_mps[a];
+                sum[k][a] += type.mass_kg * b->v_mps[a];
                 sum[k][3 + a] +=
-                    kind.mass_kg * (b->x_m[n] * b->v_mps[o] - b->x_m[o] * b->v_mps[n]) +
-                    kind.inertia_kgm2 * b->w_radps[a];
+                    type.mass_kg * (b->x_m[n] * b->v_mps[o] - b->x_m[o] * b->v_mps[n]) +
+                    type.inertia_kgm2 * b->w_radps[a];
             }
         }
         dem_run_for(&world, 4e-3);
@@ -316,13 +316,13 @@ static void the_plain_choice_stays_with_the_plain_law(void **state)
     const struct dig_law_material m   = dem_material(0.5, 0.4);
     struct dig_law                law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     assert_false(law.general);
-    struct dig_memory a = { 1e-6, -2e-6, 5e-7, 1e-6, 2e-6, -3e-6 };
-    struct dig_memory b = a;
+    struct dig_contact_history a = { 1e-6, -2e-6, 5e-7, 1e-6, 2e-6, -3e-6 };
+    struct dig_contact_history b = a;
     for (int k = 0; k < 200; k++) {
-        const double           d = (1.98 + 1e-4 * k) * GRAIN_m / sqrt(14.0);
-        const struct dig_touch t = { d, 2 * d, 3 * d, 0.1, -0.2, 0.05, 3, 5, -7, -2, 8, 1 };
-        const struct dig_push  p = dig_law_step(law, STEP_s, t, &a);
-        const struct dig_push  q = dig_law_general(law, STEP_s, t, &b);
+        const double                   d = (1.98 + 1e-4 * k) * GRAIN_m / sqrt(14.0);
+        const struct dig_kinematics    t = { d, 2 * d, 3 * d, 0.1, -0.2, 0.05, 3, 5, -7, -2, 8, 1 };
+        const struct dig_contact_force p = dig_law_step(law, STEP_s, t, &a);
+        const struct dig_contact_force q = dig_law_general(law, STEP_s, t, &b);
         assert_close(q.fx_N, p.fx_N, 1e-14);
         assert_close(q.fz_N, p.fz_N, 1e-14);
         assert_close(q.iy_Nm, p.iy_Nm, 1e-16);
@@ -335,16 +335,18 @@ static void no_touch_is_no_force_under_any_law(void **state)
 {
     (void)state;
     for (int k = 0; k < 12; k++) {
-        struct dig_law_material m     = dem_material(0.5, 0.5);
-        m.normal_law                  = k % 2 == 0 ? DIG_NORMAL_HOOKE : DIG_NORMAL_HERTZ;
-        m.rolling_law                 = (enum dig_rolling_law)(k / 2 % 3);
-        m.cohesion_Jpm3               = k < 6 ? 0.0 : 1e6;
-        const struct dig_law    law   = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
-        struct dig_memory       kept  = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
-        const struct dig_touch  apart = { .dx_m = 2.001 * GRAIN_m, .vx_mps = -1.0, .iy_radps = 5 };
-        const struct dig_push   push  = dig_law_general(law, STEP_s, apart, &kept);
-        const struct dig_push   none  = { 0 };
-        const struct dig_memory blank = { 0 };
+        struct dig_law_material m          = dem_material(0.5, 0.5);
+        m.normal_law                       = k % 2 == 0 ? DIG_NORMAL_HOOKE : DIG_NORMAL_HERTZ;
+        m.rolling_law                      = (enum dig_rolling_law)(k / 2 % 3);
+        m.cohesion_Jpm3                    = k < 6 ? 0.0 : 1e6;
+        const struct dig_law           law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
+        struct dig_contact_history     kept    = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
+        const struct dig_kinematics    apart   = { .dx_m     = 2.001 * GRAIN_m,
+                                                   .vx_mps   = -1.0,
+                                                   .iy_radps = 5 };
+        const struct dig_contact_force push    = dig_law_general(law, STEP_s, apart, &kept);
+        const struct dig_contact_force none    = { 0 };
+        const struct dig_contact_history blank = { 0 };
         assert_memory_equal(&push, &none, sizeof push);
         assert_memory_equal(&kept, &blank, sizeof kept);
     }

@@ -41,12 +41,12 @@ static struct dig_world make_world(const struct table *const then, const double 
         bed.clump[i]    = (uint32_t)(i / 2 + 1);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(&scene);
-    struct dig_grain_types      kinds;
+    struct dig_grain_types      types;
     struct dig_world            world;
     struct dig_error            error = { "" };
     assert_non_null(ode);
     const double fall_mps = 0.5 + 0.5 * GRAVITY * CLUMP_STEP_s;
-    if (dig_setup_world(&scene, &gravel, ode, &bed, fall_mps, &kinds, &world, &error) != DIG_OK) {
+    if (dig_setup_world(&scene, &gravel, ode, &bed, fall_mps, &types, &world, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     dig_ode_scene_destroy(ode);

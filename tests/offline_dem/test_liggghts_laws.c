@@ -26,13 +26,13 @@ static void meet_pair(const struct dig_law_material m, const char *const path)
     struct dig_world world   = dem_world(2, x, m);
     // dem_world() makes like grains: the second is another kind, and their law is made anew.
     struct dig_grains *const g = &world.grains;
-    g->kinds                   = 2;
-    g->kind[1]                 = g->kind[0];
-    g->kind[1].radius_m        = LARGE_m;
-    g->kind[1].mass_kg         = BIG_KGPM3 * 4.0 / 3.0 * DIG_PI * LARGE_m * LARGE_m * LARGE_m;
-    g->kind[1].inertia_kgm2    = 0.4 * g->kind[1].mass_kg * LARGE_m * LARGE_m;
-    g->of[1]                   = 1;
-    dig_world_set_material(&world, &m);
+    g->types                   = 2;
+    g->type[1]                 = g->type[0];
+    g->type[1].radius_m        = LARGE_m;
+    g->type[1].mass_kg         = BIG_KGPM3 * 4.0 / 3.0 * DIG_PI * LARGE_m * LARGE_m * LARGE_m;
+    g->type[1].inertia_kgm2    = 0.4 * g->type[1].mass_kg * LARGE_m * LARGE_m;
+    g->type_of[1]              = 1;
+    dem_set_material(&world, &m);
     world.dt_s = FINE_s;
     g->motion[0] =
         (struct dig_motion){ .v_mps = { 0.2, 0.03, 0.01 }, .w_radps = { 3.0, 5.0, -7.0 } };
@@ -104,18 +104,18 @@ static struct dig_world mixed_cluster(const struct table *const start)
     struct dig_world         world = world_of(start, m);
     const double             r[]   = { 0.003, 0.0034, 0.00375 };
     struct dig_grains *const g     = &world.grains;
-    g->kinds                       = 3;
+    g->types                       = 3;
     for (size_t k = 0; k < 3; k++) {
         const double kg = DENSITY * 4.0 / 3.0 * DIG_PI * r[k] * r[k] * r[k];
-        g->kind[k]      = (struct dig_kind){ .radius_m     = r[k],
-                                             .mass_kg      = kg,
-                                             .inertia_kgm2 = 0.4 * kg * r[k] * r[k] };
+        g->type[k]      = (struct dig_grain_type){ .radius_m     = r[k],
+                                                   .mass_kg      = kg,
+                                                   .inertia_kgm2 = 0.4 * kg * r[k] * r[k] };
     }
     for (size_t i = 0; i < start->rows; i++) {
-        g->of[i]              = (uint8_t)((i + 1) % 3);
+        g->type_of[i]         = (uint8_t)((i + 1) % 3);
         g->motion[i].v_mps[2] = -1.0;
     }
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     world.dt_s            = FINE_s;
     world.gravity_mps2[2] = -GRAVITY;
     dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);

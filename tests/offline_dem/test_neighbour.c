@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/neighbour.h"
 #include "offline_dem/law/random.h"
+#include "tests/dem_grains.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -29,8 +30,8 @@ static struct scatter make_scatter(const uint64_t seed)
         s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.01) : 0.0006;
     }
     x[7] = 12.0;
-    assert_int_equal(dig_grains_create(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
-    assert_int_equal(s.grains.kinds, 2);
+    assert_int_equal(dem_create_grains(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
+    assert_int_equal(s.grains.types, 2);
     return s;
 }
 
@@ -46,8 +47,8 @@ static bool is_near(const struct scatter *const s, const double period_m, const 
     const double *const a = s->grains.motion[i].x_m;
     const double *const b = s->grains.motion[j].x_m;
     const double gap_m = hypot(hypot(a[0] - b[0], apart_in_y(a[1] - b[1], period_m)), a[2] - b[2]) -
-                         s->grains.kind[s->grains.of[i]].radius_m -
-                         s->grains.kind[s->grains.of[j]].radius_m;
+                         s->grains.type[s->grains.type_of[i]].radius_m -
+                         s->grains.type[s->grains.type_of[j]].radius_m;
     return gap_m < s->margin_m[i] + s->margin_m[j];
 }
 
@@ -117,7 +118,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     struct scatter s = make_scatter(3);
     uint32_t       order[GRAINS];
     bool           seen[GRAINS] = { false };
-    assert_int_equal(dig_neighbours_order(&s.grains, 0.01, order), DIG_OK);
+    assert_int_equal(dig_neighbours_sort(&s.grains, 0.01, order), DIG_OK);
     double path_m = 0.0, unsorted_m = 0.0;
     for (size_t k = 0; k < GRAINS; k++) {
         assert_true(order[k] < GRAINS);
@@ -135,7 +136,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     assert_true(path_m < 0.75 * unsorted_m);
     assert_int_equal(dig_grains_reorder(&s.grains, order), DIG_OK);
     for (size_t k = 0; k < GRAINS; k++) {
-        assert_int_equal(s.grains.name[k], order[k]);
+        assert_int_equal(s.grains.id[k], order[k]);
     }
     dig_grains_finish(&s.grains);
 }
@@ -152,22 +153,26 @@ static void no_grains_make_an_empty_list(void **state)
     dig_neighbours_finish(NULL);
 }
 
-static void too_many_radii_and_senseless_ones_are_refused(void **state)
+static void too_many_types_and_senseless_ones_are_refused(void **state)
 {
     (void)state;
-    double            at[DIG_GRAIN_TYPES_MAX + 1] = { 0.0 };
-    double            r[DIG_GRAIN_TYPES_MAX + 1];
-    struct dig_grains untouched = { .n = 77 };
-    for (size_t i = 0; i <= DIG_GRAIN_TYPES_MAX; i++) {
-        r[i] = 0.001 * (double)(i + 1);
+    double                at[2] = { 0.0, 0.0 };
+    const uint8_t         of[2] = { 0, 1 };
+    struct dig_grain_type type[DIG_GRAIN_TYPES_MAX + 1];
+    struct dig_grains     untouched = { .n = 77 };
+    for (size_t k = 0; k <= DIG_GRAIN_TYPES_MAX; k++) {
+        type[k] =
+            (struct dig_grain_type){ .radius_m = 0.001, .mass_kg = 1e-5, .inertia_kgm2 = 1e-11 };
     }
-    assert_int_equal(dig_grains_create(DIG_GRAIN_TYPES_MAX + 1, at, at, at, r, 2500.0, &untouched),
-                     DIG_EINVAL);
-    r[1] = -1.0;
-    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
-    r[1]  = 0.001;
-    at[1] = NAN;
-    assert_int_equal(dig_grains_create(2, at, at, at, r, 2500.0, &untouched), DIG_EINVAL);
+    assert_int_equal(
+        dig_grains_create(DIG_GRAIN_TYPES_MAX + 1, type, 2, at, at, at, of, &untouched),
+        DIG_EINVAL);
+    assert_int_equal(dig_grains_create(1, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    type[1].radius_m = -0.001;
+    assert_int_equal(dig_grains_create(2, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
+    type[1].radius_m = 0.001;
+    at[1]            = NAN;
+    assert_int_equal(dig_grains_create(2, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
     assert_int_equal(untouched.n, 77);
 }
 
@@ -179,7 +184,7 @@ int main(void)
         cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
         cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
         cmocka_unit_test(no_grains_make_an_empty_list),
-        cmocka_unit_test(too_many_radii_and_senseless_ones_are_refused),
+        cmocka_unit_test(too_many_types_and_senseless_ones_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

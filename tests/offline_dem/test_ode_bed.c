@@ -2,7 +2,7 @@
 
 #include "offline_dem/law/random.h"
 #include "offline_dem/reference/ode_bed.h"
-#include "offline_dem/reference/ode_memory.h"
+#include "offline_dem/reference/ode_history.h"
 #include "offline_dem/world/bodies.h"
 #include "tests/dem_fixture.h"
 
@@ -14,12 +14,12 @@
 // Grains of three sizes and two densities, thrown about above a floor between four walls.
 static struct dig_world heap(const struct dig_law_material *const m)
 {
-    double                x[COUNT][3];
-    struct dig_random     random = { .state = 7 };
-    static const double   size[] = { 0.8, 1.0, 1.3 };
-    const struct dig_kind plain  = { .radius_m     = GRAIN_m,
-                                     .mass_kg      = GRAIN_kg,
-                                     .inertia_kgm2 = GRAIN_kgm2 };
+    double                      x[COUNT][3];
+    struct dig_random           random = { .state = 7 };
+    static const double         size[] = { 0.8, 1.0, 1.3 };
+    const struct dig_grain_type plain  = { .radius_m     = GRAIN_m,
+                                           .mass_kg      = GRAIN_kg,
+                                           .inertia_kgm2 = GRAIN_kgm2 };
     for (size_t i = 0; i < COUNT; i++) {
         const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE };
         for (size_t k = 0; k < 3; k++) {
@@ -29,23 +29,23 @@ static struct dig_world heap(const struct dig_law_material *const m)
     }
     struct dig_world         world = dem_world(COUNT, (const double(*)[3])x, *m);
     struct dig_grains *const g     = &world.grains;
-    g->kinds                       = 3;
+    g->types                       = 3;
     for (size_t k = 0; k < 3; k++) {
         const double mass = pow(size[k], 3.0) * (k == 2 ? 1.6 : 1.0);
-        g->kind[k]        = plain;
-        g->kind[k].radius_m *= size[k];
-        g->kind[k].mass_kg *= mass;
-        g->kind[k].inertia_kgm2 *= mass * size[k] * size[k];
+        g->type[k]        = plain;
+        g->type[k].radius_m *= size[k];
+        g->type[k].mass_kg *= mass;
+        g->type[k].inertia_kgm2 *= mass * size[k] * size[k];
     }
     for (size_t i = 0; i < COUNT; i++) {
-        g->of[i] = (uint8_t)(i * 7 % 3);
+        g->type_of[i] = (uint8_t)(i * 7 % 3);
         for (size_t k = 0; k < 3; k++) {
             g->motion[i].v_mps[k]   = dig_random_between(&random, -0.5, 0.5);
             g->motion[i].w_radps[k] = dig_random_between(&random, -20.0, 20.0);
         }
         g->motion[i].v_mps[2] -= 0.7;
     }
-    dig_world_set_material(&world, m);
+    dem_set_material(&world, m);
     const double high_m   = 2.65 * GRAIN_m * (SIDE + 0.1);
     world.gravity_mps2[2] = -GRAVITY;
     dem_add_wall(&world, 0.0, 0.0, 1.0, 0.0);
@@ -173,24 +173,24 @@ static void a_bucket_feels_what_it_feels_in_the_kernel(void **state)
 static void contacts_remember_until_they_end(void **state)
 {
     (void)state;
-    struct dig_ode_memory map = { 0 };
-    assert_null(dig_ode_memory_was(&map, 1, 2));
+    struct dig_ode_history map = { 0 };
+    assert_null(dig_ode_history_previous(&map, 1, 2));
     // More than the first table holds.
     for (uint32_t a = 0; a < 5000; a++) {
-        struct dig_memory *const m = dig_ode_memory_of(&map, a, a + 1);
+        struct dig_contact_history *const m = dig_ode_history_of(&map, a, a + 1);
         assert_non_null(m);
         assert_close(m->sx_m, 0.0, 0.0);
         m->sx_m = (double)a + 1.0;
     }
-    dig_ode_memory_turn(&map);
+    dig_ode_history_end_step(&map);
     for (uint32_t a = 0; a < 5000; a += 2) {
-        assert_close(dig_ode_memory_of(&map, a, a + 1)->sx_m, (double)a + 1.0, 0.0);
+        assert_close(dig_ode_history_of(&map, a, a + 1)->sx_m, (double)a + 1.0, 0.0);
     }
-    assert_null(dig_ode_memory_was(&map, 2, 1)); // who touches whom is told apart
-    dig_ode_memory_turn(&map);
-    assert_close(dig_ode_memory_of(&map, 4, 5)->sx_m, 5.0, 0.0);
-    assert_close(dig_ode_memory_of(&map, 5, 6)->sx_m, 0.0, 0.0); // not touched in between
-    dig_ode_memory_finish(&map);
+    assert_null(dig_ode_history_previous(&map, 2, 1)); // who touches whom is told apart
+    dig_ode_history_end_step(&map);
+    assert_close(dig_ode_history_of(&map, 4, 5)->sx_m, 5.0, 0.0);
+    assert_close(dig_ode_history_of(&map, 5, 6)->sx_m, 0.0, 0.0); // not touched in between
+    dig_ode_history_finish(&map);
 }
 
 static void a_world_with_clumps_is_refused(void **state)

@@ -1,10 +1,10 @@
 // A world that a device steps, the processor standing in for one: digs as the kernel makes them.
 
 #include "offline_dem/device/device_cuda.h"
-#include "offline_dem/device/device_host.h"
 #include "offline_dem/device/engine_cuda.h"
 #include "offline_dem/world/offloaded.h"
 #include "tests/dem_fixture.h"
+#include "tests/offline_dem/host_device.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,8 +17,8 @@ static struct dig_recording dig_on(struct dig_device *const      device,
 {
     struct dig_recording r     = { 0 };
     struct dig_error     error = { "" };
-    if (dig_dig_run_on(device, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r,
-                       &error) != DIG_OK) {
+    if (dig_dig_run(device, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
+        DIG_OK) {
         fail_msg("%s", error.text);
     }
     return r;
@@ -48,11 +48,11 @@ static void rows_agree(const struct dig_recording *const a, const struct dig_rec
 // Some thousand steps, with lists made anew: every window of the dig, before chaos parts them.
 static void digs_agree(const struct dig_scene *const scene)
 {
-    struct dig_device *const host = dig_device_host_create();
+    struct dig_device *const host = dem_host_device_create();
     struct dig_bed           bed;
     struct dig_error         error = { "" };
     assert_non_null(host);
-    if (dig_bed_pour(scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
+    if (dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     struct dig_recording kernel = dig_on(NULL, scene, &bed);
@@ -156,9 +156,9 @@ static void lead_round(const double angle_rad, const double w_radps, struct dig_
     const double      s   = sin(angle_rad);
     struct dig_motion at  = { .x_m   = { -0.052 + d_m * c, 0.0, -0.042 + d_m * s },
                               .v_mps = { -w_radps * d_m * s, 0.0, w_radps * d_m * c } };
-    assert_int_equal(dig_world_fetch(world), DIG_OK);
+    assert_int_equal(dig_world_sync(world), DIG_OK);
     world->grains.motion[0] = at;
-    dig_world_touched(world);
+    dig_world_mark_stale(world);
     dem_run(world, 1);
 }
 
@@ -173,7 +173,7 @@ static void a_contact_goes_on_across_an_edge(void **state)
     struct dig_world               kernel  = dem_world(1, x, dem_material(0.5, 0.0));
     struct dig_world               device  = dem_world(1, x, dem_material(0.5, 0.0));
     struct dig_tool                tool    = dig_tool_make(&bucket);
-    struct dig_device *const       host    = dig_device_host_create();
+    struct dig_device *const       host    = dem_host_device_create();
     assert_non_null(host);
     kernel.tool = &tool;
     device.tool = &tool;
@@ -196,14 +196,14 @@ static void a_contact_goes_on_across_an_edge(void **state)
 }
 
 // A device whose grains never ask for new lists: steps on, and then says that one got away.
-static enum dig_status (*real_attend)(struct dig_device *device,
-                                      uint32_t           attention[DIG_ATTENTIONS]);
+static enum dig_status (*real_poll)(struct dig_device *device,
+                                      uint32_t           margin_flag[DIG_MARGIN_FLAGS]);
 
-static enum dig_status attend_late(struct dig_device *const device,
-                                   uint32_t                 attention[DIG_ATTENTIONS])
+static enum dig_status poll_late(struct dig_device *const device,
+                                   uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
 {
-    const enum dig_status status  = real_attend(device, attention);
-    attention[DIG_ATTENTION_SOON] = 0;
+    const enum dig_status status        = real_poll(device, margin_flag);
+    margin_flag[DIG_MARGIN_NEARLY_LEFT] = 0;
     return status;
 }
 
@@ -212,10 +212,10 @@ static void a_grain_that_got_away_is_refused(void **state)
     (void)state;
     const double             x_m[2][3] = { { 0.0, 0.0, 0.0 }, { 0.1, 0.0, 0.0 } };
     struct dig_world         world     = dem_world(2, x_m, dem_material(0.5, 0.5));
-    struct dig_device *const host      = dig_device_host_create();
+    struct dig_device *const host      = dem_host_device_create();
     assert_non_null(host);
-    real_attend           = host->attend;
-    host->attend          = attend_late;
+    real_poll           = host->poll_margins;
+    host->poll_margins    = poll_late;
     world.gravity_mps2[2] = -GRAVITY;
     assert_int_equal(dig_offload(&world, host), DIG_OK);
     enum dig_status status = DIG_OK;
@@ -241,7 +241,7 @@ static void a_card_digs_clumps_between_rocks(void **state)
     }
     const struct dig_scene scene = clumps_and_rocks();
     struct dig_bed         bed;
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_OK);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &bed, &error), DIG_OK);
     struct dig_recording ours   = dig_on(NULL, &scene, &bed);
     struct dig_recording theirs = dig_on(card, &scene, &bed);
     rows_agree(&ours, &theirs);
@@ -282,7 +282,7 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
         print_message("SKIP: %s\n", error.text);
         skip();
     }
-    struct dig_device *const host = dig_device_host_create();
+    struct dig_device *const host = dem_host_device_create();
     assert_non_null(host);
     struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.bed.sizes        = 2;
@@ -290,8 +290,8 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
     scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
     struct dig_bed on_host;
     struct dig_bed on_card;
-    assert_int_equal(dig_bed_pour_on(host, &scene, &gravel, 1, NULL, &on_host, NULL), DIG_OK);
-    assert_int_equal(dig_bed_pour_on(card, &scene, &gravel, 1, NULL, &on_card, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(host, &scene, &gravel, 1, NULL, &on_host, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(card, &scene, &gravel, 1, NULL, &on_card, NULL), DIG_OK);
     assert_int_equal(on_card.grains, on_host.grains);
     assert_memory_equal(on_card.x_m, on_host.x_m, on_host.grains * sizeof *on_host.x_m);
     assert_memory_equal(on_card.z_m, on_host.z_m, on_host.grains * sizeof *on_host.z_m);

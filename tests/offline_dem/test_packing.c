@@ -78,7 +78,7 @@ static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
     (void)state;
     const struct dig_scene scene = dem_small_scene();
     struct dig_bed         bed;
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
     assert_in_range(bed.grains, 100, dig_packing_grains(&scene));
     double *const at = calloc(3 * bed.grains, sizeof *at);
     assert_non_null(at);
@@ -130,8 +130,8 @@ static void pouring_twice_gives_the_same_bits(void **state)
     (void)state;
     const struct dig_scene scene = dem_small_scene();
     struct dig_bed         a, b;
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &a, NULL), DIG_OK);
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 5, NULL, &b, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 5, NULL, &a, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 5, NULL, &b, NULL), DIG_OK);
     assert_int_equal(a.grains, b.grains);
     assert_memory_equal(a.x_m, b.x_m, a.grains * sizeof *a.x_m);
     assert_memory_equal(a.z_m, b.z_m, a.grains * sizeof *a.z_m);

@@ -70,12 +70,12 @@ static void a_pair_across_the_border_moves_as_in_the_middle(void **state)
     for (int s = 0; s < 600; s++) {
         // Lists are remade in the middle of the contact too: it goes on remembering.
         if (s % 37 == 0) {
-            dig_neighbours_finish(&border.near_list);
-            dig_world_touched(&border);
+            dig_neighbours_finish(&border.neighbours);
+            dig_world_mark_stale(&border);
         }
         dem_run(&middle, 1);
         dem_run(&border, 1);
-        met |= middle.pair[0].n == 1 && fabs(middle.pair[0].memory[0][0]) > 0.0;
+        met |= middle.pair[0].n == 1 && fabs(middle.pair[0].history[0][0]) > 0.0;
         for (uint32_t i = 0; i < 2; i++) {
             const struct dig_motion *const a = dem_grain(&middle, i);
             const struct dig_motion *const b = dem_grain(&border, i);
@@ -117,7 +117,7 @@ static void momentum_is_kept_across_the_border(void **state)
         for (size_t c = 0; c < world.pair[0].n; c++) {
             const double dy_m = world.grains.motion[world.pair[0].i[c]].x_m[1] -
                                 world.grains.motion[world.pair[0].j[c]].x_m[1];
-            across += fabs(dy_m) > 4.5 * GRAIN_m && fabs(world.pair[0].memory[0][c]) > 0.0;
+            across += fabs(dy_m) > 4.5 * GRAIN_m && fabs(world.pair[0].history[0][c]) > 0.0;
         }
     }
     assert_true(across > 20);

@@ -4,7 +4,7 @@
 
 #include "core/ground.h"
 #include "offline_dem/dig/dig.h"
-#include "offline_dem/dig/scatter.h"
+#include "offline_dem/dig/mixed_packing.h"
 #include "offline_dem/shapes/clump.h"
 
 #include <math.h>
@@ -30,7 +30,7 @@ static struct dig_bed pour(const struct dig_scene *const scene)
 {
     struct dig_bed   bed;
     struct dig_error error = { "" };
-    if (dig_bed_pour(scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
+    if (dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     return bed;
@@ -78,7 +78,7 @@ static void three_sizes_are_poured_by_mass(void **state)
     scene.bed.size[1]                  = (struct dig_size){ 0.0075, 0.4 };
     scene.bed.size[2]                  = (struct dig_size){ 0.010, 0.3 };
     struct dig_bed poured              = { 0 };
-    assert_int_equal(dig_scatter(&scene, &shape, 1, &poured), DIG_OK);
+    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &poured), DIG_OK);
     assert_close(deepest_overlap(&poured), 0.0, 0.0);
     const double all =
         mass_of(&poured, 0.003) + mass_of(&poured, 0.00375) + mass_of(&poured, 0.005);
@@ -121,8 +121,9 @@ static void clumps_stay_whole_and_are_cut_whole(void **state)
     assert_true(deepest_overlap(&bed) < 0.05);
     // The bed can be dug, and its clumps must be those of the scene.
     struct dig_recording r = { 0 };
-    assert_int_equal(dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r, NULL),
-                     DIG_OK);
+    assert_int_equal(
+        dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r, NULL),
+        DIG_OK);
     double Fx_N = 0.0;
     for (size_t k = r.rows / 2; k < r.rows; k++) {
         Fx_N += r.row[k].Fx_N;
@@ -132,7 +133,7 @@ static void clumps_stay_whole_and_are_cut_whole(void **state)
     struct dig_error error  = { "" };
     scene.bed.clump.spheres = 2;
     assert_int_equal(
-        dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r, &error),
+        dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r, &error),
         DIG_EINVAL);
     assert_non_null(strstr(error.text, "clumps"));
     dig_bed_finish(&bed);
@@ -221,7 +222,7 @@ static void a_pressed_bed_is_denser(void **state)
         for (size_t k = 0; k < 2; k++) {
             struct dig_bed bed;
             scene.bed.preload_Pa = press_Pa[k];
-            assert_int_equal(dig_bed_pour(&scene, &gravel, seed, NULL, &bed, NULL), DIG_OK);
+            assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, seed, NULL, &bed, NULL), DIG_OK);
             below[k] += bed.grains;
             dig_bed_finish(&bed);
         }
@@ -231,7 +232,7 @@ static void a_pressed_bed_is_denser(void **state)
     struct dig_bed   bed   = { .grains = 77 };
     struct dig_error error = { "" };
     scene.bed.preload_Pa   = 1e6;
-    assert_int_equal(dig_bed_pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, "bed.preload_Pa: 1e+06"));
     assert_int_equal(bed.grains, 77);
 }
@@ -246,7 +247,7 @@ static void a_bed_that_was_dug_before_digs_differently_and_repeats(void **state)
         scene.bed.earlier_digs   = k == 0 ? 0 : 1;
         scene.bed.earlier_as_dug = k == 3;
         assert_int_equal(
-            dig_dig_run(&scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
+            dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
             DIG_OK);
         assert_int_equal(r[k].rows, r[0].rows);
     }
@@ -274,7 +275,7 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
     scene.bed.obstacle[0]              = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
                                                                 .centre_m = { 0.03, 0.0, 0.1 },
                                                                 .size_m   = { 0.05, 0.04, 0.4 } };
-    assert_int_equal(dig_scatter(&scene, &shape, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &bed), DIG_EUNREACHABLE);
     assert_int_equal(bed.grains, 77);
 }
 

@@ -150,8 +150,9 @@ static void dig(const int g, const struct dig_scene *const scene, const uint64_t
     struct dig_bed          bed   = { 0 };
     struct dig_recording    r     = { 0 };
     struct dig_error        error = { "" };
-    if (dig_bed_pour(scene, &base, seed, NULL, &bed, &error) != DIG_OK ||
-        dig_dig_run(scene, &base, &bed, &scene->trajectory[0], NULL, NULL, &r, &error) != DIG_OK) {
+    if (dig_bed_pour(NULL, scene, &base, seed, NULL, &bed, &error) != DIG_OK ||
+        dig_dig_run(NULL, scene, &base, &bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
+            DIG_OK) {
         fail_msg("%s: %s", gravel[g].name, error.text);
     }
     struct beds *const b = &ours[g];

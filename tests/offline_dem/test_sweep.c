@@ -72,7 +72,7 @@ static enum dig_status fake_pour(const struct dig_scene *const  scene,
     if (mischief == DIE_ALWAYS && is_marked_gravel(gravel)) {
         (void)raise(SIGKILL);
     }
-    assert_true(progress->tell(progress->context, 0.1, 0.2) != 0);
+    assert_true(progress->report(progress->context, 0.1, 0.2) != 0);
     bed->grains = (size_t)(seed % 1000);
     return DIG_OK;
 }
@@ -107,7 +107,7 @@ fake_dig(const struct dig_scene *const scene, const struct dig_gravel *const gra
     for (int i = 0; mischief == DAWDLE && i < 6000; i++) {
         const struct timespec wait = { .tv_nsec = 10000000 };
         (void)nanosleep(&wait, NULL);
-        (void)progress->tell(progress->context, i, 6000);
+        (void)progress->report(progress->context, i, 6000);
     }
     const size_t               rows = t->phases == 1 ? 400 : 200;
     const double               my   = moment_of(gravel, bed->grains, t);
@@ -397,7 +397,7 @@ static void a_stop_keeps_what_is_finished_and_ends_at_once(void **state)
     const struct dig_sweep_options options  = { .workers      = 2,
                                                 .time_limit_s = (double)INFINITY,
                                                 .stop         = &stop,
-                                                .tell         = listen_to,
+                                                .report       = listen_to,
                                                 .context      = &told };
     assert_int_equal(sigaction(SIGALRM, &on_alarm, &before), 0);
     (void)alarm(2); // progress is told every second
@@ -466,7 +466,7 @@ static void progress_is_told_after_each_dig(void **state)
     (void)state;
     struct told                    told    = { .times = 0 };
     const struct dig_sweep_options options = {
-        .workers = 2, .time_limit_s = (double)INFINITY, .tell = listen_to, .context = &told
+        .workers = 2, .time_limit_s = (double)INFINITY, .report = listen_to, .context = &told
     };
     assert_int_equal(sweep("told.sqlite", 1, &options).status, DIG_OK);
     assert_true(told.times >= DIGS_A_PACKING);

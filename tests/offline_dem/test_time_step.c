@@ -63,15 +63,15 @@ static double spin_after(const double step_s, const size_t steps)
     m.friction                = 1e9; // nothing slides
     struct dig_world world    = dem_world(9, (const double(*)[3])x, m);
     world.dt_s                = step_s;
-    world.grains.kinds        = 2;
-    world.grains.kind[1]      = world.grains.kind[0];
+    world.grains.types        = 2;
+    world.grains.type[1]      = world.grains.type[0];
     // Held by being too heavy to move.
-    world.grains.kind[1].mass_kg *= 1e12;
-    world.grains.kind[1].inertia_kgm2 *= 1e12;
+    world.grains.type[1].mass_kg *= 1e12;
+    world.grains.type[1].inertia_kgm2 *= 1e12;
     for (size_t i = 1; i < 9; i++) {
-        world.grains.of[i] = 1;
+        world.grains.type_of[i] = 1;
     }
-    dig_world_set_material(&world, &m);
+    dem_set_material(&world, &m);
     // The law is that of equal grains: heavy ones only stand for fixed ones.
     world.pair_law[1] = world.pair_law[0];
     world.started     = true; // whole kicks only

@@ -5,6 +5,7 @@
 
 #include "offline_dem/law/random.h"
 #include "offline_dem/world/ode_scene.h"
+#include "offline_dem/world/ode_scene_private.h"
 #include "offline_dem/world/surfaces.h"
 
 #include <math.h>
@@ -85,7 +86,7 @@ static void body_and_world_agree_with_the_drawing(void **state)
     dig_tool_place(&tool, (struct dig_pose){ 1.0, 2.0, 0.5 }, 0.0, 0.0, 0.0);
     // The tooth is at pin + L (sin theta, -cos theta).
     double world[3], body[3];
-    dig_tool_turn(&tool, (const double[3]){ 0.0, 0.01, -0.09 }, world);
+    dig_tool_rotate(&tool, (const double[3]){ 0.0, 0.01, -0.09 }, world);
     assert_close(world[0], 0.09 * sin(0.5), 1e-15);
     assert_close(world[2], -0.09 * cos(0.5), 1e-15);
     const double there[3] = { 1.0 + world[0], 0.01, 2.0 + world[2] };
@@ -216,7 +217,7 @@ static void a_contact_goes_on_across_an_edge(void **state)
         at.v_mps[0]            = step_m / STEP_s * t[0];
         at.v_mps[2]            = step_m / STEP_s * t[1];
         world.grains.motion[0] = at;
-        dig_world_touched(&world);
+        dig_world_mark_stale(&world);
         dem_run(&world, 1);
         const double *const f        = world.on_tool.f_N;
         const double        normal_N = -(f[0] * n[0] + f[2] * n[1]);
@@ -326,6 +327,17 @@ static void ode_holds_the_walls_and_the_bucket(void **state)
     dig_ode_scene_destroy(NULL);
 }
 
+// ODE's narrow phase between a sphere and the bucket's triangles: how many contacts.
+static size_t collide(const struct dig_ode_scene *const ode, const double centre_m[3],
+                      dContactGeom contact[8])
+{
+    dGeomID ball = dCreateSphere(NULL, GRAIN_m);
+    dGeomSetPosition(ball, centre_m[0], centre_m[1], centre_m[2]);
+    const int count = dCollide(ball, ode->shell, 8, contact, sizeof contact[0]);
+    dGeomDestroy(ball);
+    return (size_t)count;
+}
+
 // Spheres that touch one plate only, on its face, from the side ODE's triangles show: here both
 // narrow phases must agree. On the other side, at edges and in corners ODE's does not find what the
 // law needs, which is why ours is used: docs/adr/0002-tool-narrow-phase.md.
@@ -364,14 +376,14 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
             continue; // the rim of the mouth
         }
         double world[3], normal[3];
-        dig_tool_turn(&tool, body, world);
+        dig_tool_rotate(&tool, body, world);
         world[0] += tool.pose.x_m;
         world[2] += tool.pose.z_m;
         const double away[3] = { (body[0] - closest[0]) / best, (body[1] - closest[1]) / best,
                                  (body[2] - closest[2]) / best };
-        dig_tool_turn(&tool, away, normal);
-        struct dig_ode_contact contact[8];
-        const size_t           count = dig_ode_scene_collide(ode, world, GRAIN_m, 8, contact);
+        dig_tool_rotate(&tool, away, normal);
+        dContactGeom contact[8];
+        const size_t count = collide(ode, world, contact);
         if (count == 0) {
             missed++;
             continue;
@@ -379,12 +391,13 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
         // A sphere over the seam of two triangles gets more contacts than one: the deepest counts.
         size_t deepest = 0;
         for (size_t c = 1; c < count; c++) {
-            deepest = contact[c].depth_m > contact[deepest].depth_m ? c : deepest;
+            deepest = contact[c].depth > contact[deepest].depth ? c : deepest;
         }
+        // ODE's normal points into the first geometry, the sphere.
         const double *const n   = contact[deepest].normal;
         const double        dot = n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2];
         assert_close(dot, 1.0, 1e-9);
-        assert_close(contact[deepest].depth_m, GRAIN_m - best, 1e-8);
+        assert_close(contact[deepest].depth, GRAIN_m - best, 1e-8);
         seen++;
     }
     assert_true(seen >= 400);

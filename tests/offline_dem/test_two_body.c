@@ -18,7 +18,7 @@ static void set_stiff(struct dig_world *const world, const double friction, cons
     struct dig_law_material material = dem_material(friction, rolling);
     material.young_Pa                = STIFF_Pa;
     material.restitution             = restitution;
-    dig_world_set_material(world, &material);
+    dem_set_material(world, &material);
 }
 
 static struct dig_world on_floor(const double friction, const double rolling, const double slope)
@@ -40,7 +40,7 @@ static void two_grains_part_with_the_restitution_they_were_given(void **state)
         struct dig_world        world    = dem_world(2, x, dem_material(0.5, 0.5));
         struct dig_law_material material = dem_material(0.5, 0.5);
         material.restitution             = restitution[k];
-        dig_world_set_material(&world, &material);
+        dem_set_material(&world, &material);
         world.dt_s                      = FINE_s;
         world.grains.motion[0].v_mps[0] = 0.7;
         world.grains.motion[1].v_mps[0] = -0.5;

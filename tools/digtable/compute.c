@@ -4,9 +4,9 @@
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/device/engine_cuda.h"
+#include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/dig/input_checks.h"
-#include "offline_dem/dig/watched_pour.h"
 #include "offline_dem/reference/engine_ode.h"
 #include "offline_dem/sweep/sweep.h"
 #include "tables/store.h"
@@ -62,7 +62,7 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
     if (a->bed != NULL) {
         struct dig_bed  read   = { 0 };
         enum dig_status status = dig_cli_bed_read(a->bed, scene, &read, error);
-        status = status == DIG_OK ? dig_bed_watch(scene, gravel, &read, error) : status;
+        status = status == DIG_OK ? dig_bed_check(scene, gravel, &read, error) : status;
         if (status != DIG_OK) {
             dig_bed_finish(&read);
             return status;
@@ -240,7 +240,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
         .workers      = a->workers,
         .time_limit_s = a->time_limit_s,
         .stop         = a->stop,
-        .tell         = tell_sweep,
+        .report       = tell_sweep,
         .context      = &line,
     };
     struct dig_sweep_state state = { .digs_total = 0 };

@@ -1,4 +1,4 @@
-#include "offline_dem/reference/ode_memory.h"
+#include "offline_dem/reference/ode_history.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static struct dig_ode_slot *find(struct dig_ode_slot *const slot, const size_t r
     return &slot[place];
 }
 
-static bool grow(struct dig_ode_memory *const map, const int table)
+static bool grow(struct dig_ode_history *const map, const int table)
 {
     const size_t               room = map->room[table] == 0 ? ROOM_LEAST : 2 * map->room[table];
     struct dig_ode_slot *const slot = calloc(room, sizeof *slot);
@@ -40,19 +40,19 @@ static bool grow(struct dig_ode_memory *const map, const int table)
     return true;
 }
 
-const struct dig_memory *dig_ode_memory_was(const struct dig_ode_memory *const map,
-                                            const uint32_t a, const uint32_t b)
+const struct dig_contact_history *dig_ode_history_previous(const struct dig_ode_history *const map,
+                                                           const uint32_t a, const uint32_t b)
 {
     const int was = 1 - map->now;
     if (map->used[was] == 0) {
         return NULL;
     }
     const struct dig_ode_slot *const slot = find(map->slot[was], map->room[was], key_of(a, b));
-    return slot->key != 0 ? &slot->memory : NULL;
+    return slot->key != 0 ? &slot->history : NULL;
 }
 
-struct dig_memory *dig_ode_memory_of(struct dig_ode_memory *const map, const uint32_t a,
-                                     const uint32_t b)
+struct dig_contact_history *dig_ode_history_of(struct dig_ode_history *const map, const uint32_t a,
+                                               const uint32_t b)
 {
     const int now = map->now;
     if (2 * (map->used[now] + 1) > map->room[now] && !grow(map, now)) {
@@ -60,15 +60,15 @@ struct dig_memory *dig_ode_memory_of(struct dig_ode_memory *const map, const uin
     }
     struct dig_ode_slot *const slot = find(map->slot[now], map->room[now], key_of(a, b));
     if (slot->key == 0) {
-        const struct dig_memory *const was = dig_ode_memory_was(map, a, b);
-        slot->key                          = key_of(a, b);
-        slot->memory                       = was != NULL ? *was : (struct dig_memory){ 0 };
+        const struct dig_contact_history *const was = dig_ode_history_previous(map, a, b);
+        slot->key                                   = key_of(a, b);
+        slot->history = was != NULL ? *was : (struct dig_contact_history){ 0 };
         map->used[now]++;
     }
-    return &slot->memory;
+    return &slot->history;
 }
 
-void dig_ode_memory_turn(struct dig_ode_memory *const map)
+void dig_ode_history_end_step(struct dig_ode_history *const map)
 {
     map->now      = 1 - map->now;
     const int now = map->now;
@@ -78,9 +78,9 @@ void dig_ode_memory_turn(struct dig_ode_memory *const map)
     map->used[now] = 0;
 }
 
-void dig_ode_memory_finish(struct dig_ode_memory *const map)
+void dig_ode_history_finish(struct dig_ode_history *const map)
 {
     free(map->slot[0]);
     free(map->slot[1]);
-    *map = (struct dig_ode_memory){ 0 };
+    *map = (struct dig_ode_history){ 0 };
 }

@@ -1,4 +1,4 @@
-#include "offline_dem/device/device_host.h"
+#include "tests/offline_dem/host_device.h"
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
@@ -27,24 +27,25 @@ static enum dig_status step(struct dig_device *const device, const struct dig_de
 {
     const struct dig_device_view *const view = &host_of(device)->view;
     for (uint32_t p = 0; p < view->pairs; p++) {
-        dig_device_pair(view, s, p);
+        dig_device_step_pair(view, s, p);
     }
     for (uint32_t i = 0; i < view->n; i++) {
-        dig_device_surfaces(view, s, i);
+        dig_device_step_surfaces(view, s, i);
     }
     for (uint32_t b = 0; b < view->clumps; b++) {
-        dig_device_clump(view, s, b);
+        dig_device_step_clump(view, s, b);
     }
     for (uint32_t i = 0; i < view->n; i++) {
-        dig_device_grain(view, s, i);
+        dig_device_step_grain(view, s, i);
     }
     return DIG_OK;
 }
 
-static enum dig_status attend(struct dig_device *const device, uint32_t attention[DIG_ATTENTIONS])
+static enum dig_status poll_margins(struct dig_device *const device,
+                                    uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
 {
-    for (int a = 0; a < DIG_ATTENTIONS; a++) {
-        attention[a] = host_of(device)->view.attention[a];
+    for (int a = 0; a < DIG_MARGIN_FLAGS; a++) {
+        margin_flag[a] = host_of(device)->view.margin_flag[a];
     }
     return DIG_OK;
 }
@@ -62,20 +63,20 @@ static void destroy(struct dig_device *const device)
     free(device->own);
 }
 
-struct dig_device *dig_device_host_create(void)
+struct dig_device *dem_host_device_create(void)
 {
     struct host *const host = calloc(1, sizeof *host);
     if (host == NULL) {
         return NULL;
     }
     host->device = (struct dig_device){
-        .name     = "processor",
-        .own      = host,
-        .upload   = upload,
-        .step     = step,
-        .attend   = attend,
-        .download = download,
-        .destroy  = destroy,
+        .name         = "processor",
+        .own          = host,
+        .upload       = upload,
+        .step         = step,
+        .poll_margins = poll_margins,
+        .download     = download,
+        .destroy      = destroy,
     };
     return &host->device;
 }

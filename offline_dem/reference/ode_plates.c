@@ -1,4 +1,4 @@
-#include "offline_dem/reference/ode_touch.h"
+#include "offline_dem/reference/ode_plates.h"
 
 #include <math.h>
 
@@ -31,16 +31,16 @@ static size_t find_candidates(const struct dig_tool *const tool, const double bo
     return count;
 }
 
-static void take_memory(struct dig_ode_touch *const touch, const uint32_t grain, const size_t plate,
-                        const struct dig_ode_memory *const map)
+static void take_history(struct dig_ode_plate_contact *const contact, const uint32_t grain,
+                         const size_t plate, const struct dig_ode_history *const map)
 {
-    const struct dig_memory *const was =
-        dig_ode_memory_was(map, grain, PLATE_NUMBER + (uint32_t)plate);
-    const struct dig_memory *const m = &touch->memory;
+    const struct dig_contact_history *const was =
+        dig_ode_history_previous(map, grain, PLATE_NUMBER + (uint32_t)plate);
+    const struct dig_contact_history *const m = &contact->history;
     const double known = fabs(m->sx_m) + fabs(m->sy_m) + fabs(m->sz_m) + fabs(m->mx_Nm) +
                          fabs(m->my_Nm) + fabs(m->mz_Nm);
     if (was != NULL && !(known > 0.0)) {
-        touch->memory = *was;
+        contact->history = *was;
     }
 }
 
@@ -59,64 +59,64 @@ static const struct candidate *find_closer(const struct dig_tool *const tool,
     return NULL;
 }
 
-static void add(struct dig_ode_touch touch[], size_t *const touches,
+static void add(struct dig_ode_plate_contact contact[], size_t *const contacts,
                 const struct candidate *const c, const double same_m)
 {
     size_t k = 0;
-    while (k < *touches && distance(touch[k].closest_m, c->closest_m) > same_m) {
+    while (k < *contacts && distance(contact[k].closest_m, c->closest_m) > same_m) {
         k++;
     }
-    if (k == *touches) {
-        touch[k] = (struct dig_ode_touch){
+    if (k == *contacts) {
+        contact[k] = (struct dig_ode_plate_contact){
             .closest_m = { c->closest_m[0], c->closest_m[1], c->closest_m[2] },
         };
-        (*touches)++;
+        (*contacts)++;
     }
-    touch[k].plate[touch[k].plates++] = c->plate;
+    contact[k].plate[contact[k].plates++] = c->plate;
 }
 
-size_t dig_ode_touch_find(const struct dig_tool *const tool, const double body_m[3],
-                          const double radius_m, const uint32_t grain,
-                          const struct dig_ode_memory *const map,
-                          struct dig_ode_touch               touch[DIG_PLATES_MAX])
+size_t dig_ode_plates_find(const struct dig_tool *const tool, const double body_m[3],
+                           const double radius_m, const uint32_t grain,
+                           const struct dig_ode_history *const map,
+                           struct dig_ode_plate_contact        contact[DIG_PLATES_MAX])
 {
     const double            same_m = 1e-6 * radius_m;
     struct candidate        found[DIG_PLATES_MAX + 1];
     const struct candidate *closer[DIG_PLATES_MAX];
-    const size_t            count   = find_candidates(tool, body_m, radius_m, found);
-    size_t                  touches = 0;
+    const size_t            count    = find_candidates(tool, body_m, radius_m, found);
+    size_t                  contacts = 0;
     for (size_t k = 0; k < count; k++) {
         closer[k] = find_closer(tool, found, count, &found[k], same_m);
         if (closer[k] == NULL) {
-            add(touch, &touches, &found[k], same_m);
+            add(contact, &contacts, &found[k], same_m);
         }
     }
     // A touch remembers what its own plates know; then what those know that it came over from.
-    for (size_t t = 0; t < touches; t++) {
-        for (size_t p = 0; p < touch[t].plates; p++) {
-            take_memory(&touch[t], grain, touch[t].plate[p], map);
+    for (size_t t = 0; t < contacts; t++) {
+        for (size_t p = 0; p < contact[t].plates; p++) {
+            take_history(&contact[t], grain, contact[t].plate[p], map);
         }
         for (size_t k = 0; k < count; k++) {
-            for (size_t p = 0; closer[k] != NULL && p < touch[t].plates; p++) {
-                if (closer[k]->plate == touch[t].plate[p]) {
-                    take_memory(&touch[t], grain, found[k].plate, map);
+            for (size_t p = 0; closer[k] != NULL && p < contact[t].plates; p++) {
+                if (closer[k]->plate == contact[t].plate[p]) {
+                    take_history(&contact[t], grain, found[k].plate, map);
                 }
             }
         }
     }
-    return touches;
+    return contacts;
 }
 
-bool dig_ode_touch_keep(const struct dig_ode_touch *const touch, const uint32_t grain,
-                        struct dig_ode_memory *const map)
+bool dig_ode_plates_store(const struct dig_ode_plate_contact *const contact, const uint32_t grain,
+                          struct dig_ode_history *const map)
 {
-    for (size_t p = 0; p < touch->plates; p++) {
-        struct dig_memory *const memory =
-            dig_ode_memory_of(map, grain, PLATE_NUMBER + (uint32_t)touch->plate[p]);
-        if (memory == NULL) {
+    for (size_t p = 0; p < contact->plates; p++) {
+        struct dig_contact_history *const history =
+            dig_ode_history_of(map, grain, PLATE_NUMBER + (uint32_t)contact->plate[p]);
+        if (history == NULL) {
             return false;
         }
-        *memory = touch->memory;
+        *history = contact->history;
     }
     return true;
 }

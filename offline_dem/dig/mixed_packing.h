@@ -1,8 +1,8 @@
 // Pouring of beds of several sizes, of clumps, or around obstacles: random sequential insertion,
 // the largest first.
 
-#ifndef DIG_OFFLINE_DEM_DIG_SCATTER_H
-#define DIG_OFFLINE_DEM_DIG_SCATTER_H
+#ifndef DIG_OFFLINE_DEM_DIG_MIXED_PACKING_H
+#define DIG_OFFLINE_DEM_DIG_MIXED_PACKING_H
 
 #include "core/scene.h"
 #include "core/status.h"
@@ -15,8 +15,8 @@
 /// obstacle, in a column over the box that holds them at the scene's solid fraction: as
 /// dig_packing_insert() otherwise. DIG_EUNREACHABLE when they do not fit, DIG_ENOMEM; *bed is
 /// written on success only.
-DIG_MUST_CHECK enum dig_status dig_scatter(const struct dig_scene       *scene,
-                                           const struct dig_clump_shape *shape, uint64_t seed,
-                                           struct dig_bed *bed);
+DIG_MUST_CHECK enum dig_status dig_mixed_packing_insert(const struct dig_scene       *scene,
+                                                        const struct dig_clump_shape *shape,
+                                                        uint64_t seed, struct dig_bed *bed);
 
-#endif // DIG_OFFLINE_DEM_DIG_SCATTER_H
+#endif // DIG_OFFLINE_DEM_DIG_MIXED_PACKING_H

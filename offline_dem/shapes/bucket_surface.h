@@ -1,8 +1,8 @@
 // The bucket's plates and what is closest on them, in body coordinates. Inlined into tool.c and
 // into what steps grains on a device (offline_dem/world/device.h).
 
-#ifndef DIG_OFFLINE_DEM_SHAPES_BUCKET_NEAR_H
-#define DIG_OFFLINE_DEM_SHAPES_BUCKET_NEAR_H
+#ifndef DIG_OFFLINE_DEM_SHAPES_BUCKET_SURFACE_H
+#define DIG_OFFLINE_DEM_SHAPES_BUCKET_SURFACE_H
 
 #include "core/scene.h"
 #include "offline_dem/law/both.h"
@@ -85,4 +85,4 @@ DIG_BOTH static inline void dig_bucket_closest(const struct dig_bucket *const bu
     }
 }
 
-#endif // DIG_OFFLINE_DEM_SHAPES_BUCKET_NEAR_H
+#endif // DIG_OFFLINE_DEM_SHAPES_BUCKET_SURFACE_H

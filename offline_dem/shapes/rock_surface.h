@@ -1,8 +1,8 @@
 // A rock's surface as grains meet it. Inlined into obstacles.c and into what steps grains on a
 // device (offline_dem/world/device.h).
 
-#ifndef DIG_OFFLINE_DEM_SHAPES_ROCK_NEAR_H
-#define DIG_OFFLINE_DEM_SHAPES_ROCK_NEAR_H
+#ifndef DIG_OFFLINE_DEM_SHAPES_ROCK_SURFACE_H
+#define DIG_OFFLINE_DEM_SHAPES_ROCK_SURFACE_H
 
 #include "core/scene.h"
 #include "offline_dem/law/both.h"
@@ -11,15 +11,15 @@
 #include <math.h>
 
 /// Where a rock is, and how large.
-struct dig_rock_place {
+struct dig_rock_surface {
     enum dig_obstacle_shape shape;
     double                  half_m[3]; // sphere: its radius in half_m[0]; box: half its edges
     double                  x_m[3], q[4];
 };
 
 /// The face of a box that a point inside it is closest to.
-DIG_BOTH static inline double dig_rock_face(const double half_m[3], const double p[3],
-                                            double closest_m[3])
+DIG_BOTH static inline double dig_rock_surface_face(const double half_m[3], const double p[3],
+                                                    double closest_m[3])
 {
     int    axis    = 0;
     double least_m = INFINITY;
@@ -36,8 +36,8 @@ DIG_BOTH static inline double dig_rock_face(const double half_m[3], const double
 }
 
 /// The point of the rock's surface that is closest to p_m, and the distance to it: negative inside.
-DIG_BOTH static inline double dig_rock_near(const struct dig_rock_place *const rock,
-                                            const double p_m[3], double closest_m[3])
+DIG_BOTH static inline double dig_rock_surface_closest(const struct dig_rock_surface *const rock,
+                                                       const double p_m[3], double closest_m[3])
 {
     const double d[3]  = { p_m[0] - rock->x_m[0], p_m[1] - rock->x_m[1], p_m[2] - rock->x_m[2] };
     double       apart = 0.0;
@@ -50,13 +50,13 @@ DIG_BOTH static inline double dig_rock_near(const struct dig_rock_place *const r
     }
     double p[3];
     double c[3];
-    dig_rigid_turn_back(rock->q, d, p);
+    dig_rigid_rotate_back(rock->q, d, p);
     for (int k = 0; k < 3; k++) {
         c[k] = fmin(fmax(p[k], -rock->half_m[k]), rock->half_m[k]);
         apart += (p[k] - c[k]) * (p[k] - c[k]);
     }
-    apart = apart > 0.0 ? sqrt(apart) : dig_rock_face(rock->half_m, p, c);
-    dig_rigid_turn(rock->q, c, closest_m);
+    apart = apart > 0.0 ? sqrt(apart) : dig_rock_surface_face(rock->half_m, p, c);
+    dig_rigid_rotate(rock->q, c, closest_m);
     for (int k = 0; k < 3; k++) {
         closest_m[k] += rock->x_m[k];
     }
@@ -65,11 +65,11 @@ DIG_BOTH static inline double dig_rock_near(const struct dig_rock_place *const r
 
 /// From the rock's surface to a point at p_m, as the law is to see it: a grain pressed into a rock
 /// still stands on the outside of it, by a thousandth of its radius.
-DIG_BOTH static inline void dig_rock_apart(const struct dig_rock_place *const rock,
-                                           const double p_m[3], const double radius_m,
-                                           double closest_m[3], double d_m[3])
+DIG_BOTH static inline void dig_rock_surface_separation(const struct dig_rock_surface *const rock,
+                                                        const double p_m[3], const double radius_m,
+                                                        double closest_m[3], double d_m[3])
 {
-    const double apart_m = dig_rock_near(rock, p_m, closest_m);
+    const double apart_m = dig_rock_surface_closest(rock, p_m, closest_m);
     const double safe_m  = fmax(apart_m, 1e-3 * radius_m);
     double       n[3];
     double       length_m = 0.0;
@@ -83,4 +83,4 @@ DIG_BOTH static inline void dig_rock_apart(const struct dig_rock_place *const ro
     }
 }
 
-#endif // DIG_OFFLINE_DEM_SHAPES_ROCK_NEAR_H
+#endif // DIG_OFFLINE_DEM_SHAPES_ROCK_SURFACE_H

@@ -1,4 +1,4 @@
-#include "offline_dem/dig/scatter.h"
+#include "offline_dem/dig/mixed_packing.h"
 
 #include "core/ground.h"
 #include "core/units.h"
@@ -10,10 +10,10 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define ATTEMPTS 100000 // for one body, before the column is called full
-#define GROWTH   1.1    // what a full column grows by
-#define TALLEST  2.0    // times the height the solid fraction asks for
-#define NOBODY   UINT32_MAX
+#define ATTEMPTS  100000 // for one body, before the column is called full
+#define GROWTH    1.1    // what a full column grows by
+#define TALLEST   2.0    // times the height the solid fraction asks for
+#define NO_SPHERE UINT32_MAX
 
 // Spheres in cells as wide as the largest of them: looking one cell around finds every overlap.
 struct cells {
@@ -24,8 +24,7 @@ struct cells {
 };
 
 // One size of body: a sphere, or a clump of them.
-struct class
-{
+struct size_class {
     size_t bodies;
     double diameter_m;
 };
@@ -34,16 +33,16 @@ struct pouring {
     const struct dig_scene       *scene;
     const struct dig_clump_shape *shape;
     size_t                        spheres; // of one body
-    size_t                        classes;
-    struct class class[DIG_SIZES_MAX];
-    double               period_m; // along y; 0: walls
-    struct dig_obstacles obstacles;
-    struct cells         cells;
-    double               low_m[3], high_m[3]; // of the box and the column
-    double               tallest_m;
+    size_t                        size_classes;
+    struct size_class             size_class[DIG_SIZES_MAX];
+    double                        period_m; // along y; 0: walls
+    struct dig_obstacles          obstacles;
+    struct cells                  cells;
+    double                        low_m[3], high_m[3]; // of the box and the column
+    double                        tallest_m;
 };
 
-static void plan_classes(struct pouring *const p)
+static void plan_size_classes(struct pouring *const p)
 {
     const struct dig_scene *const scene    = p->scene;
     const struct dig_box *const   box      = &scene->box;
@@ -51,20 +50,20 @@ static void plan_classes(struct pouring *const p)
     const double box_m3 = (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m) * height_m;
     const struct dig_size one   = { scene->material.diameter_m, 1.0 };
     const size_t          sizes = scene->bed.sizes;
-    p->classes                  = sizes > 0 ? sizes : 1;
-    for (size_t i = 0; i < p->classes; i++) {
-        const struct dig_size size = sizes > 0 ? scene->bed.size[i] : one;
-        const double          d_m  = size.diameter_m;
-        const double          m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
-        const struct class made    = {
-               .bodies = (size_t)floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3),
-               .diameter_m = d_m,
+    p->size_classes             = sizes > 0 ? sizes : 1;
+    for (size_t i = 0; i < p->size_classes; i++) {
+        const struct dig_size   size = sizes > 0 ? scene->bed.size[i] : one;
+        const double            d_m  = size.diameter_m;
+        const double            m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
+        const struct size_class made = {
+            .bodies = (size_t)floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3),
+            .diameter_m = d_m,
         };
         size_t k = i;
-        for (; k > 0 && p->class[k - 1].diameter_m < d_m; k--) {
-            p->class[k] = p->class[k - 1];
+        for (; k > 0 && p->size_class[k - 1].diameter_m < d_m; k--) {
+            p->size_class[k] = p->size_class[k - 1];
         }
-        p->class[k] = made;
+        p->size_class[k] = made;
     }
     p->low_m[0]  = box->x_min_m;
     p->low_m[1]  = box->y_min_m;
@@ -80,8 +79,8 @@ static void plan_classes(struct pouring *const p)
 static size_t count_spheres(const struct pouring *const p)
 {
     size_t n = 0;
-    for (size_t i = 0; i < p->classes; i++) {
-        n += p->class[i].bodies * p->spheres;
+    for (size_t i = 0; i < p->size_classes; i++) {
+        n += p->size_class[i].bodies * p->spheres;
     }
     return n;
 }
@@ -94,7 +93,7 @@ static enum dig_status make_cells(struct pouring *const p, const size_t n)
     for (size_t k = 0; k < p->shape->spheres; k++) {
         most = k == 0 ? p->shape->radius[0] : fmax(most, p->shape->radius[k]);
     }
-    c->edge_m = 2.0 * most * p->class[0].diameter_m;
+    c->edge_m = 2.0 * most * p->size_class[0].diameter_m;
     for (int a = 0; a < 3; a++) {
         const double span_m = (a == 2 ? p->tallest_m : p->high_m[a]) - p->low_m[a];
         c->low_m[a]         = p->low_m[a];
@@ -107,7 +106,7 @@ static enum dig_status make_cells(struct pouring *const p, const size_t n)
         return DIG_ENOMEM;
     }
     for (size_t i = 0; i < total; i++) {
-        c->first[i] = NOBODY;
+        c->first[i] = NO_SPHERE;
     }
     return DIG_OK;
 }
@@ -123,7 +122,7 @@ static void find_cell(const struct cells *const c, const double at_m[3], ptrdiff
 static bool overlaps_one(const struct pouring *const p, const struct dig_bed *const bed,
                          const double at_m[3], const double radius_m, const ptrdiff_t cell)
 {
-    for (uint32_t g = p->cells.first[cell]; g != NOBODY; g = p->cells.next[g]) {
+    for (uint32_t g = p->cells.first[cell]; g != NO_SPHERE; g = p->cells.next[g]) {
         const double dx = at_m[0] - bed->x_m[g];
         const double dy = at_m[1] - bed->y_m[g];
         const double dz = at_m[2] - bed->z_m[g];
@@ -181,7 +180,7 @@ static bool is_free(const struct pouring *const p, const struct dig_bed *const b
 }
 
 // A rotation at random, all equally likely (Shoemake, Graphics Gems III).
-static void turn_at_random(struct dig_random *const random, double q[4])
+static void random_rotation(struct dig_random *const random, double q[4])
 {
     const double u = dig_random_between(random, 0.0, 1.0);
     const double a = dig_random_between(random, 0.0, 2.0 * DIG_PI);
@@ -202,13 +201,13 @@ static bool try_body(const struct pouring *const p, const struct dig_bed *const 
         centre_m[a] = dig_random_between(random, p->low_m[a], p->high_m[a]);
     }
     if (p->shape->spheres > 0) {
-        turn_at_random(random, q);
+        random_rotation(random, q);
     }
     for (size_t k = 0; k < p->spheres; k++) {
         double arm[3] = { 0.0, 0.0, 0.0 };
         double radius = 0.5;
         if (p->shape->spheres > 0) {
-            dig_rigid_turn(q, p->shape->at[k], arm);
+            dig_rigid_rotate(q, p->shape->at[k], arm);
             radius = p->shape->radius[k];
         }
         for (int a = 0; a < 3; a++) {
@@ -221,8 +220,8 @@ static bool try_body(const struct pouring *const p, const struct dig_bed *const 
     return true;
 }
 
-static void put_body(struct pouring *const p, struct dig_bed *const bed, const size_t first,
-                     const double diameter_m, const double at_m[][3])
+static void insert_body(struct pouring *const p, struct dig_bed *const bed, const size_t first,
+                        const double diameter_m, const double at_m[][3])
 {
     for (size_t k = 0; k < p->spheres; k++) {
         const size_t g   = first + k;
@@ -241,15 +240,17 @@ static void put_body(struct pouring *const p, struct dig_bed *const bed, const s
     }
 }
 
-static enum dig_status pour(struct pouring *const p, const uint64_t seed, struct dig_bed *const bed)
+static enum dig_status insert(struct pouring *const p, const uint64_t seed,
+                              struct dig_bed *const bed)
 {
     struct dig_random random = { .state = seed };
     size_t            first  = 0;
-    for (size_t c = 0; c < p->classes; c++) {
-        for (size_t i = 0; i < p->class[c].bodies;) {
+    for (size_t c = 0; c < p->size_classes; c++) {
+        for (size_t i = 0; i < p->size_class[c].bodies;) {
             double at_m[DIG_CLUMP_MAX][3];
             int    attempt = 0;
-            while (attempt < ATTEMPTS && !try_body(p, bed, p->class[c].diameter_m, &random, at_m)) {
+            while (attempt < ATTEMPTS &&
+                   !try_body(p, bed, p->size_class[c].diameter_m, &random, at_m)) {
                 attempt++;
             }
             if (attempt == ATTEMPTS) {
@@ -259,7 +260,7 @@ static enum dig_status pour(struct pouring *const p, const uint64_t seed, struct
                 }
                 continue;
             }
-            put_body(p, bed, first, p->class[c].diameter_m, (const double(*)[3])at_m);
+            insert_body(p, bed, first, p->size_class[c].diameter_m, (const double(*)[3])at_m);
             first += p->spheres;
             i++;
         }
@@ -267,15 +268,15 @@ static enum dig_status pour(struct pouring *const p, const uint64_t seed, struct
     return DIG_OK;
 }
 
-enum dig_status dig_scatter(const struct dig_scene *const       scene,
-                            const struct dig_clump_shape *const shape, const uint64_t seed,
-                            struct dig_bed *const bed)
+enum dig_status dig_mixed_packing_insert(const struct dig_scene *const       scene,
+                                         const struct dig_clump_shape *const shape,
+                                         const uint64_t seed, struct dig_bed *const bed)
 {
     struct pouring p = { .scene     = scene,
                          .shape     = shape,
                          .spheres   = shape->spheres > 0 ? shape->spheres : 1,
                          .obstacles = dig_obstacles_make(scene) };
-    plan_classes(&p);
+    plan_size_classes(&p);
     const size_t    n      = count_spheres(&p);
     struct dig_bed  made   = { 0 };
     enum dig_status status = dig_bed_create(n, false, shape->spheres > 0, &made);
@@ -283,7 +284,7 @@ enum dig_status dig_scatter(const struct dig_scene *const       scene,
         status = make_cells(&p, n);
     }
     if (status == DIG_OK) {
-        status = pour(&p, seed, &made);
+        status = insert(&p, seed, &made);
     }
     free(p.cells.first);
     free(p.cells.next);

@@ -1,0 +1,93 @@
+#include "offline_dem/dig/checked_pour.h"
+
+#include "offline_dem/dig/energy_drift.h"
+#include "offline_dem/dig/input_checks.h"
+#include "offline_dem/dig/setup.h"
+
+#include <assert.h>
+
+#define CHECK_s      0.1 // what was poured at this step has been shaken by it already
+#define CHECK_FILE_s 0.3 // what may have been poured at a shorter one begins at rest
+
+// The step that would be derived, were none asked for.
+static double derived_s(const struct dig_scene *const scene, const struct dig_gravel *const gravel,
+                        const struct dig_grain_types *const types)
+{
+    struct dig_scene free_scene = *scene;
+    free_scene.time_step_s      = 0.0;
+    return dig_grain_types_time_step_s(&free_scene, gravel, types);
+}
+
+static enum dig_status check_drift(const struct dig_scene *const  scene,
+                                   const struct dig_gravel *const gravel,
+                                   struct dig_ode_scene *const ode, const struct dig_bed *const bed,
+                                   const double check_s, struct dig_error *const error)
+{
+    struct dig_grain_types types;
+    struct dig_world       world;
+    enum dig_status status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &world, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const double safe_s = derived_s(scene, gravel, &types);
+    const double step_s = world.dt_s;
+    bool         drifts = false;
+    status              = dig_input_checks_outside(&world, error);
+    status              = status == DIG_OK ? dig_input_checks_overlap(&world, error) : status;
+    if (status == DIG_OK && step_s > safe_s && !scene->may_tremble) {
+        status = dig_energy_drift_detect(&world, (size_t)(check_s / step_s), &drifts);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    dig_setup_finish(&world);
+    if (status != DIG_OK) {
+        return status;
+    }
+    return drifts
+               ? dig_error_set(error, DIG_EINVAL,
+                               "time_step_s: %g keeps a resting bed moving, expected at most %.3g "
+                               "(or may_tremble: true)",
+                               step_s, safe_s)
+               : DIG_OK;
+}
+
+static enum dig_status check_bed(const struct dig_scene *const  scene,
+                                 const struct dig_gravel *const gravel,
+                                 const struct dig_bed *const bed, const double check_s,
+                                 struct dig_error *const error)
+{
+    struct dig_ode_scene *const ode    = dig_ode_scene_create(scene);
+    const enum dig_status       status = ode == NULL
+                                             ? dig_setup_explain(DIG_ENOMEM, error)
+                                             : check_drift(scene, gravel, ode, bed, check_s, error);
+    dig_ode_scene_destroy(ode);
+    return status;
+}
+
+enum dig_status dig_bed_check(const struct dig_scene *const  scene,
+                              const struct dig_gravel *const gravel,
+                              const struct dig_bed *const bed, struct dig_error *const error)
+{
+    assert(scene != NULL && gravel != NULL && bed != NULL);
+    const enum dig_status status = dig_setup_check(scene, gravel, error);
+    return status == DIG_OK ? check_bed(scene, gravel, bed, CHECK_FILE_s, error) : status;
+}
+
+enum dig_status dig_bed_pour_checked(struct dig_device *const       device,
+                                     const struct dig_scene *const  scene,
+                                     const struct dig_gravel *const gravel, const uint64_t seed,
+                                     const struct dig_progress *const progress,
+                                     struct dig_bed *const bed, struct dig_error *const error)
+{
+    assert(scene != NULL && gravel != NULL && bed != NULL);
+    struct dig_bed  poured = { 0 };
+    enum dig_status status = dig_bed_pour(device, scene, gravel, seed, progress, &poured, error);
+    if (status == DIG_OK && scene->time_step_s > 0.0 && !scene->may_tremble) {
+        status = check_bed(scene, gravel, &poured, CHECK_s, error);
+    }
+    if (status != DIG_OK) {
+        dig_bed_finish(&poured);
+        return status;
+    }
+    *bed = poured;
+    return DIG_OK;
+}
