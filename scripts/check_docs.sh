@@ -13,70 +13,81 @@ given=$#
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-find . -not -path './build/*' -not -path './.git/*' | sed 's#^\./##' >"$work/files"
-sed -n 's/^\([a-z][a-z0-9-]*\)\( [a-z][a-z0-9 -]*\)\{0,1\}:.*/\1\2/p' Makefile messages/java.mk | tr ' ' '\n' >"$work/targets"
+declare -A known # "target NAME", "word NAME", "heading FILE#HEADING"
+while read -r name; do known["target $name"]=1; done < <(
+    sed -n 's/^\([a-z][a-z0-9-]*\)\( [a-z][a-z0-9 -]*\)\{0,1\}:.*/\1\2/p' Makefile messages/java.mk | tr ' ' '\n' | grep .)
+while read -r name; do known["word $name"]=1; done < <(
+    grep -rhoE '"[a-z][a-z0-9-]*"|--[a-z][a-z0-9-]*' tools firmware_host scripts tests --include='*.[ch]' --include='*.sh' |
+        sed 's/^--//; s/"//g' | sort -u)
 
-# DOCUMENT LINE KIND NAME of all that is named; kinds: link, path, file (a bare name), test, target
+# DOCUMENT LINE KIND NAME of all that is named; kinds: link, path, file (a bare name), test, target, command and option
 awk '
-    function top(word) { return word ~ /^(core|files|estimator|tables|offline_dem|closed_loop|firmware_host|tools|messages|config|tests|scripts|docs|\.ci)\// }
+    function say(kind, name) { print FILENAME, FNR, kind, name }
+    function is_path(name) {
+        return name ~ /^(core|files|estimator|tables|offline_dem|closed_loop|firmware_host|tools|messages|config|tests|scripts|docs|\.ci)\//
+    }
+    function look_at(text,    words, word, ours, name, w) {
+        words = split(text, word, /[ \t]+/)
+        ours = word[1] ~ /^(build\/bin\/)?dig(table|loop|rig|report|sightd)$/
+        for (w = 1; w <= words; w++) {
+            name = word[w]
+            gsub(/^[(]|[),.;:]+$/, "", name)
+            if (name ~ /[<>$…]/ || name ~ /[A-Z][A-Z]/ && name !~ /(README|CONTRIBUTING|CHANGELOG|LICENSE)/) continue # stands for a name
+            if (w == 2 && word[1] == "make" && name ~ /^[a-z][a-z0-9-]*$/) say("target", name)
+            else if (w == 2 && ours && name ~ /^[a-z]+$/) say("command", name)
+            else if ((w == 1 || ours) && name ~ /^--[a-z]/) { sub(/[=\]].*/, "", name); say("option", substr(name, 3)) }
+            else if (name ~ /^build\/tests\/[a-z_]+\/[a-z_0-9]+$/) say("path", substr(name, 7) ".c")
+            else if (is_path(name)) say("path", name)
+            else if (!fence && name ~ /^test_[a-z0-9_]+$/) say("test", name)
+            else if (!fence && name ~ /^[a-z0-9_]+(\/[a-z0-9_]+)*\.(c|h|cu|sh|awk)$/) say("file", name)
+        }
+    }
     FNR == 1 { fence = 0 }
     /^ *```/ { fence = !fence; next }
+    fence { look_at($0); next }
     {
-        rest = $0
-        while (!fence && match(rest, /\]\([^) ]+\)/)) {
-            link = substr(rest, RSTART + 2, RLENGTH - 3)
-            if (link !~ /^[a-z]+:/) print FILENAME, FNR, "link", link
-            rest = substr(rest, RSTART + RLENGTH)
-        }
-        n = fence ? 1 : split($0, part, "`")
-        if (fence) part[2] = $0
-        for (i = 2; i <= n + fence; i += 2) {
-            words = split(part[i], word, /[ \t]+/)
-            for (w = 1; w <= words; w++) {
-                name = word[w]
-                gsub(/^[(]|[),.;:]+$/, "", name)
-                if (name ~ /[<>$…]/ || name ~ /[A-Z][A-Z]/ && name !~ /(README|CONTRIBUTING|CHANGELOG|LICENSE)/) continue
-                if (word[w] == "make" && word[w + 1] ~ /^[a-z][a-z-]*$/ && w == 1) print FILENAME, FNR, "target", word[w + 1]
-                else if (name ~ /^build\/tests\/[a-z_]+\/[a-z_0-9]+$/) print FILENAME, FNR, "path", substr(name, 7) ".c"
-                else if (top(name)) print FILENAME, FNR, "path", name
-                else if (name ~ /^test_[a-z0-9_]+$/ && !fence) print FILENAME, FNR, "test", name
-                else if (name ~ /^[a-z0-9_]+\.(c|h|cu|sh|awk)$/ && !fence) print FILENAME, FNR, "file", name
-                else if (name ~ /^[a-z0-9_]+(\/[a-z0-9_]+)+\.(c|h|cu|sh)$/ && !fence) print FILENAME, FNR, "file", name
-            }
+        n = split($0, part, "`")
+        for (i = 2; i <= n; i += 2) look_at(part[i])
+        while (match($0, /\]\([^) ]+\)/)) {
+            link = substr($0, RSTART + 2, RLENGTH - 3)
+            if (link !~ /^[a-z]+:/) say("link", link)
+            $0 = substr($0, RSTART + RLENGTH)
         }
     }' "$@" >"$work/named"
 
 # Headings as links name them: lower case, no punctuation, hyphens for blanks.
 headings_of() { # FILE
-    awk '/^ *```/ { fence = !fence } !fence && /^#+ / { sub(/^#+ /, ""); print tolower($0) }' "$1" |
-        sed 's/[^a-z0-9 _-]//g; s/ /-/g'
+    local heading
+    [ -z "${known["headings of $1"]:-}" ] || return 0
+    known["headings of $1"]=1
+    while read -r heading; do known["heading $1#$heading"]=1; done < <(
+        awk '/^ *```/ { fence = !fence } !fence && /^#+ / { sub(/^#+ /, ""); print tolower($0) }' "$1" |
+            sed 's/[^a-z0-9 _-]//g; s/ /-/g')
 }
 
-exists() { # PATH, perhaps with * in it; a source may be named without its ending
-    compgen -G "${1%/}" >/dev/null || compgen -G "$1.c" >/dev/null || compgen -G "$1.h" >/dev/null
+exists() { # KIND NAME DOCUMENT
+    local name=$2 file
+    case $1 in
+    link)
+        file=${name%%#*}
+        [ "${3%/*}" = "$3" ] || [ -z "$file" ] || file=${3%/*}/$file
+        [ -n "$file" ] || file=$3
+        [ -e "$file" ] || return 1
+        [ "${name#*#}" != "$name" ] || return 0
+        headings_of "$file"
+        [ -n "${known["heading $file#${name#*#}"]:-}" ]
+        ;;
+    path) compgen -G "${name%/}" || compgen -G "$name.c" || compgen -G "$name.h" ;;
+    test) compgen -G "tests/*/$name.c" ;;
+    file) compgen -G "*/$name" || compgen -G "*/*/$name" || compgen -G "*/*/*/$name" ;;
+    target) [ -n "${known["target $name"]:-}" ] ;;
+    command | option) [ -n "${known["word $name"]:-}" ] ;;
+    esac >"$work/found"
 }
 
 bad=0
 while read -r document line kind name; do
-    case $kind in
-    link)
-        file=${name%%#*}
-        target=$document
-        [ -z "$file" ] || target=$(realpath -m --relative-to=. "$(dirname "$document")/$file")
-        if [ ! -e "$target" ]; then
-            found=0
-        elif [ "$name" = "$file" ]; then
-            found=1
-        else
-            found=$(headings_of "$target" | grep -cxF "${name#*#}") || true
-        fi
-        ;;
-    path) exists "$name" && found=1 || found=0 ;;
-    test) found=$(grep -cE "^tests/[a-z_]+/$name\.c$" "$work/files") || true ;;
-    file) found=$(grep -cE "(^|/)${name//./\\.}$" "$work/files") || true ;;
-    target) found=$(grep -cxF "$name" "$work/targets") || true ;;
-    esac
-    [ "$found" -gt 0 ] || { echo "$document:$line: $name: no such $kind"; bad=1; }
+    exists "$kind" "$name" "$document" || { echo "$document:$line: $name: no such $kind"; bad=1; }
 done <"$work/named"
 
 if [ "$given" = 0 ]; then
