@@ -76,7 +76,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
+.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -104,6 +104,12 @@ evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
 
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
 	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh
+
+picture: all floors ## The README's picture, a predicted dig against the measured one, and those of the floors
+	$(Q)BIN=$(BUILD)/bin scripts/picture.sh docs/pictures/predicted.svg
+
+floors: ## The pictures of docs/architecture.md, drawn from scripts/check_layers.sh and the tree
+	$(Q)scripts/floors.sh docs/pictures
 
 setup: ## Install everything any target needs
 	$(Q)scripts/setup.sh build demo test lint spy valgrind
@@ -289,8 +295,8 @@ coverage: ## Line and branch coverage per source file
 	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
 
 # The analyzer reads what ships; tests are run under sanitizers instead.
-lint: lint-compiler lint-tidy ## Layering, the compiler's analyzer, clang-tidy
-lint-compiler: layers $(BUILD)/messages/.made
+lint: lint-compiler lint-tidy ## Layering, documents, the compiler's analyzer, clang-tidy
+lint-compiler: layers docs-check $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(filter-out tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
 	$(Q)printf '%s\n' $(filter tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
@@ -305,6 +311,9 @@ lint-tidy-upper lint-tidy-lower: $(BUILD)/messages/.made
 
 layers: all ## Fail on an include or a circle of calls that points the wrong way
 	$(Q)./scripts/check_layers.sh $(BUILD)
+
+docs-check: ## Fail where a document names a file, heading, test or target that is not there
+	$(Q)./scripts/check_docs.sh
 
 format: ## Rewrite the sources with clang-format
 	$(Q)clang-format -i $$(git ls-files '*.[ch]')
