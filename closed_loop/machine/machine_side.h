@@ -24,32 +24,41 @@ dig_machine_side_create(const struct dig_machine *machine, const struct dig_curv
 
 void dig_machine_side_destroy(struct dig_machine_side *side);
 
-/// What free air leaves open of an effect's parameters: they are value and, for z of normal
-/// distribution, the sum over k of z[k] step[k]. With priors as wide as their scales: the narrow
-/// one that an effect is weighed with (machine_fit.h) says nothing of what free air does not tell.
-struct dig_machine_doubt {
-    size_t steps; // as many as parameters
-    double value[DIG_MODEL_PARAMETERS_MAX];
-    double step[DIG_MODEL_PARAMETERS_MAX][DIG_MODEL_PARAMETERS_MAX]; // [k][parameter]
+#define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
+#define DIG_MACHINE_ANSWERS (DIG_EFFECT_SENSOR_DELAY + 2)
+#define DIG_MACHINE_NUMBERS (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX)
+
+/// One answer of free air: effects with their values, and what it leaves open of these. With z of
+/// normal distribution the parameters, effect after effect, are value + the sum over k of z[k]
+/// step[k]; this by priors as wide as the parameters' scales, because the narrow one that an effect
+/// is weighed with (machine_fit.h) says nothing of what free air does not tell.
+struct dig_machine_answer {
+    size_t                  effects;
+    struct dig_model_effect effect[DIG_MACHINE_AT_ONCE];
+    double                  log_evidence; // of free air, against no effect
+    size_t                  numbers;      // parameters of all its effects; 0: not told
+    double                  value[DIG_MACHINE_NUMBERS];
+    double                  step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
 };
 
 /// What free air says.
 struct dig_machine_finding {
-    bool                     significant; // something of the machine is missing
-    double                   p_complete;
-    bool                     no_air;       // in the recordings: nothing was traced
-    double                   residual_air; // rms over the rms expected
-    double                   residual_air_of[DIG_MEASURED_MAX]; // the same dig by dig; NaN: no air
-    size_t                   effects;                           // found, most certain first
-    struct dig_model_effect  effect[DIG_MODEL_EFFECTS_MAX];
-    size_t                   candidates;
-    struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
-    struct dig_machine_doubt doubt[DIG_TRACE_CANDIDATES_MAX];     // of each
-    size_t                   sets;
-    struct dig_candidate_set set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
-    bool                     by_digs;     // effect[0] is of free air and the digs together
-    bool                     unexplained; // significant, and no effect of the machine explains it
-    const char *follows; // what pressures that drift then follow, for people; NULL: not told
+    bool                      significant; // something of the machine is missing
+    double                    p_complete;
+    bool                      no_air;       // in the recordings: nothing was traced
+    double                    residual_air; // rms over the rms expected
+    double                    residual_air_of[DIG_MEASURED_MAX]; // the same dig by dig; NaN: no air
+    size_t                    effects;                           // found, most certain first
+    struct dig_model_effect   effect[DIG_MODEL_EFFECTS_MAX];
+    size_t                    candidates;
+    struct dig_candidate      candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
+    size_t                    sets;
+    struct dig_candidate_set  set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
+    size_t                    answers; // each candidate alone; first the set found, if of several
+    struct dig_machine_answer answer[DIG_MACHINE_ANSWERS];
+    bool        by_digs; // the effects are told by free air and the digs together, not by air alone
+    bool        unexplained; // significant, and no effect of the machine explains it
+    const char *follows;     // what pressures that drift then follow, for people; NULL: not told
 };
 
 /// Traces in the air of the fit and identify digs only, at this false-alarm rate, and remembers

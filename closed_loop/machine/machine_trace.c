@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6, MOST_AT_ONCE = 2 };
+enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
 
 // Air that leaves more than this of a row's variance is not understood.
 static const double unclear_rest2 = 1.2;
@@ -295,24 +295,34 @@ static size_t write_parameters(const struct search *const s, const enum dig_effe
     return n;
 }
 
-// Of the parameters as write_parameters() has them: the columns of a square root of their
-// covariance.
-static struct dig_machine_doubt doubt_of(struct search *const s, const enum dig_effect_id id)
+// One answer: its values as write_parameters() has them, and a square root of the covariance of
+// its parameters.
+static void write_answer(struct search *const s, const size_t effects,
+                         const struct dig_model_effect effect[], const double log_evidence,
+                         struct dig_machine_answer *const answer)
 {
-    struct dig_fit_answer    answer = { .at = s->at, .covariance = s->covariance };
-    struct dig_machine_doubt made   = { .steps = 0 };
-    size_t                   column[DIG_MODEL_PARAMETERS_MAX];
-    double                   scale[DIG_MODEL_PARAMETERS_MAX];
-    double                   lower[DIG_MODEL_PARAMETERS_MAX * DIG_MODEL_PARAMETERS_MAX];
-    size_t                   n = 0;
+    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
+    size_t                column[DIG_MACHINE_NUMBERS];
+    double                scale[DIG_MACHINE_NUMBERS];
+    double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
+    size_t                n   = 0;
+    unsigned              set = 0;
+    *answer = (struct dig_machine_answer){ .effects = effects, .log_evidence = log_evidence };
+    for (size_t e = 0; e < effects; e++) {
+        answer->effect[e] = effect[e];
+        set |= 1U << (unsigned)effect[e].effect;
+    }
     memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
-    dig_fit_solve_wide(&s->fit, 1U << (unsigned)id, &answer);
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        if (s->lines.column[c].effect == id && s->lines.column[c].segment < 0) {
-            scale[n]      = s->lines.column[c].scale;
-            made.value[n] = dig_effect_of(id)->parameter[s->lines.column[c].parameter].absent +
-                            scale[n] * s->at[c];
-            column[n++] = c;
+    dig_fit_solve_wide(&s->fit, set, &solved);
+    for (size_t e = 0; e < effects; e++) {
+        for (size_t c = 0; c < s->lines.columns; c++) {
+            const struct dig_lines_column *const of = &s->lines.column[c];
+            if (of->effect == effect[e].effect && of->segment < 0) {
+                scale[n]         = of->scale;
+                answer->value[n] = dig_effect_of(of->effect)->parameter[of->parameter].absent +
+                                   of->scale * s->at[c];
+                column[n++] = c;
+            }
         }
     }
     for (size_t i = 0; i < n; i++) {
@@ -321,15 +331,36 @@ static struct dig_machine_doubt doubt_of(struct search *const s, const enum dig_
         }
         lower[i * n + i] += least_variance; // of one that is not fitted
     }
-    if (dig_cholesky(n, lower) == DIG_OK) {
-        made.steps = n;
-        for (size_t k = 0; k < n; k++) {
-            for (size_t i = k; i < n; i++) {
-                made.step[k][i] = scale[i] * lower[i * n + k];
-            }
+    if (dig_cholesky(n, lower) != DIG_OK) {
+        return;
+    }
+    answer->numbers = n;
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = k; i < n; i++) {
+            answer->step[k][i] = scale[i] * lower[i * n + k];
         }
     }
-    return made;
+}
+
+// The set found, where it is of several, and every candidate alone.
+static void write_answers(struct search *const s, struct dig_machine_finding *const finding)
+{
+    finding->answers = 0;
+    if (finding->effects > 1) {
+        write_answer(s, finding->effects, finding->effect, dig_fit_evidence(&s->fit, s->set),
+                     &finding->answer[finding->answers++]);
+    }
+    for (size_t i = 0; i < finding->candidates; i++) {
+        const struct dig_candidate *const c     = &finding->candidate[i];
+        struct dig_model_effect           alone = { .effect      = c->effect,
+                                                    .probability = c->inclusion,
+                                                    .parameters  = c->parameters };
+        memcpy(alone.parameter, c->parameter, sizeof alone.parameter);
+        if (finding->effects == 1 && finding->effect[0].effect == c->effect) {
+            alone = finding->effect[0];
+        }
+        write_answer(s, 1, &alone, c->log_evidence, &finding->answer[finding->answers++]);
+    }
 }
 
 // Every effect as it competed: by itself, or in the set found.
@@ -350,19 +381,15 @@ static void write_candidates(struct search *const s, const double inclusion[],
             .error        = (double)NAN,
             .seen_in      = DIG_PART_AIR,
         };
-        out->parameters                         = write_parameters(s, out->effect, out->parameter);
-        finding->doubt[finding->candidates - 1] = doubt_of(s, out->effect);
+        out->parameters = write_parameters(s, out->effect, out->parameter);
     }
     for (size_t i = 1; i < finding->candidates; i++) {
-        const struct dig_candidate     moved = finding->candidate[i];
-        const struct dig_machine_doubt doubt = finding->doubt[i];
-        size_t                         to    = i;
+        const struct dig_candidate moved = finding->candidate[i];
+        size_t                     to    = i;
         for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
             finding->candidate[to] = finding->candidate[to - 1];
-            finding->doubt[to]     = finding->doubt[to - 1];
         }
         finding->candidate[to] = moved;
-        finding->doubt[to]     = doubt;
     }
 }
 
@@ -447,7 +474,7 @@ static bool is_makeshift(const struct search *const s)
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
     }
-    return effects > MOST_AT_ONCE || common_payload(s) < 0.0;
+    return effects > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
 }
 
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
@@ -503,6 +530,7 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
         if (!unclear) {
             write_effects(&s, inclusion, finding);
             write_sets(&s, finding);
+            write_answers(&s, finding);
         }
         finding->p_complete =
             fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));

@@ -76,12 +76,6 @@ static double chance_of_either(const double p)
     return 1.0 - (1.0 - p) * (1.0 - p);
 }
 
-// Surely significant: no second thought about chance comes after it.
-static bool is_sure(const struct dig_search_work *const c)
-{
-    return c->s->p_complete <= rarer * c->false_alarm;
-}
-
 // By the misfit, and by the gain where that could still change the answer: a draw that rivals are
 // fitted to costs as much as thirty that none are.
 static enum dig_status decide_whether(struct dig_search_work *const c)
@@ -99,10 +93,9 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
                                                       &c->seed, &c->plain_null);
     if (status == DIG_OK) {
         allow_for_scatter(c, &statistic);
-        const double p     = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
-        c->s->p_complete   = chance_of_either(p);
-        const bool decided = c->s->p_complete <= 0.0 || (c->whether_only && is_sure(c));
-        if (!decided) {
+        const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
+        c->s->p_complete = chance_of_either(p);
+        if (c->s->p_complete > 0.0) {
             status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
                                               c->draws, &seed, &c->plain_null);
             c->s->p_complete =
@@ -158,27 +151,26 @@ static enum dig_status bootstrap(struct dig_search_work *const c, const size_t t
     return DIG_OK;
 }
 
-static enum dig_status run(struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
-                           const double false_alarm, const size_t draws, const uint64_t seed,
-                           const bool whether_only, struct dig_search *const search)
+enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
+                               const struct dig_soil *const soil, const double false_alarm,
+                               const size_t draws, const uint64_t seed,
+                               struct dig_search *const search)
 {
     assert(batch != NULL && soil != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);
     search->unnamed          = 1.0;
-    struct dig_search_work c = { .batch        = batch,
-                                 .soil         = soil,
-                                 .false_alarm  = false_alarm,
-                                 .draws        = draws,
-                                 .whether_only = whether_only,
-                                 .seed         = seed,
-                                 .s            = search };
+    struct dig_search_work c = { .batch       = batch,
+                                 .soil        = soil,
+                                 .false_alarm = false_alarm,
+                                 .draws       = draws,
+                                 .seed        = seed,
+                                 .s           = search };
     list_rivals(&c);
     enum dig_status status = decide_whether(&c);
     search->chosen         = search->plain;
-    if (status != DIG_OK || (whether_only && is_sure(&c))) {
-        return status;
+    if (status == DIG_OK) {
+        status = bootstrap(&c, draws / 4);
     }
-    status = bootstrap(&c, draws / 4);
     if (status == DIG_OK && search->significant) {
         status = dig_search_which(&c);
     }
@@ -203,20 +195,4 @@ static enum dig_status run(struct dig_whitened_digs *const batch, const struct d
     }
     dig_search_set_probabilities(&c);
     return DIG_OK;
-}
-
-enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
-                               const struct dig_soil *const soil, const double false_alarm,
-                               const size_t draws, const uint64_t seed,
-                               struct dig_search *const search)
-{
-    return run(batch, soil, false_alarm, draws, seed, false, search);
-}
-
-enum dig_status dig_search_whether(struct dig_whitened_digs *const batch,
-                                   const struct dig_soil *const soil, const double false_alarm,
-                                   const size_t draws, const uint64_t seed,
-                                   struct dig_search *const search)
-{
-    return run(batch, soil, false_alarm, draws, seed, true, search);
 }

@@ -48,12 +48,4 @@ DIG_MUST_CHECK enum dig_status dig_search_run(struct dig_whitened_digs *batch,
                                               size_t draws, uint64_t seed,
                                               struct dig_search *search);
 
-/// The same where it matters only whether something is missing. Where it surely is, what it is is
-/// not looked for, a tenth of the work: of *search only significant, spread and plain are as
-/// dig_search_run() has them then, and of p_complete that it is no larger.
-DIG_MUST_CHECK enum dig_status dig_search_whether(struct dig_whitened_digs *batch,
-                                                  const struct dig_soil *soil, double false_alarm,
-                                                  size_t draws, uint64_t seed,
-                                                  struct dig_search *search);
-
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_H

@@ -19,7 +19,6 @@ struct dig_search_work {
     const struct dig_soil     *soil;
     double                     false_alarm;
     size_t                     draws;
-    bool                       whether_only; // what it is, is not asked
     uint64_t                   seed;
     struct dig_hypothesis      single[DIG_RIVALS_MAX];
     struct dig_null_simulation plain_null;

@@ -280,27 +280,14 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     }
     struct dig_fitted plain = w->before;
     if (status == DIG_OK && machine != NULL) {
-        status = dig_trace_air(machine, settings, digs, measured, w, &plain, error);
+        choose_rate(w);
+        status = dig_trace_machine(machine, settings, digs, measured, w, &plain, error);
     }
     if (status == DIG_OK) {
         choose_rate(w);
         const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
-    }
-    bool blamed  = false;
-    bool settled = false;
-    if (status == DIG_OK && machine != NULL && !w->air->no_air && !w->air->unexplained &&
-        w->search->significant && w->search->unlisted) {
-        status = dig_trace_blame_machine(machine, settings, digs, measured, w, &blamed, error);
-    }
-    if (status == DIG_OK && machine != NULL && !blamed && w->air->effects == 1 &&
-        w->search->significant && w->search->unlisted) {
-        status = dig_trace_settle_air(machine, settings, digs, measured, w, &settled, error);
-    }
-    if (status == DIG_OK && !blamed && !settled && w->air->effects > 0 && w->search->significant &&
-        w->search->unlisted) {
-        status = dig_trace_doubt_air(machine, settings, digs, measured, w, error);
     }
     if (status == DIG_OK) {
         dig_trace_doubt_soil(w->air, w->search);

@@ -1,4 +1,4 @@
-// What trace.c and trace_air.c work on together. Internal to them.
+// What trace.c and machine_choice.c work on together. Internal to them.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
 #define DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
@@ -29,47 +29,15 @@ DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w, s
                                                const struct dig_measured measured[],
                                                struct dig_fitted *plain, struct dig_error *error);
 
-/// Finds what free air shows of the machine and takes it off the digs: leaves measured[].machine,
-/// the batch and *plain with it, and the effects' probabilities weighed by what the soil shows of
-/// them.
-DIG_MUST_CHECK enum dig_status dig_trace_air(struct dig_machine_side         *machine,
-                                             const struct dig_trace_settings *settings, size_t digs,
-                                             struct dig_measured    measured[],
-                                             struct dig_trace_work *w, struct dig_fitted *plain,
-                                             struct dig_error *error);
-
-/// After the search: gives up what free air named where the digs are liker to the table's without.
-DIG_MUST_CHECK enum dig_status dig_trace_doubt_air(struct dig_machine_side         *machine,
-                                                   const struct dig_trace_settings *settings,
-                                                   size_t digs, struct dig_measured measured[],
-                                                   struct dig_trace_work *w,
-                                                   struct dig_error      *error);
-
-/// Multiplies the probability of each effect of the machine by the chance that the digs confirm its
-/// size, which it leaves in size[]; plain: the gravel without any. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_trace_weigh_air(struct dig_machine_side *machine, size_t digs,
-                                                   const struct dig_measured measured[],
-                                                   struct dig_trace_work    *w,
-                                                   const struct dig_fitted  *plain);
-
-/// After a search that found nothing with a name: names the effect of the machine that free air and
-/// the digs together ask for, where it leads all others and the digs without it are like the
-/// table's. *blamed: whether; then air, measured[].machine, the batch and the search are of it.
-DIG_MUST_CHECK enum dig_status dig_trace_blame_machine(struct dig_machine_side         *machine,
-                                                       const struct dig_trace_settings *settings,
-                                                       size_t digs, struct dig_measured measured[],
-                                                       struct dig_trace_work *w, bool *blamed,
-                                                       struct dig_error *error);
-
-/// After a search that found nothing with a name beside the one effect of the machine that free air
-/// names: gives its parameters the values that free air and the digs together ask for, where the
-/// digs then are like the table's. *settled: whether; then air, measured[].machine, the batch and
-/// the search are of them.
-DIG_MUST_CHECK enum dig_status dig_trace_settle_air(struct dig_machine_side         *machine,
-                                                    const struct dig_trace_settings *settings,
-                                                    size_t digs, struct dig_measured measured[],
-                                                    struct dig_trace_work *w, bool *settled,
-                                                    struct dig_error *error);
+/// Finds what is missing of the machine, by free air and the digs together, and takes it off the
+/// digs: leaves measured[].machine, the batch and *plain with it, each effect's size in the digs in
+/// size[], and its probability weighed by that. w->before: the plain fit of the batch of the raw
+/// digs.
+DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_machine_side         *machine,
+                                                 const struct dig_trace_settings *settings,
+                                                 size_t digs, struct dig_measured measured[],
+                                                 struct dig_trace_work *w, struct dig_fitted *plain,
+                                                 struct dig_error *error);
 
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted

@@ -314,46 +314,6 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     assert_int_equal(s.chosen.hypothesis.effects, 1);
 }
 
-// All of an answer that is given where it matters only whether something is missing.
-static void assert_same_whether(const struct dig_search *const a, const struct dig_search *const b)
-{
-    assert_int_equal(a->significant, b->significant);
-    assert_memory_equal(&a->spread, &b->spread, sizeof a->spread);
-    assert_memory_equal(&a->plain.misfit, &b->plain.misfit, sizeof a->plain.misfit);
-    assert_memory_equal(&a->plain.squares, &b->plain.squares, sizeof a->plain.squares);
-    assert_memory_equal(a->plain.number, b->plain.number, sizeof a->plain.number);
-    assert_memory_equal(a->plain.noise, b->plain.noise, sizeof a->plain.noise);
-}
-
-// An answer cut short is the answer: of digs with nothing missing, with much missing, and, on the
-// way from one to the other, where it is in doubt.
-static void whether_is_answered_alike_with_and_without_what(void **state)
-{
-    (void)state;
-    const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
-    const enum dig_effect_id effect = DIG_EFFECT_LAYERING;
-    unsigned                 answer = 0;
-    for (size_t i = 0; i <= 6; i++) {
-        static struct dig_search short_one;
-        const double             magnitude = 0.1 * (double)i;
-        uint64_t                 seed      = 40 + i;
-        dig(&gravel, 1, &effect, &magnitude, &seed);
-        const struct dig_search whole = search_digs(&gravel, 0.01, seed);
-        put_in_batch(&gravel, DIGS);
-        assert_int_equal(dig_search_whether(&batch, soil, 0.01, DRAWS, seed, &short_one), DIG_OK);
-        assert_same_whether(&short_one, &whole);
-        assert_true(short_one.p_complete >= whole.p_complete);
-        const bool cut = short_one.significant && short_one.chosen.hypothesis.effects == 0 &&
-                         !short_one.unlisted;
-        answer |= !short_one.significant ? 1U : cut ? 2U : 4U;
-        if (!cut) {
-            assert_memory_equal(short_one.inclusion, whole.inclusion, sizeof whole.inclusion);
-            assert_int_equal(short_one.chosen.hypothesis.effects, whole.chosen.hypothesis.effects);
-        }
-    }
-    assert_int_equal(answer & 3U, 3U);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,7 +328,6 @@ int main(void)
         cmocka_unit_test(a_drift_that_bends_is_no_wear),
         cmocka_unit_test(a_trend_must_foretell_the_digs_left_out),
         cmocka_unit_test(a_pair_does_not_lead_for_having_been_fitted_better),
-        cmocka_unit_test(whether_is_answered_alike_with_and_without_what),
     };
     return cmocka_run_group_tests_name("search", tests, world_setup, world_teardown);
 }

@@ -1,0 +1,304 @@
+// What of the machine is missing, by free air and the digs together.
+//
+// The answers of free air (closed_loop/machine/machine_side.h), none, and "something without a
+// name" compete by one evidence: free air's, plus that of the digs with the answer taken off. Both
+// are of different samples, so their logarithms add up. The digs' is that of the best of a plain
+// gravel, one effect of the soil, and a soil without a name, so that neither side explains what is
+// the other's. Under no effect the evidence ratio has mean 1, and exceeds answers / level with a
+// chance of at most the level (Ville).
+
+#include "closed_loop/accuracy/effect_size.h"
+#include "closed_loop/recordings/features.h"
+#include "closed_loop/search/search_work.h"
+#include "closed_loop/verdict/joint_fit.h"
+#include "closed_loop/verdict/trace_work.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What leaves everything open explains all, for so much log evidence.
+static const double unnamed_cost = DIG_SEARCH_TOLD_APART;
+
+// Answers whose log evidence differs by less cannot be told apart.
+static const double tie = 5.0;
+
+// Odds are of tempered evidence, as the search's are.
+static const double temper = 0.5;
+
+// What a fit of chance gains, in log likelihood.
+static const double chance_fit = 3.0;
+
+struct choice {
+    struct dig_machine_answer best;
+    size_t                    from; // which of free air's
+    double                    evidence;
+    double                    soil0, left0;            // of the digs as they were measured
+    double                    of[DIG_MACHINE_ANSWERS]; // evidence of each
+};
+
+// The raw batch with what measured[].machine adds taken off: in the same units, so that the digs'
+// evidence of one answer compares with that of another.
+static void take_off_batch(const struct dig_whitened_digs *const raw,
+                           const struct dig_measured             measured[],
+                           struct dig_whitened_digs *const       batch)
+{
+    *batch = *raw;
+    for (size_t i = 0; i < raw->digs; i++) {
+        double feature[DIG_FEATURES];
+        double added[DIG_FEATURES];
+        dig_features_of(measured[raw->dig[i].measured].machine, feature);
+        dig_whitened_digs_whiten(&raw->group[raw->dig[i].group], feature, added);
+        for (size_t k = 0; k < DIG_FEATURES; k++) {
+            batch->dig[i].y[k] -= added[k];
+        }
+    }
+    dig_whitened_digs_summarise(batch);
+}
+
+// The log evidence of the digs, of the best that the soil can be; *plain: of them with no effect.
+// *left: log likelihood beyond what chance leaves of the best that has a name.
+static double soil_evidence(const struct dig_whitened_digs *const batch,
+                            const struct dig_soil *const soil, struct dig_fitted *const plain,
+                            double *const left)
+{
+    static const struct dig_hypothesis none                           = { .effects = 0 };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, plain);
+    double features = 0.0;
+    double means    = plain->squares;
+    for (size_t g = 0; g < batch->groups; g++) {
+        features += (double)batch->group[g].features;
+        means -= batch->group[g].about;
+    }
+    const double excess = 0.5 * (means - (features - (double)plain->free));
+    double       gain   = 0.0;
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        const enum dig_effect_id    effect = (enum dig_effect_id)e;
+        const struct dig_hypothesis single = { .effects = 1, .effect = { effect } };
+        if (dig_effect_is_of_machine(effect) || effect == DIG_EFFECT_UNLISTED ||
+            !dig_hypothesis_possible(batch, soil, effect)) {
+            continue;
+        }
+        struct dig_fitted fitted;
+        double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
+        dig_hypothesis_fit(batch, soil, &single, start, DIG_FIT_BARE, &fitted);
+        gain = fmax(gain, 0.5 * (plain->misfit - fitted.misfit - log(features)));
+    }
+    *left = fmax(excess - gain, 0.0);
+    return fmax(gain, excess - unnamed_cost) - 0.5 * plain->misfit;
+}
+
+// Where a dig is not told with an answer (a cylinder at its stop, a bucket off its path) it is no
+// answer.
+static bool is_no_answer(const enum dig_status status)
+{
+    return status == DIG_ENOMATCH || status == DIG_EINVAL;
+}
+
+static void keep_best(const struct dig_machine_answer *const answer, const size_t from,
+                      const double evidence, struct choice *const choice)
+{
+    choice->of[from] = fmax(choice->of[from], evidence);
+    if (evidence > choice->evidence) {
+        choice->evidence = evidence;
+        choice->best     = *answer;
+        choice->from     = from;
+    }
+}
+
+// One answer with free air's values, and with what the digs make of them.
+static enum dig_status weigh(struct dig_machine_side *const machine, const size_t from,
+                             const size_t digs, struct dig_measured measured[],
+                             const struct dig_trace_work *const w, struct choice *const choice)
+{
+    const struct dig_machine_answer *const answer = &w->air->answer[from];
+    struct dig_machine_answer              fitted;
+    struct dig_fitted                      plain;
+    double                                 log_cost = 0.0;
+    double                                 left     = 0.0;
+    struct dig_whitened_digs *const        batch    = malloc(sizeof *batch);
+    enum dig_status                        status =
+        batch != NULL ? dig_machine_side_apply(machine, answer->effects, answer->effect, measured)
+                                             : DIG_ENOMEM;
+    if (status == DIG_OK) {
+        take_off_batch(w->batch, measured, batch);
+        keep_best(answer, from,
+                  answer->log_evidence + soil_evidence(batch, w->soil, &plain, &left) -
+                      choice->soil0,
+                  choice);
+    }
+    // Without more left than chance leaves there is nothing that other values could explain.
+    if (status == DIG_OK && left > chance_fit) {
+        status = dig_joint_fit(machine, answer, digs, measured, batch, &plain, &fitted, &log_cost);
+    } else if (status == DIG_OK) {
+        free(batch);
+        return DIG_OK;
+    }
+    if (status == DIG_OK) {
+        status = dig_machine_side_apply(machine, fitted.effects, fitted.effect, measured);
+    }
+    if (status == DIG_OK) {
+        take_off_batch(w->batch, measured, batch);
+        keep_best(&fitted, from,
+                  answer->log_evidence + log_cost + soil_evidence(batch, w->soil, &plain, &left) -
+                      choice->soil0,
+                  choice);
+    }
+    free(batch);
+    return is_no_answer(status) ? DIG_OK : status;
+}
+
+// Single effects that free air and the digs cannot tell from the one chosen.
+static void write_set(const struct choice *const choice, struct dig_machine_finding *const air)
+{
+    struct dig_candidate_set *const set = &air->set[0];
+    set->effects                        = 1;
+    set->effect[0]                      = choice->best.effect[0].effect;
+    for (size_t i = 0; i < air->answers; i++) {
+        if (i != choice->from && air->answer[i].effects == 1 &&
+            choice->of[i] > choice->evidence - tie) {
+            set->effect[set->effects++] = air->answer[i].effect[0].effect;
+        }
+    }
+    air->sets = set->effects > 1 ? 1 : 0;
+}
+
+static double odds(const double log_evidence)
+{
+    return 1.0 / (1.0 + exp(-temper * log_evidence));
+}
+
+// By how much the answer leads all that do not hold its effect, and none.
+static double lead_of(const struct choice *const              choice,
+                      const struct dig_machine_finding *const air)
+{
+    double lead = choice->evidence;
+    for (size_t i = 0; i < air->answers; i++) {
+        bool same = false;
+        for (size_t e = 0; e < air->answer[i].effects; e++) {
+            same = same || air->answer[i].effect[e].effect == choice->best.effect[0].effect;
+        }
+        lead = same ? lead : fmin(lead, choice->evidence - choice->of[i]);
+    }
+    return lead;
+}
+
+static void write_choice(const struct choice *const choice, const double least,
+                         struct dig_machine_finding *const air)
+{
+    const struct dig_machine_answer *const best = &choice->best;
+    air->by_digs = !(air->answer[choice->from].log_evidence >= least);
+    // How often free air's own choice came out of digs drawn anew; else the odds of the lead.
+    const double inclusion = air->effects == 1 && best->effects == 1 && !air->by_digs
+                                 ? air->effect[0].probability
+                                 : odds(lead_of(choice, air));
+    for (size_t e = 0; e < best->effects; e++) {
+        air->effect[e] = best->effect[e];
+        if (best->effects == 1) {
+            air->effect[e].probability = inclusion;
+        }
+    }
+    if (best->effects == 1) {
+        write_set(choice, air);
+    }
+    air->effects     = best->effects;
+    air->significant = true;
+    air->p_complete =
+        fmin(air->p_complete, (double)air->answers * exp(-fmax(choice->evidence, 0.0)));
+}
+
+// Nothing has a name; significant: whether anything is there all the same.
+static void write_none(const bool significant, struct dig_machine_finding *const air)
+{
+    air->effects     = 0;
+    air->sets        = 0;
+    air->significant = significant;
+    air->unexplained = significant;
+}
+
+static enum dig_status choose(struct dig_machine_side *const         machine,
+                              const struct dig_trace_settings *const settings, const size_t digs,
+                              struct dig_measured measured[], struct dig_trace_work *const w,
+                              struct choice *const choice)
+{
+    struct dig_machine_finding *const air     = w->air;
+    const double                      level   = settings->false_alarm / 2.0;
+    const double                      least   = log((double)air->candidates / level);
+    double                            unnamed = -INFINITY;
+    enum dig_status                   status  = DIG_OK;
+    struct dig_fitted                 plain;
+    choice->evidence = -INFINITY;
+    choice->soil0    = soil_evidence(w->batch, w->soil, &plain, &choice->left0);
+    for (size_t i = 0; i < air->answers; i++) {
+        choice->of[i] = -INFINITY;
+    }
+    for (size_t i = 0; i < air->answers && status == DIG_OK; i++) {
+        unnamed = fmax(unnamed, air->answer[i].log_evidence - unnamed_cost);
+        // Not one that could explain all the digs leave and still be no answer, or none of the
+        // best.
+        const double most = air->answer[i].log_evidence + choice->left0 + chance_fit;
+        if (most >= fmax(least, choice->evidence - tie)) {
+            status = weigh(machine, i, digs, measured, w, choice);
+        }
+    }
+    if (choice->evidence >= fmax(least, unnamed)) {
+        write_choice(choice, least, air);
+    } else {
+        write_none(unnamed >= least, air);
+    }
+    return status;
+}
+
+// An effect of the machine that a gravel of the table could stand in for is named, but the digs do
+// not confirm it, and no more than even odds are claimed.
+static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, const size_t digs,
+                                     const struct dig_measured      measured[],
+                                     struct dig_trace_work *const   w,
+                                     const struct dig_fitted *const plain)
+{
+    struct dig_measured *const alone = malloc(digs * sizeof *alone);
+    if (alone == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status = DIG_OK;
+    memcpy(alone, measured, digs * sizeof *alone);
+    for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
+        struct dig_model_effect *const effect = &w->air->effect[e];
+
+        status = dig_machine_side_apply(machine, 1, effect, alone);
+        if (status == DIG_OK) {
+            w->size[e] = dig_effect_size_of_machine(w->batch, plain, alone);
+            effect->probability *= fmax(dig_effect_size_chance(w->size[e]), DIG_TRACE_UNCONFIRMED);
+        }
+    }
+    free(alone);
+    return status;
+}
+
+enum dig_status dig_trace_machine(struct dig_machine_side *const         machine,
+                                  const struct dig_trace_settings *const settings,
+                                  const size_t digs, struct dig_measured measured[],
+                                  struct dig_trace_work *const w, struct dig_fitted *const plain,
+                                  struct dig_error *const error)
+{
+    assert(machine != NULL && settings != NULL && measured != NULL && w != NULL && plain != NULL);
+    struct choice *const choice = calloc(1, sizeof *choice);
+    enum dig_status      status =
+        choice != NULL
+                 ? dig_machine_side_trace(machine, settings->false_alarm / 2.0, settings->seed, w->air)
+                 : DIG_ENOMEM;
+    if (status == DIG_OK && w->air->answers > 0) {
+        status = choose(machine, settings, digs, measured, w, choice);
+    }
+    if (status == DIG_OK) {
+        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
+    }
+    if (status == DIG_OK) {
+        status = dig_trace_batch(w, digs, measured, plain, error);
+    }
+    free(choice);
+    return status == DIG_OK ? weigh_in_soil(machine, digs, measured, w, plain) : status;
+}

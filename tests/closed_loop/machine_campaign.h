@@ -1,0 +1,272 @@
+// Campaigns of machine recordings from the rig's machine (virtual work), spoilt here by formulas of
+// the tests' own.
+
+#ifndef DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H
+#define DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H
+
+#include "closed_loop/machine/machine_side.h"
+#include "files/machine_yaml.h"
+#include "files/recording_csv.h"
+#include "tests/made_table.h"
+#include "tests/model_front.h"
+#include "tests/testlib.h"
+#include "tools/rig/mechanism.h"
+#include "tools/rig/sensors.h"
+#include "tools/rig/track.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { KINDS = 2, DIGS = 4 };
+
+static struct dig_machine    machine;
+static struct dig_rig_track  track[KINDS];
+static struct dig_curve_set *set;
+
+static inline int build(void **state)
+{
+    (void)state;
+    static const char *const  kind[KINDS] = { "simpleA", "actual" };
+    const struct made_options options     = { .relative_sd = 0.1, .packings = 3 };
+    struct dig_error          error       = { "" };
+    set                                   = made_table(&options);
+    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
+        return -1;
+    }
+    struct dig_rig_track_options how = dig_rig_track_options_default();
+    how.placed                       = true; // where digrig would put it: the search takes seconds
+    how.pin_X_m                      = 7.43;
+    how.pin_Z_m                      = -0.62;
+    for (int k = 0; k < KINDS; k++) {
+        char                 path[200];
+        struct dig_recording recording;
+        (void)snprintf(path, sizeof path, "tests/data/reference/mu0.5_mur0.5_rho2500__%s.csv",
+                       kind[k]);
+        if (dig_recording_read(path, &recording, &error) != DIG_OK ||
+            dig_rig_track_build(&machine, &how, 1, &recording, &track[k], &error) != DIG_OK) {
+            return -1;
+        }
+        dig_recording_finish(&recording);
+    }
+    return 0;
+}
+
+static inline int tear_down(void **state)
+{
+    (void)state;
+    made_table_destroy(set);
+    for (int k = 0; k < KINDS; k++) {
+        dig_rig_track_finish(&track[k]);
+    }
+    return 0;
+}
+
+// What the machine does that its file does not say.
+struct fault {
+    double dry_N;       // the bucket cylinder's seal, against its motion
+    double held_N;      // seals of all drives that bend .2 mm before they slip, and stay bent
+    double rod_Pa;      // the bucket's rod side sensor reads so much more
+    double gain;        // the bucket's head side sensor reads 1 + this times what is there
+    double late_s;      // pressures are so old
+    double payload_kg;  // in the middle of the bucket, from the second dig on
+    bool   falls_out;   // before the second
+    bool   was_there;   // in the first already, twice as much
+    double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
+    double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
+    double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
+    double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    size_t every;      // one sample in so many is recorded; 0: all are
+    bool   warms;      // the oil's temperature is recorded, and rises
+    bool   bare;       // no pressures but the bucket's
+    bool   airless;    // recorded from the first touch of the ground to the last
+};
+
+static inline double push_N(const int j, const double head_Pa, const double rod_Pa)
+{
+    const struct dig_cylinder *const c = &machine.cylinder[j];
+    return c->count * (head_Pa * dig_cylinder_head_m2(c) - rod_Pa * dig_cylinder_rod_m2(c));
+}
+
+// Makes one row's true pressures those that push so much more.
+static inline void push_more(struct dig_rig_row *const row, const int j, const double more_N)
+{
+    struct dig_rig_pushes pushes;
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        pushes.N[k] = push_N(k, row->pressures.head_Pa[k], row->pressures.rod_Pa[k]);
+    }
+    pushes.N[j] += more_N;
+    dig_rig_work_pressures(&machine, &pushes, &row->pressures);
+}
+
+static inline double rod_mps(const struct dig_rig_track *const t, const size_t i, const int j)
+{
+    const size_t b = i > 0 ? i - 1 : i, a = i + 1 < t->rows ? i + 1 : i;
+    double       from_m, to_m;
+    assert_int_equal(
+        dig_rig_cylinder_m(&machine, (enum dig_joint)j, t->row[b].joints.rad[j], &from_m), DIG_OK);
+    assert_int_equal(
+        dig_rig_cylinder_m(&machine, (enum dig_joint)j, t->row[a].joints.rad[j], &to_m), DIG_OK);
+    return (to_m - from_m) / (t->step_s * (double)(a - b));
+}
+
+// What bent seals hold: by so much of the rod's last way as they can bend.
+static inline void bend(const struct dig_rig_track *const t, const size_t i,
+                        double bent_m[DIG_JOINTS])
+{
+    static const double most_m = 2e-4;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        bent_m[j] += t->step_s * rod_mps(t, i, j);
+        bent_m[j] = fmin(fmax(bent_m[j], -most_m), most_m);
+    }
+}
+
+static inline double payload_N(const struct dig_rig_row *const row, const int j, const double kg)
+{
+    // The work of its weight over a small turn of the joint.
+    double high[2], lever_m;
+    for (int way = 0; way < 2; way++) {
+        struct dig_rig_joints at = row->joints;
+        at.rad[j] += way == 0 ? -1e-5 : 1e-5;
+        high[way] = dig_rig_com_m(&machine, &at, DIG_JOINT_BUCKET).y;
+    }
+    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
+                     DIG_OK);
+    return kg * 9.81 * (high[1] - high[0]) / 2e-5 / lever_m;
+}
+
+static inline void lose(struct dig_sample *const sample, const enum dig_signal signal)
+{
+    sample->valid[signal] = false;
+    sample->value[signal] = 0.0;
+}
+
+static inline void lose_readings(const struct fault *const fault, uint64_t *const state,
+                                 struct dig_sample *const sample)
+{
+    for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {
+        if (fault->lost > 0.0 && fabs(model_normal(state)) > fault->lost) {
+            lose(sample, (enum dig_signal)s);
+        }
+    }
+    for (int s = DIG_SIGNAL_BOOM_HEAD_Pa; s <= DIG_SIGNAL_ARM_ROD_Pa && fault->bare; s++) {
+        lose(sample, (enum dig_signal)s);
+    }
+}
+
+static inline void cut_air(const struct dig_rig_track *const   t,
+                           struct dig_machine_recording *const r)
+{
+    size_t first = 0, last = t->rows - 1;
+    while (!(fabs(t->row[first].soil.M_Nm) > 0.0)) {
+        first++;
+    }
+    while (!(fabs(t->row[last].soil.M_Nm) > 0.0)) {
+        last--;
+    }
+    r->rows = last + 1 - first;
+    memmove(r->row, r->row + first, r->rows * sizeof *r->row);
+}
+
+static inline void thin(const size_t every, struct dig_machine_recording *const r)
+{
+    size_t kept = 0;
+    for (size_t i = 0; every > 0 && i < r->rows; i += every) {
+        r->row[kept++] = r->row[i];
+    }
+    r->rows = every > 0 ? kept : r->rows;
+}
+
+static inline double carried_kg(const struct fault *const fault, const size_t order)
+{
+    if (order == 0) {
+        return fault->was_there ? 2.0 * fault->payload_kg : 0.0;
+    }
+    return order > 1 || !fault->falls_out ? fault->payload_kg : 0.0;
+}
+
+static inline struct dig_machine_recording
+record(const int kind, const size_t order, const struct fault *const fault, const uint64_t seed)
+{
+    const struct dig_rig_track *const t     = &track[kind];
+    struct dig_machine_recording      r     = { t->rows, malloc(t->rows * sizeof *r.row) };
+    struct dig_rig_noise              noise = dig_rig_noise_init(seed);
+    const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
+    const double                      kept  = exp(-t->step_s / 0.1);
+    double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
+    double                            bent_m[DIG_JOINTS]       = { 0.0 };
+    uint64_t                          state                    = seed;
+    for (size_t i = 0; i < t->rows; i++) {
+        const size_t       then = i > late ? i - late : 0;
+        struct dig_rig_row row  = t->row[then];
+        push_more(&row, DIG_JOINT_BUCKET,
+                  fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
+        bend(t, then, bent_m);
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
+            const double time_s = t->step_s * (double)then + 40.0 * (double)order;
+            push_more(&row, j, payload_N(&row, j, carried_kg(fault, order)));
+            push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
+        }
+        row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
+        row.pressures.head_Pa[DIG_JOINT_BUCKET] *= 1.0 + fault->gain;
+        for (int p = 0; p < 2 * DIG_JOINTS; p++) {
+            hunts_Pa[p] = kept * hunts_Pa[p] +
+                          sqrt(1.0 - kept * kept) * fault->hunting_Pa * model_normal(&state);
+            row.pressures.head_Pa[p / 2] += p % 2 == 0 ? hunts_Pa[p] : 0.0;
+            row.pressures.rod_Pa[p / 2] += p % 2 == 1 ? hunts_Pa[p] : 0.0;
+        }
+        const double above_degC =
+            fault->warms ? 6.0 * (double)order + 0.1 * t->step_s * (double)i : 0.0;
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            row.pressures.head_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
+            row.pressures.rod_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
+        }
+        row.joints = t->row[i].joints;
+        r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
+        dig_rig_quantise(&machine, &r.row[i]);
+        r.row[i].value[DIG_SIGNAL_TEMPERATURE_degC] = 45.0 + above_degC;
+        r.row[i].valid[DIG_SIGNAL_TEMPERATURE_degC] = fault->warms;
+        lose_readings(fault, &state, &r.row[i]);
+    }
+    if (fault->airless) {
+        cut_air(t, &r);
+    }
+    thin(fault->every, &r);
+    return r;
+}
+
+struct campaign {
+    struct dig_machine_recording recording[DIGS];
+    struct dig_measured          measured[DIGS];
+    struct dig_machine_side     *side;
+    struct dig_machine_finding   finding;
+};
+
+static inline struct campaign *trace(const struct fault *const fault, const uint64_t seed)
+{
+    struct campaign *const c     = calloc(1, sizeof *c);
+    struct dig_error       error = { "" };
+    for (size_t d = 0; d < DIGS; d++) {
+        c->recording[d]           = record((int)(d % KINDS), d, fault, seed * 100 + d);
+        c->measured[d].trajectory = d % KINDS == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        c->measured[d].use        = d == DIGS - 1 ? DIG_USE_HOLDOUT : DIG_USE_FIT;
+        c->measured[d].order      = d;
+    }
+    if (dig_machine_side_create(&machine, set, DIGS, c->recording, c->measured, &c->side, &error) !=
+        DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(dig_machine_side_trace(c->side, 0.01, seed, &c->finding), DIG_OK);
+    return c;
+}
+
+static inline void end(struct campaign *const c)
+{
+    dig_machine_side_destroy(c->side);
+    for (int d = 0; d < DIGS; d++) {
+        dig_machine_recording_finish(&c->recording[d]);
+    }
+    free(c);
+}
+
+#endif // DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H

@@ -1,0 +1,83 @@
+// Tests for closed_loop/verdict/machine_choice.c and joint_fit.c: digs of the reference's gravel on
+// the shipped table, by a machine that is not as its file says.
+
+#include "closed_loop/verdict/trace.h"
+#include "tables/load.h"
+#include "tests/closed_loop/machine_campaign.h"
+
+static const char *const table = "tables/rig.sqlite";
+
+static void *load(void)
+{
+    struct dig_curve_set *loaded = NULL;
+    struct dig_error      error  = { "" };
+    if (dig_table_load(table, &loaded, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    return loaded;
+}
+
+static struct dig_trace traced(const struct fault *const fault, const uint64_t seed)
+{
+    struct dig_curve_set *const     made     = set;
+    const struct dig_trace_settings settings = dig_trace_settings_default();
+    struct dig_error                error    = { "" };
+    struct dig_trace                result;
+    struct campaign                *c;
+    set = load();
+    c   = trace(fault, seed);
+    if (dig_trace_run(set, table, NULL, &settings, c->side, DIGS, c->measured, &result, &error) !=
+        DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    end(c);
+    dig_curve_set_destroy(set);
+    set = made;
+    return result;
+}
+
+static const struct dig_model_parameter *parameter(const struct dig_model_effect *const effect,
+                                                   const char *const                    name)
+{
+    for (size_t p = 0; p < effect->parameters; p++) {
+        if (strcmp(effect->parameter[p].name, name) == 0) {
+            return &effect->parameter[p];
+        }
+    }
+    fail_msg("no parameter %s", name);
+    return NULL;
+}
+
+// The gain reads little in free air, where the drive pushes little, and much in every dig.
+static void a_gain_that_free_air_leaves_open_is_told_by_the_digs(void **state)
+{
+    (void)state;
+    const struct fault fault  = { .gain = 0.08 };
+    struct dig_trace   result = traced(&fault, 3);
+    assert_int_equal(result.effects, 1);
+    assert_int_equal(result.effect[0].effect, DIG_EFFECT_PRESSURE_OFFSET);
+    const struct dig_model_parameter *const gain = parameter(&result.effect[0], "bucket_head_gain");
+    assert_true(gain->low <= 0.08 && 0.08 <= gain->high && gain->low > 0.0);
+    // An oracle takes the gain off; digs of this gravel then scatter by their noise floor.
+    assert_true(result.applied && result.after.value < 0.6 * result.before.value);
+    dig_trace_finish(&result);
+}
+
+static void a_machine_as_its_file_says_is_left_alone(void **state)
+{
+    (void)state;
+    const struct fault none   = { .gain = 0.0 };
+    struct dig_trace   result = traced(&none, 4);
+    assert_int_equal(result.effects, 0);
+    assert_false(result.significant);
+    dig_trace_finish(&result);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gain_that_free_air_leaves_open_is_told_by_the_digs),
+        cmocka_unit_test(a_machine_as_its_file_says_is_left_alone),
+    };
+    return cmocka_run_group_tests_name("machine_choice", tests, build, tear_down);
+}
