@@ -4,7 +4,7 @@
 set -u
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-export TORTURE_S=${TORTURE_S:-30}
+export TORTURE_S=${TORTURE_S:-30} DIG_TRIES=1
 failed=0
 for script in "$@"; do
     echo "== $script"

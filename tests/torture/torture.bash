@@ -3,7 +3,6 @@
 # make torture makes a table of these lines. Sourced from the repository's root, behind tests/system/check.bash,
 # digtable_lib.bash or daemon_lib.bash.
 TORTURE_S=${TORTURE_S:-30}
-export DIG_TRIES=1
 
 told() { # NUMBER WHAT
     echo "count $1 $2"

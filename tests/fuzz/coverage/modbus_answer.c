@@ -2,8 +2,8 @@
 // input is a list of answers, each a byte of flags, one of length and the bytes. The server hangs
 // up after the last. No reading may hold a number that is not finite.
 
-#include "firmware_host/input.h"
-#include "firmware_host/signal_map.h"
+#include "firmware_host/bus/input.h"
+#include "firmware_host/bus/signal_map.h"
 
 #include <arpa/inet.h>
 #include <math.h>
