@@ -223,6 +223,7 @@ void dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
 {
     assert(fit != NULL && answer != NULL);
     solve_at(fit, set, 0, answer);
+    answer->log_evidence -= log(WIDTHS);
 }
 
 double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)

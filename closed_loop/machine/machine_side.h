@@ -35,8 +35,9 @@ void dig_machine_side_destroy(struct dig_machine_side *side);
 struct dig_machine_answer {
     size_t                  effects;
     struct dig_model_effect effect[DIG_MACHINE_AT_ONCE];
-    double                  log_evidence; // of free air, against no effect
-    size_t                  numbers;      // parameters of all its effects; 0: not told
+    double                  log_evidence;      // of free air, against no effect
+    double                  log_evidence_wide; // the same by the wide priors
+    size_t                  numbers;           // parameters of all its effects; 0: not told
     double                  value[DIG_MACHINE_NUMBERS];
     double                  step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
 };

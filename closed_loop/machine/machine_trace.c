@@ -334,7 +334,8 @@ static void write_answer(struct search *const s, const size_t effects,
     if (dig_cholesky(n, lower) != DIG_OK) {
         return;
     }
-    answer->numbers = n;
+    answer->numbers           = n;
+    answer->log_evidence_wide = solved.log_evidence;
     for (size_t k = 0; k < n; k++) {
         for (size_t i = k; i < n; i++) {
             answer->step[k][i] = scale[i] * lower[i * n + k];

@@ -143,8 +143,8 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     if (status == DIG_OK) {
         take_off_batch(w->batch, measured, batch);
         keep_best(&fitted, from,
-                  answer->log_evidence + log_cost + soil_evidence(batch, w->soil, &plain, &left) -
-                      choice->soil0,
+                  answer->log_evidence_wide + log_cost +
+                      soil_evidence(batch, w->soil, &plain, &left) - choice->soil0,
                   choice);
     }
     free(batch);

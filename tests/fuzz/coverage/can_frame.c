@@ -2,8 +2,8 @@
 // message, length, time since the frame before, and data. No sample may hold a number that is not
 // finite.
 
-#include "firmware_host/tick/assemble.h"
 #include "firmware_host/bus/signal_map.h"
+#include "firmware_host/tick/assemble.h"
 
 #include <math.h>
 #include <stdint.h>

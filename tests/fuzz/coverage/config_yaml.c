@@ -4,9 +4,9 @@
 #include "files/grid_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/scene_yaml.h"
-#include "firmware_host/config/config.h"
 #include "firmware_host/bus/dbc.h"
 #include "firmware_host/bus/signal_map.h"
+#include "firmware_host/config/config.h"
 #include "tests/fuzz/coverage/as_file.h"
 
 static enum dig_status read_can_map(const char *const path, struct dig_error *const error)
