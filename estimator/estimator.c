@@ -51,9 +51,9 @@ static bool set_is_sound(const struct dig_curve_set *const set)
 // Forgets the dig going on.
 static void forget_dig(struct dig_estimator *const e)
 {
-    dig_recorded_dig_forget(e->raw, e->set);
+    dig_recorded_dig_clear(e->recording, e->set);
     e->next_follower = 0;
-    e->choice        = (struct dig_choice){ .told = -1, .candidate = -1 };
+    e->choice        = (struct dig_choice){ .current = -1, .candidate = -1 };
     e->progress      = (double)NAN;
     e->off_path_m    = (double)NAN;
 }
@@ -76,27 +76,27 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
 
     // A megabyte: cleared in place, not by way of the stack.
     memset(estimator, 0, sizeof *estimator);
-    estimator->machine  = machine;
-    estimator->settings = *settings;
-    estimator->raw      = &estimator->own_raw;
-    estimator->rates    = (struct dig_rates_filter){ .window_s = sensed_window_s };
-    dig_estimator_adopt(estimator, set);
+    estimator->machine   = machine;
+    estimator->settings  = *settings;
+    estimator->recording = &estimator->own_recording;
+    estimator->rates     = (struct dig_rates_filter){ .window_s = sensed_window_s };
+    dig_estimator_set_table(estimator, set);
     return DIG_OK;
 }
 
 bool dig_estimator_is_idle(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
-    return !estimator->raw->window.open;
+    return !estimator->recording->window.open;
 }
 
 bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
-    const int told = estimator->choice.told;
-    bool      off  = estimator->raw->window.open && estimator->set->trajectories > 0;
+    const int told = estimator->choice.current;
+    bool      off  = estimator->recording->window.open && estimator->set->trajectories > 0;
     if (off && told >= 0 && estimator->forecast != NULL &&
-        estimator->forecast->along[told].off_table) {
+        estimator->forecast->expected[told].off_table) {
         return true;
     }
     for (size_t t = 0; off && t < estimator->set->trajectories; t++) {
@@ -105,8 +105,8 @@ bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
     return off;
 }
 
-void dig_estimator_adopt(struct dig_estimator *const       estimator,
-                         const struct dig_curve_set *const set)
+void dig_estimator_set_table(struct dig_estimator *const       estimator,
+                             const struct dig_curve_set *const set)
 {
     assert(estimator != NULL && set != NULL && dig_estimator_is_idle(estimator));
     estimator->set      = set;
@@ -131,9 +131,10 @@ static struct dig_path_point rig_point(const struct dig_estimator *const e,
 // Vertices of the samples before contact, then the one in contact.
 static void lay_out_path(struct dig_estimator *const e, const struct dig_path_point *const touched)
 {
-    dig_recorded_dig_touch(e->raw, touched);
+    dig_recorded_dig_contact(e->recording, touched);
     for (size_t t = 0; t < e->set->trajectories; t++) {
-        e->follower[t] = dig_follower_start(&e->route[t], &e->raw->path, e->settings.path_limit_m);
+        e->follower[t] =
+            dig_follower_start(&e->route[t], &e->recording->path, e->settings.path_limit_m);
     }
 }
 
@@ -145,17 +146,17 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         return;
     }
     const bool in_soil = e->phase.phase == DIG_PHASE_CONTACT || e->phase.phase == DIG_PHASE_DIG;
-    (void)dig_path_add(&e->raw->path, point, in_soil);
+    (void)dig_path_add(&e->recording->path, point, in_soil);
     e->next_follower     = (e->next_follower + 1) % tracks;
     const double limit_m = e->settings.path_limit_m;
-    dig_follower_step(&e->route[e->next_follower], &e->raw->path, limit_m,
+    dig_follower_step(&e->route[e->next_follower], &e->recording->path, limit_m,
                       &e->follower[e->next_follower]);
 
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
         track_of[t] = &e->follower[t].track;
     }
-    const int before = e->choice.told;
+    const int before = e->choice.current;
     const int chosen = dig_track_choose(tracks, track_of, limit_m, DIG_TRACK_TIE_SHARE * limit_m,
                                         e->choice.candidate);
     const int told   = dig_choice_step(&e->choice, tracks, chosen);
@@ -163,7 +164,7 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         e->progress = (double)NAN;
     }
     if (told < 0) {
-        dig_followed_off(&e->raw->followed);
+        dig_followed_off(&e->recording->followed);
         e->progress   = (double)NAN;
         e->off_path_m = (double)NAN;
         return;
@@ -175,31 +176,32 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
     const double ahead  = fmax(fmax(e->progress, 0.0), track->progress) + 0.2;
 
     const struct dig_path_point at = dig_track_turned(track, point);
-    const struct dig_place      place =
-        dig_route_place(&e->route[told], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
+    const struct dig_projection place =
+        dig_route_project(&e->route[told], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
-    dig_followed_on(&e->raw->followed, told, e->progress, e->off_path_m, limit_m, &e->raw->path);
+    dig_followed_on(&e->recording->followed, told, e->progress, e->off_path_m, limit_m,
+                    &e->recording->path);
 }
 
 // The trajectory is done, or nearly, and the bucket has left it.
 static bool path_is_over(const struct dig_estimator *const e)
 {
-    return e->choice.told >= 0 && e->progress >= DIG_ENDING_WHOLE_FROM &&
+    return e->choice.current >= 0 && e->progress >= DIG_ENDING_WHOLE_FROM &&
            e->off_path_m > e->settings.path_limit_m;
 }
 
 // Hands the dig out raw and goes on in the spare, or observes it here.
 static void finish_dig(struct dig_estimator *const e)
 {
-    e->raw->dig_count = ++e->digs;
+    e->recording->dig_count = ++e->digs;
     if (!e->lends) {
         e->has_observation |=
-            dig_recorded_dig_observe(e->set, &e->settings, e->raw, &e->observation) == DIG_OK;
+            dig_recorded_dig_observe(e->set, &e->settings, e->recording, &e->observation) == DIG_OK;
     } else if (e->spare != NULL && e->finished == NULL) {
-        e->finished = e->raw;
-        e->raw      = e->spare;
-        e->spare    = NULL;
+        e->finished  = e->recording;
+        e->recording = e->spare;
+        e->spare     = NULL;
     } else {
         e->lost++;
     }
@@ -213,13 +215,13 @@ void dig_estimator_lend(struct dig_estimator *const estimator, struct dig_record
     estimator->spare = spare;
 }
 
-bool dig_estimator_wants_raw(const struct dig_estimator *const estimator)
+bool dig_estimator_wants_spare(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
     return estimator->spare == NULL;
 }
 
-struct dig_recorded_dig *dig_estimator_take_raw(struct dig_estimator *const estimator)
+struct dig_recorded_dig *dig_estimator_take_recording(struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
     struct dig_recorded_dig *const finished = estimator->finished;
@@ -227,7 +229,7 @@ struct dig_recorded_dig *dig_estimator_take_raw(struct dig_estimator *const esti
     return finished;
 }
 
-uint32_t dig_estimator_lost(const struct dig_estimator *const estimator)
+uint32_t dig_estimator_lost_digs(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
     return estimator->lost;
@@ -241,18 +243,18 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    dig_recorded_dig_add(e->raw, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
-    dig_followed_sample(&e->raw->followed, e->raw->window.open, time_ns,
+    dig_recorded_dig_add(e->recording, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
+    dig_followed_sample(&e->recording->followed, e->recording->window.open, time_ns,
                         sqrt(e->lambda) * dig_window_hole_s(e->set->smooth_half_s));
 
     switch (event) {
-    case DIG_EVENT_TOUCHED: lay_out_path(e, point); break;
+    case DIG_EVENT_CONTACT: lay_out_path(e, point); break;
     case DIG_EVENT_LOST: forget_dig(e); break;
-    case DIG_EVENT_GONE: finish_dig(e); break;
+    case DIG_EVENT_FINISHED: finish_dig(e); break;
     case DIG_EVENT_NONE:
     default: break;
     }
-    if (!e->raw->window.open) {
+    if (!e->recording->window.open) {
         return;
     }
     follow_path(e, point);
@@ -262,31 +264,32 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     }
 }
 
-void dig_estimator_take(struct dig_estimator *const estimator, const struct dig_taken *const taken)
+void dig_estimator_set_machine(struct dig_estimator *const               estimator,
+                               const struct dig_corrected_machine *const corrected)
 {
-    assert(estimator != NULL && taken != NULL && dig_estimator_is_idle(estimator));
-    struct dig_taken *const before = &estimator->taken;
-    if (taken->corrects == before->corrects &&
+    assert(estimator != NULL && corrected != NULL && dig_estimator_is_idle(estimator));
+    struct dig_corrected_machine *const before = &estimator->corrected;
+    if (corrected->corrects == before->corrects &&
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
-        memcmp(&taken->correction, &before->correction, sizeof before->correction) == 0) {
+        memcmp(&corrected->correction, &before->correction, sizeof before->correction) == 0) {
         return;
     }
-    if (taken->corrects && !before->corrects) {
+    if (corrected->corrects && !before->corrects) {
         estimator->rates = (struct dig_rates_filter){ .window_s = rates_window_s };
     }
-    *before = *taken;
+    *before = *corrected;
 
-    dig_phase_forget(&estimator->phase);
+    dig_phase_reset(&estimator->phase);
 }
 
-enum dig_status dig_estimator_correct(struct dig_estimator *const        estimator,
-                                      const struct dig_correction *const correction)
+enum dig_status dig_estimator_set_correction(struct dig_estimator *const        estimator,
+                                             const struct dig_correction *const correction)
 {
     assert(estimator != NULL);
-    struct dig_taken      taken;
-    const enum dig_status status = dig_correction_take(estimator->machine, correction, &taken);
+    struct dig_corrected_machine corrected;
+    const enum dig_status status = dig_correction_apply(estimator->machine, correction, &corrected);
     if (status == DIG_OK) {
-        dig_estimator_take(estimator, &taken);
+        dig_estimator_set_machine(estimator, &corrected);
     }
     return status;
 }
@@ -314,7 +317,7 @@ static enum dig_status solve(struct dig_estimator *const e, const struct dig_sam
     if (e->machine->sensor.fitted) {
         return solve_sensed(e, sample, wrench, front);
     }
-    if (!e->taken.corrects) {
+    if (!e->corrected.corrects) {
         return dig_wrench_solve(e->machine, sample, wrench, front);
     }
     if (!dig_sample_has_moment(sample)) {
@@ -329,14 +332,15 @@ static enum dig_status solve(struct dig_estimator *const e, const struct dig_sam
     rates =
         dig_rates_step(&e->rates, sample->time_ns, now_rad,
                        dig_reading_sigma(e->machine->angle_step_rad, e->machine->angle_sigma_rad));
-    const double delay_s = e->taken.correction.delay_s;
+    const double delay_s = e->corrected.correction.delay_s;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const double back_rad =
             delay_s * (rates.velocity_radps[j] - 0.5 * delay_s * rates.acceleration_radps2[j]);
         at.value[DIG_SIGNAL_BOOM_rad + j] -= back_rad;
         rates.velocity_radps[j] -= delay_s * rates.acceleration_radps2[j];
     }
-    return dig_wrench_correct(&e->taken.machine, &e->taken.correction, &at, &rates, wrench, front);
+    return dig_wrench_correct(&e->corrected.machine, &e->corrected.correction, &at, &rates, wrench,
+                              front);
 }
 
 enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
@@ -379,7 +383,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .phi_rad    = front.attitude_rad[DIG_JOINT_BUCKET],
         .phase      = e->phase.phase,
         .dig_count  = e->digs,
-        .trajectory = e->choice.told,
+        .trajectory = e->choice.current,
         .progress   = e->progress,
         .off_path_m = e->off_path_m,
         .motion     = motion,
@@ -387,8 +391,8 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     return DIG_OK;
 }
 
-bool dig_estimator_take_dig(struct dig_estimator *const   estimator,
-                            struct dig_observation *const observation)
+bool dig_estimator_take_observation(struct dig_estimator *const   estimator,
+                                    struct dig_observation *const observation)
 {
     assert(estimator != NULL && observation != NULL);
     if (!estimator->has_observation) {

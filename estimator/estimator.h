@@ -43,20 +43,22 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
                                                   const struct dig_estimator_settings *settings);
 
 struct dig_correction; // estimator/wrench/correction.h
-struct dig_taken;
+struct dig_corrected_machine;
 
 /// While idle, from now on the machine is taken as corrected, and its links' inertia is taken off
 /// with rates from the angles of the last quarter second. The machine's geometry, weights and
 /// inertias are the corrected ones; a delay puts the pose back to the time of the pressures. NULL:
 /// as its file says, without inertia. DIG_EINVAL, DIG_EUNREACHABLE as dig_correction_check(); then
 /// nothing changes. Between ticks; about a millisecond.
-DIG_MUST_CHECK enum dig_status dig_estimator_correct(struct dig_estimator        *estimator,
-                                                     const struct dig_correction *correction);
+DIG_MUST_CHECK enum dig_status
+dig_estimator_set_correction(struct dig_estimator        *estimator,
+                             const struct dig_correction *correction);
 
 /// The same with a machine made before, of the one it was initialised with: a copy of two
 /// kilobytes. Where it is another than before, what was learnt of the moment in free air is
 /// forgotten; where it is the same, nothing changes.
-void dig_estimator_take(struct dig_estimator *estimator, const struct dig_taken *taken);
+void dig_estimator_set_machine(struct dig_estimator               *estimator,
+                               const struct dig_corrected_machine *corrected);
 
 /// One tick. DIG_ESTALE: a sample without a moment or one not younger than the last; DIG_EINVAL: a
 /// number that is not finite. Then the state is kept and *estimate is untouched. Constant time but
@@ -76,7 +78,7 @@ bool dig_estimator_is_off_table(const struct dig_estimator *estimator);
 /// Exchanges the table while idle; what was forecast is forgotten. The set must be one that an
 /// estimator of this machine was initialised with, and outlive this one. Constant time but for a
 /// look at what set->approaches holds: a microsecond for hundreds.
-void dig_estimator_adopt(struct dig_estimator *estimator, const struct dig_curve_set *set);
+void dig_estimator_set_table(struct dig_estimator *estimator, const struct dig_curve_set *set);
 
 struct dig_recorded_dig; // estimator/track/recorded_dig.h
 
@@ -86,22 +88,23 @@ struct dig_recorded_dig; // estimator/track/recorded_dig.h
 void dig_estimator_lend(struct dig_estimator *estimator, struct dig_recorded_dig *spare);
 
 /// True when a dig can be lent.
-bool dig_estimator_wants_raw(const struct dig_estimator *estimator);
+bool dig_estimator_wants_spare(const struct dig_estimator *estimator);
 
 /// The finished dig, the caller's until it is lent again; NULL: none. Constant time.
-struct dig_recorded_dig *dig_estimator_take_raw(struct dig_estimator *estimator);
+struct dig_recorded_dig *dig_estimator_take_recording(struct dig_estimator *estimator);
 
 /// Digs that were lost since init.
-uint32_t dig_estimator_lost(const struct dig_estimator *estimator);
+uint32_t dig_estimator_lost_digs(const struct dig_estimator *estimator);
 
 /// True once after every finished dig that followed a known trajectory, while nothing is lent:
 /// copies it out.
-bool dig_estimator_take_dig(struct dig_estimator *estimator, struct dig_observation *observation);
+bool dig_estimator_take_observation(struct dig_estimator   *estimator,
+                                    struct dig_observation *observation);
 
 /// What predictions are made from, from now on; NULL ends them. The forecast must stay as it is
 /// until another is given. Constant time.
-void dig_estimator_give_forecast(struct dig_estimator      *estimator,
-                                 const struct dig_forecast *forecast);
+void dig_estimator_set_forecast(struct dig_estimator      *estimator,
+                                const struct dig_forecast *forecast);
 
 /// Makes the forecast of a match in the estimator's own memory and gives it: as long.
 void dig_estimator_give_match(struct dig_estimator *estimator, const struct dig_match *match);
@@ -113,7 +116,7 @@ void dig_estimator_predict(const struct dig_estimator *estimator,
 
 /// Prediction for a dig that has not begun, whole, along the trajectory of that index; valid =
 /// false when no match was given or the set has no such trajectory. Constant time.
-void dig_estimator_predict_whole(const struct dig_estimator *estimator, int trajectory,
-                                 struct dig_prediction *prediction);
+void dig_estimator_predict_trajectory(const struct dig_estimator *estimator, int trajectory,
+                                      struct dig_prediction *prediction);
 
 #endif // DIG_ESTIMATOR_ESTIMATOR_H

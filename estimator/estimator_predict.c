@@ -7,8 +7,8 @@
 #include <assert.h>
 #include <stddef.h>
 
-void dig_estimator_give_forecast(struct dig_estimator *const      estimator,
-                                 const struct dig_forecast *const forecast)
+void dig_estimator_set_forecast(struct dig_estimator *const      estimator,
+                                const struct dig_forecast *const forecast)
 {
     assert(estimator != NULL);
     estimator->forecast = forecast;
@@ -28,8 +28,8 @@ static struct dig_prediction predict_from(const struct dig_estimator *const esti
 {
     struct dig_prediction p = { .valid = false, .trajectory = trajectory };
     if (trajectory >= 0 && (size_t)trajectory < estimator->set->trajectories &&
-        estimator->forecast != NULL && estimator->forecast->along[trajectory].valid) {
-        const struct dig_expected *const along = &estimator->forecast->along[trajectory];
+        estimator->forecast != NULL && estimator->forecast->expected[trajectory].valid) {
+        const struct dig_expected *const along = &estimator->forecast->expected[trajectory];
         p.valid                                = true;
         p.progress_now                         = progress;
         p.from_progress                        = progress;
@@ -48,11 +48,11 @@ void dig_estimator_predict(const struct dig_estimator *const estimator,
                            struct dig_prediction *const      prediction)
 {
     assert(estimator != NULL && prediction != NULL);
-    *prediction = predict_from(estimator, estimator->choice.told, estimator->progress);
+    *prediction = predict_from(estimator, estimator->choice.current, estimator->progress);
 }
 
-void dig_estimator_predict_whole(const struct dig_estimator *const estimator, const int trajectory,
-                                 struct dig_prediction *const prediction)
+void dig_estimator_predict_trajectory(const struct dig_estimator *const estimator,
+                                      const int trajectory, struct dig_prediction *const prediction)
 {
     assert(estimator != NULL && prediction != NULL);
     *prediction = predict_from(estimator, trajectory, 0.0);

@@ -19,7 +19,7 @@ struct dig_estimator {
     struct dig_estimator_settings settings;
     double                        lambda;
     struct dig_route              route[DIG_TRAJECTORY_MAX];
-    struct dig_taken              taken; // the machine as a model corrects it
+    struct dig_corrected_machine  corrected; // the machine as a model corrects it
 
     // of the last quarter second, while it corrects; of a tenth where a force sensor tells
     struct dig_rates_filter rates;
@@ -31,7 +31,7 @@ struct dig_estimator {
     // of the dig going on
     struct dig_phase_state   phase;
     struct dig_motion_state  motion;
-    struct dig_recorded_dig *raw; // its samples and path
+    struct dig_recorded_dig *recording; // its samples and path
     struct dig_follower      follower[DIG_TRAJECTORY_MAX];
     size_t                   next_follower; // the one whose turn it is to be refined
     struct dig_choice        choice;        // the trajectory
@@ -49,7 +49,7 @@ struct dig_estimator {
     const struct dig_forecast *forecast; // NULL: none
 
     // where raw and forecast point unless others were lent
-    struct dig_recorded_dig own_raw;
+    struct dig_recorded_dig own_recording;
     struct dig_forecast     own_forecast;
 };
 

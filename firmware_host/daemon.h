@@ -29,6 +29,6 @@ void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char
 /// Runs until SIGTERM or SIGINT (SIGHUP exchanges the table), or until a replay has ended and all
 /// of it is published. DIG_EIO: a thread could not be started.
 DIG_MUST_CHECK enum dig_status
-dig_daemon_run(struct dig_daemon *daemon, const struct dig_voice *voice, struct dig_error *error);
+dig_daemon_run(struct dig_daemon *daemon, const struct dig_console *voice, struct dig_error *error);
 
 #endif // DIG_FIRMWARE_HOST_DAEMON_H

@@ -95,10 +95,10 @@ int main(const int argc, char *argv[])
     }
     dig_daemon_describe(daemon, check ? tell : say);
     if (!check) {
-        const bool             terminal = isatty(STDERR_FILENO) != 0;
-        const struct dig_voice voice    = { .say  = terminal ? say_above : say,
-                                            .show = terminal ? show : NULL };
-        status                          = dig_daemon_run(daemon, &voice, &error);
+        const bool               terminal = isatty(STDERR_FILENO) != 0;
+        const struct dig_console voice    = { .say  = terminal ? say_above : say,
+                                              .show = terminal ? show : NULL };
+        status                            = dig_daemon_run(daemon, &voice, &error);
         (void)fputs(terminal ? "\n" : "", stderr);
     }
     dig_daemon_destroy(daemon);

@@ -41,7 +41,7 @@ void driven_destroy(struct driven *const b)
     made_table_destroy(b->set);
     free(b->estimator);
     free(b->spare);
-    free(b->shadow);
+    free(b->live);
     free(b);
 }
 
@@ -59,17 +59,17 @@ static unsigned long allocations(const struct driven *const b)
 static bool take(struct driven *const b)
 {
     if (b->spare == NULL) {
-        return dig_estimator_take_dig(b->estimator, &b->observation);
+        return dig_estimator_take_observation(b->estimator, &b->observation);
     }
-    struct dig_recorded_dig *const raw = dig_estimator_take_raw(b->estimator);
+    struct dig_recorded_dig *const raw = dig_estimator_take_recording(b->estimator);
     if (raw == NULL) {
         return false;
     }
-    assert_false(dig_estimator_take_dig(b->estimator, &b->observation));
+    assert_false(dig_estimator_take_observation(b->estimator, &b->observation));
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     const bool any = dig_recorded_dig_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
-    b->gave_up =
-        !any && dig_recorded_dig_gave_up(b->set, &settings, raw, &b->gave_up_of, &b->gave_up_at);
+    b->gave_up     = !any && dig_recorded_dig_was_aborted(b->set, &settings, raw, &b->gave_up_of,
+                                                          &b->gave_up_at);
     if (!b->keeps) {
         dig_estimator_lend(b->estimator, raw);
     }
@@ -105,9 +105,9 @@ void driven_tick(struct driven *const b, const struct dig_pose pose, const doubl
     assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
     b->steps_with_allocation += allocations(b) != before ? 1 : 0;
     b->observations += taken ? 1 : 0;
-    if (b->shadow != NULL && !dropped) {
-        dig_live_recording_take(b->shadow, b->set, lambda, &b->estimate);
-        assert_true(b->shadow->on ==
+    if (b->live != NULL && !dropped) {
+        dig_live_recording_add(b->live, b->set, lambda, &b->estimate);
+        assert_true(b->live->digging ==
                     (!dig_estimator_is_idle(b->estimator) && b->estimate.phase != DIG_PHASE_AIR));
     }
 }
@@ -152,13 +152,13 @@ static void look_ahead(struct driven *const b, const struct drive *const drive,
 
 static void look_at_shadow(struct driven *const b, const double progress)
 {
-    if (b->shadow == NULL || b->earlies == DRIVEN_LOOKS || progress < driven_look_at[b->earlies]) {
+    if (b->live == NULL || b->earlies == DRIVEN_LOOKS || progress < driven_look_at[b->earlies]) {
         return;
     }
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     struct dig_recorded_dig *const      scratch  = calloc(1, sizeof *scratch);
     struct dig_observation *const       early    = &b->early[b->earlies++];
-    if (dig_live_recording_observe(b->set, &settings, b->shadow, scratch, early) != DIG_OK) {
+    if (dig_live_recording_observe(b->set, &settings, b->live, scratch, early) != DIG_OK) {
         early->trajectory = -1;
     }
     free(scratch);

@@ -26,19 +26,19 @@ double dig_axis_value(const struct dig_curve_set *set, enum dig_axis axis, doubl
 
 /// Where a value lies on an axis of the set: behind which of its points, and how far along to the
 /// next.
-struct dig_axis_place {
+struct dig_axis_interval {
     size_t index;
     double fraction; // 0 … 1
 };
 
 /// DIG_ENOMATCH when the value is outside the axis; one within 1e-9 of its end counts as on it.
 DIG_MUST_CHECK enum dig_status dig_axis_locate(const struct dig_curve_set *set, enum dig_axis axis,
-                                               double value, struct dig_axis_place *place);
+                                               double value, struct dig_axis_interval *place);
 
 /// The cell at a place on each axis, which must have points. DIG_ENOMATCH when a corner with weight
 /// is missing or lacks the trajectory.
-DIG_MUST_CHECK enum dig_status dig_cell_at(const struct dig_curve_set *set,
-                                           const struct dig_axis_place place[DIG_AXES],
+DIG_MUST_CHECK enum dig_status dig_cell_at(const struct dig_curve_set    *set,
+                                           const struct dig_axis_interval place[DIG_AXES],
                                            size_t trajectory, struct dig_cell *cell);
 
 /// The cell around a gravel. DIG_ENOMATCH when the gravel is outside the grid or a corner with

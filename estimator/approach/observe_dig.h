@@ -17,14 +17,14 @@
 DIG_MUST_CHECK enum dig_status
 dig_recorded_dig_observe(const struct dig_curve_set          *set,
                          const struct dig_estimator_settings *settings,
-                         struct dig_recorded_dig *raw, struct dig_observation *observation);
+                         struct dig_recorded_dig *recording, struct dig_observation *observation);
 
 /// Of a dig of which dig_recorded_dig_observe() told nothing: true when it followed a trajectory of
 /// the set and left it before its end, and then which, and where. Its moment is not told: the way
 /// out belongs to its path. About a millisecond.
-bool dig_recorded_dig_gave_up(const struct dig_curve_set          *set,
-                              const struct dig_estimator_settings *settings,
-                              const struct dig_recorded_dig *raw, int *trajectory,
-                              double *progress);
+bool dig_recorded_dig_was_aborted(const struct dig_curve_set          *set,
+                                  const struct dig_estimator_settings *settings,
+                                  const struct dig_recorded_dig *recording, int *trajectory,
+                                  double *progress);
 
 #endif // DIG_ESTIMATOR_APPROACH_OBSERVE_DIG_H

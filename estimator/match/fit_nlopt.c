@@ -335,7 +335,7 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.low.value[a]  = fmin(refined.low.value[a], refined.gravel.value[a]);
         refined.high.value[a] = fmax(refined.high.value[a], refined.gravel.value[a]);
     }
-    dig_match_tell_family(set, &refined);
+    dig_match_find_family(set, &refined);
     *match = refined;
     return DIG_OK;
 }
@@ -367,9 +367,9 @@ enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const
     return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
 }
 
-enum dig_status dig_fit_refine_by(const struct dig_prefilter *const summary, const size_t digs,
-                                  const struct dig_observation dig[], const int max_evaluations,
-                                  struct dig_match *const match)
+enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const summary,
+                                           const size_t digs, const struct dig_observation dig[],
+                                           const int max_evaluations, struct dig_match *const match)
 {
     assert(summary != NULL && dig != NULL && match != NULL);
     return check_and_refine(summary->set, summary, digs, dig, max_evaluations, match);

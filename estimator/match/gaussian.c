@@ -251,9 +251,10 @@ bool dig_gaussian_make(const struct dig_curve_set *const set,
     return make(set, summary, group, false, gaussian);
 }
 
-bool dig_gaussian_assume(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const summary,
-                         const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
+bool dig_gaussian_make_default(const struct dig_curve_set *const set,
+                               const struct dig_prefilter *const summary,
+                               const struct dig_pooled *const    group,
+                               struct dig_gaussian *const        gaussian)
 {
     return make(set, summary, group, true, gaussian);
 }
@@ -320,8 +321,8 @@ static void look(const struct dig_gaussian *const g, const struct dig_cell *cons
     }
 }
 
-struct dig_misses dig_gaussian_misses(const struct dig_gaussian *const g,
-                                      const struct dig_cell *const     cell)
+struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const g,
+                                                const struct dig_cell *const     cell)
 {
     assert(g != NULL && g->numbers > 0 && cell != NULL);
     struct there there[NUMBERS];
@@ -338,7 +339,7 @@ struct dig_misses dig_gaussian_misses(const struct dig_gaussian *const g,
             exponent += more;
         }
     }
-    struct dig_misses misses = { .log_det = log(mantissa) + (double)exponent * ln_2 };
+    struct dig_mahalanobis misses = { .log_det = log(mantissa) + (double)exponent * ln_2 };
     for (size_t i = 0; i < g->numbers; i++) {
         for (size_t j = 0; j < i; j++) {
             miss[i] -= g->lower[i][j] * miss[j];

@@ -47,18 +47,18 @@ bool dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilt
 
 /// The same whatever is known of the set: where it holds no covariance to be believed, the one of
 /// entry_scatter.h with the table's pooled spread. False when nothing was measured.
-bool dig_gaussian_assume(const struct dig_curve_set *set, const struct dig_prefilter *summary,
-                         const struct dig_pooled *group, struct dig_gaussian *gaussian);
+bool dig_gaussian_make_default(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+                               const struct dig_pooled *group, struct dig_gaussian *gaussian);
 
 /// What digs are off a cell of the trajectory.
-struct dig_misses {
+struct dig_mahalanobis {
     double square;  // q
     double log_det; // of D, but for a constant
 };
 
 /// In about a microsecond.
-struct dig_misses dig_gaussian_misses(const struct dig_gaussian *gaussian,
-                                      const struct dig_cell     *cell);
+struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *gaussian,
+                                                const struct dig_cell     *cell);
 
 /// The u_i of a cell.
 void dig_gaussian_scale(const struct dig_gaussian *gaussian, const struct dig_cell *cell,

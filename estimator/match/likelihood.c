@@ -203,7 +203,7 @@ double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig
 {
     assert(l != NULL && cell != NULL);
     if (l->is_gaussian) {
-        const struct dig_misses all = dig_gaussian_misses(&l->gaussian, cell);
+        const struct dig_mahalanobis all = dig_gaussian_mahalanobis(&l->gaussian, cell);
         return -0.5 * DIG_POSTERIOR_TRUST * (all.square + all.log_det);
     }
     struct misses misses;
@@ -212,7 +212,8 @@ double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig
     return -0.5 * l->effective * sum / l->measured_count;
 }
 
-double dig_likelihood_miss2(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+double dig_likelihood_reduced_chi2(const struct dig_likelihood *const l,
+                                   const struct dig_cell *const       cell)
 {
     assert(l != NULL && cell != NULL);
     struct misses misses;

@@ -43,6 +43,7 @@ double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct 
 
 /// Mean over points and channels of (m - t)' D^-1 (m - t): 1 is expected of digs in the cell's
 /// gravel. The same cost.
-double dig_likelihood_miss2(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
+double dig_likelihood_reduced_chi2(const struct dig_likelihood *likelihood,
+                                   const struct dig_cell       *cell);
 
 #endif // DIG_ESTIMATOR_MATCH_LIKELIHOOD_H

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-void dig_match_tell_family(const struct dig_curve_set *const set, struct dig_match *const match)
+void dig_match_find_family(const struct dig_curve_set *const set, struct dig_match *const match)
 {
     assert(set != NULL && match != NULL);
     for (int a = 0; a < DIG_AXES; a++) {
@@ -200,9 +200,9 @@ static enum dig_status find(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-void dig_match_weigh(const struct dig_curve_set *const set,
-                     const struct dig_prefilter *const summary, const size_t digs,
-                     const struct dig_observation dig[], struct dig_match *const match)
+void dig_match_find_weighted(const struct dig_curve_set *const set,
+                             const struct dig_prefilter *const summary, const size_t digs,
+                             const struct dig_observation dig[], struct dig_match *const match)
 {
     assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
     struct dig_pool_sums sums;
@@ -220,9 +220,10 @@ enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, co
     return find(set, NULL, digs, dig, outside_floors, match);
 }
 
-enum dig_status dig_match_nearest_by(const struct dig_prefilter *const summary, const size_t digs,
-                                     const struct dig_observation dig[],
-                                     const double outside_floors, struct dig_match *const match)
+enum dig_status dig_match_nearest_prefiltered(const struct dig_prefilter *const summary,
+                                              const size_t digs, const struct dig_observation dig[],
+                                              const double            outside_floors,
+                                              struct dig_match *const match)
 {
     assert(summary != NULL && dig != NULL && match != NULL);
     return find(summary->set, summary, digs, dig, outside_floors, match);

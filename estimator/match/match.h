@@ -71,15 +71,18 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest_pool(const struct dig_curve_set
                                                       struct dig_match            *match);
 
 /// The same of a table that was summed up, the very same answer sooner (estimator/match/nearest.h).
-DIG_MUST_CHECK enum dig_status dig_match_nearest_by(const struct dig_prefilter *summary,
-                                                    size_t digs, const struct dig_observation dig[],
-                                                    double outside_floors, struct dig_match *match);
+DIG_MUST_CHECK enum dig_status dig_match_nearest_prefiltered(const struct dig_prefilter  *summary,
+                                                             size_t                       digs,
+                                                             const struct dig_observation dig[],
+                                                             double            outside_floors,
+                                                             struct dig_match *match);
 
 /// Sets weighted and weighted_distance of a valid match of these digs: the entry that is nearest by
 /// the noise-weighted distance, over every channel that all of them measured. By a summary of the
 /// set the same sooner; NULL is allowed. 200 kB of stack. O(entries).
-void dig_match_weigh(const struct dig_curve_set *set, const struct dig_prefilter *summary,
-                     size_t digs, const struct dig_observation dig[], struct dig_match *match);
+void dig_match_find_weighted(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+                             size_t digs, const struct dig_observation dig[],
+                             struct dig_match *match);
 
 /// An axis is not told where its 90 % interval is wider than this share of the table's axis (of
 /// density, of its logarithm): the digs do not say which half of it. Where nothing is told at all
@@ -89,7 +92,7 @@ void dig_match_weigh(const struct dig_curve_set *set, const struct dig_prefilter
 
 /// Sets untold of a match that has low and high; no axis of one point is, nor any of a match that
 /// was not refined.
-void dig_match_tell_family(const struct dig_curve_set *set, struct dig_match *match);
+void dig_match_find_family(const struct dig_curve_set *set, struct dig_match *match);
 
 /// True when an axis is not told: the gravels that stand for the match are a family, all of which
 /// resist like the digs, and `gravel` is only one of them.
@@ -118,9 +121,11 @@ DIG_MUST_CHECK enum dig_status dig_fit_refine_pool(const struct dig_curve_set *s
 
 /// The same by a summary, sooner: gravels that look hopeless by its outlines are left out of the
 /// posterior, which moves no end of an interval by a thousandth of its axis.
-DIG_MUST_CHECK enum dig_status dig_fit_refine_by(const struct dig_prefilter *summary, size_t digs,
-                                                 const struct dig_observation dig[],
-                                                 int max_evaluations, struct dig_match *match);
+DIG_MUST_CHECK enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter  *summary,
+                                                          size_t                       digs,
+                                                          const struct dig_observation dig[],
+                                                          int               max_evaluations,
+                                                          struct dig_match *match);
 
 /// The curve predicted for one trajectory at the match, rig scale: mean and 1 sigma of one dig, the
 /// spread between packings and the uncertainty of the gravel taken together. A match that was not

@@ -32,7 +32,7 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
         }
         const double own = (double)l.channels * l.effective;
         errors += own;
-        miss2 += own * dig_likelihood_miss2(&l, &cell);
+        miss2 += own * dig_likelihood_reduced_chi2(&l, &cell);
     }
     return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
 }
@@ -40,10 +40,10 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
 // The fine grid: points are centres of equal intervals of each axis's position. What belongs to a
 // point lies on its axes, and is told once for each of their values.
 struct fine {
-    size_t                count[DIG_AXES];
-    size_t                all;
-    double                value[DIG_AXES][FINE];
-    struct dig_axis_place place[DIG_AXES][FINE];
+    size_t                   count[DIG_AXES];
+    size_t                   all;
+    double                   value[DIG_AXES][FINE];
+    struct dig_axis_interval place[DIG_AXES][FINE];
 };
 
 // DIG_ENOMATCH when an axis has no points.
@@ -102,8 +102,8 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
                                 const struct fine *const fine, const size_t point,
                                 const size_t groups, const struct dig_likelihood l[])
 {
-    const struct indices  at = indices_of(fine, point);
-    struct dig_axis_place place[DIG_AXES];
+    const struct indices     at = indices_of(fine, point);
+    struct dig_axis_interval place[DIG_AXES];
     for (int a = 0; a < DIG_AXES; a++) {
         place[a] = fine->place[a][at.on[a]];
     }

@@ -19,7 +19,7 @@ struct dig_forecast {
         struct dig_curve    curve;     // over the progress that a tick tells
         double              peak_Nm, peak_sigma_Nm;
         double              energy_J, energy_sigma_J;
-    } along[DIG_TRAJECTORY_MAX];
+    } expected[DIG_TRAJECTORY_MAX];
 };
 
 /// What a match predicts on a machine lambda times the table's size. Nothing is valid of a match

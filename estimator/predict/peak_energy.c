@@ -6,8 +6,8 @@
 #include <math.h>
 #include <stdint.h>
 
-void dig_peak_energy_energy_weights(const struct dig_trajectory *const trajectory,
-                                    const double tooth_m, struct dig_channels *const weight)
+void dig_peak_energy_weights(const struct dig_trajectory *const trajectory, const double tooth_m,
+                             struct dig_channels *const weight)
 {
     assert(trajectory != NULL && weight != NULL);
     struct dig_channels sum    = { { { 0.0 } } };
@@ -136,7 +136,7 @@ enum dig_status dig_peak_energy_predict(const struct dig_curve_set *const set,
     struct dig_entry_scatter spread;
     struct dig_channels      weight;
     dig_entry_scatter_make(&set->trajectory[trajectory], set->tooth_m, &spread);
-    dig_peak_energy_energy_weights(&set->trajectory[trajectory], set->tooth_m, &weight);
+    dig_peak_energy_weights(&set->trajectory[trajectory], set->tooth_m, &weight);
 
     const size_t pairs  = (DRAWN_PAIRS + cells - 1) / cells;
     uint64_t     seed   = 1; // the same draws at every call

@@ -33,8 +33,8 @@ struct dig_peak_energy {
 /// theta turns against +y, and My > 0 resists it, so both terms are positive when the soil resists.
 /// It is linear in the curve: the sum over channels and points of these weights times it
 /// (trapezoids over the path).
-void dig_peak_energy_energy_weights(const struct dig_trajectory *trajectory, double tooth_m,
-                                    struct dig_channels *weight);
+void dig_peak_energy_weights(const struct dig_trajectory *trajectory, double tooth_m,
+                             struct dig_channels *weight);
 
 /// At the match, along one trajectory, the table's scale. Fails as dig_predict_curve() does, and
 /// then *whole is unchanged. Off the tick: a millisecond, 60 kB of stack, no allocation. The

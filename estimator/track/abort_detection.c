@@ -25,13 +25,13 @@ static const double ahead_share = 0.7;
 enum { WAY_VERTICES = 4 };
 
 // The place of a vertex along what was left to dig at progress from.
-static struct dig_place place_of(const struct dig_route *const route,
-                                 const struct dig_track *const track,
-                                 const struct dig_path *const path, const size_t vertex,
-                                 const double from)
+static struct dig_projection place_of(const struct dig_route *const route,
+                                      const struct dig_track *const track,
+                                      const struct dig_path *const path, const size_t vertex,
+                                      const double from)
 {
     const struct dig_path_point at = dig_track_turned(track, &path->vertex[vertex]);
-    return dig_route_place(route, track->dx_m, track->dz_m, &at, from, 1.0);
+    return dig_route_project(route, track->dx_m, track->dz_m, &at, from, 1.0);
 }
 
 // Whether a vertex lies ahead of another, as the path came to that, rather than beside it.
@@ -53,7 +53,7 @@ static bool leaves(const struct dig_route *const route, const struct dig_path *c
     d->progress    = d->track.progress;
     double reached = d->progress;
     for (size_t i = d->until; i < path->end; i++) {
-        const struct dig_place place = place_of(route, &d->track, path, i, reached);
+        const struct dig_projection place = place_of(route, &d->track, path, i, reached);
         if (place.distance_m <= on_share * limit_m) {
             on          = i;
             reached     = fmax(reached, place.progress);

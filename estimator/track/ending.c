@@ -21,8 +21,8 @@ enum dig_ending dig_ending_of(const struct dig_route *const route,
         return DIG_ENDING_WHOLE;
     }
     const struct dig_path_point at = dig_track_turned(track, last);
-    const struct dig_place      place =
-        dig_route_place(route, track->dx_m, track->dz_m, &at, reached, 1.0);
+    const struct dig_projection place =
+        dig_route_project(route, track->dx_m, track->dz_m, &at, reached, 1.0);
     return place.distance_m > limit_m ? DIG_ENDING_ABORTED : DIG_ENDING_OPEN;
 }
 
@@ -36,8 +36,8 @@ bool dig_ending_is_known(const struct dig_route *const route, const struct dig_t
     double       last_m   = -INFINITY;
     for (size_t i = from; i < path->end; i++) {
         const struct dig_path_point at = dig_track_turned(track, &path->vertex[i]);
-        const struct dig_place      place =
-            dig_route_place(route, track->dx_m, track->dz_m, &at, 0.0, 1.0);
+        const struct dig_projection place =
+            dig_route_project(route, track->dx_m, track->dz_m, &at, 0.0, 1.0);
         if (place.distance_m <= on_share * limit_m) {
             first_m = fmin(first_m, place.progress * length_m);
             last_m  = fmax(last_m, place.progress * length_m);

@@ -35,9 +35,9 @@ void dig_followed_off(struct dig_followed *const followed)
     followed->left = true;
 }
 
-bool dig_followed_gave_up(const struct dig_followed *const followed, const size_t routes,
-                          const struct dig_route route[], const struct dig_path *const path,
-                          const double limit_m, const double tie_m)
+bool dig_followed_was_aborted(const struct dig_followed *const followed, const size_t routes,
+                              const struct dig_route route[], const struct dig_path *const path,
+                              const double limit_m, const double tie_m)
 {
     assert(followed != NULL && route != NULL && path != NULL && routes <= DIG_TRAJECTORY_MAX);
     if (!followed->any || !followed->left || followed->missing ||

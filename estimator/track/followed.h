@@ -38,8 +38,8 @@ void dig_followed_off(struct dig_followed *followed);
 /// be along before the end of that. What was told too soon is found out: the path up to where it
 /// left must fit that route within limit_m, and better by tie_m than any other. As long as fitting
 /// a whole path.
-bool dig_followed_gave_up(const struct dig_followed *followed, size_t routes,
-                          const struct dig_route route[], const struct dig_path *path,
-                          double limit_m, double tie_m);
+bool dig_followed_was_aborted(const struct dig_followed *followed, size_t routes,
+                              const struct dig_route route[], const struct dig_path *path,
+                              double limit_m, double tie_m);
 
 #endif // DIG_ESTIMATOR_TRACK_FOLLOWED_H

@@ -11,7 +11,7 @@
 /// Adds to the sigmas of both forces, in quadrature, what the inertia of the machine's links may
 /// add to a force told without it. lambda as in dig_estimator_init(). Nothing when the dig has no
 /// forces.
-void dig_inertia_error_forces(const struct dig_machine *machine, double lambda,
-                              struct dig_observation *dig);
+void dig_inertia_error_add(const struct dig_machine *machine, double lambda,
+                           struct dig_observation *dig);
 
 #endif // DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H

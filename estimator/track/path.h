@@ -25,6 +25,6 @@ struct dig_path {
 bool dig_path_add(struct dig_path *path, const struct dig_path_point *point, bool in_soil);
 
 /// Appends the vertex in which contact is noticed, however near the last.
-void dig_path_touch(struct dig_path *path, const struct dig_path_point *point);
+void dig_path_add_contact(struct dig_path *path, const struct dig_path_point *point);
 
 #endif // DIG_ESTIMATOR_TRACK_PATH_H

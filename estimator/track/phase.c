@@ -51,7 +51,7 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state *const              s
         learn_bias(state, settings, dt_s, 0.5 * threshold_Nm);
         if (held(&state->held_s, high, dt_s, settings->contact_hold_s)) {
             enter(state, DIG_PHASE_CONTACT);
-            return DIG_EVENT_TOUCHED;
+            return DIG_EVENT_CONTACT;
         }
         break;
     case DIG_PHASE_CONTACT:
@@ -75,7 +75,7 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state *const              s
             enter(state, DIG_PHASE_AIR);
             const bool was_done = state->done;
             state->done         = false;
-            return was_done ? DIG_EVENT_NONE : DIG_EVENT_GONE;
+            return was_done ? DIG_EVENT_NONE : DIG_EVENT_FINISHED;
         }
         break;
     default: break;
@@ -90,7 +90,7 @@ void dig_phase_end(struct dig_phase_state *const state)
     state->done = true;
 }
 
-void dig_phase_forget(struct dig_phase_state *const state)
+void dig_phase_reset(struct dig_phase_state *const state)
 {
     assert(state != NULL);
     state->filtered_Nm = 0.0;

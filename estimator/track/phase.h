@@ -20,7 +20,7 @@
 
 enum dig_dig_phase { DIG_PHASE_AIR, DIG_PHASE_CONTACT, DIG_PHASE_DIG, DIG_PHASE_EXIT };
 
-enum dig_phase_event { DIG_EVENT_NONE, DIG_EVENT_TOUCHED, DIG_EVENT_LOST, DIG_EVENT_GONE };
+enum dig_phase_event { DIG_EVENT_NONE, DIG_EVENT_CONTACT, DIG_EVENT_LOST, DIG_EVENT_FINISHED };
 
 /// Zeroed: in the air, nothing learnt.
 struct dig_phase_state {
@@ -43,6 +43,6 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state              *state,
 void dig_phase_end(struct dig_phase_state *state);
 
 /// Forgets what was learnt of the moment, as it is another one from now on; the phase stays.
-void dig_phase_forget(struct dig_phase_state *state);
+void dig_phase_reset(struct dig_phase_state *state);
 
 #endif // DIG_ESTIMATOR_TRACK_PHASE_H

@@ -19,11 +19,12 @@ struct dig_recorded_dig {
 };
 
 /// Forgets what was recorded and waits for contact.
-void dig_recorded_dig_forget(struct dig_recorded_dig *raw, const struct dig_curve_set *set);
+void dig_recorded_dig_clear(struct dig_recorded_dig *recording, const struct dig_curve_set *set);
 
 /// Contact at a point: opens the window, and lays out the path of the samples before. Constant
 /// time; some microseconds.
-void dig_recorded_dig_touch(struct dig_recorded_dig *raw, const struct dig_path_point *point);
+void dig_recorded_dig_contact(struct dig_recorded_dig     *recording,
+                              const struct dig_path_point *point);
 
 /// Bucket pin and absolute direction pin -> tooth of a machine lambda times the rig's size, in the
 /// rig's scale and axes: x = -X, theta = -pi/2 - phi.
@@ -31,7 +32,7 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *set, do
                                              double pin_X_m, double pin_Z_m, double phi_rad);
 
 /// One wrench of the machine, rig scale and rig time, into the window.
-void dig_recorded_dig_add(struct dig_recorded_dig *raw, double lambda, int64_t time_ns,
+void dig_recorded_dig_add(struct dig_recorded_dig *recording, double lambda, int64_t time_ns,
                           const struct dig_wrench *wrench, double bias_Nm,
                           const struct dig_path_point *point);
 /// For who allocates one: about 2.5 MB.

@@ -47,7 +47,7 @@ struct dig_route {
 struct dig_route dig_route_make(const struct dig_trajectory *trajectory, double tooth_m);
 
 /// Where a point lies on a route shifted by (dx, dz).
-struct dig_place {
+struct dig_projection {
     double progress;   // 0 … 1
     double distance_m; // in (x, z, turn)
     // Unit tangent, or 0 at a corner, and the vector from route to point.
@@ -59,7 +59,7 @@ struct dig_path_point dig_route_point(const struct dig_route *route, double prog
 
 /// Nearest place between progress from and to. The first leg goes on backwards beyond the start
 /// (progress stays 0): approaching along it is no distance. O(corners).
-struct dig_place dig_route_place(const struct dig_route *route, double dx_m, double dz_m,
-                                 const struct dig_path_point *point, double from, double to);
+struct dig_projection dig_route_project(const struct dig_route *route, double dx_m, double dz_m,
+                                        const struct dig_path_point *point, double from, double to);
 
 #endif // DIG_ESTIMATOR_TRACK_ROUTE_H

@@ -54,7 +54,7 @@ struct normal {
     double xt, zt, tt, bt;
 };
 
-static void add_equation(struct normal *const normal, const struct dig_place *const place)
+static void add_equation(struct normal *const normal, const struct dig_projection *const place)
 {
     const struct dig_path_point t = place->tangent;
     normal->xx += 1.0 - t.x_m * t.x_m;
@@ -108,8 +108,8 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
         const double                from = last - look_behind;
         const double                to   = last + look_ahead;
         const struct dig_path_point at   = dig_track_turned(track, &path->vertex[i]);
-        const struct dig_place      place =
-            dig_route_place(route, track->dx_m, track->dz_m, &at, from, fmin(to, 1.0));
+        const struct dig_projection place =
+            dig_route_project(route, track->dx_m, track->dz_m, &at, from, fmin(to, 1.0));
 
         if (i < path->contact) {
             if (i + LEAD_VERTICES >= path->contact) {
@@ -210,9 +210,9 @@ int dig_choice_step(struct dig_choice *const choice, const size_t tracks, const 
     choice->held      = chosen == choice->candidate ? choice->held + 1 : 0;
     choice->candidate = chosen;
     if (choice->held >= tracks * CHOICE_TURNS) {
-        choice->told = chosen;
+        choice->current = chosen;
     }
-    return choice->told;
+    return choice->current;
 }
 
 int dig_track_choose(const size_t tracks, const struct dig_track *const track[],

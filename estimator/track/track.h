@@ -76,8 +76,8 @@ int dig_track_choose(size_t tracks, const struct dig_track *const track[], doubl
 
 /// What is told of a choice that is made anew every tick.
 struct dig_choice {
-    int    told;      // -1: not known
-    int    candidate; // the last tick's choice
+    int    current;   // the trajectory accepted; -1: not known
+    int    candidate; // of the last tick
     size_t held;      // ticks it has been that
 };
 

@@ -112,8 +112,8 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     double       furthest = 0.0;
     for (size_t i = 0; i < window->count && furthest < 1.0; i++) {
         const struct dig_path_point at    = dig_track_turned(track, &window->sample[i].pose);
-        const struct dig_place      place = dig_route_place(route, track->dx_m, track->dz_m, &at,
-                                                            last - LOOK, fmin(last + LOOK, 1.0));
+        const struct dig_projection place = dig_route_project(route, track->dx_m, track->dz_m, &at,
+                                                              last - LOOK, fmin(last + LOOK, 1.0));
         if (place.distance_m <= limit_m) {
             last     = place.progress;
             furthest = fmax(furthest, place.progress);

@@ -22,7 +22,7 @@ bool dig_correction_is_none(const struct dig_correction *const correction)
 }
 
 // The centre of mass moves; the inertia about it is the file's and what the burden says.
-static void add_burden(struct dig_link *const link, const struct dig_burden *const burden)
+static void add_burden(struct dig_link *const link, const struct dig_added_mass *const burden)
 {
     const double mass_kg = link->mass_kg + burden->mass_kg;
     link->com_m          = dig_vec2_add_scaled(link->com_m, 1.0 / mass_kg, burden->moment_kgm);
@@ -108,12 +108,12 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
     return status;
 }
 
-enum dig_status dig_correction_take(const struct dig_machine *const    machine,
-                                    const struct dig_correction *const correction,
-                                    struct dig_taken *const            taken)
+enum dig_status dig_correction_apply(const struct dig_machine *const     machine,
+                                     const struct dig_correction *const  correction,
+                                     struct dig_corrected_machine *const taken)
 {
     assert(machine != NULL && taken != NULL);
-    struct dig_taken made = { .corrects = false };
+    struct dig_corrected_machine made = { .corrects = false };
     if (correction != NULL) {
         const enum dig_status status = dig_correction_check(machine, correction);
         if (status != DIG_OK) {

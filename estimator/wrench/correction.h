@@ -33,18 +33,18 @@ struct dig_friction {
 
 /// What is more in or on the bucket than the file says. Alone, mass_kg lies in the file's centre of
 /// mass and leaves the inertia about the centre as it is.
-struct dig_burden {
+struct dig_added_mass {
     double          mass_kg;
     struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, bucket frame
     double          inertia_kgm2; // about the centre of mass of all
 };
 
 struct dig_correction {
-    struct dig_friction friction[DIG_JOINTS];
-    double              offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
-    double              gain[DIG_JOINTS][DIG_CHAMBERS];
-    struct dig_burden   bucket;  // of the bucket itself: every dig
-    struct dig_burden   payload; // carried over from the dig before: this dig only
+    struct dig_friction   friction[DIG_JOINTS];
+    double                offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
+    double                gain[DIG_JOINTS][DIG_CHAMBERS];
+    struct dig_added_mass bucket;  // of the bucket itself: every dig
+    struct dig_added_mass payload; // carried over from the dig before: this dig only
     // Geometry: added to the file's lengths and places.
     double          rocker_m, link_m;
     struct dig_vec2 rocker_pin_m, ear_m;
@@ -74,7 +74,7 @@ struct dig_machine dig_correction_drawn(const struct dig_machine    *corrected,
                                         const struct dig_correction *correction);
 
 /// A machine as it is taken to be: made where there is time, copied where there is none.
-struct dig_taken {
+struct dig_corrected_machine {
     bool                  corrects; // false: as its file says; then the rest is zero
     struct dig_correction correction;
     struct dig_machine    machine; // with it
@@ -82,8 +82,8 @@ struct dig_taken {
 
 /// correction NULL, or of a rig with a force sensor: as its file says. Errors and cost as
 /// dig_correction_check(); then nothing is written.
-DIG_MUST_CHECK enum dig_status dig_correction_take(const struct dig_machine    *machine,
-                                                   const struct dig_correction *correction,
-                                                   struct dig_taken            *taken);
+DIG_MUST_CHECK enum dig_status dig_correction_apply(const struct dig_machine     *machine,
+                                                    const struct dig_correction  *correction,
+                                                    struct dig_corrected_machine *taken);
 
 #endif // DIG_ESTIMATOR_WRENCH_CORRECTION_H

@@ -17,7 +17,7 @@ struct dig_input;
 struct dig_input_ops {
     /// Tries once. On failure nothing stays open.
     enum dig_status (*open)(struct dig_input *input, struct dig_error *error);
-    /// Waits at most about 100 ms for something to come and hands it on by dig_input_give(). DIG_OK
+    /// Waits at most about 100 ms for something to come and hands it on by dig_input_put(). DIG_OK
     /// also when nothing came; DIG_EIO: the source is gone, to be closed and opened again.
     enum dig_status (*read)(struct dig_input *input, struct dig_error *error);
     /// Closes what open() opened.
@@ -26,7 +26,7 @@ struct dig_input_ops {
     void (*destroy)(struct dig_input *input);
 };
 
-struct dig_note {
+struct dig_log_line {
     char text[200];
 };
 
@@ -36,14 +36,14 @@ struct dig_input {
     void                       *source; // of the ops
     char                        name[160];
     struct dig_ring            *readings;
-    struct dig_latest          *notes; // out: struct dig_note, the last trouble; "" when it is over
-    const atomic_bool          *stop;
-    atomic_llong                frames;    // frames or polls that were received
-    atomic_llong                malformed; // too short, refused by the other side
-    atomic_llong                checksum;  // frames whose checksum was wrong
-    atomic_llong                errors;    // error frames of a CAN controller
-    atomic_llong                bus_offs;  // of them, those that said bus off
-    atomic_llong                timeouts;  // requests without an answer in time
+    struct dig_latest *log; // out: struct dig_log_line, the last trouble; "" when it is over
+    const atomic_bool *stop;
+    atomic_llong       frames;    // frames or polls that were received
+    atomic_llong       malformed; // too short, refused by the other side
+    atomic_llong       checksum;  // frames whose checksum was wrong
+    atomic_llong       errors;    // error frames of a CAN controller
+    atomic_llong       bus_offs;  // of them, those that said bus off
+    atomic_llong       timeouts;  // requests without an answer in time
     atomic_llong overflow;   // readings for which the ring, frames for which the socket had no room
     atomic_llong reconnects; // times the source was opened again
     atomic_bool  connected;  // open
@@ -77,10 +77,10 @@ DIG_MUST_CHECK enum dig_status dig_input_replay_create(struct dig_input         
                                                        const char *file, double speed);
 
 /// Hands a reading on, or counts it as lost.
-void dig_input_give(struct dig_input *input, const struct dig_reading *reading);
+void dig_input_put(struct dig_input *input, const struct dig_reading *reading);
 
 /// Publishes the last trouble in words; NULL: it is over.
-void dig_input_say(struct dig_input *input, const struct dig_error *error);
+void dig_input_log(struct dig_input *input, const struct dig_error *error);
 
 /// The input thread: returns when *stop is set or a replay ended.
 void dig_input_run(struct dig_input *input);

@@ -95,11 +95,11 @@ static enum dig_status open_can(struct dig_input *const input, struct dig_error 
 
 static void note(struct dig_input *const input, const char *const text)
 {
-    struct dig_note note = { "" };
+    struct dig_log_line note = { "" };
     if (text[0] != '\0') {
         (void)snprintf(note.text, sizeof note.text, "%.40s: %.150s", input->name, text);
     }
-    dig_latest_put(input->notes, &note);
+    dig_latest_put(input->log, &note);
 }
 
 // What the controller says of its bus. A daemon that only listens cannot bring a bus back: that is
@@ -142,7 +142,7 @@ static void take_frame(struct dig_input *const input, const struct can_frame *co
         note(input, "");
     }
     atomic_fetch_add(&input->frames, 1);
-    dig_input_give(input, &reading);
+    dig_input_put(input, &reading);
 }
 
 static enum dig_status read_can(struct dig_input *const input, struct dig_error *const error)

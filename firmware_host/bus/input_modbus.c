@@ -101,7 +101,7 @@ static void hear_nothing(struct dig_input *const input, const size_t block)
     if (s->silences[block] == SILENCES_BORNE) {
         const struct dig_error error =
             registers_of(input, group, "silent while others answer, asked every few seconds", "");
-        dig_input_say(input, &error);
+        dig_input_log(input, &error);
     }
     s->next_ns[block] = dig_input_now_ns() + SILENT_s * NS_PER_S;
 }
@@ -195,11 +195,11 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     struct dig_reading reading;
     dig_signal_map_registers(s->map, (unsigned)block, registers, dig_input_now_ns(), &reading);
     atomic_fetch_add(&input->frames, 1);
-    dig_input_give(input, &reading);
+    dig_input_put(input, &reading);
     s->failures[block] = 0;
     s->answers++;
     if (s->silences[block] >= SILENCES_BORNE) {
-        dig_input_say(input, NULL);
+        dig_input_log(input, NULL);
     }
     s->silences[block] = 0;
     return DIG_OK;

@@ -135,16 +135,17 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
 }
 
 enum dig_status dig_load_table(const char *const path, const struct dig_machine *const machine,
-                               struct dig_curve_set **const set, struct dig_taken *const taken,
-                               struct dig_error *const error)
+                               struct dig_curve_set **const        set,
+                               struct dig_corrected_machine *const taken,
+                               struct dig_error *const             error)
 {
     assert(path != NULL && machine != NULL && set != NULL && taken != NULL);
-    struct dig_config     config;
-    struct dig_correction correction;
-    struct dig_taken      made;
-    bool                  corrects = false;
-    struct dig_curve_set *loaded   = NULL;
-    enum dig_status       status   = dig_config_read(path, &config, error);
+    struct dig_config            config;
+    struct dig_correction        correction;
+    struct dig_corrected_machine made;
+    bool                         corrects = false;
+    struct dig_curve_set        *loaded   = NULL;
+    enum dig_status              status   = dig_config_read(path, &config, error);
     status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
     status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
     if (status == DIG_OK && config.model.text[0] != '\0') {
@@ -152,7 +153,7 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
                                 &corrects, error);
     }
     if (status == DIG_OK) {
-        status = dig_correction_take(machine, corrects ? &correction : NULL, &made);
+        status = dig_correction_apply(machine, corrects ? &correction : NULL, &made);
     }
     if (status != DIG_OK) {
         dig_curve_set_destroy(loaded);

@@ -31,8 +31,9 @@ DIG_MUST_CHECK enum dig_status dig_load(const char *path, struct dig_loaded *loa
 /// everything else of the configuration is fixed at start. taken: the machine as the model has it.
 /// Errors as above.
 DIG_MUST_CHECK enum dig_status dig_load_table(const char *path, const struct dig_machine *machine,
-                                              struct dig_curve_set **set, struct dig_taken *taken,
-                                              struct dig_error *error);
+                                              struct dig_curve_set        **set,
+                                              struct dig_corrected_machine *taken,
+                                              struct dig_error             *error);
 
 /// NULL and a zeroed struct are allowed.
 void dig_loaded_finish(struct dig_loaded *loaded);

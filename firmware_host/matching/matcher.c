@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void dig_matcher_take_up(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
+void dig_matcher_set_table(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
 {
     assert(matcher != NULL && set != NULL);
     dig_matcher_finish(matcher);
@@ -68,16 +68,16 @@ enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
         const enum dig_status status =
             dig_match_nearest_pool(dug, digs, matcher->dig, outside_floors, match);
         if (status == DIG_OK) {
-            dig_match_weigh(dug, NULL, digs, matcher->dig, match);
+            dig_match_find_weighted(dug, NULL, digs, matcher->dig, match);
         }
         return status;
     }
     const struct dig_prefilter *const summary = matcher->outline != NULL ? &matcher->summary : NULL;
     const enum dig_status             status =
-        summary != NULL ? dig_match_nearest_by(summary, digs, dig, outside_floors, match)
+        summary != NULL ? dig_match_nearest_prefiltered(summary, digs, dig, outside_floors, match)
                                     : dig_match_nearest_pool(set, digs, dig, outside_floors, match);
     if (status == DIG_OK) {
-        dig_match_weigh(set, summary, digs, dig, match);
+        dig_match_find_weighted(set, summary, digs, dig, match);
     }
     return status;
 }
@@ -94,7 +94,7 @@ enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
                            : DIG_ENOMEM;
     }
     return matcher->outline != NULL
-               ? dig_fit_refine_by(&matcher->summary, digs, dig, max_evaluations, match)
+               ? dig_fit_refine_prefiltered(&matcher->summary, digs, dig, max_evaluations, match)
                : dig_fit_refine_pool(set, digs, dig, max_evaluations, match);
 }
 

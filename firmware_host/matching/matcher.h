@@ -26,7 +26,7 @@ struct dig_matcher {
 
 /// Sums a table up, in place of the one before; without the memory for it there is no summary then.
 /// The set must outlive it, or dig_matcher_finish() comes first. A few microseconds a curve.
-void dig_matcher_take_up(struct dig_matcher *matcher, const struct dig_curve_set *set);
+void dig_matcher_set_table(struct dig_matcher *matcher, const struct dig_curve_set *set);
 
 /// As dig_match_nearest_pool() and dig_fit_refine_pool() of the set that was taken up, or, without
 /// a summary, of any; each dig with the curves of its own depth and attack. DIG_ENOMEM: there is

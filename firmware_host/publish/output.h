@@ -29,18 +29,18 @@ double dig_latency_quantile_us(const struct dig_latency *latency, double share);
 
 /// HEALTH in plain words; the fields are those of messages/health_t.lcm.
 struct dig_health {
-    int64_t             time_ns; // CLOCK_MONOTONIC
-    const char         *state, *input, *note;
-    struct dig_rt_grant rt;
-    double              tick_s;
-    struct dig_pulse    pulse;
-    int64_t             frames, malformed, reconnects, lost;
-    int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
-    int32_t             matches;
-    int32_t             whole, aborted, unknown; // digs, by how they ended
-    struct dig_latency  latency;
-    const char         *table;                          // scene hash
-    char                missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
+    int64_t                time_ns; // CLOCK_MONOTONIC
+    const char            *state, *input, *note;
+    struct dig_rt_grant    rt;
+    double                 tick_s;
+    struct dig_tick_status tick_status;
+    int64_t                frames, malformed, reconnects, lost;
+    int64_t                checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
+    int32_t                matches;
+    int32_t                whole, aborted, unknown; // digs, by how they ended
+    struct dig_latency     latency;
+    const char            *table;                          // scene hash
+    char                   missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
 };
 
 struct dig_output;
@@ -59,9 +59,9 @@ DIG_MUST_CHECK enum dig_status dig_output_record(struct dig_output          *out
                                                  const struct dig_record    *record);
 DIG_MUST_CHECK enum dig_status dig_output_match(struct dig_output           *output,
                                                 const struct dig_fit_result *result);
-DIG_MUST_CHECK enum dig_status dig_output_outlook(struct dig_output          *output,
-                                                  const struct dig_curve_set *set,
-                                                  const struct dig_outlook   *outlook);
+DIG_MUST_CHECK enum dig_status
+dig_output_prediction(struct dig_output *output, const struct dig_curve_set *set,
+                      const struct dig_prediction_record *predictions);
 DIG_MUST_CHECK enum dig_status dig_output_health(struct dig_output       *output,
                                                  const struct dig_health *health);
 

@@ -45,7 +45,7 @@ static void say_held(const struct dig_publisher *const p, const int64_t held)
 __attribute__((format(printf, 2, 3))) static void mention(struct dig_publisher *const p,
                                                           const char *const           format, ...)
 {
-    if (!dig_log_limit_may(&p->talk, dig_input_now_ns())) {
+    if (!dig_log_limit_allows(&p->talk, dig_input_now_ns())) {
         return;
     }
     say_held(p, dig_log_limit_held(&p->talk));
@@ -109,7 +109,7 @@ static void publish_records(struct dig_publisher *const p)
             p->seen[i] |= record.sample.valid[i];
             p->any_seen |= record.sample.valid[i];
         }
-        const bool due = p->records_seen++ % (uint64_t)p->config->estimate_every == 0;
+        const bool due = p->record_count++ % (uint64_t)p->config->estimate_every == 0;
         p->health.unsent += due && p->output == NULL ? 1 : 0;
         if (due && p->output != NULL) {
             check_sent(p, dig_output_record(p->output, p->set, &record));
@@ -125,7 +125,7 @@ static void publish_records(struct dig_publisher *const p)
 static void follow_table(struct dig_publisher *const p)
 {
     (void)dig_latest_take(p->tables, &p->news);
-    if (p->news.generation == p->health.pulse.generation && p->news.set != NULL) {
+    if (p->news.generation == p->health.tick_status.generation && p->news.set != NULL) {
         p->set      = p->news.set;
         p->news.set = NULL;
         atomic_store(p->generation, p->news.generation);
@@ -134,12 +134,12 @@ static void follow_table(struct dig_publisher *const p)
     }
 }
 
-static void publish_outlook(struct dig_publisher *const p)
+static void publish_prediction(struct dig_publisher *const p)
 {
-    struct dig_outlook outlook;
-    if (dig_latest_take(p->outlook, &outlook) && p->output != NULL &&
-        outlook.generation == atomic_load(p->generation)) {
-        check_sent(p, dig_output_outlook(p->output, p->set, &outlook));
+    struct dig_prediction_record record;
+    if (dig_latest_take(p->predictions, &record) && p->output != NULL &&
+        record.generation == atomic_load(p->generation)) {
+        check_sent(p, dig_output_prediction(p->output, p->set, &record));
     }
 }
 
@@ -165,7 +165,7 @@ static void approach_text(const struct dig_gravel_track *const k, const size_t s
 
 static void say_known(const struct dig_publisher *const p)
 {
-    const struct dig_gravel_track *const k = &p->result.known;
+    const struct dig_gravel_track *const k = &p->result.track;
     const struct dig_match *const        m = &k->match;
     if (!k->valid) {
         say(p, "no gravel known: %s", k->wanted);
@@ -214,14 +214,14 @@ static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
     struct dig_fit_result before = p->result;
     struct dig_fit_result next;
     while (dig_ring_pop(p->results, &next)) {
-        if (next.known.going_on) {
+        if (next.track.going_on) {
             publish_hunch(p, &next);
             continue;
         }
         p->result = next;
         // A drift that was watched is no news for a person.
-        const bool same = p->any_result && p->result.known.time_ns == before.known.time_ns &&
-                          p->result.known.valid == before.known.valid;
+        const bool same = p->any_result && p->result.track.time_ns == before.track.time_ns &&
+                          p->result.track.valid == before.track.valid;
         news          = true;
         p->any_result = true;
         before        = p->result;
@@ -240,17 +240,17 @@ static const char *state_of(const struct dig_publisher *const p, const bool stop
     if (stopping) {
         return DIG_STATE_STOPPING;
     }
-    if (p->health.pulse.ticks == 0) {
+    if (p->health.tick_status.ticks == 0) {
         return DIG_STATE_STARTING;
     }
-    return p->health.pulse.fresh ? DIG_STATE_RUNNING : DIG_STATE_WAITING;
+    return p->health.tick_status.fresh ? DIG_STATE_RUNNING : DIG_STATE_WAITING;
 }
 
-static void take_notes(struct dig_publisher *const p, bool *const news)
+static void take_log_lines(struct dig_publisher *const p, bool *const news)
 {
-    struct dig_note note;
-    const bool      from_input = dig_latest_take(p->input_notes, &note);
-    if (from_input || dig_latest_take(p->fit_notes, &note)) {
+    struct dig_log_line note;
+    const bool          from_input = dig_latest_take(p->input_log, &note);
+    if (from_input || dig_latest_take(p->fit_log, &note)) {
         if (strcmp(note.text, p->note.text) != 0) {
             *news   = true;
             p->note = note;
@@ -264,12 +264,12 @@ static void take_notes(struct dig_publisher *const p, bool *const news)
 // Drops are counted for programs in HEALTH; a person hears of them at most every ten seconds.
 static void say_drops(struct dig_publisher *const p, const int64_t now_ns)
 {
-    const struct dig_drops *const d   = &p->health.pulse.drops;
+    const struct dig_drops *const d   = &p->health.tick_status.drops;
     const int64_t                 all = d->nan + d->not_available + d->out_of_range + d->frozen +
                         p->health.malformed + p->health.lost;
-    if (all > p->said_drops && now_ns >= p->next_say_ns) {
-        p->said_drops  = all;
-        p->next_say_ns = now_ns + 10 * NS_PER_S;
+    if (all > p->logged_drops && now_ns >= p->next_drops_ns) {
+        p->logged_drops  = all;
+        p->next_drops_ns = now_ns + 10 * NS_PER_S;
         say(p,
             "dropped so far: %" PRId64 " not available, %" PRId64 " out of range, %" PRId64
             " frozen, %" PRId64 " NaN, %" PRId64 " malformed, %" PRId64 " wrong checksums, %" PRId64
@@ -300,8 +300,8 @@ static void name_missing(struct dig_publisher *const p)
 static void publish_health(struct dig_publisher *const p, const int64_t now_ns, const bool stopping)
 {
     bool news = false;
-    take_notes(p, &news);
-    (void)dig_latest_take(p->pulse, &p->health.pulse);
+    take_log_lines(p, &news);
+    (void)dig_latest_take(p->tick_status, &p->health.tick_status);
     const char *const state = state_of(p, stopping);
     if (state != p->state) {
         news     = true;
@@ -317,19 +317,19 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     p->health.frames     = atomic_load(&p->input->frames);
     p->health.malformed  = atomic_load(&p->input->malformed);
     p->health.reconnects = atomic_load(&p->input->reconnects);
-    p->health.lost =
-        atomic_load(&p->input->overflow) + p->health.pulse.lost + p->health.pulse.lost_digs;
+    p->health.lost       = atomic_load(&p->input->overflow) + p->health.tick_status.lost +
+                     p->health.tick_status.lost_digs;
     p->health.checksum        = atomic_load(&p->input->checksum);
     p->health.errors          = atomic_load(&p->input->errors);
     p->health.bus_offs        = atomic_load(&p->input->bus_offs);
     p->health.timeouts        = atomic_load(&p->input->timeouts);
-    p->health.reloads         = atomic_load(&p->fit->reloads);
-    p->health.reloads_refused = atomic_load(&p->fit->reloads_refused);
+    p->health.reloads         = atomic_load(&p->fit->count.reloads);
+    p->health.reloads_refused = atomic_load(&p->fit->count.reloads_refused);
     p->health.table           = p->set->scene_hash;
-    p->health.matches         = (int32_t)atomic_load(&p->fit->matches);
-    p->health.whole           = (int32_t)atomic_load(&p->fit->whole);
-    p->health.aborted         = (int32_t)atomic_load(&p->fit->aborted);
-    p->health.unknown         = (int32_t)atomic_load(&p->fit->unknown);
+    p->health.matches         = (int32_t)atomic_load(&p->fit->count.matches);
+    p->health.whole           = (int32_t)atomic_load(&p->fit->count.whole);
+    p->health.aborted         = (int32_t)atomic_load(&p->fit->count.aborted);
+    p->health.unknown         = (int32_t)atomic_load(&p->fit->count.unknown);
     say_drops(p, now_ns);
     say_held(p, dig_log_limit_held_before(&p->talk, now_ns, stopping));
     if (now_ns >= p->next_health_ns) {
@@ -350,18 +350,18 @@ static void show(struct dig_publisher *const p, const int64_t now_ns)
     }
     p->next_show_ns                     = now_ns + NS_PER_S / 2;
     const struct dig_estimate *const e  = &p->estimate;
-    const bool                       on = e->trajectory >= 0 && p->records_seen > 0;
+    const bool                       on = e->trajectory >= 0 && p->record_count > 0;
     char                             gravel[96];
     char                             line[256];
     (void)snprintf(gravel, sizeof gravel, "gravel not known");
     if (p->any_result) {
-        const struct dig_match *const  m = &p->result.known.match;
+        const struct dig_match *const  m = &p->result.track.match;
         const struct dig_gravel *const g = &m->gravel;
         (void)snprintf(gravel, sizeof gravel, "gravel %s%.2f / %.2f / %.0f kg/m3 by %s%s",
                        dig_match_is_family(m) ? "like " : "", g->value[DIG_AXIS_FRICTION],
                        g->value[DIG_AXIS_ROLLING], g->value[DIG_AXIS_DENSITY_kgpm3],
                        m->forces ? "moment and forces" : "moment",
-                       p->result.known.valid ? "" : " (no longer)");
+                       p->result.track.valid ? "" : " (no longer)");
     }
     (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
                    p->state, phases[e->phase], motions[e->motion], on ? " " : "",
@@ -374,7 +374,7 @@ static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
 {
     const int64_t interval_ns = dig_notify_watchdog_ns();
     // The tick's own pulse is the proof of life: a tick that hangs lets the watchdog bark.
-    const bool alive = now_ns - p->health.pulse.time_ns < NS_PER_S;
+    const bool alive = now_ns - p->health.tick_status.time_ns < NS_PER_S;
     if (interval_ns > 0 && alive && now_ns >= p->next_watchdog_ns) {
         p->next_watchdog_ns = now_ns + interval_ns;
         (void)dig_notify("WATCHDOG=1");
@@ -394,7 +394,7 @@ void dig_publisher_run(struct dig_publisher *const p)
         (void)is_online(p, now_ns);
         publish_records(p);
         follow_table(p);
-        publish_outlook(p);
+        publish_prediction(p);
         publish_matches(p, now_ns);
         publish_health(p, now_ns, stopping);
         feed_watchdog(p, now_ns);

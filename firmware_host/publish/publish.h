@@ -15,7 +15,7 @@
 /// How the daemon speaks to a person. say: every line worth an eye, as often as log_limit.h lets.
 /// show: where things stand, twice a second, each line in place of the one before; NULL: no one
 /// looks.
-struct dig_voice {
+struct dig_console {
     void (*say)(const char *line);
     void (*show)(const char *line);
 };
@@ -27,34 +27,34 @@ struct dig_publisher {
     struct dig_input           *input;
     struct dig_fit             *fit;
     struct dig_ring            *records;     // in
-    struct dig_latest          *outlook;     // in
+    struct dig_latest          *predictions; // in
     struct dig_ring            *results;     // in
     struct dig_latest          *tables;      // in
-    struct dig_latest          *pulse;       // in
-    struct dig_latest          *input_notes; // in
-    struct dig_latest          *fit_notes;   // in
+    struct dig_latest          *tick_status; // in
+    struct dig_latest          *input_log;   // in
+    struct dig_latest          *fit_log;     // in
     const atomic_bool          *stop;
     atomic_llong               *generation; // out: of the table in use here
     struct dig_rt_grant         grant;
-    struct dig_voice            voice; // used on this thread
+    struct dig_console          voice; // used on this thread
 
     // the thread's own
     struct dig_output    *output;
     struct dig_health     health;
-    struct dig_note       note;
+    struct dig_log_line   note;
     struct dig_fit_result result; // the last one
     bool                  any_result;
     const char           *state;
-    int64_t               next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_say_ns;
-    int64_t               lcm_pause_ns;
-    struct dig_table_news news; // a table the tick may not use yet
-    int64_t               said_drops;
-    int64_t               next_show_ns;
-    struct dig_log_limit  talk; // of what may come as often as a bus comes and goes
-    uint64_t              records_seen;
-    bool                  seen[DIG_SIGNALS]; // signals that had a value since HEALTH was told last
-    bool                  any_seen;
-    struct dig_estimate   estimate; // the last one
+    int64_t next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_drops_ns;
+    int64_t lcm_pause_ns;
+    struct dig_table_update news; // a table the tick may not use yet
+    int64_t                 logged_drops;
+    int64_t                 next_show_ns;
+    struct dig_log_limit    talk; // of what may come as often as a bus comes and goes
+    uint64_t                record_count;
+    bool                seen[DIG_SIGNALS]; // signals that had a value since HEALTH was told last
+    bool                any_seen;
+    struct dig_estimate estimate; // the last one
 };
 
 /// The thread: returns after *stop, when all that was left is published.

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <stddef.h>
 
-bool dig_log_limit_may(struct dig_log_limit *const talk, const int64_t now_ns)
+bool dig_log_limit_allows(struct dig_log_limit *const talk, const int64_t now_ns)
 {
     assert(talk != NULL);
     const int64_t from_ns = talk->full_ns > now_ns ? talk->full_ns : now_ns;

@@ -20,7 +20,7 @@ struct dig_log_limit {
 };
 
 /// True when a line may be said now; else it is held back, and counted.
-bool dig_log_limit_may(struct dig_log_limit *talk, int64_t now_ns);
+bool dig_log_limit_allows(struct dig_log_limit *talk, int64_t now_ns);
 
 /// Lines held back that are to be spoken of, which they are then taken to be: all of them when a
 /// line is said, or, saying none, once none was held back for DIG_LOG_LIMIT_SILENT_ns or the daemon

@@ -93,7 +93,7 @@ static size_t weighted(const struct bench *const b, const struct dig_observation
     if (dig_match_nearest(b->set, dig, 2.5, &match) != DIG_OK) {
         return 0;
     }
-    dig_match_weigh(b->set, NULL, 1, dig, &match);
+    dig_match_find_weighted(b->set, NULL, 1, dig, &match);
     return (size_t)match.weighted;
 }
 

@@ -37,7 +37,7 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
 
     // Before a dig begins, each trajectory can be asked for whole.
     struct dig_prediction whole;
-    dig_estimator_predict_whole(b->estimator, MADE_ACTUAL, &whole);
+    dig_estimator_predict_trajectory(b->estimator, MADE_ACTUAL, &whole);
     assert_true(whole.valid);
     assert_close(whole.from_progress, 0.0, 0.0);
     for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
@@ -46,9 +46,9 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
         assert_close(whole.moment_Nm[i], truth_Nm, 0.05 * truth_Nm + 1.0);
         assert_true(whole.sigma_Nm[i] >= 0.09 * truth_Nm);
     }
-    dig_estimator_predict_whole(b->estimator, MADE_TRAJECTORIES, &whole);
+    dig_estimator_predict_trajectory(b->estimator, MADE_TRAJECTORIES, &whole);
     assert_false(whole.valid);
-    dig_estimator_predict_whole(b->estimator, -1, &whole);
+    dig_estimator_predict_trajectory(b->estimator, -1, &whole);
     assert_false(whole.valid);
 
     // A match that is none takes the prediction back.
@@ -168,7 +168,7 @@ static void whatever_comes_in_only_numbers_go_out(void **state)
         assert_true(isfinite(e.wrench.Fx_N) && isfinite(e.wrench.sigma_Fx_N));
         assert_true(isfinite(e.pin_X_m) && isfinite(e.phi_rad));
         assert_true(e.trajectory < 0 || (e.progress >= 0.0 && e.progress <= 1.0));
-        if (dig_estimator_take_dig(b->estimator, &o)) {
+        if (dig_estimator_take_observation(b->estimator, &o)) {
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
                 assert_true(isfinite(o.moment_Nm[k]) && o.sigma_Nm[k] >= 0.0);
             }

@@ -206,7 +206,7 @@ static void an_axis_is_told_by_the_width_of_its_interval(void **state)
         match.low.value[a]  = set->axis[a][0];
         match.high.value[a] = set->axis[a][set->axis_count[a] - 1];
     }
-    dig_match_tell_family(set, &match);
+    dig_match_find_family(set, &match);
     dig_match_untold(&match, names);
     assert_true(dig_match_is_family(&match));
     assert_string_equal(names, "friction, rolling, density_kgpm3");
@@ -214,17 +214,17 @@ static void an_axis_is_told_by_the_width_of_its_interval(void **state)
     match.high.value[DIG_AXIS_FRICTION]      = 0.59;
     match.low.value[DIG_AXIS_ROLLING]        = 0.56;
     match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 1.01;
-    dig_match_tell_family(set, &match);
+    dig_match_find_family(set, &match);
     dig_match_untold(&match, names);
     assert_string_equal(names, "density_kgpm3");
     match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 0.99;
-    dig_match_tell_family(set, &match);
+    dig_match_find_family(set, &match);
     assert_false(dig_match_is_family(&match));
 
     // A match that was not refined has no interval, and says nothing of it.
     match.high.value[DIG_AXIS_FRICTION] = 0.9;
     match.samples                       = 0;
-    dig_match_tell_family(set, &match);
+    dig_match_find_family(set, &match);
     assert_false(dig_match_is_family(&match));
     made_table_destroy(set);
 }

@@ -206,7 +206,7 @@ static void fuzz_modbus(const time_t end)
     }
     static struct dig_signal_map    map;
     static struct dig_reading       memory[64];
-    static struct dig_note          notes[3];
+    static struct dig_log_line      notes[3];
     struct dig_ring                 readings;
     struct dig_latest               latest;
     struct dig_input                input = { 0 };

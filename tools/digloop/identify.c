@@ -115,7 +115,7 @@ static enum dig_status match_all(const struct digloop_options *const options,
                              pool->digs > 1 ? " and all else that was dug" : "");
     }
     if (status == DIG_OK) {
-        dig_match_weigh(set, NULL, pool->digs, pool->dig, match);
+        dig_match_find_weighted(set, NULL, pool->digs, pool->dig, match);
         status = dig_fit_refine_pool(set, pool->digs, pool->dig, EVALUATIONS, match);
     }
     return status == DIG_OK
