@@ -6,8 +6,10 @@
 #define DIG_TESTS_DRIVEN_H
 
 #include "estimator/approach/live_recording.h"
-#include "estimator/estimator.h"
+#include "estimator/estimator_tick.h"
 #include "tests/made_table.h"
+
+static const double driven_lambda = 10.0; // machine over rig
 
 /// How often, and at what progress, a dig is looked at while it goes on.
 #define DRIVEN_LOOKS 4

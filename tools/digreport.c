@@ -5,6 +5,7 @@
 #include "closed_loop/report/report.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
+#include "estimator/predict/prediction.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"

@@ -21,7 +21,7 @@ static const double no_curve = 1e6;
 // The fit in positions 0 … 1 along the axes that have more than one point.
 struct problem {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *summary; // or NULL
+    const struct dig_prefilter *prefilter; // or NULL
     const struct dig_pool_sums *sums;
     unsigned                    dimensions;
     enum dig_axis               axis[DIG_AXES];
@@ -88,7 +88,7 @@ static double excess_of(const unsigned n, const double *const x, double *const g
     (void)gradient;
     const struct problem *const problem = context;
     const struct dig_gravel     gravel  = gravel_of(problem, x);
-    return fmin(dig_posterior_excess(problem->set, problem->summary, problem->sums, &gravel),
+    return fmin(dig_posterior_excess(problem->set, problem->prefilter, problem->sums, &gravel),
                 no_curve);
 }
 
@@ -231,17 +231,17 @@ static bool has_forces(const struct dig_pool_sums *const sums)
 // Whether the forces say that no gravel of the table is that of the digs. The most probable lies on
 // a grid, which digs that scatter little may be finer than: where it is too far, around it.
 static enum dig_status contradict(const struct dig_curve_set *const set,
-                                  const struct dig_prefilter *const summary,
+                                  const struct dig_prefilter *const prefilter,
                                   const struct dig_pool_sums *const sums,
                                   const struct dig_match *const     match,
                                   const struct dig_gravel *const mode, bool *const contradicted)
 {
-    double least = dig_posterior_excess(set, summary, sums, mode);
+    double least = dig_posterior_excess(set, prefilter, sums, mode);
     if (least > DIG_POSTERIOR_OUTSIDE) {
         static const double step[DIG_AXES] = { 0.04, 0.04, 0.04 };
         struct problem      problem        = make_problem(set, sums, match);
         double              x[DIG_AXES]    = { 0.0 };
-        problem.summary                    = summary;
+        problem.prefilter                  = prefilter;
         position_of(&problem, mode, x);
         const enum dig_status status =
             problem.dimensions > 0
@@ -258,33 +258,33 @@ static enum dig_status contradict(const struct dig_curve_set *const set,
 // The posterior. Where no gravel of the table both resists and pushes like the digs, which is the
 // forces' to tell, the one that resists like them says more about the next dig than one between.
 static enum dig_status judge(const struct dig_curve_set *const set,
-                             const struct dig_prefilter *const summary,
+                             const struct dig_prefilter *const prefilter,
                              struct dig_pool_sums *const sums, struct dig_match *const refined,
                              bool *const contradicted)
 {
     *contradicted          = false;
-    enum dig_status status = dig_posterior_fill(set, summary, sums, refined);
+    enum dig_status status = dig_posterior_fill(set, prefilter, sums, refined);
     if (status == DIG_OK && has_forces(sums)) {
-        status = contradict(set, summary, sums, refined, &refined->mode, contradicted);
+        status = contradict(set, prefilter, sums, refined, &refined->mode, contradicted);
     }
     if (*contradicted) {
         for (size_t g = 0; g < sums->groups; g++) {
             sums->group[g].forces = false;
         }
-        status = dig_posterior_fill(set, summary, sums, refined);
+        status = dig_posterior_fill(set, prefilter, sums, refined);
     }
     return status;
 }
 
 static enum dig_status refine(const struct dig_curve_set *const set,
-                              const struct dig_prefilter *const summary,
+                              const struct dig_prefilter *const prefilter,
                               struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
 {
     // A table of scattered points has no cell to be unsure in: the nearest entry stands.
     struct dig_match      refined = *match;
     bool                  contradicted;
-    const enum dig_status judged = judge(set, summary, sums, &refined, &contradicted);
+    const enum dig_status judged = judge(set, prefilter, sums, &refined, &contradicted);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -341,7 +341,7 @@ static enum dig_status refine(const struct dig_curve_set *const set,
 }
 
 static enum dig_status check_and_refine(const struct dig_curve_set *const set,
-                                        const struct dig_prefilter *const summary,
+                                        const struct dig_prefilter *const prefilter,
                                         const size_t digs, const struct dig_observation dig[],
                                         const int max_evaluations, struct dig_match *const match)
 {
@@ -356,28 +356,21 @@ static enum dig_status check_and_refine(const struct dig_curve_set *const set,
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    return refine(set, summary, &sums, max_evaluations, match);
+    return refine(set, prefilter, &sums, max_evaluations, match);
 }
 
-enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const size_t digs,
-                                    const struct dig_observation dig[], const int max_evaluations,
-                                    struct dig_match *const match)
+enum dig_status dig_fit_refine(const struct dig_curve_set *const set, const size_t digs,
+                               const struct dig_observation dig[], const int max_evaluations,
+                               struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
     return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
 }
 
-enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const summary,
+enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const prefilter,
                                            const size_t digs, const struct dig_observation dig[],
                                            const int max_evaluations, struct dig_match *const match)
 {
-    assert(summary != NULL && dig != NULL && match != NULL);
-    return check_and_refine(summary->set, summary, digs, dig, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
-                               const struct dig_observation *const observation,
-                               const int max_evaluations, struct dig_match *const match)
-{
-    return dig_fit_refine_pool(set, 1, observation, max_evaluations, match);
+    assert(prefilter != NULL && dig != NULL && match != NULL);
+    return check_and_refine(prefilter->set, prefilter, digs, dig, max_evaluations, match);
 }

@@ -84,7 +84,7 @@ static double between(const double point_m, const double width_m, const int lag)
 // The same as entry_scatter.h has it, where too few packings are known; the variances into
 // *variance.
 static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
-                               const struct dig_prefilter *const summary, struct matrix *const c,
+                               const struct dig_prefilter *const prefilter, struct matrix *const c,
                                double variance[NUMBERS])
 {
     const double across[CHANNELS][CHANNELS] = {
@@ -103,8 +103,8 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     for (size_t i = 0; i < NUMBERS; i++) {
         const enum dig_channel channel = (enum dig_channel)(i / BLOCKS);
         variance[i] =
-            lag_of[0] * (summary != NULL ? summary->relative2[trajectory][channel]
-                                         : dig_prefilter_relative2(set, trajectory, channel));
+            lag_of[0] * (prefilter != NULL ? prefilter->relative2[trajectory][channel]
+                                           : dig_prefilter_relative2(set, trajectory, channel));
         for (size_t j = 0; j < NUMBERS; j++) {
             const size_t one   = i % BLOCKS;
             const size_t other = j % BLOCKS;
@@ -216,12 +216,13 @@ static void measure(const struct dig_pooled *const group, const double variance[
     }
 }
 
-static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const summary,
+static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const prefilter,
                  const struct dig_pooled *const group, const bool assume,
                  struct dig_gaussian *const g)
 {
-    assert(set != NULL && (summary == NULL || summary->set == set) && group != NULL && g != NULL);
-    *g = (struct dig_gaussian){ .summary    = summary,
+    assert(set != NULL && (prefilter == NULL || prefilter->set == set) && group != NULL &&
+           g != NULL);
+    *g = (struct dig_gaussian){ .prefilter  = prefilter,
                                 .trajectory = group->trajectory,
                                 .channels   = group->forces ? CHANNELS : 1 };
     struct matrix c;
@@ -233,7 +234,7 @@ static bool make(const struct dig_curve_set *const set, const struct dig_prefilt
             variance[i] = set->covariance[group->trajectory].of[i][i];
         }
     } else if (assume) {
-        assume_correlation(set, group->trajectory, summary, &c, variance);
+        assume_correlation(set, group->trajectory, prefilter, &c, variance);
     } else {
         return false;
     }
@@ -245,18 +246,18 @@ static bool make(const struct dig_curve_set *const set, const struct dig_prefilt
 }
 
 bool dig_gaussian_make(const struct dig_curve_set *const set,
-                       const struct dig_prefilter *const summary,
+                       const struct dig_prefilter *const prefilter,
                        const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
 {
-    return make(set, summary, group, false, gaussian);
+    return make(set, prefilter, group, false, gaussian);
 }
 
 bool dig_gaussian_make_default(const struct dig_curve_set *const set,
-                               const struct dig_prefilter *const summary,
+                               const struct dig_prefilter *const prefilter,
                                const struct dig_pooled *const    group,
                                struct dig_gaussian *const        gaussian)
 {
-    return make(set, summary, group, true, gaussian);
+    return make(set, prefilter, group, true, gaussian);
 }
 
 // Means of the cell over an outline's blocks.
@@ -273,9 +274,9 @@ static void blend(const struct dig_gaussian *const g, const struct dig_cell *con
         for (size_t c = 0; c < g->channels; c++) {
             struct dig_outline drawn;
             const float       *of = drawn.block;
-            if (g->summary != NULL) {
-                of = dig_outline_mean(g->summary, c,
-                                      (size_t)(cell->curve[i] - g->summary->set->curve));
+            if (g->prefilter != NULL) {
+                of = dig_outline_mean(g->prefilter, c,
+                                      (size_t)(cell->curve[i] - g->prefilter->set->curve));
             } else {
                 dig_outline_draw(cell->curve[i]->mean[c], &drawn);
             }

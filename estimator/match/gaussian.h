@@ -26,7 +26,7 @@
 
 /// Of the digs along one trajectory; does not depend on the gravel. 6 kB.
 struct dig_gaussian {
-    const struct dig_prefilter *summary; // NULL: none
+    const struct dig_prefilter *prefilter; // NULL: none
     size_t                      trajectory, channels;
     size_t                      numbers; // compared; 0: it tells nothing
     struct dig_compared {
@@ -42,12 +42,13 @@ struct dig_gaussian {
 /// False, and nothing to be asked, when the set has no covariance of that trajectory, or one of
 /// fewer degrees of freedom than DIG_GAUSSIAN_FREEDOM, or no half of a block was measured whole.
 /// The set, and the summary of it where one is given, must outlive it. 30 microseconds.
-bool dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+bool dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
                        const struct dig_pooled *group, struct dig_gaussian *gaussian);
 
 /// The same whatever is known of the set: where it holds no covariance to be believed, the one of
 /// entry_scatter.h with the table's pooled spread. False when nothing was measured.
-bool dig_gaussian_make_default(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+bool dig_gaussian_make_default(const struct dig_curve_set *set,
+                               const struct dig_prefilter *prefilter,
                                const struct dig_pooled *group, struct dig_gaussian *gaussian);
 
 /// What digs are off a cell of the trajectory.

@@ -30,12 +30,13 @@ struct dig_likelihood {
 };
 
 /// Without a summary (NULL) every curve of the trajectory is looked at: O(entries).
-void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
                          const struct dig_pooled *group, struct dig_likelihood *likelihood);
 
 /// Makes it rough: of the blocks that were measured whole. The summary must outlive it. False, and
 /// nothing is changed, when they are fewer than half of what was measured.
-bool dig_likelihood_outline(const struct dig_prefilter *summary, struct dig_likelihood *likelihood);
+bool dig_likelihood_outline(const struct dig_prefilter *prefilter,
+                            struct dig_likelihood      *likelihood);
 
 /// Its logarithm at a cell of the trajectory (dig_cell_find), but for a constant. 4 microseconds,
 /// with forces 11.

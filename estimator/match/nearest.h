@@ -9,9 +9,9 @@
 #include "estimator/match/pool.h"
 #include "estimator/match/prefilter.h"
 
-/// Index of the entry that dig_match_nearest_pool() finds by looking at all, the first of several
+/// Index of the entry that dig_match_nearest() finds by looking at all, the first of several
 /// that are equally near; -1: no entry has a finite distance. O(entries): 64 bytes a trajectory of
 /// each, and all of those curves that the outlines cannot tell from the nearest.
-int dig_nearest_find(const struct dig_prefilter *summary, const struct dig_pool_sums *sums);
+int dig_nearest_find(const struct dig_prefilter *prefilter, const struct dig_pool_sums *sums);
 
 #endif // DIG_ESTIMATOR_MATCH_NEAREST_H

@@ -16,7 +16,7 @@ enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
 static const double unlikely = 16.0;
 
 double dig_posterior_excess(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const summary,
+                            const struct dig_prefilter *const prefilter,
                             const struct dig_pool_sums *const sums,
                             const struct dig_gravel *const    gravel)
 {
@@ -26,7 +26,7 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
     for (size_t g = 0; g < sums->groups; g++) {
         struct dig_likelihood l;
         struct dig_cell       cell;
-        dig_likelihood_make(set, summary, &sums->group[g], &l);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l);
         if (dig_cell_find(set, gravel, l.trajectory, &cell) != DIG_OK) {
             return INFINITY;
         }
@@ -180,16 +180,16 @@ static void draw_samples(const struct fine *const fine, const double weight[],
 
 // Which points are worth a look: 0, or -infinity. All, if there is nothing to tell it from.
 static void look_roughly(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const summary,
+                         const struct dig_prefilter *const prefilter,
                          const struct dig_pool_sums *const sums, const struct fine *const fine,
                          struct dig_likelihood l[], double weight[])
 {
-    bool rough = summary != NULL;
+    bool rough = prefilter != NULL;
     bool dear  = false; // more than the rough look
     for (size_t g = 0; rough && g < sums->groups; g++) {
-        dig_likelihood_make(set, summary, &sums->group[g], &l[g]);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
         dear  = dear || !l[g].is_gaussian;
-        rough = l[g].is_gaussian || dig_likelihood_outline(summary, &l[g]);
+        rough = l[g].is_gaussian || dig_likelihood_outline(prefilter, &l[g]);
     }
     rough       = rough && dear;
     double most = -INFINITY;
@@ -203,7 +203,7 @@ static void look_roughly(const struct dig_curve_set *const set,
 }
 
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
-                                   const struct dig_prefilter *const summary,
+                                   const struct dig_prefilter *const prefilter,
                                    const struct dig_pool_sums *const sums,
                                    struct dig_match *const           match)
 {
@@ -214,10 +214,10 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
     struct dig_likelihood l[DIG_TRAJECTORY_MAX];
     double                weight[GRID_MAX];
-    look_roughly(set, summary, sums, &fine, l, weight);
+    look_roughly(set, prefilter, sums, &fine, l, weight);
 
     for (size_t g = 0; g < sums->groups; g++) {
-        dig_likelihood_make(set, summary, &sums->group[g], &l[g]);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
     }
     double most = -INFINITY;
     for (size_t i = 0; i < fine.all; i++) {

@@ -61,7 +61,7 @@
 ///
 /// Infinite where the table has no curve. By a summary (or NULL) as below; some 15 microseconds a
 /// trajectory with it.
-double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
                             const struct dig_pool_sums *sums, const struct dig_gravel *gravel);
 
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
@@ -69,7 +69,7 @@ double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_pr
 /// evaluations a trajectory; 220 kB of stack. By a summary of the set only those are made that do
 /// not look hopeless by its outlines; without one (NULL) every curve is looked at once more.
 DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
-                                                  const struct dig_prefilter *summary,
+                                                  const struct dig_prefilter *prefilter,
                                                   const struct dig_pool_sums *sums,
                                                   struct dig_match           *match);
 

@@ -50,22 +50,22 @@ static inline size_t dig_outline_place(const struct dig_curve_set *const set, co
 }
 
 /// The outline of the set's curve [slot]: of its mean, and of its standard deviation.
-static inline const float *dig_outline_mean(const struct dig_prefilter *const summary,
+static inline const float *dig_outline_mean(const struct dig_prefilter *const prefilter,
                                             const size_t channel, const size_t slot)
 {
-    return summary->outline[dig_outline_place(summary->set, 2 * channel, slot)].block;
+    return prefilter->outline[dig_outline_place(prefilter->set, 2 * channel, slot)].block;
 }
 
-static inline const float *dig_outline_sd(const struct dig_prefilter *const summary,
+static inline const float *dig_outline_sd(const struct dig_prefilter *const prefilter,
                                           const size_t channel, const size_t slot)
 {
-    return summary->outline[dig_outline_place(summary->set, 2 * channel + 1, slot)].block;
+    return prefilter->outline[dig_outline_place(prefilter->set, 2 * channel + 1, slot)].block;
 }
 
 /// Sums the set up; it and the outlines must outlive *summary. Reads every curve once: a few
 /// microseconds each.
 void dig_prefilter_make(const struct dig_curve_set *set, struct dig_outline outline[],
-                        struct dig_prefilter *summary);
+                        struct dig_prefilter *prefilter);
 
 /// Squared spread of one dig relative to the mean, over all entries of the trajectory, each
 /// counting alike; 0 when there is none. O(entries).

@@ -21,7 +21,7 @@ struct along {
 
 struct search {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *summary;
+    const struct dig_prefilter *prefilter;
     size_t                      groups;
     struct along                along[DIG_TRAJECTORY_MAX];
     size_t                      entry; // the nearest so far
@@ -93,8 +93,8 @@ static double square_of(const struct search *const s, const size_t entry, const 
             return INFINITY;
         }
         for (size_t c = 0; c < a->gaussian.channels; c++) {
-            if (s->summary != NULL) {
-                outline[c] = dig_outline_mean(s->summary, c, slot);
+            if (s->prefilter != NULL) {
+                outline[c] = dig_outline_mean(s->prefilter, c, slot);
             } else {
                 dig_outline_draw(s->set->curve[slot].mean[c], &drawn[c]);
                 outline[c] = drawn[c].block;
@@ -115,14 +115,14 @@ static void look_at(struct search *const s, const size_t entry)
 }
 
 struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
-                                      const struct dig_prefilter *const summary,
+                                      const struct dig_prefilter *const prefilter,
                                       const struct dig_pool_sums *const sums, const size_t nearest)
 {
     assert(set != NULL && sums != NULL && nearest < set->entries);
-    struct search s       = { .set = set, .summary = summary, .groups = sums->groups };
+    struct search s       = { .set = set, .prefilter = prefilter, .groups = sums->groups };
     double        numbers = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        if (!dig_gaussian_make_default(set, summary, &sums->group[g], &s.along[g].gaussian)) {
+        if (!dig_gaussian_make_default(set, prefilter, &sums->group[g], &s.along[g].gaussian)) {
             return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
         }
         whiten(set, nearest, &s.along[g]);

@@ -24,7 +24,7 @@ struct dig_weighted {
 /// is allowed. nearest: the entry that D is of, which must hold all trajectories that were dug.
 /// O(entries): with a summary some 0.05 microseconds each.
 struct dig_weighted dig_weighted_find(const struct dig_curve_set *set,
-                                      const struct dig_prefilter *summary,
+                                      const struct dig_prefilter *prefilter,
                                       const struct dig_pool_sums *sums, size_t nearest);
 
 #endif // DIG_ESTIMATOR_MATCH_WEIGHTED_H

@@ -32,8 +32,8 @@ static const double start_step = 0.05;
 static const double look_behind = 0.10;
 static const double look_ahead  = 0.35;
 
-struct dig_track dig_track_start(const struct dig_route *const route,
-                                 const struct dig_path *const path, const double start)
+static struct dig_track track_start(const struct dig_route *const route,
+                                    const struct dig_path *const path, const double start)
 {
     assert(route != NULL && path != NULL && path->contact < path->end);
     const struct dig_path_point *const touched = &path->vertex[path->contact];
@@ -153,8 +153,8 @@ static double lead_in_m(const unsigned step, const double limit_m)
     return (step < CHALLENGE_STEPS / 2 ? wide_in_share : lead_in_share) * limit_m;
 }
 
-void dig_track_refine(const struct dig_route *const route, const struct dig_path *const path,
-                      const double limit_m, struct dig_track *const track)
+static void step_track(const struct dig_route *const route, const struct dig_path *const path,
+                       const double limit_m, struct dig_track *const track)
 {
     refine(route, path, limit_m, lead_in_share * limit_m, track);
 }
@@ -162,8 +162,8 @@ void dig_track_refine(const struct dig_route *const route, const struct dig_path
 struct dig_follower dig_follower_start(const struct dig_route *const route,
                                        const struct dig_path *const path, const double limit_m)
 {
-    struct dig_follower follower = { .track = dig_track_start(route, path, 0.0) };
-    dig_track_refine(route, path, limit_m, &follower.track);
+    struct dig_follower follower = { .track = track_start(route, path, 0.0) };
+    step_track(route, path, limit_m, &follower.track);
     return follower;
 }
 
@@ -173,11 +173,11 @@ void dig_follower_step(const struct dig_route *const route, const struct dig_pat
     assert(follower != NULL);
     struct dig_track *const track      = &follower->track;
     struct dig_track *const challenger = &follower->challenger;
-    dig_track_refine(route, path, limit_m, track);
+    step_track(route, path, limit_m, track);
 
     if (follower->turn % CHALLENGE_STEPS == 0) {
         const double start = start_step * (double)(follower->turn / CHALLENGE_STEPS % STARTS);
-        *challenger        = dig_track_start(route, path, start);
+        *challenger        = track_start(route, path, start);
     }
     const unsigned step = follower->turn % CHALLENGE_STEPS;
     refine(route, path, limit_m, lead_in_m(step, limit_m), challenger);
@@ -192,14 +192,14 @@ struct dig_track dig_track_fit(const struct dig_route *const route,
 {
     struct dig_track best = { .score_m = INFINITY };
     for (size_t k = 0; k < STARTS; k++) {
-        struct dig_track track = dig_track_start(route, path, start_step * (double)k);
+        struct dig_track track = track_start(route, path, start_step * (double)k);
         for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
             refine(route, path, limit_m, lead_in_m(step, limit_m), &track);
         }
         best = track.score_m < best.score_m ? track : best;
     }
     for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
-        dig_track_refine(route, path, limit_m, &best);
+        step_track(route, path, limit_m, &best);
     }
     return best;
 }

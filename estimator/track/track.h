@@ -48,15 +48,6 @@ struct dig_follower {
     unsigned         turn;
 };
 
-/// Starts a track with the shift that puts progress start of the route at the contact vertex.
-struct dig_track dig_track_start(const struct dig_route *route, const struct dig_path *path,
-                                 double start);
-
-/// One Gauss-Newton step of the shift and a new rms over the vertices since contact. Vertices
-/// before contact help only where they lie within a tenth of limit_m. O(vertices * corners).
-void dig_track_refine(const struct dig_route *route, const struct dig_path *path, double limit_m,
-                      struct dig_track *track);
-
 /// A follower at its first fit, and one step of it: two refinements.
 struct dig_follower dig_follower_start(const struct dig_route *route, const struct dig_path *path,
                                        double limit_m);

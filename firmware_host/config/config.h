@@ -5,8 +5,9 @@
 #ifndef DIG_FIRMWARE_HOST_CONFIG_CONFIG_H
 #define DIG_FIRMWARE_HOST_CONFIG_CONFIG_H
 
+#include "core/curve.h"
 #include "core/error.h"
-#include "estimator/estimator.h"
+#include "estimator/track/settings.h"
 #include "firmware_host/bus/input.h"
 #include "firmware_host/threads/rt.h"
 

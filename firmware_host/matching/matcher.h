@@ -15,7 +15,7 @@
 /// Zeroed: no summary, and every curve is looked at.
 struct dig_matcher {
     struct dig_outline  *outline; // owned
-    struct dig_prefilter summary;
+    struct dig_prefilter prefilter;
     // Where the table was dug in several ways along a trajectory: how wrong what lies between is.
     bool                      varies;
     struct dig_approach_error error[DIG_TRAJECTORY_MAX];
@@ -28,7 +28,7 @@ struct dig_matcher {
 /// The set must outlive it, or dig_matcher_finish() comes first. A few microseconds a curve.
 void dig_matcher_set_table(struct dig_matcher *matcher, const struct dig_curve_set *set);
 
-/// As dig_match_nearest_pool() and dig_fit_refine_pool() of the set that was taken up, or, without
+/// As dig_match_nearest() and dig_fit_refine() of the set that was taken up, or, without
 /// a summary, of any; each dig with the curves of its own depth and attack. DIG_ENOMEM: there is
 /// no memory for these.
 DIG_MUST_CHECK enum dig_status dig_matcher_nearest(struct dig_matcher         *matcher,

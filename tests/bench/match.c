@@ -221,7 +221,7 @@ static double match_once(const struct dig_prefilter *const   summary,
         die("no match");
     }
     const double found = cpu_ms();
-    if (dig_match_nearest(summary->set, o, outside_floors, &plain) != DIG_OK) {
+    if (dig_match_nearest(summary->set, 1, o, outside_floors, &plain) != DIG_OK) {
         die("no match");
     }
     const double found_plainly = cpu_ms();
@@ -236,7 +236,7 @@ static double match_once(const struct dig_prefilter *const   summary,
         die("not refined");
     }
     const double done = cpu_ms();
-    if (dig_fit_refine(summary->set, o, EVALUATIONS, &plain) != DIG_OK) {
+    if (dig_fit_refine(summary->set, 1, o, EVALUATIONS, &plain) != DIG_OK) {
         die("not refined");
     }
     note(refined, done - start, cpu_ms() - done);

@@ -22,11 +22,13 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
     assert_int_equal(b->predictions, 0); // nothing is known yet
 
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(b->set, &b->observation, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(b->set, &b->observation, 500, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(b->set, 1, &b->observation, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(b->set, 1, &b->observation, 500, &match), DIG_OK);
     assert_false(match.outside);
-    const unsigned long before = allocations;
-    dig_estimator_give_match(b->estimator, &match);
+    struct dig_forecast *const forecast = calloc(1, sizeof *forecast);
+    const unsigned long        before   = allocations;
+    dig_forecast_make(b->set, driven_lambda, &match, forecast);
+    dig_estimator_set_forecast(b->estimator, forecast);
     assert_int_equal(allocations, before);
 
     driven_dig(b, (struct drive){ .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 6 });
@@ -53,10 +55,11 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
 
     // A match that is none takes the prediction back.
     match.valid = false;
-    dig_estimator_give_match(b->estimator, &match);
+    dig_forecast_make(b->set, driven_lambda, &match, forecast);
     driven_dig(b, (struct drive){ .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 7 });
     assert_int_equal(b->predictions, 0);
     driven_destroy(b);
+    free(forecast);
 }
 
 static void a_load_carried_away_is_no_second_dig(void **state)

@@ -89,7 +89,7 @@ static int nearest_of(const struct dig_curve_set *const set, const size_t digs,
     struct dig_match          plain = { .nearest = -1 }, by = { .nearest = -1 };
     dig_prefilter_make(set, outline, &summary);
     const enum dig_status status = dig_match_nearest_prefiltered(&summary, digs, dig, 2.5, &by);
-    assert_int_equal(dig_match_nearest_pool(set, digs, dig, 2.5, &plain), status);
+    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &plain), status);
     free(outline);
     assert_int_equal(by.valid, status == DIG_OK);
     assert_int_equal(by.nearest, plain.nearest);
