@@ -23,7 +23,7 @@
 struct dig_estimator;  // estimator/estimator_state.h: fixed size
 struct dig_correction; // estimator/wrench/correction.h
 
-/// Size of the struct, about 3 MB: for allocating one.
+/// Size of the struct, about 2 MB: for allocating one.
 size_t dig_estimator_size(void);
 
 /// Initialises; lambda is the machine's tooth length over the table's. The machine and the set must

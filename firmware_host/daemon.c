@@ -103,9 +103,9 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
     settings.coherent_s = l->map.coherent_s;
     settings.groups     = (unsigned)l->map.groups;
     for (size_t g = 0; g < l->map.groups; g++) {
-        settings.needed[g] = l->map.group[g].needed;
-        settings.spared[g] = l->map.group[g].spared;
-        settings.frame[g]  = l->map.group[g].frame;
+        settings.needed[g]      = l->map.group[g].needed;
+        settings.dispensable[g] = l->map.group[g].dispensable;
+        settings.frame[g]       = l->map.group[g].frame;
     }
     return settings;
 }
@@ -355,10 +355,10 @@ static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signa
     }
 }
 
-enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_console *const voice,
+enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_console *const console,
                                struct dig_error *const error)
 {
-    assert(d != NULL && voice != NULL && voice->say != NULL);
+    assert(d != NULL && console != NULL && console->say != NULL);
 
     // Blocked before the first thread starts, so that every thread inherits it and only we see
     // them.
@@ -376,7 +376,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_cons
     (void)pthread_attr_init(&attributes);
     (void)pthread_attr_setstacksize(&attributes, STACK_BYTES);
     (void)sem_init(&d->granted, 0, 0);
-    d->publisher.voice = *voice;
+    d->publisher.console = *console;
 
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < sizeof mains / sizeof mains[0] && status == DIG_OK; i++) {
@@ -393,7 +393,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_cons
             }
             d->publisher.grant = d->grant;
             dig_rt_describe(&d->loaded.config.realtime, &d->grant, sizeof line, line);
-            voice->say(line);
+            console->say(line);
         }
     }
     (void)pthread_attr_destroy(&attributes);

@@ -96,9 +96,9 @@ int main(const int argc, char *argv[])
     dig_daemon_describe(daemon, check ? tell : say);
     if (!check) {
         const bool               terminal = isatty(STDERR_FILENO) != 0;
-        const struct dig_console voice    = { .say  = terminal ? say_above : say,
+        const struct dig_console console  = { .say  = terminal ? say_above : say,
                                               .show = terminal ? show : NULL };
-        status                            = dig_daemon_run(daemon, &voice, &error);
+        status                            = dig_daemon_run(daemon, &console, &error);
         (void)fputs(terminal ? "\n" : "", stderr);
     }
     dig_daemon_destroy(daemon);

@@ -53,7 +53,7 @@ enum dig_status dig_live_recording_observe(const struct dig_curve_set *const    
     scratch->dig_count                    = live->dig_count + 1;
     scratch->path                         = live->recording.path;
     scratch->window.open                  = true;
-    scratch->window.goes_on               = true;
+    scratch->window.in_progress           = true;
     scratch->window.count                 = window->count;
     scratch->window.stride                = window->stride;
     memcpy(scratch->window.sample, window->sample, window->count * sizeof window->sample[0]);

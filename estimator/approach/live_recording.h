@@ -26,7 +26,7 @@ void dig_live_recording_add(struct dig_live_recording *live, const struct dig_cu
 
 /// Observes the dig so far, as dig_recorded_dig_observe() does a finished one. The observation ends
 /// half a smoothing window before the newest sample. dig_count is the one the dig will get.
-/// DIG_ENOMATCH also when no dig is in progress. Copies the recording (2.5 MB at most) into scratch
+/// DIG_ENOMATCH also when no dig is in progress. Copies the recording (2 MB at most) into scratch
 /// and works there: two to three milliseconds.
 DIG_MUST_CHECK enum dig_status
 dig_live_recording_observe(const struct dig_curve_set          *set,

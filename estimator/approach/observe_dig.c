@@ -11,12 +11,12 @@
 #include <assert.h>
 #include <math.h>
 
-// The soil is looked for from so much deeper than the table was dug, to see what is off it.
+// The soil is searched from deeper than the table was dug by this factor, to detect digs off it.
 static const double probe_deeper = 1.5;
 
-// A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
-// the depth is told by where the soil began to resist, looked for along the way of the deepest dig.
-// What of the two lies beyond the table counts as distance.
+// Observes a dig whose trajectory the table has at several depths and attacks. The attack is the
+// track's turn; the depth follows from where the soil began to resist, searched along the path of
+// the deepest dig. What lies beyond the table counts as distance.
 static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
                                       const struct dig_track *const  track,
                                       struct dig_recorded_dig *const recording,
@@ -53,19 +53,19 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
     return status;
 }
 
-// Once the path has left the trajectory, no way out near a later leg of it counts as dug.
+// Observes a dig along a plain trajectory. After an abort, a way out near a later leg is not dug.
 static enum dig_status observe_plain(const struct dig_curve_set *const set, const double limit_m,
                                      const struct dig_route route[], const struct dig_track whole[],
                                      struct dig_recorded_dig *const recording,
                                      struct dig_observation *const  out)
 {
     const int                  t = out->trajectory;
-    struct dig_abort_detection departure;
+    struct dig_abort_detection aborted;
     const bool                 left =
         !recording->followed.missing &&
         dig_abort_detection_choose(set->trajectories, route, &recording->path, limit_m,
-                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &departure) == t;
-    const struct dig_track *const track = left ? &departure.track : &whole[t];
+                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &aborted) == t;
+    const struct dig_track *const track = left ? &aborted.track : &whole[t];
     const enum dig_status         status =
         dig_window_observe(&recording->window, &route[t], track, left ? limit_m : 2.0 * limit_m,
                            set->smooth_half_s, out);
@@ -76,7 +76,7 @@ static enum dig_status observe_plain(const struct dig_curve_set *const set, cons
     return status;
 }
 
-// The whole path decides which trajectory it was; an observation is made if it was one.
+// Chooses the trajectory by the whole path, and observes along it.
 static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
                                const struct dig_route         route[],
                                struct dig_recorded_dig *const recording,

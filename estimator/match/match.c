@@ -91,7 +91,7 @@ struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
     }
     return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
                                 .floor2_Nm2 = floor2,
-                                .norm2_Nm2  = group->whole_Nm2 };
+                                .norm2_Nm2  = group->norm2_Nm2 };
 }
 
 enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
@@ -154,7 +154,7 @@ static int look_at_all(const struct dig_curve_set *const set,
     return nearest;
 }
 
-// By the summary, if there is one.
+// By the prefilter, if there is one.
 static enum dig_status find(const struct dig_curve_set *const set,
                             const struct dig_prefilter *const prefilter, const size_t digs,
                             const struct dig_observation dig[], const double outside_floors,

@@ -26,7 +26,7 @@ struct search {
     const struct dig_prefilter *prefilter;
     const struct dig_pool_sums *sums;
     struct measured             group[DIG_TRAJECTORY_MAX];
-    double                      scatter_Nm2, whole_Nm2;
+    double                      scatter_Nm2, norm2_Nm2;
     int                         nearest; // -1: none yet
     double                      distance;
     double                      limit_Nm2; // a miss above is certainly farther
@@ -103,14 +103,14 @@ static double miss_Nm2(const struct search *const s, const size_t entry)
 static void look_at(struct search *const s, const size_t entry)
 {
     const double miss2    = miss_Nm2(s, entry);
-    const double distance = sqrt(miss2 / s->whole_Nm2);
+    const double distance = sqrt(miss2 / s->norm2_Nm2);
     const bool   first    = !(distance > s->distance) && (int)entry < s->nearest;
     if (!(distance < s->distance || first)) {
         return;
     }
     const double own = sqrt(fmax(miss2 - s->scatter_Nm2, 0.0));
     const double reach =
-        own + outline_slack * (own + sqrt(s->whole_Nm2)) + (double)FLT_MIN; // denormals' rounding
+        own + outline_slack * (own + sqrt(s->norm2_Nm2)) + (double)FLT_MIN; // denormals' rounding
     s->nearest   = (int)entry;
     s->distance  = distance;
     s->limit_Nm2 = miss2 * (1.0 + sum_slack);
@@ -149,7 +149,7 @@ int dig_nearest_find(const struct dig_prefilter *const prefilter,
     for (size_t g = 0; g < sums->groups; g++) {
         s.group[g] = measure(&sums->group[g]);
         s.scatter_Nm2 += sums->group[g].scatter_Nm2;
-        s.whole_Nm2 += sums->group[g].whole_Nm2;
+        s.norm2_Nm2 += sums->group[g].norm2_Nm2;
     }
     begin(&s);
     for (size_t e = 0; e < prefilter->set->entries; e++) {

@@ -13,7 +13,7 @@ enum { NUMBERS = DIG_COVARIANCE_NUMBERS };
 enum { FIRST_LOOK = 17 };
 
 // One trajectory, made white: q is the sum of (white_i - sum_j by_ij t_j)^2.
-struct along {
+struct compared_group {
     struct dig_gaussian gaussian;
     double              by[NUMBERS][NUMBERS]; // below the diagonal and on it
     double              white[NUMBERS];
@@ -23,14 +23,14 @@ struct search {
     const struct dig_curve_set *set;
     const struct dig_prefilter *prefilter;
     size_t                      groups;
-    struct along                along[DIG_TRAJECTORY_MAX];
+    struct compared_group       group[DIG_TRAJECTORY_MAX];
     size_t                      entry; // the nearest so far
     double                      least; // its q
 };
 
 // by = L^-1 U^-1.
 static void whiten(const struct dig_curve_set *const set, const size_t nearest,
-                   struct along *const a)
+                   struct compared_group *const a)
 {
     const struct dig_gaussian *const g    = &a->gaussian;
     const size_t                     slot = nearest * set->trajectories + g->trajectory;
@@ -64,8 +64,8 @@ static double there(const struct dig_compared *const n, const float outline[])
 
 // q of one trajectory and what was summed up before; above the limit not to its end. NaN of a curve
 // that is none.
-static double square(const struct along *const a, const float *const outline[], const double limit,
-                     double sum)
+static double square(const struct compared_group *const a, const float *const outline[],
+                     const double limit, double sum)
 {
     double t[NUMBERS];
     for (size_t i = 0; i < a->gaussian.numbers && sum <= limit; i++) {
@@ -85,10 +85,10 @@ static double square_of(const struct search *const s, const size_t entry, const 
 {
     double sum = 0.0;
     for (size_t g = 0; g < s->groups && sum <= limit; g++) {
-        const struct along *const a    = &s->along[g];
-        const size_t              slot = entry * s->set->trajectories + a->gaussian.trajectory;
-        struct dig_outline        drawn[DIG_FORCE_CHANNELS];
-        const float              *outline[DIG_FORCE_CHANNELS];
+        const struct compared_group *const a = &s->group[g];
+        const size_t       slot = entry * s->set->trajectories + a->gaussian.trajectory;
+        struct dig_outline drawn[DIG_FORCE_CHANNELS];
+        const float       *outline[DIG_FORCE_CHANNELS];
         if (s->set->packings[slot] <= 0) {
             return INFINITY;
         }
@@ -122,11 +122,11 @@ struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
     struct search s       = { .set = set, .prefilter = prefilter, .groups = sums->groups };
     double        numbers = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        if (!dig_gaussian_make_default(set, prefilter, &sums->group[g], &s.along[g].gaussian)) {
+        if (!dig_gaussian_make_default(set, prefilter, &sums->group[g], &s.group[g].gaussian)) {
             return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
         }
-        whiten(set, nearest, &s.along[g]);
-        numbers += (double)s.along[g].gaussian.numbers;
+        whiten(set, nearest, &s.group[g]);
+        numbers += (double)s.group[g].gaussian.numbers;
     }
     s.entry = nearest;
     s.least = square_of(&s, nearest, INFINITY);

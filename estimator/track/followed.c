@@ -24,7 +24,7 @@ void dig_followed_on(struct dig_followed *const followed, const int trajectory,
         followed->any        = true;
         followed->trajectory = trajectory;
         followed->progress   = progress;
-        followed->way_m      = (double)path->vertices * path->spacing_m;
+        followed->path_m     = (double)path->vertices * path->spacing_m;
     }
     followed->left = !(off_path_m <= limit_m);
 }
@@ -45,7 +45,7 @@ bool dig_followed_was_aborted(const struct dig_followed *const followed, const s
         return false;
     }
     struct dig_path until = *path;
-    until.end             = (size_t)fmin((double)path->end, followed->way_m / path->spacing_m);
+    until.end             = (size_t)fmin((double)path->end, followed->path_m / path->spacing_m);
     if (until.end <= until.contact) {
         return false;
     }

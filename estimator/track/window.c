@@ -136,7 +136,7 @@ static double told_until(const struct dig_window *const window, const struct ran
                          const double half_s)
 {
     size_t i = range.end - 1;
-    if (window->goes_on && window->progress[i] < 1.0) {
+    if (window->in_progress && window->progress[i] < 1.0) {
         const double until_s = window->time_s[i] - half_s;
         while (i > range.first && window->time_s[i] > until_s) {
             i--;
@@ -292,8 +292,9 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     read_forces(window, range, half_s, spot, observation);
     const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
 
-    observation->ending =
-        window->goes_on ? DIG_ENDING_OPEN : dig_ending_of(route, track, last, left, 0.5 * limit_m);
+    observation->ending     = window->in_progress
+                                  ? DIG_ENDING_OPEN
+                                  : dig_ending_of(route, track, last, left, 0.5 * limit_m);
     observation->first      = first;
     observation->last       = last;
     observation->off_path_m = track->rms_m;

@@ -83,7 +83,7 @@ static struct dig_error registers_of(const struct dig_input *const     input,
 
 static bool can_be_spared(const struct dig_map_group *const group)
 {
-    return !group->needed || group->spared;
+    return !group->needed || group->dispensable;
 }
 
 // A time-out. While nobody answers it is the server that is silent, not the block.

@@ -272,8 +272,8 @@ static enum dig_status read_map(const struct dig_config_map_work *const work,
     for (size_t i = 0; status == DIG_OK && i < DIG_SIGNALS; i++) {
         if (map->entry[i].used && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
             struct dig_map_group *const group = &map->group[map->entry[i].group];
-            group->spared                     = (group->spared || !group->needed) &&
-                            !dig_signal_tells_moment(sensing, (enum dig_signal)i);
+            group->dispensable                = (group->dispensable || !group->needed) &&
+                                 !dig_signal_tells_moment(sensing, (enum dig_signal)i);
             group->needed = true;
         }
     }

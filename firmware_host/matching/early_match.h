@@ -16,7 +16,7 @@
 /// Lifetime of a provisional match: longer than a dig takes.
 #define DIG_EARLY_MATCH_s 30.0
 
-/// Zeroed but for estimates, then cleared: no dig in progress. About 4.5 MB.
+/// Zeroed but for estimates, then cleared: no dig in progress. About 4 MB.
 struct dig_early_match {
     struct dig_ring    *estimates; // in: struct dig_estimate, one a tick
     struct dig_estimate last;

@@ -35,8 +35,8 @@ static bool make_room(struct dig_matcher *const matcher, const size_t bytes)
     return true;
 }
 
-// The table at the depths and attacks of the digs, and the digs along its trajectories in
-// matcher->dig; NULL without the memory.
+// The table at the depths and attacks of the digs; matcher->dig holds the digs along its
+// trajectories. NULL without memory.
 static const struct dig_curve_set *as_dug(struct dig_matcher *const         matcher,
                                           const struct dig_curve_set *const set, const size_t digs,
                                           const struct dig_observation dig[])
