@@ -11,7 +11,7 @@ static const double step[2]  = { 1e-4, 1e-4 };
 static const double settled  = 1e-9;
 static const double farthest = 0.2; // of depth or attack, in one step
 
-// Way less trajectory, the mean shift of the pin taken away.
+// Path minus trajectory, without the mean shift of the pin.
 static void residuals(const struct dig_trajectory *const trajectory, const double tooth_m,
                       const struct dig_path_point path[const POINTS], double off[const RESIDUALS])
 {

@@ -21,7 +21,7 @@ static double normal(uint64_t *const state)
     return sqrt(-2.0 * log(u)) * cos(2.0 * DIG_PI * uniform(state));
 }
 
-// What each point feels of the knots around it; the squares sum to 1.
+// Weights of the knots around each point; their squares sum to 1.
 void dig_entry_scatter_make(const struct dig_trajectory *const trajectory, const double tooth_m,
                             struct dig_entry_scatter *const scatter)
 {

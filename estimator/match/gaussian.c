@@ -17,12 +17,12 @@ enum {
 };
 _Static_assert(HALVES == 2 * BLOCKS, "a block is two of an outline's");
 
-// How far C is drawn towards correlations that depend on the distance of two blocks alone, and how
-// much smaller those are made, so that it stays positive definite.
+// Shrinkage of C towards correlations that depend on the distance of two blocks alone, and a factor
+// on these that keeps it positive definite.
 static const double towards_even   = 0.25;
 static const double even_reduction = 0.95;
 
-// Share of a number's variance that goes with no other.
+// Share of a number's variance that is independent of all others.
 static const double own_share = 0.05;
 
 // Keeps variances apart from 0.
@@ -81,8 +81,7 @@ static double between(const double point_m, const double width_m, const int lag)
     return (1.0 - DIG_ENTRY_SCATTER_SHARED) * sum / (WIDE * WIDE) + DIG_ENTRY_SCATTER_SHARED;
 }
 
-// The same as entry_scatter.h has it, where too few packings are known; the variances into
-// *variance.
+// The same by entry_scatter.h, where there are too few packings; the variances into *variance.
 static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
                                const struct dig_prefilter *const prefilter, struct matrix *const c,
                                double variance[NUMBERS])
@@ -114,8 +113,8 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     }
 }
 
-// The share of each number's standard deviation that is the digs' own and goes together, beside
-// what the measurement is off by; of digs as large as those measured.
+// Share of each number's standard deviation that comes from the digs' correlated scatter, the rest
+// being the measurement's; for digs as large as those measured.
 static void tell_shares(const struct dig_gaussian *const g, double share[NUMBERS])
 {
     double size2[CHANNELS] = { 0.0 };
@@ -180,7 +179,7 @@ static struct half half_of(const struct dig_pooled *const group, const size_t ch
     return h;
 }
 
-// The order in which blocks are looked at: those inside the path, which tell most, first.
+// Order of the blocks: the inner ones, which discriminate best, first.
 static const size_t telling[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
 
 static void measure(const struct dig_pooled *const group, const double variance[NUMBERS],
@@ -298,7 +297,7 @@ static double size2_of(const double mean[HALVES])
     return sum / BLOCKS;
 }
 
-// What is compared with the i-th number, and its u^2, of a cell.
+// The cell's value for the i-th number, and its u^2.
 struct there {
     double mean, u2;
 };

@@ -10,10 +10,10 @@
 enum { STRIDE = 16 };
 _Static_assert(DIG_CURVE_POINTS % STRIDE == 0 && DIG_OUTLINE_BLOCKS % STRIDE == 0, "whole strides");
 
-// How many packings the pooled spread is worth against an entry's own.
+// Weight of the pooled spread against an entry's own, in packings.
 static const double pooled_weight = 4.0;
 
-// Share of the table's pooled spread below which no point of a curve is believed.
+// Lower bound of a point's spread, as a share of the table's pooled spread: less is chance.
 static const double least_spread = 0.25;
 
 // Keeps variances apart from 0, and products of six of them from the end of the numbers.
@@ -81,8 +81,7 @@ static void make_curve(const struct dig_likelihood *const restrict l,
     }
 }
 
-// A product as mantissa and exponent: it never leaves the range of the numbers, and a logarithm,
-// which is dear, is drawn once.
+// A product as mantissa and exponent: it cannot overflow, and only one logarithm is computed.
 struct product {
     double mantissa;
     int    exponent;

@@ -4,15 +4,15 @@
 #include <float.h>
 #include <math.h>
 
-// Every so many entries one is looked at first, for a good entry to begin with. A prime, so that
-// the look goes along every axis of the table's grid.
+// A first pass compares every so many entries, for a good bound to start with. A prime, so that it
+// varies along every axis of the table's grid.
 enum { FIRST_LOOK = 17 };
 
 // Sums of a few hundred squares are this far off at most, relative to themselves.
 static const double sum_slack = 1e-12;
 
-// What rounding to float moves an outline by, and the slack of the sums drawn through a root,
-// relative to the norm of what was measured.
+// Slack for the rounding of outlines to float and of the sums, relative to the norm of the
+// measurement.
 static const double outline_slack = 1e-6;
 
 // What was measured along one trajectory, block by block.

@@ -10,9 +10,8 @@
 
 enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
 
-// How much less likely, in logarithms, than the likeliest a point may look by the outlines and
-// still be worth a closer look. All that are not together weigh less than a thousandth of the
-// likeliest.
+// A point whose log-likelihood by the outlines is this far below the greatest is skipped. All
+// skipped points together weigh less than a thousandth of the likeliest.
 static const double unlikely = 16.0;
 
 double dig_posterior_excess(const struct dig_curve_set *const set,
@@ -38,7 +37,7 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
 }
 
 // The fine grid: points are centres of equal intervals of each axis's position. What belongs to a
-// point lies on its axes, and is told once for each of their values.
+// point depends on single axes, and is computed once for each of their values.
 struct fine {
     size_t                   count[DIG_AXES];
     size_t                   all;
@@ -178,7 +177,7 @@ static void draw_samples(const struct fine *const fine, const double weight[],
     match->samples = DIG_MATCH_SAMPLES;
 }
 
-// Which points are worth a look: 0, or -infinity. All, if there is nothing to tell it from.
+// Marks the points to evaluate by 0, others by -infinity; all without a prefilter.
 static void look_roughly(const struct dig_curve_set *const set,
                          const struct dig_prefilter *const prefilter,
                          const struct dig_pool_sums *const sums, const struct fine *const fine,

@@ -7,12 +7,12 @@
 
 enum { NUMBERS = DIG_COVARIANCE_NUMBERS };
 
-// Every so many entries one is looked at first, for a good entry to begin with: the nearest by the
-// Euclidean norm can be a hundred times as far by this distance. A prime, so that the look goes
-// along every axis of the table's grid.
+// A first pass compares every so many entries, for a good bound to start with: the nearest by the
+// Euclidean norm can be a hundred times as far by this distance. A prime, so that it varies along
+// every axis of the table's grid.
 enum { FIRST_LOOK = 17 };
 
-// One trajectory, made white: q is the sum of (white_i - sum_j by_ij t_j)^2.
+// One trajectory, whitened: q is the sum of (white_i - sum_j by_ij t_j)^2.
 struct compared_group {
     struct dig_gaussian gaussian;
     double              by[NUMBERS][NUMBERS]; // below the diagonal and on it
@@ -54,7 +54,7 @@ static void whiten(const struct dig_curve_set *const set, const size_t nearest,
     }
 }
 
-// What of an entry's outline is compared with a number.
+// The value of an entry's outline that is compared with a number.
 static double there(const struct dig_compared *const n, const float outline[])
 {
     const double first  = (double)outline[2 * n->block];

@@ -31,7 +31,7 @@ void dig_peak_energy_weights(const struct dig_trajectory *const trajectory, cons
     *weight = sum;
 }
 
-// Digs and their opposites that a peak is told from, over all gravels: the mean of so many is off
+// Draws of a peak, each with its antithetic one, over all gravels: the mean of so many is off
 // by a twelfth of what one scatters by, at most.
 enum { DRAWN_PAIRS = 128 };
 

@@ -4,12 +4,12 @@
 #include <math.h>
 #include <stddef.h>
 
-// A vertex within this share of limit_m lies on the route, and a corner is gone round that is
-// this far behind, and was ahead.
+// A vertex within this share of limit_m lies on the route. A corner counts as passed when it lay
+// this far ahead and then lies this far behind.
 static const double on_share   = 0.25;
 static const double past_share = 0.5;
 
-// Before contact, which is noticed late.
+// Part of limit_m before contact that counts: contact is detected late.
 enum { LEAD_VERTICES = 16 };
 
 enum dig_ending dig_ending_of(const struct dig_route *const route,

@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-// Keeps every other vertex and doubles the spacing.
+// Drops every other vertex and doubles the spacing.
 static void thin(struct dig_path *const path)
 {
     size_t kept = 0;

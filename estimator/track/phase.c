@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stddef.h>
 
-// What the statics lack, in sigmas of one sample.
+// Error of the statics (inertia, seals), in sigmas of one sample.
 static const double unmodelled_share = 0.5;
 
-// Adds dt to a timer while its condition holds and tells whether it has held for long enough.
+// Times a condition; true once it has held for long enough.
 static bool held(double *const held_s, const bool condition, const double dt_s,
                  const double needed_s)
 {
@@ -21,7 +21,7 @@ static void enter(struct dig_phase_state *const state, const enum dig_dig_phase 
     state->held_s = 0.0;
 }
 
-// Free air shows what the pressures read when the soil does nothing.
+// In free air the moment is the bias.
 static void learn_bias(struct dig_phase_state *const              state,
                        const struct dig_estimator_settings *const settings, const double dt_s,
                        const double limit_Nm)

@@ -5,7 +5,7 @@
 #include <assert.h>
 #include <math.h>
 
-// Vertices this far apart, rig scale: several times what a bus's steps of angle move the pin.
+// Spacing of vertices, rig scale: several times the pin's step by one step of a bus's angles.
 static double vertex_spacing_m(const struct dig_curve_set *const set)
 {
     return 0.025 * set->tooth_m;

@@ -21,7 +21,7 @@ bool dig_correction_is_none(const struct dig_correction *const correction)
     return none;
 }
 
-// The centre of mass moves; the inertia about it is the file's and what the burden says.
+// Moves the centre of mass and adds to the inertia about it.
 static void add_burden(struct dig_link *const link, const struct dig_added_mass *const burden)
 {
     const double mass_kg = link->mass_kg + burden->mass_kg;
@@ -30,7 +30,7 @@ static void add_burden(struct dig_link *const link, const struct dig_added_mass 
     link->inertia_kgm2 += burden->inertia_kgm2;
 }
 
-// sign 1: as it is; -1: as the file has it.
+// sign 1: applies the geometry; -1: removes it.
 static void move_pins(struct dig_machine *const machine, const double sign,
                       const struct dig_correction *const by)
 {
@@ -119,7 +119,7 @@ enum dig_status dig_correction_apply(const struct dig_machine *const     machine
         if (status != DIG_OK) {
             return status;
         }
-        // Of a force sensor's rig there is nothing to correct, or it was refused.
+        // A force sensor's rig has no correction; one was refused before.
         made.corrects = !machine->sensor.fitted;
     }
     if (made.corrects) {

@@ -311,7 +311,7 @@ bool dig_fit_once(struct dig_fit *const fit)
     if (dig_gravel_track_expire(&fit->track, dig_input_now_ns())) {
         dig_fit_publish_track(fit);
     }
-    // Before the finished dig: its estimates came before it.
+    // Estimates first: once they show the end of a dig, its recording is in the queue.
     if (fit->early != NULL) {
         observe_early(fit);
     }
