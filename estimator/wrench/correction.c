@@ -110,9 +110,9 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
 
 enum dig_status dig_correction_apply(const struct dig_machine *const     machine,
                                      const struct dig_correction *const  correction,
-                                     struct dig_corrected_machine *const taken)
+                                     struct dig_corrected_machine *const corrected)
 {
-    assert(machine != NULL && taken != NULL);
+    assert(machine != NULL && corrected != NULL);
     struct dig_corrected_machine made = { .corrects = false };
     if (correction != NULL) {
         const enum dig_status status = dig_correction_check(machine, correction);
@@ -126,6 +126,6 @@ enum dig_status dig_correction_apply(const struct dig_machine *const     machine
         made.correction = *correction;
         made.machine    = dig_correction_machine(machine, correction);
     }
-    *taken = made;
+    *corrected = made;
     return DIG_OK;
 }

@@ -82,6 +82,6 @@ struct dig_corrected_machine {
 /// and cost as dig_correction_check(); nothing is written then.
 DIG_MUST_CHECK enum dig_status dig_correction_apply(const struct dig_machine     *machine,
                                                     const struct dig_correction  *correction,
-                                                    struct dig_corrected_machine *taken);
+                                                    struct dig_corrected_machine *corrected);
 
 #endif // DIG_ESTIMATOR_WRENCH_CORRECTION_H

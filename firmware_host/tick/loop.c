@@ -6,7 +6,7 @@
 
 #define NS_PER_S 1000000000LL
 
-const char *dig_prediction_state_str(const enum dig_prediction_state why)
+const char *dig_prediction_state_str(const enum dig_prediction_state state)
 {
     static const char *const words[DIG_PREDICTION_STATES] = {
         [DIG_PREDICTION_VALID]         = "",
@@ -17,7 +17,7 @@ const char *dig_prediction_state_str(const enum dig_prediction_state why)
         [DIG_PREDICTION_OFF_TABLE]     = "off the table",
         [DIG_PREDICTION_DIG_OVER]      = "the dig is over",
     };
-    return (unsigned)why < DIG_PREDICTION_STATES ? words[why] : "";
+    return (unsigned)state < DIG_PREDICTION_STATES ? words[state] : "";
 }
 
 void dig_loop_init(struct dig_loop *const loop, const struct dig_loop_settings *const settings,
