@@ -1,9 +1,9 @@
-// Inside of the estimator: for estimator/ and for who places one statically. Fixed size.
+// The estimator's state and what its sources share. For estimator/, and for placing one statically.
 
 #ifndef DIG_ESTIMATOR_ESTIMATOR_STATE_H
 #define DIG_ESTIMATOR_ESTIMATOR_STATE_H
 
-#include "estimator/estimator.h"
+#include "estimator/estimator_tick.h"
 #include "estimator/track/motion.h"
 #include "estimator/track/phase.h"
 #include "estimator/track/recorded_dig.h"
@@ -11,6 +11,12 @@
 #include "estimator/track/track.h"
 #include "estimator/wrench/correction.h"
 #include "estimator/wrench/rates.h"
+#include "estimator/wrench/statics.h"
+
+/// The causal filter of the rates: angles of a joint over a quarter second, as friction and inertia
+/// ask for (docs/numerics/estimator.md); a rig's pose over a tenth, as its path is measured better.
+#define DIG_JOINT_RATES_s  0.25
+#define DIG_SENSED_RATES_s 0.1
 
 struct dig_estimator {
     // fixed at start
@@ -19,38 +25,45 @@ struct dig_estimator {
     struct dig_estimator_settings settings;
     double                        lambda;
     struct dig_route              route[DIG_TRAJECTORY_MAX];
-    struct dig_taken              taken; // the machine as a model corrects it
+    struct dig_corrected_machine  corrected; // the machine as a model corrects it
 
-    // of the last quarter second, while it corrects; of a tenth where a force sensor tells
-    struct dig_rates_filter rates;
+    struct dig_rates_filter rates; // of the joints while a correction applies; of a rig's pose
 
     // of the sample before
     bool    started;
     int64_t last_ns;
 
-    // of the dig going on
+    // of the dig in progress
     struct dig_phase_state   phase;
     struct dig_motion_state  motion;
-    struct dig_recorded_dig *raw; // its samples and path
+    struct dig_recorded_dig *recording; // its samples and path
     struct dig_follower      follower[DIG_TRAJECTORY_MAX];
-    size_t                   next_follower; // the one whose turn it is to be refined
+    size_t                   next_follower; // the one to be refined next
     struct dig_choice        choice;        // the trajectory
     double                   progress;
     double                   off_path_m;
 
-    // of digs before
+    // of finished digs
     uint32_t                   digs;
     bool                       has_observation;
     struct dig_observation     observation;
-    bool                       lends;    // digs are handed out raw
+    bool                       lends;    // memory was lent once: digs are handed out
     struct dig_recorded_dig   *spare;    // for the next dig; NULL: none
     struct dig_recorded_dig   *finished; // to be taken; NULL: none
     uint32_t                   lost;
     const struct dig_forecast *forecast; // NULL: none
 
-    // where raw and forecast point unless others were lent
-    struct dig_recorded_dig own_raw;
-    struct dig_forecast     own_forecast;
+    struct dig_recorded_dig own_recording; // recording points to it unless memory was lent
 };
+
+/// Drops the dig in progress and waits for contact.
+void dig_estimator_clear_dig(struct dig_estimator *estimator);
+
+/// Solves the wrench of a sample and places the front. Steps the filter of the rates. DIG_ESTALE,
+/// DIG_EINVAL as dig_estimator_step().
+DIG_MUST_CHECK enum dig_status dig_estimator_solve(struct dig_estimator    *estimator,
+                                                   const struct dig_sample *sample,
+                                                   struct dig_wrench       *wrench,
+                                                   struct dig_front        *front);
 
 #endif // DIG_ESTIMATOR_ESTIMATOR_STATE_H

@@ -25,31 +25,31 @@
 
 /// Bytes behind the handoffs, in one block with everything else the threads touch.
 struct handoff_memory {
-    struct dig_reading       readings[READINGS];
-    struct dig_record        records[RECORDS];
-    struct dig_recorded_dig *digs[DIGS], *spares[DIGS];
-    struct dig_estimate      estimates[ESTIMATES];
-    struct dig_fit_result    results[RESULTS];
-    struct dig_offer         offer[3], table[3];
-    struct dig_table_news    tables[3];
-    struct dig_outlook       outlook[3];
-    struct dig_pulse         pulse[3];
-    struct dig_note          input_notes[3], fit_notes[3];
+    struct dig_reading           readings[READINGS];
+    struct dig_record            records[RECORDS];
+    struct dig_recorded_dig     *digs[DIGS], *spares[DIGS];
+    struct dig_estimate          estimates[ESTIMATES];
+    struct dig_fit_result        results[RESULTS];
+    struct dig_prediction_basis  basis[3], table[3];
+    struct dig_table_update      tables[3];
+    struct dig_prediction_record predictions[3];
+    struct dig_tick_status       tick_status[3];
+    struct dig_log_line          input_log[3], fit_log[3];
 };
 
 struct dig_daemon {
     char                     path[PATH_MAX];
     struct dig_loaded        loaded;
     struct dig_estimator    *estimator;
-    struct dig_recorded_dig *raw[DIGS];
+    struct dig_recorded_dig *dig_memory[DIGS];
     struct dig_input         input;
     struct dig_loop          loop;
     struct dig_fit           fit;
     struct dig_publisher     publisher;
     struct dig_early_match   early;
     struct dig_ring          readings, records, digs, spares, estimates, results;
-    struct dig_latest        offer, table, tables, outlook, pulse, input_notes, fit_notes;
-    atomic_llong             publish_generation;
+    struct dig_latest        basis, table, tables, predictions, tick_status, input_log, fit_log;
+    atomic_llong             publisher_generation;
     struct handoff_memory    memory;
     struct dig_rt_grant      grant;
     sem_t                    granted;
@@ -103,9 +103,9 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
     settings.coherent_s = l->map.coherent_s;
     settings.groups     = (unsigned)l->map.groups;
     for (size_t g = 0; g < l->map.groups; g++) {
-        settings.needed[g] = l->map.group[g].needed;
-        settings.spared[g] = l->map.group[g].spared;
-        settings.frame[g]  = l->map.group[g].frame;
+        settings.needed[g]      = l->map.group[g].needed;
+        settings.dispensable[g] = l->map.group[g].dispensable;
+        settings.frame[g]       = l->map.group[g].frame;
     }
     return settings;
 }
@@ -121,16 +121,16 @@ static void connect_threads(struct dig_daemon *const d)
     dig_ring_init(&d->estimates, sizeof m->estimates[0], ESTIMATES, m->estimates);
     // NOLINTNEXTLINE(bugprone-sizeof-expression): as above
     dig_ring_init(&d->spares, sizeof m->spares[0], DIGS, m->spares);
-    dig_latest_init(&d->offer, sizeof m->offer[0], m->offer);
+    dig_latest_init(&d->basis, sizeof m->basis[0], m->basis);
     dig_latest_init(&d->table, sizeof m->table[0], m->table);
     dig_latest_init(&d->tables, sizeof m->tables[0], m->tables);
-    dig_latest_init(&d->outlook, sizeof m->outlook[0], m->outlook);
-    dig_latest_init(&d->pulse, sizeof m->pulse[0], m->pulse);
-    dig_latest_init(&d->input_notes, sizeof m->input_notes[0], m->input_notes);
-    dig_latest_init(&d->fit_notes, sizeof m->fit_notes[0], m->fit_notes);
+    dig_latest_init(&d->predictions, sizeof m->predictions[0], m->predictions);
+    dig_latest_init(&d->tick_status, sizeof m->tick_status[0], m->tick_status);
+    dig_latest_init(&d->input_log, sizeof m->input_log[0], m->input_log);
+    dig_latest_init(&d->fit_log, sizeof m->fit_log[0], m->fit_log);
 
     d->input.readings = &d->readings;
-    d->input.notes    = &d->input_notes;
+    d->input.log      = &d->input_log;
     d->input.stop     = &d->stop;
 
     const struct dig_config *const config   = &d->loaded.config;
@@ -139,52 +139,54 @@ static void connect_threads(struct dig_daemon *const d)
         .tick_s       = config->tick_s,
         .stale_s      = config->stale_s,
         .prediction_s = config->prediction_s,
-        .ahead_s      = 0.5,
+        .next_dig_s   = 0.5,
         .set          = d->loaded.set,
     };
-    const struct dig_loop_ports ports = { &d->readings, &d->offer,   &d->table,
-                                          &d->spares,   &d->records, &d->digs,
-                                          &d->outlook,  &d->pulse,   &d->estimates };
+    const struct dig_loop_ports ports = { &d->readings,    &d->basis,       &d->table,
+                                          &d->spares,      &d->records,     &d->digs,
+                                          &d->predictions, &d->tick_status, &d->estimates };
     dig_loop_init(&d->loop, &settings, &ports, d->estimator);
     for (size_t i = 0; i < DIGS; i++) {
-        (void)dig_ring_push(&d->spares, &d->raw[i]);
+        (void)dig_ring_push(&d->spares, &d->dig_memory[i]);
     }
 
     d->early.estimates = &d->estimates;
-    dig_early_match_forget(&d->early, d->loaded.set);
-    atomic_store(&d->publish_generation, 1);
+    dig_early_match_clear(&d->early, d->loaded.set);
+    atomic_store(&d->publisher_generation, 1);
     d->fit = (struct dig_fit){
-        .config_path = d->path,
-        .config      = config,
-        .machine     = &d->loaded.machine,
-        .set         = d->loaded.set,
-        .generation  = 1,
-        .lambda      = d->loaded.machine.link[DIG_JOINT_BUCKET].length_m / d->loaded.set->tooth_m,
-        .known_settings     = { config->match_expires_s, config->drift_floors },
-        .digs               = &d->digs,
-        .spares             = &d->spares,
-        .early              = &d->early,
-        .offer              = &d->offer,
-        .table              = &d->table,
-        .results            = &d->results,
-        .tables             = &d->tables,
-        .notes              = &d->fit_notes,
-        .stop               = &d->stop,
-        .tick_generation    = &d->loop.generation,
-        .publish_generation = &d->publish_generation,
+        .config_path    = d->path,
+        .config         = config,
+        .machine        = &d->loaded.machine,
+        .track_settings = { .expires_s    = config->match_expires_s,
+                            .drift_floors = config->drift_floors },
+        .ports          = { .digs    = &d->digs,
+                            .spares  = &d->spares,
+                            .basis   = &d->basis,
+                            .table   = &d->table,
+                            .results = &d->results,
+                            .tables  = &d->tables,
+                            .log     = &d->fit_log },
+        .stop           = &d->stop,
+        .table          = { .set        = d->loaded.set,
+                            .generation = 1,
+                            .lambda =
+                                d->loaded.machine.link[DIG_JOINT_BUCKET].length_m / d->loaded.set->tooth_m,
+                            .tick_generation      = &d->loop.generation,
+                            .publisher_generation = &d->publisher_generation },
+        .early          = &d->early,
     };
     d->publisher = (struct dig_publisher){ .config      = config,
                                            .set         = d->loaded.set,
                                            .input       = &d->input,
                                            .fit         = &d->fit,
                                            .records     = &d->records,
-                                           .outlook     = &d->outlook,
+                                           .predictions = &d->predictions,
                                            .results     = &d->results,
                                            .tables      = &d->tables,
-                                           .generation  = &d->publish_generation,
-                                           .pulse       = &d->pulse,
-                                           .input_notes = &d->input_notes,
-                                           .fit_notes   = &d->fit_notes,
+                                           .generation  = &d->publisher_generation,
+                                           .tick_status = &d->tick_status,
+                                           .input_log   = &d->input_log,
+                                           .fit_log     = &d->fit_log,
                                            .stop        = &d->stop_publish };
 }
 
@@ -193,8 +195,8 @@ static bool allocate(struct dig_daemon *const d)
     bool all     = true;
     d->estimator = calloc(1, dig_estimator_size());
     for (size_t i = 0; i < DIGS; i++) {
-        d->raw[i] = calloc(1, dig_recorded_dig_size());
-        all       = all && d->raw[i] != NULL;
+        d->dig_memory[i] = calloc(1, dig_recorded_dig_size());
+        all              = all && d->dig_memory[i] != NULL;
     }
     return all && d->estimator != NULL;
 }
@@ -216,7 +218,7 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
         status = dig_estimator_init(d->estimator, &d->loaded.machine, d->loaded.set,
                                     &d->loaded.config.estimator);
         if (status == DIG_OK && d->loaded.corrects) {
-            status = dig_estimator_correct(d->estimator, &d->loaded.correction);
+            status = dig_estimator_set_correction(d->estimator, &d->loaded.correction);
         }
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: machine %s with table %s: %s", path,
@@ -233,7 +235,7 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
     }
     connect_threads(d);
     d->loaded.set = NULL; // the matcher's from now on, as it may exchange it
-    dig_matcher_take_up(&d->fit.matcher, d->fit.set);
+    dig_matcher_set_table(&d->fit.table.matcher, d->fit.table.set);
     dig_fit_restore(&d->fit);
     *daemon = d;
     return DIG_OK;
@@ -246,7 +248,7 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
         dig_fit_finish(&daemon->fit);
         free(daemon->estimator);
         for (size_t i = 0; i < DIGS; i++) {
-            free(daemon->raw[i]);
+            free(daemon->dig_memory[i]);
         }
         dig_loaded_finish(&daemon->loaded);
         free(daemon);
@@ -257,7 +259,7 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
 {
     assert(d != NULL && say != NULL);
     const struct dig_loaded *const    l   = &d->loaded;
-    const struct dig_curve_set *const set = d->fit.set;
+    const struct dig_curve_set *const set = d->fit.table.set;
     char                              line[LINE];
     char                              digs[LINE] = "";
     for (size_t t = 0; t < set->trajectories; t++) {
@@ -353,10 +355,10 @@ static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signa
     }
 }
 
-enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_voice *const voice,
+enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_console *const console,
                                struct dig_error *const error)
 {
-    assert(d != NULL && voice != NULL && voice->say != NULL);
+    assert(d != NULL && console != NULL && console->say != NULL);
 
     // Blocked before the first thread starts, so that every thread inherits it and only we see
     // them.
@@ -374,7 +376,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_voic
     (void)pthread_attr_init(&attributes);
     (void)pthread_attr_setstacksize(&attributes, STACK_BYTES);
     (void)sem_init(&d->granted, 0, 0);
-    d->publisher.voice = *voice;
+    d->publisher.console = *console;
 
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < sizeof mains / sizeof mains[0] && status == DIG_OK; i++) {
@@ -391,7 +393,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_voic
             }
             d->publisher.grant = d->grant;
             dig_rt_describe(&d->loaded.config.realtime, &d->grant, sizeof line, line);
-            voice->say(line);
+            console->say(line);
         }
     }
     (void)pthread_attr_destroy(&attributes);

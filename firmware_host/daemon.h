@@ -1,8 +1,8 @@
-// The whole daemon behind its options: what it loads, the threads it runs, how it stops.
+// The daemon behind its options: loads, runs and stops its threads.
 //
-//   input thread -> readings -> tick -> records, outlook, pulse -> publisher -> LCM
+//   input thread -> readings -> tick -> records, predictions, tick_status -> publisher -> LCM
 //                               ^  |                                  ^
-//                offer, table --+  +-- digs -> matcher -- results ----+
+//                basis, table --+  +-- digs -> matcher -- results ----+
 
 #ifndef DIG_FIRMWARE_HOST_DAEMON_H
 #define DIG_FIRMWARE_HOST_DAEMON_H
@@ -23,12 +23,13 @@ DIG_MUST_CHECK enum dig_status dig_daemon_create(const char *config, struct dig_
 /// NULL is allowed.
 void dig_daemon_destroy(struct dig_daemon *daemon);
 
-/// What was loaded, for people, as lines through say.
+/// Describes what was loaded, line by line through say.
 void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char *line));
 
 /// Runs until SIGTERM or SIGINT (SIGHUP exchanges the table), or until a replay has ended and all
 /// of it is published. DIG_EIO: a thread could not be started.
-DIG_MUST_CHECK enum dig_status
-dig_daemon_run(struct dig_daemon *daemon, const struct dig_voice *voice, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_daemon_run(struct dig_daemon        *daemon,
+                                              const struct dig_console *console,
+                                              struct dig_error         *error);
 
 #endif // DIG_FIRMWARE_HOST_DAEMON_H

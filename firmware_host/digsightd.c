@@ -49,7 +49,7 @@ static void show(const char *const line)
     (void)fprintf(stderr, "\r\033[K%s", line);
 }
 
-static void tell(const char *const line)
+static void print(const char *const line)
 {
     (void)printf("%s\n", line);
 }
@@ -93,12 +93,12 @@ int main(const int argc, char *argv[])
     if (status != DIG_OK) {
         return fail(status, &error);
     }
-    dig_daemon_describe(daemon, check ? tell : say);
+    dig_daemon_describe(daemon, check ? print : say);
     if (!check) {
-        const bool             terminal = isatty(STDERR_FILENO) != 0;
-        const struct dig_voice voice    = { .say  = terminal ? say_above : say,
-                                            .show = terminal ? show : NULL };
-        status                          = dig_daemon_run(daemon, &voice, &error);
+        const bool               terminal = isatty(STDERR_FILENO) != 0;
+        const struct dig_console console  = { .say  = terminal ? say_above : say,
+                                              .show = terminal ? show : NULL };
+        status                            = dig_daemon_run(daemon, &console, &error);
         (void)fputs(terminal ? "\n" : "", stderr);
     }
     dig_daemon_destroy(daemon);

@@ -8,7 +8,6 @@
 
 #include <stdlib.h>
 
-static const double lambda      = 10.0; // machine over rig
 static const double tick_s      = 0.005;
 static const double rig_tooth_m = 0.09;
 
@@ -41,13 +40,13 @@ void driven_destroy(struct driven *const b)
     made_table_destroy(b->set);
     free(b->estimator);
     free(b->spare);
-    free(b->shadow);
+    free(b->live);
     free(b);
 }
 
 double driven_moment_Nm(const enum made_trajectory which, const double progress)
 {
-    return pow(lambda, 4.0) * made_moment_Nm(&gravel, which, progress, 0.0);
+    return pow(driven_lambda, 4.0) * made_moment_Nm(&gravel, which, progress, 0.0);
 }
 
 static unsigned long allocations(const struct driven *const b)
@@ -59,17 +58,17 @@ static unsigned long allocations(const struct driven *const b)
 static bool take(struct driven *const b)
 {
     if (b->spare == NULL) {
-        return dig_estimator_take_dig(b->estimator, &b->observation);
+        return dig_estimator_take_observation(b->estimator, &b->observation);
     }
-    struct dig_recorded_dig *const raw = dig_estimator_take_raw(b->estimator);
+    struct dig_recorded_dig *const raw = dig_estimator_take_recording(b->estimator);
     if (raw == NULL) {
         return false;
     }
-    assert_false(dig_estimator_take_dig(b->estimator, &b->observation));
+    assert_false(dig_estimator_take_observation(b->estimator, &b->observation));
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     const bool any = dig_recorded_dig_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
-    b->gave_up =
-        !any && dig_recorded_dig_gave_up(b->set, &settings, raw, &b->gave_up_of, &b->gave_up_at);
+    b->gave_up     = !any && dig_recorded_dig_was_aborted(b->set, &settings, raw, &b->gave_up_of,
+                                                          &b->gave_up_at);
     if (!b->keeps) {
         dig_estimator_lend(b->estimator, raw);
     }
@@ -79,14 +78,14 @@ static bool take(struct driven *const b)
 void driven_tick(struct driven *const b, const struct dig_pose pose, const double up_m,
                  const double moment_Nm, const double drop, uint64_t *const seed)
 {
-    const double X_m = 7.9 - lambda * pose.x_m;
-    const double Z_m = -2.75 + lambda * (pose.z_m + up_m);
+    const double X_m = 7.9 - driven_lambda * pose.x_m;
+    const double Z_m = -2.75 + driven_lambda * (pose.z_m + up_m);
     double       joint_rad[DIG_JOINTS];
     model_joints(&b->machine, X_m, Z_m, -0.5 * DIG_PI - pose.theta_rad, joint_rad);
 
     // Forces are those of the family: Fx -8, Fz 5 per Nm, both at rig scale.
-    const struct model_load load = { .FX_N = 8.0 * moment_Nm / lambda,
-                                     .FZ_N = 5.0 * moment_Nm / lambda,
+    const struct model_load load = { .FX_N = 8.0 * moment_Nm / driven_lambda,
+                                     .FZ_N = 5.0 * moment_Nm / driven_lambda,
                                      .M_Nm = moment_Nm };
     b->time_s += tick_s;
     struct dig_sample sample =
@@ -105,9 +104,9 @@ void driven_tick(struct driven *const b, const struct dig_pose pose, const doubl
     assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
     b->steps_with_allocation += allocations(b) != before ? 1 : 0;
     b->observations += taken ? 1 : 0;
-    if (b->shadow != NULL && !dropped) {
-        dig_live_recording_take(b->shadow, b->set, lambda, &b->estimate);
-        assert_true(b->shadow->on ==
+    if (b->live != NULL && !dropped) {
+        dig_live_recording_add(b->live, b->set, driven_lambda, &b->estimate);
+        assert_true(b->live->digging ==
                     (!dig_estimator_is_idle(b->estimator) && b->estimate.phase != DIG_PHASE_AIR));
     }
 }
@@ -152,13 +151,13 @@ static void look_ahead(struct driven *const b, const struct drive *const drive,
 
 static void look_at_shadow(struct driven *const b, const double progress)
 {
-    if (b->shadow == NULL || b->earlies == DRIVEN_LOOKS || progress < driven_look_at[b->earlies]) {
+    if (b->live == NULL || b->earlies == DRIVEN_LOOKS || progress < driven_look_at[b->earlies]) {
         return;
     }
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     struct dig_recorded_dig *const      scratch  = calloc(1, sizeof *scratch);
     struct dig_observation *const       early    = &b->early[b->earlies++];
-    if (dig_live_recording_observe(b->set, &settings, b->shadow, scratch, early) != DIG_OK) {
+    if (dig_live_recording_observe(b->set, &settings, b->live, scratch, early) != DIG_OK) {
         early->trajectory = -1;
     }
     free(scratch);
@@ -195,13 +194,13 @@ void driven_dig(struct driven *const b, struct drive drive)
             paused_s += tick_s;
         } else if (progress > 0.6 && backed_s <= 0.0 && drive.back_s > 0.0) {
             while (backed_s < drive.back_s) { // the soil does not push back
-                backed_s += tick_s / sqrt(lambda);
+                backed_s += tick_s / sqrt(driven_lambda);
                 driven_tick(b, dig_trajectory_pose(&t, rig_s - backed_s), 0.0, 500.0, drive.drop,
                             &drive.seed);
             }
             rig_s -= backed_s;
         } else {
-            rig_s += tick_s / sqrt(lambda) / drive.stretch;
+            rig_s += tick_s / sqrt(driven_lambda) / drive.stretch;
         }
     }
     const struct dig_pose last = dig_trajectory_pose(&t, rig_s);

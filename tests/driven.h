@@ -6,8 +6,10 @@
 #define DIG_TESTS_DRIVEN_H
 
 #include "estimator/approach/live_recording.h"
-#include "estimator/estimator.h"
+#include "estimator/estimator_tick.h"
 #include "tests/made_table.h"
+
+static const double driven_lambda = 10.0; // machine over rig
 
 /// How often, and at what progress, a dig is looked at while it goes on.
 #define DRIVEN_LOOKS 4
@@ -36,14 +38,14 @@ struct driven {
     double                     time_s;
     const unsigned long       *allocations; // of this thread; NULL: nobody counts
     size_t                     observations, steps_with_allocation;
-    struct dig_live_recording *shadow; // NULL: none follows
+    struct dig_live_recording *live; // NULL: none follows
     struct dig_observation     observation;
     bool                       gave_up; // of the raw dig taken last, when nothing was told of it:
     int                        gave_up_of; // the trajectory, and where
     double                     gave_up_at;
     struct dig_estimate        estimate;
     // of the dig driven last
-    struct dig_observation early[DRIVEN_LOOKS]; // what the shadow saw; trajectory -1: nothing
+    struct dig_observation early[DRIVEN_LOOKS]; // what the live saw; trajectory -1: nothing
     int                    earlies;
     int                    known_at_end;   // trajectory as it was told just before the end
     double                 known_from;     // true progress from which on it was told, and rightly

@@ -12,25 +12,25 @@
 
 #define WIRES_LAMBDA 10.0 // the machine is so much larger than the rig
 
-#define WIRES_RING    1024 // readings and records
-#define WIRES_RESULTS 64
-#define WIRES_TELLS   4096 // estimates, of the dig going on
+#define WIRES_RING      1024 // readings and records
+#define WIRES_RESULTS   64
+#define WIRES_ESTIMATES 4096 // estimates, of the dig going on
 
 struct wires {
     struct dig_ring   readings, records, digs, spares, results, estimates;
-    struct dig_latest offer, table, tables, outlook, pulse, notes;
-    atomic_llong      tick_generation, publish_generation; // of the table in use there
+    struct dig_latest basis, table, tables, predictions, tick_status, log;
+    atomic_llong      tick_generation, publisher_generation; // of the table in use there
 
-    struct dig_reading       reading_memory[WIRES_RING];
-    struct dig_record        record_memory[WIRES_RING];
-    struct dig_recorded_dig *dig_memory[4], *spare_memory[4];
-    struct dig_fit_result    result_memory[WIRES_RESULTS];
-    struct dig_estimate      estimate_memory[WIRES_TELLS];
-    struct dig_offer         offer_memory[3], table_memory[3];
-    struct dig_table_news    tables_memory[3];
-    struct dig_outlook       outlook_memory[3];
-    struct dig_pulse         pulse_memory[3];
-    struct dig_note          note_memory[3];
+    struct dig_reading           reading_memory[WIRES_RING];
+    struct dig_record            record_memory[WIRES_RING];
+    struct dig_recorded_dig     *dig_memory[4], *spare_memory[4];
+    struct dig_fit_result        result_memory[WIRES_RESULTS];
+    struct dig_estimate          estimate_memory[WIRES_ESTIMATES];
+    struct dig_prediction_basis  basis_memory[3], table_memory[3];
+    struct dig_table_update      tables_memory[3];
+    struct dig_prediction_record predictions_memory[3];
+    struct dig_tick_status       tick_status_memory[3];
+    struct dig_log_line          log_memory[3];
 };
 
 /// All of them empty, the first table in use. They stay where they are.
@@ -41,15 +41,15 @@ static inline void wires_init(struct wires *const w)
     dig_ring_init(&w->digs, sizeof w->dig_memory[0], 4, w->dig_memory);
     dig_ring_init(&w->spares, sizeof w->spare_memory[0], 4, w->spare_memory);
     dig_ring_init(&w->results, sizeof w->result_memory[0], WIRES_RESULTS, w->result_memory);
-    dig_ring_init(&w->estimates, sizeof w->estimate_memory[0], WIRES_TELLS, w->estimate_memory);
-    dig_latest_init(&w->offer, sizeof w->offer_memory[0], w->offer_memory);
+    dig_ring_init(&w->estimates, sizeof w->estimate_memory[0], WIRES_ESTIMATES, w->estimate_memory);
+    dig_latest_init(&w->basis, sizeof w->basis_memory[0], w->basis_memory);
     dig_latest_init(&w->table, sizeof w->table_memory[0], w->table_memory);
     dig_latest_init(&w->tables, sizeof w->tables_memory[0], w->tables_memory);
-    dig_latest_init(&w->outlook, sizeof w->outlook_memory[0], w->outlook_memory);
-    dig_latest_init(&w->pulse, sizeof w->pulse_memory[0], w->pulse_memory);
-    dig_latest_init(&w->notes, sizeof w->note_memory[0], w->note_memory);
+    dig_latest_init(&w->predictions, sizeof w->predictions_memory[0], w->predictions_memory);
+    dig_latest_init(&w->tick_status, sizeof w->tick_status_memory[0], w->tick_status_memory);
+    dig_latest_init(&w->log, sizeof w->log_memory[0], w->log_memory);
     atomic_store(&w->tick_generation, 1);
-    atomic_store(&w->publish_generation, 1);
+    atomic_store(&w->publisher_generation, 1);
 }
 
 /// A matcher's settings: as by default, but for fewer evaluations.
@@ -77,7 +77,7 @@ static inline struct dig_loop_settings wires_loop_settings(const struct dig_curv
         .tick_s       = 0.005,
         .stale_s      = 0.1,
         .prediction_s = 0.05,
-        .ahead_s      = 0.5,
+        .next_dig_s   = 0.5,
         .set          = set,
     };
 }
@@ -86,15 +86,15 @@ static inline struct dig_loop_settings wires_loop_settings(const struct dig_curv
 static inline struct dig_loop_ports wires_loop_ports(struct wires *const w)
 {
     return (struct dig_loop_ports){
-        .readings  = &w->readings,
-        .offer     = &w->offer,
-        .table     = &w->table,
-        .spares    = &w->spares,
-        .records   = &w->records,
-        .digs      = &w->digs,
-        .outlook   = &w->outlook,
-        .pulse     = &w->pulse,
-        .estimates = &w->estimates,
+        .readings    = &w->readings,
+        .basis       = &w->basis,
+        .table       = &w->table,
+        .spares      = &w->spares,
+        .records     = &w->records,
+        .digs        = &w->digs,
+        .predictions = &w->predictions,
+        .tick_status = &w->tick_status,
+        .estimates   = &w->estimates,
     };
 }
 
@@ -103,20 +103,20 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
                                   struct dig_curve_set *const set, struct dig_fit *const fit)
 {
     *fit = (struct dig_fit){
-        .config             = config,
-        .set                = set,
-        .generation         = 1,
-        .lambda             = WIRES_LAMBDA,
-        .known_settings     = { .expires_s = 3600.0, .drift_floors = 3.0 },
-        .digs               = &w->digs,
-        .spares             = &w->spares,
-        .offer              = &w->offer,
-        .table              = &w->table,
-        .results            = &w->results,
-        .tables             = &w->tables,
-        .notes              = &w->notes,
-        .tick_generation    = &w->tick_generation,
-        .publish_generation = &w->publish_generation,
+        .config         = config,
+        .track_settings = { .expires_s = 3600.0, .drift_floors = 3.0 },
+        .ports          = { .digs    = &w->digs,
+                            .spares  = &w->spares,
+                            .basis   = &w->basis,
+                            .table   = &w->table,
+                            .results = &w->results,
+                            .tables  = &w->tables,
+                            .log     = &w->log },
+        .table          = { .set                  = set,
+                            .generation           = 1,
+                            .lambda               = WIRES_LAMBDA,
+                            .tick_generation      = &w->tick_generation,
+                            .publisher_generation = &w->publisher_generation },
     };
 }
 
@@ -126,7 +126,7 @@ static inline void wires_init_early(struct wires *const w, struct dig_early_matc
 {
     fit->early       = early;
     early->estimates = &w->estimates;
-    dig_early_match_forget(early, fit->set);
+    dig_early_match_clear(early, fit->table.set);
 }
 
 /// What a tick tells of the bucket at a pose of the rig and of its moment there, with the noise of

@@ -5,6 +5,7 @@
 #include "closed_loop/report/report.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
+#include "estimator/predict/prediction.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -218,7 +219,7 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         struct dig_estimate    estimate;
         struct dig_observation dig;
         if (dig_estimator_step(estimator, &samples.row[i], &estimate) != DIG_OK ||
-            !dig_estimator_take_dig(estimator, &dig)) {
+            !dig_estimator_take_observation(estimator, &dig)) {
             continue;
         }
         if (dig.dig_count == said->matched_dig) {

@@ -36,8 +36,8 @@ static bool is_carrying(const struct dig_air_segment *const segment)
     return segment->dig > 0 || segment->after;
 }
 
-void dig_lines_carry(const double own_kg, const struct dig_burden *const common,
-                     struct dig_burden *const payload)
+void dig_lines_carry(const double own_kg, const struct dig_added_mass *const common,
+                     struct dig_added_mass *const payload)
 {
     const double share = own_kg / (telling_kg + fmax(common->mass_kg, 0.0));
     payload->moment_kgm.x += share * common->moment_kgm.x;

@@ -46,7 +46,8 @@ struct dig_lines {
 
 /// Adds a payload of one's own, which lies where the common one does; where there is hardly any, in
 /// the bucket's centre of mass.
-void dig_lines_carry(double own_kg, const struct dig_burden *common, struct dig_burden *payload);
+void dig_lines_carry(double own_kg, const struct dig_added_mass *common,
+                     struct dig_added_mass *payload);
 
 /// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);

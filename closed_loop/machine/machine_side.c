@@ -65,11 +65,11 @@ void dig_machine_side_destroy(struct dig_machine_side *const side)
 
 // The common payload, which the first dig lacks, and the dig's own.
 static void carry(const struct dig_machine_side *const side, const double value[], const size_t dig,
-                  struct dig_burden *const payload)
+                  struct dig_added_mass *const payload)
 {
     struct dig_correction common = { .delay_s = 0.0 };
     dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value, &common);
-    *payload = dig > 0 ? common.payload : (struct dig_burden){ .mass_kg = 0.0 };
+    *payload = dig > 0 ? common.payload : (struct dig_added_mass){ .mass_kg = 0.0 };
     dig_lines_carry(side->own_payload_kg[dig], &common.payload, payload);
 }
 

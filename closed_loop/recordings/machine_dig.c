@@ -85,8 +85,8 @@ static double off_route_m(const struct dig_route *const route, const struct vert
     double last   = 0.0;
     size_t i      = start;
     for (; i < v->count && i < start + most && last < 0.99; i++) {
-        const struct dig_place place =
-            dig_route_place(route, dx_m, dz_m, &v->point[i], last - 0.02, fmin(last + 0.1, 1.0));
+        const struct dig_projection place =
+            dig_route_project(route, dx_m, dz_m, &v->point[i], last - 0.02, fmin(last + 0.1, 1.0));
         sum_m2 += place.distance_m * place.distance_m;
         last = fmax(last, place.progress);
         if (sum_m2 > (double)most * enough_m * enough_m) {
@@ -136,7 +136,7 @@ static struct dig_track fit_track(const struct dig_route *const route,
     const size_t    first = found->start > 8 ? found->start - 8 : 0;
     for (size_t i = first; i < found->end; i++) {
         if (i == found->start) {
-            dig_path_touch(&path, &v->point[i]);
+            dig_path_add_contact(&path, &v->point[i]);
         } else {
             (void)dig_path_add(&path, &v->point[i], i > found->start);
         }
@@ -194,8 +194,8 @@ static void split(const struct dig_machine *const machine, const struct dig_rout
     dig->end          = to;
     for (size_t i = from; i < dig->samples; i++) {
         const struct dig_path_point at = point_of(machine, &dig->sample[i], dig->lambda, tooth_m);
-        const struct dig_place place = dig_route_place(route, dig->track.dx_m, dig->track.dz_m, &at,
-                                                       last - 0.05, fmin(last + 0.1, 1.0));
+        const struct dig_projection place = dig_route_project(
+            route, dig->track.dx_m, dig->track.dz_m, &at, last - 0.05, fmin(last + 0.1, 1.0));
         if (place.distance_m > 2.0 * limit_share * tooth_m) {
             continue;
         }

@@ -26,7 +26,7 @@ static enum dig_status drive(struct dig_estimator *const               estimator
     for (size_t i = 0; i < recording->rows && status == DIG_OK; i++) {
         // A sample it cannot use is passed over, as in the daemon's tick.
         if (dig_estimator_step(estimator, &recording->row[i], &estimate) == DIG_OK &&
-            dig_estimator_take_dig(estimator, &observation) &&
+            dig_estimator_take_observation(estimator, &observation) &&
             observation.last - observation.first >= DIG_OBSERVE_LEAST_PATH) {
             status = append(digs, &observation);
         }
@@ -45,7 +45,7 @@ static enum dig_status observe(const struct dig_machine *const           machine
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     enum dig_status status = dig_estimator_init(estimator, machine, set, &settings);
     if (status == DIG_OK && correction != NULL) {
-        status = dig_estimator_correct(estimator, correction);
+        status = dig_estimator_set_correction(estimator, correction);
     }
     if (status != DIG_OK) {
         return dig_error_set(error, status, "machine %s: %s", machine->name,

@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <math.h>
 
-// A mean of squares, less what their scatter makes of it.
+// A mean of squares minus the part of their scatter.
 struct mean {
     double sum[DIG_CHANNELS];
     double count;
@@ -41,7 +41,7 @@ static double value_of(const struct dig_approach *const approach, const bool att
     return attack ? approach->attack_rad : approach->depth;
 }
 
-// A table without the i-th node of one gravel, in which that node is told from the rest.
+// A table without the i-th node of one gravel, which is then predicted from the rest.
 static struct dig_nodes without(const struct dig_nodes *const nodes, const size_t i)
 {
     struct dig_nodes rest = *nodes;
@@ -73,7 +73,7 @@ static double scatter_of(const struct dig_nodes *const    nodes,
     return whole2 > 0.0 ? scatter2 / whole2 : 0.0;
 }
 
-// Leaves one node of an axis out and tells it from its neighbours' changes: (c - told) / (h1 h2).
+// Leaves one node of an axis out and interpolates it: curvature = (c - interpolated) / (h1 h2).
 static void leave_out(const struct dig_curve_set *const set, const size_t entry,
                       const size_t trajectory, const struct dig_nodes *const nodes, const size_t i,
                       const bool attack, struct mean *const bend)
@@ -107,18 +107,18 @@ static void leave_out(const struct dig_curve_set *const set, const size_t entry,
     const double f     = (value - low) / (high - low);
     const double steps = (value - low) * (high - value);
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        double told[DIG_CURVE_POINTS];
+        double interpolated[DIG_CURVE_POINTS];
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            told[k] = (1.0 - f) * one.change[c][k] + f * two.change[c][k];
+            interpolated[k] = (1.0 - f) * one.change[c][k] + f * two.change[c][k];
         }
         const double scatter2 = scatter_of(nodes, &at, c) +
                                 (1.0 - f) * (1.0 - f) * scatter_of(nodes, &below, c) +
                                 f * f * scatter_of(nodes, &above, c);
-        add(bend, c, (mean_square(here.change[c], told) - scatter2) / (steps * steps));
+        add(bend, c, (mean_square(here.change[c], interpolated) - scatter2) / (steps * steps));
     }
 }
 
-// All of the change on an axis that tells nothing of its curvature.
+// The whole change on an axis whose curvature is not known.
 static void take_all(const struct dig_curve_set *const set, const size_t entry,
                      const size_t trajectory, const struct dig_nodes *const nodes, const size_t i,
                      const bool attack, struct mean *const bend)

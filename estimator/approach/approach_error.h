@@ -1,11 +1,10 @@
-// How wrong curves interpolated over depth and attack may be, told by leaving out what was dug.
+// Interpolation error over depth and attack, measured by leaving out what was dug.
 //
-// Along an axis, every dig between two others is told from these; what it is off beyond the scatter
-// of the means is curvature, and the error of a straight line between two digs h apart is at most
-// that of leaving one out: e = |bend| (x - low) (high - x). An axis with a dig on one side alone
-// tells nothing of its curvature: there all of the change is taken for bent. Between gravels, every
-// dig of one is told from the others' change; what that is off beyond the scatter is added where a
-// gravel borrows.
+// Along an axis, every dig between two others is interpolated from these. Its error beyond the
+// scatter of the means is curvature; the error of a straight line between two digs is then at most
+// e = |bend| (x - low) (high - x). With a dig on one side alone the curvature is not known, and all
+// of the change counts as curvature. Between gravels, every dig of one is predicted by the others'
+// change; its error beyond the scatter is added where a gravel borrows.
 
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_ERROR_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_ERROR_H

@@ -11,9 +11,9 @@ static const double step[2]  = { 1e-4, 1e-4 };
 static const double settled  = 1e-9;
 static const double farthest = 0.2; // of depth or attack, in one step
 
-// Way less trajectory, the mean shift of the pin taken away.
+// Path minus trajectory, without the mean shift of the pin.
 static void residuals(const struct dig_trajectory *const trajectory, const double tooth_m,
-                      const struct dig_path_point way[const POINTS], double off[const RESIDUALS])
+                      const struct dig_path_point path[const POINTS], double off[const RESIDUALS])
 {
     double mean_x_m = 0.0;
     double mean_z_m = 0.0;
@@ -21,9 +21,9 @@ static void residuals(const struct dig_trajectory *const trajectory, const doubl
         const double          progress = (double)k / (POINTS - 1);
         const struct dig_pose pose =
             dig_trajectory_pose(trajectory, dig_trajectory_time_s(trajectory, tooth_m, progress));
-        off[3 * k]     = way[k].x_m - pose.x_m;
-        off[3 * k + 1] = way[k].z_m - pose.z_m;
-        off[3 * k + 2] = way[k].turn_m - tooth_m * pose.theta_rad;
+        off[3 * k]     = path[k].x_m - pose.x_m;
+        off[3 * k + 1] = path[k].z_m - pose.z_m;
+        off[3 * k + 2] = path[k].turn_m - tooth_m * pose.theta_rad;
         mean_x_m += off[3 * k] / POINTS;
         mean_z_m += off[3 * k + 1] / POINTS;
     }
@@ -45,7 +45,7 @@ static double rms(const double off[const RESIDUALS])
 struct fit {
     const struct dig_trajectory *trajectory;
     double                       tooth_m, depth_m;
-    const struct dig_path_point *way;
+    const struct dig_path_point *path;
 };
 
 // False where the trajectory cannot be dug so.
@@ -58,7 +58,7 @@ static bool try_at(const struct fit *const fit, const double at[const 2],
         DIG_OK) {
         return false;
     }
-    residuals(&dug, fit->tooth_m, fit->way, off);
+    residuals(&dug, fit->tooth_m, fit->path, off);
     return true;
 }
 
@@ -99,15 +99,15 @@ static bool move(const struct fit *const fit, const bool deepens, const double o
 }
 
 double dig_approach_fit(const struct dig_trajectory *const trajectory, const double tooth_m,
-                        const double depth_m, const struct dig_path_point way[const POINTS],
+                        const double depth_m, const struct dig_path_point path[const POINTS],
                         struct dig_approach *const approach)
 {
-    assert(trajectory != NULL && way != NULL && approach != NULL && tooth_m > 0.0);
-    const struct fit fit     = { trajectory, tooth_m, depth_m, way };
+    assert(trajectory != NULL && path != NULL && approach != NULL && tooth_m > 0.0);
+    const struct fit fit     = { trajectory, tooth_m, depth_m, path };
     const bool       deepens = depth_m > 0.0 && trajectory->phase[0].vz_mps < 0.0;
     double           at[2]   = { 1.0, 0.0 };
     double           off[RESIDUALS];
-    residuals(trajectory, tooth_m, way, off);
+    residuals(trajectory, tooth_m, path, off);
     double least = rms(off);
     for (int i = 0; i < STEPS; i++) {
         double by[2];
@@ -131,10 +131,10 @@ double dig_approach_fit(const struct dig_trajectory *const trajectory, const dou
 }
 
 double dig_approach_off_m(const struct dig_trajectory *const trajectory, const double tooth_m,
-                          const struct dig_path_point way[const POINTS])
+                          const struct dig_path_point path[const POINTS])
 {
-    assert(trajectory != NULL && way != NULL);
+    assert(trajectory != NULL && path != NULL);
     double off[RESIDUALS];
-    residuals(trajectory, tooth_m, way, off);
+    residuals(trajectory, tooth_m, path, off);
     return rms(off);
 }

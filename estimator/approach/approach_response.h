@@ -1,5 +1,5 @@
-// How much the curves of a gravel change when it is dug deeper or with the bucket turned: what was
-// dug, less the plain curve, at equal times (a phase lasts as long however deep it goes).
+// Response of a gravel's curves to depth and attack: the curve dug there minus the plain curve, at
+// equal times (a phase lasts as long however deep it goes).
 
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_RESPONSE_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_RESPONSE_H
@@ -13,13 +13,13 @@
 struct dig_response {
     double change[DIG_CHANNELS][DIG_CURVE_POINTS];
     double plain[DIG_CHANNELS][DIG_CURVE_POINTS]; // the plain curve at the same times, in its unit
-    double scatter2[DIG_CHANNELS];                // of the means the change is made of, squared
+    double scatter2[DIG_CHANNELS];                // of the means behind the change, squared
     double rms[DIG_CHANNELS];                     // of the plain curve, in its unit
-    double inverse_packings;                      // of the curve that comes of it
+    double inverse_packings;                      // of the resulting curve
 };
 
-/// By the entry's own digs, weighed as dig_approach_weigh() does, over the path of the trajectory
-/// dug `along` (mostly the same). False when they do not reach so far.
+/// By the entry's own digs, weighted as by dig_approach_weigh(), over the path of the trajectory
+/// dug at `along` (mostly the same). False when they do not reach so far.
 bool dig_response_own(const struct dig_curve_set *set, size_t entry, size_t trajectory,
                       const struct dig_approach *approach, const struct dig_approach *along,
                       struct dig_response *response);
@@ -29,7 +29,7 @@ bool dig_response_own(const struct dig_curve_set *set, size_t entry, size_t traj
 bool dig_response_borrowed(const struct dig_curve_set *set, size_t entry, size_t trajectory,
                            const struct dig_approach *approach, struct dig_response *response);
 
-/// The trajectory of the set dug so; the plain one where that cannot be.
+/// The trajectory of the set at an approach; the plain one where that cannot be.
 struct dig_trajectory dig_response_trajectory(const struct dig_curve_set *set, size_t trajectory,
                                               const struct dig_approach *approach);
 

@@ -59,8 +59,8 @@ double dig_approach_deepest(const struct dig_curve_set *const set, const size_t 
     return deepest;
 }
 
-// The way from where the moment reaches the levels to the end of the first leg, m, at most that
-// leg; NaN when it does not, or the curve lacks what must be known.
+// Path length from where the moment reaches the levels to the end of the first leg, m, at most that
+// leg; NaN when it does not, or the curve is not measured there.
 static double ramp_m(const double moment_Nm[const DIG_CURVE_POINTS], const double first,
                      const double last, const struct dig_route *const route)
 {
@@ -125,7 +125,7 @@ static double table_ramp_m(const struct dig_curve_set *const set, const size_t t
     return count > 0.0 ? sum_m / count : (double)NAN;
 }
 
-// A line of ramps over depth, or over attack, least squares over those that can be told.
+// A line through ramps over depth or attack, least squares over those that are known.
 struct line {
     double n, x, ramp_m, xx, xr;
 };

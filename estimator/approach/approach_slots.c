@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <math.h>
 
-// Ways of digging nearer than this, in bucket lengths, are one: it changes a curve by a per cent.
+// Approaches nearer than this, in bucket lengths, share a slot: a curve changes by a per cent.
 static const double alike = 0.005;
 
 bool dig_approach_varies(const struct dig_curve_set *const set, const size_t trajectory)

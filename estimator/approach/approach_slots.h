@@ -1,5 +1,5 @@
-// Digs of one ground that were each made in a way of their own, and the table they are matched
-// with: one trajectory of it for every way (estimator/approach/approached.h).
+// Slots of digs at several depths and attacks: the table they are matched with has one trajectory
+// for each slot (estimator/approach/approached.h).
 
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_SLOTS_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_SLOTS_H
@@ -20,9 +20,9 @@ struct dig_approach_slots {
 bool dig_approach_varies(const struct dig_curve_set *set, size_t trajectory);
 bool dig_approach_varies_any(const struct dig_curve_set *set);
 
-/// The index of the slot for a dig along a trajectory of the set: one that is there when it was
-/// made alike within half a hundredth of a bucket length of path, else a new one; when all are
-/// taken the nearest of the trajectory, or -1 when it has none.
+/// The index of the slot for a dig along a trajectory of the set: an existing one within half a
+/// hundredth of a bucket length of path, else a new one; when all are taken the nearest of the
+/// trajectory, or -1.
 int dig_approach_slot(const struct dig_curve_set *set, size_t trajectory,
                       const struct dig_approach *approach, struct dig_approach_slots *slots);
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// The parts of the memory, each where its type may stand.
+// The parts of the memory, each aligned for its type.
 struct layout {
     size_t packings, curve, whole;
 };
@@ -55,7 +55,7 @@ static double bent2(const struct dig_curve_set *const set, const size_t entry,
     return sum * sum;
 }
 
-// The error of what others lend, growing as the change does.
+// The error of a borrowed change, in proportion to it.
 static double lent2(const struct dig_curve_set *const       set,
                     const struct dig_approached_slot *const slot,
                     const struct dig_approach_error *const error, const int channel)
@@ -134,17 +134,18 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
     made->curve                      = (struct dig_curve *)(void *)((uint8_t *)memory + l.curve);
     for (size_t s = 0; s < slots; s++) {
         assert(slot[s].trajectory < set->trajectories);
-        struct dig_approached_slot told = slot[s];
-        struct dig_approach_error  own  = { .farthest_m = 0.0 };
-        told.approach                   = dig_approach_told(&told.approach);
-        made->trajectory[s] = dig_response_trajectory(set, told.trajectory, &told.approach);
+        struct dig_approached_slot wanted = slot[s];
+        struct dig_approach_error  own    = { .farthest_m = 0.0 };
+        wanted.approach                   = dig_approach_told(&wanted.approach);
+        made->trajectory[s] = dig_response_trajectory(set, wanted.trajectory, &wanted.approach);
         if (error != NULL) {
-            own = error[told.trajectory];
-        } else if (!dig_approach_is_plain(&told.approach)) {
-            dig_approach_error_measure(set, told.trajectory, &own);
+            own = error[wanted.trajectory];
+        } else if (!dig_approach_is_plain(&wanted.approach)) {
+            dig_approach_error_measure(set, wanted.trajectory, &own);
         }
         for (size_t e = 0; e < set->entries; e++) {
-            fill(set, &told, &own, e, &made->packings[e * slots + s], &made->curve[e * slots + s]);
+            fill(set, &wanted, &own, e, &made->packings[e * slots + s],
+                 &made->curve[e * slots + s]);
         }
     }
     return made;

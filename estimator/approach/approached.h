@@ -1,11 +1,11 @@
-// A table as it would be, had it been dug at other depths and attacks: its curves interpolated
-// between those it was dug at, so that whoever takes a table takes this one.
+// The table at other depths and attacks, interpolated between those it was dug at; a curve set like
+// any other.
 //
-// A gravel that was dug at enough of them gives its own curves, weighed as
-// estimator/approach/approaches.h has it, at equal times: a phase lasts as long however deep it
-// goes. One that was not is given the change that others saw, relative to the size of their curves,
-// the nearest gravels most. The spread of one dig grows by what estimator/approach/approach_error.h
-// says of the interpolation.
+// A gravel that was dug at enough of them is interpolated from its own curves, with the weights of
+// estimator/approach/approaches.h, at equal times (a phase lasts as long however deep it goes).
+// Another one borrows the change of others, relative to the size of their curves, the nearest
+// gravels most. The spread of one dig grows by the interpolation error of
+// estimator/approach/approach_error.h.
 
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACHED_H
 #define DIG_ESTIMATOR_APPROACH_APPROACHED_H

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// What counts as the same depth, or the same angle in rad.
+// Tolerance of equal depths, and of equal angles in rad.
 static const double same = 1e-9;
 
 void dig_nodes_of(const struct dig_curve_set *const set, const size_t entry,
@@ -36,53 +36,53 @@ void dig_nodes_of(const struct dig_curve_set *const set, const size_t entry,
 }
 
 // An approach as a point of the plane, the plain one at the origin.
-struct place {
+struct point {
     double down_m, turn_m;
 };
 
-static struct place place_of(const struct dig_curve_set *const set, const size_t trajectory,
+static struct point place_of(const struct dig_curve_set *const set, const size_t trajectory,
                              const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_told(approach);
+    const struct dig_approach wanted = dig_approach_told(approach);
     const double depth_m = set->approaches != NULL ? set->approaches->depth_m[trajectory] : 0.0;
-    return (struct place){ depth_m * (told.depth - 1.0), set->tooth_m * told.attack_rad };
+    return (struct point){ depth_m * (wanted.depth - 1.0), set->tooth_m * wanted.attack_rad };
 }
 
 double dig_approach_distance_m(const struct dig_curve_set *const set, const size_t trajectory,
                                const struct dig_approach *const a,
                                const struct dig_approach *const b)
 {
-    const struct place x = place_of(set, trajectory, a);
-    const struct place y = place_of(set, trajectory, b);
+    const struct point x = place_of(set, trajectory, a);
+    const struct point y = place_of(set, trajectory, b);
     return hypot(x.down_m - y.down_m, x.turn_m - y.turn_m);
 }
 
 static int compare(const void *const a, const void *const b)
 {
-    const struct place *const x = a;
-    const struct place *const y = b;
+    const struct point *const x = a;
+    const struct point *const y = b;
     if (x->down_m < y->down_m || x->down_m > y->down_m) {
         return x->down_m < y->down_m ? -1 : 1;
     }
     return (x->turn_m > y->turn_m) - (x->turn_m < y->turn_m);
 }
 
-// Positive where c lies to the left of the way from a to b.
-static double cross(const struct place *const a, const struct place *const b,
-                    const struct place *const c)
+// Positive where c lies to the left of the line from a to b.
+static double cross(const struct point *const a, const struct point *const b,
+                    const struct point *const c)
 {
     return (b->down_m - a->down_m) * (c->turn_m - a->turn_m) -
            (b->turn_m - a->turn_m) * (c->down_m - a->down_m);
 }
 
 // Andrew's monotone chain: the corners of the hull, counter-clockwise, of sorted points.
-static size_t chain(const size_t n, const struct place point[], struct place hull[])
+static size_t chain(const size_t n, const struct point point[], struct point hull[])
 {
     size_t corners = 0;
     for (size_t half = 0; half < 2; half++) {
         const size_t least = corners + (half == 0 ? 1 : 0);
         for (size_t i = 0; i < n; i++) {
-            const struct place *const p = &point[half == 0 ? i : n - 1 - i];
+            const struct point *const p = &point[half == 0 ? i : n - 1 - i];
             if (half == 1 && i == 0) {
                 continue; // the last of the first half
             }
@@ -95,15 +95,15 @@ static size_t chain(const size_t n, const struct place point[], struct place hul
     return corners > 1 ? corners - 1 : corners; // the first again
 }
 
-// The different places anybody dug at, the plain one among them, sorted.
+// The distinct points dug at by any gravel, the plain one included, sorted.
 static size_t collect(const struct dig_curve_set *const set, const size_t trajectory,
-                      struct place point[const DIG_NODES_MAX])
+                      struct point point[const DIG_NODES_MAX])
 {
     const struct dig_approach_set *const other = set->approaches;
     size_t                               n     = 1;
-    point[0]                                   = (struct place){ 0.0, 0.0 };
+    point[0]                                   = (struct point){ 0.0, 0.0 };
     for (size_t i = 0; other != NULL && i < other->entries && n < DIG_NODES_MAX; i++) {
-        const struct place p = place_of(set, trajectory, &other->entry[i].approach);
+        const struct point p = place_of(set, trajectory, &other->entry[i].approach);
         bool new             = other->packings[i * other->trajectories + trajectory] > 0;
         for (size_t k = 0; new &&k < n; k++) {
             new =
@@ -117,9 +117,9 @@ static size_t collect(const struct dig_curve_set *const set, const size_t trajec
     return n;
 }
 
-// The place on the way from a to b nearest to p.
-static struct place nearest_between(const struct place *const a, const struct place *const b,
-                                    const struct place *const p)
+// The point between a and b nearest to p.
+static struct point nearest_between(const struct point *const a, const struct point *const b,
+                                    const struct point *const p)
 {
     const double x = b->down_m - a->down_m;
     const double y = b->turn_m - a->turn_m;
@@ -127,7 +127,7 @@ static struct place nearest_between(const struct place *const a, const struct pl
     const double f =
         l > 0.0 ? ((p->down_m - a->down_m) * x + (p->turn_m - a->turn_m) * y) / l : 0.0;
     const double g = fmin(fmax(f, 0.0), 1.0);
-    return (struct place){ a->down_m + g * x, a->turn_m + g * y };
+    return (struct point){ a->down_m + g * x, a->turn_m + g * y };
 }
 
 double dig_approach_clamp(const struct dig_curve_set *const set, const size_t trajectory,
@@ -135,18 +135,18 @@ double dig_approach_clamp(const struct dig_curve_set *const set, const size_t tr
                           struct dig_approach *const       nearest)
 {
     assert(set != NULL && approach != NULL && nearest != NULL && trajectory < set->trajectories);
-    struct place point[DIG_NODES_MAX];
-    struct place hull[2 * DIG_NODES_MAX] = { { 0.0, 0.0 } };
+    struct point point[DIG_NODES_MAX];
+    struct point hull[2 * DIG_NODES_MAX] = { { 0.0, 0.0 } };
     const size_t n                       = collect(set, trajectory, point);
     const size_t corners                 = chain(n, point, hull);
 
-    const struct place p      = place_of(set, trajectory, approach);
-    struct place       best   = hull[0];
+    const struct point p      = place_of(set, trajectory, approach);
+    struct point       best   = hull[0];
     double             away_m = INFINITY;
     bool               inside = corners > 2;
     for (size_t i = 0; i < corners; i++) {
-        const struct place *const next = &hull[(i + 1) % corners];
-        const struct place        near = nearest_between(&hull[i], next, &p);
+        const struct point *const next = &hull[(i + 1) % corners];
+        const struct point        near = nearest_between(&hull[i], next, &p);
         const double              d_m  = hypot(p.down_m - near.down_m, p.turn_m - near.turn_m);
         inside                         = inside && cross(&hull[i], next, &p) >= 0.0;
         if (d_m < away_m) {
@@ -257,11 +257,11 @@ bool dig_approach_weigh(const struct dig_nodes *const    nodes,
                         double                           weight[const DIG_NODES_MAX])
 {
     assert(nodes != NULL && approach != NULL);
-    const struct dig_approach told = dig_approach_told(approach);
+    const struct dig_approach wanted = dig_approach_told(approach);
     struct bracket            depth;
     struct bracket            attack;
-    if (nodes->nodes == 0 || !find_bracket(nodes, false, told.depth, &depth) ||
-        !find_bracket(nodes, true, told.attack_rad, &attack)) {
+    if (nodes->nodes == 0 || !find_bracket(nodes, false, wanted.depth, &depth) ||
+        !find_bracket(nodes, true, wanted.attack_rad, &attack)) {
         return false;
     }
     double cell[DIG_NODES_MAX] = { 0.0 };

@@ -1,9 +1,9 @@
-// The depths and attacks a table was dug at, as points of a plane, and what lies between them.
+// The depths and attacks a table was dug at, as points of a plane, and weights between them.
 //
 //   attack               o  dug: what a curve is interpolated between
 //     |       o          .  the plain one, dug by every gravel
-//     |     / | \        x  outside the hull: told by its nearest place in it,
-//     |   o - . - o      and by how far that is
+//     |     / | \        x  outside the hull: represented by its nearest point
+//     |   o - . - o         in the hull, and the distance to it
 //     |     \ | /    x
 //     |       o
 //     +-------------- depth
@@ -20,9 +20,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define DIG_NODES_MAX 72 // ways a trajectory is dug, the plain one among them; more are passed over
+#define DIG_NODES_MAX 72 // approaches of a trajectory, the plain one included; more are skipped
 
-/// What one gravel was dug at along one trajectory; the plain one first.
+/// The approaches one gravel was dug at along one trajectory; the plain one first.
 struct dig_nodes {
     size_t                  nodes;
     struct dig_approach     approach[DIG_NODES_MAX];
@@ -34,7 +34,7 @@ struct dig_nodes {
 void dig_nodes_of(const struct dig_curve_set *set, size_t entry, size_t trajectory,
                   struct dig_nodes *nodes);
 
-/// How far apart two ways of digging a trajectory of the set are, m.
+/// Distance of two approaches of a trajectory of the set, m.
 double dig_approach_distance_m(const struct dig_curve_set *set, size_t trajectory,
                                const struct dig_approach *a, const struct dig_approach *b);
 
@@ -43,16 +43,15 @@ double dig_approach_distance_m(const struct dig_curve_set *set, size_t trajector
 double dig_approach_clamp(const struct dig_curve_set *set, size_t trajectory,
                           const struct dig_approach *approach, struct dig_approach *nearest);
 
-/// What each node weighs at an approach: bilinear where the four corners of its cell were dug, else
-/// piecewise linear along depth plus the same along attack. The weights add up to 1; at a node they
-/// are 1 and 0. Linear, as a second power through three noisy curves would gain half a percent of a
-/// curve that bends with the square of depth, and lose more to the scatter of their means. False
-/// when the nodes do not reach so far; then nothing is written.
+/// Weights of the nodes at an approach: bilinear where the four corners of its cell were dug, else
+/// piecewise linear along depth plus the same along attack. They add up to 1; at a node they are 1
+/// and 0. A parabola would gain half a percent for a curve quadratic in depth, and lose more to the
+/// scatter of three means. False, and nothing is written, when the nodes do not reach so far.
 bool dig_approach_weigh(const struct dig_nodes *nodes, const struct dig_approach *approach,
                         double weight[DIG_NODES_MAX]);
 
-/// The digs on one axis (the other plain) between which a depth, or an attack in rad, lies; equal
-/// at one of them. False when it lies beyond them all.
+/// The digs on one axis (the other plain) around a depth, or around an attack in rad; equal at one
+/// of them. False when it lies beyond them all.
 bool dig_approach_span(const struct dig_nodes *nodes, bool attack, double value, double *low,
                        double *high);
 

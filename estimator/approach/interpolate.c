@@ -36,7 +36,7 @@ double dig_axis_value(const struct dig_curve_set *const set, const enum dig_axis
 }
 
 enum dig_status dig_axis_locate(const struct dig_curve_set *const set, const enum dig_axis axis,
-                                const double value, struct dig_axis_place *const place)
+                                const double value, struct dig_axis_interval *const place)
 {
     assert(set != NULL && place != NULL);
     const size_t count = set->axis_count[axis];
@@ -63,12 +63,12 @@ enum dig_status dig_axis_locate(const struct dig_curve_set *const set, const enu
         f                 = f < edge ? 0.0 : f;
         f                 = f > 1.0 - edge ? 1.0 : f;
     }
-    *place = (struct dig_axis_place){ .index = i, .fraction = f };
+    *place = (struct dig_axis_interval){ .index = i, .fraction = f };
     return DIG_OK;
 }
 
 enum dig_status dig_cell_at(const struct dig_curve_set *const set,
-                            const struct dig_axis_place       place[const DIG_AXES],
+                            const struct dig_axis_interval    place[const DIG_AXES],
                             const size_t trajectory, struct dig_cell *const cell)
 {
     assert(set != NULL && place != NULL && cell != NULL && trajectory < set->trajectories);
@@ -107,7 +107,7 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
                               struct dig_cell *const cell)
 {
     assert(set != NULL && gravel != NULL && cell != NULL);
-    struct dig_axis_place place[DIG_AXES];
+    struct dig_axis_interval place[DIG_AXES];
     for (int a = 0; a < DIG_AXES; a++) {
         const enum dig_status status =
             dig_axis_locate(set, (enum dig_axis)a, gravel->value[a], &place[a]);

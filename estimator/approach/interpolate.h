@@ -1,4 +1,5 @@
-// Between the points of a table: multilinear in friction, rolling friction and log density.
+// Interpolation between the points of a table: multilinear in friction, rolling friction and log
+// density.
 
 #ifndef DIG_ESTIMATOR_APPROACH_INTERPOLATE_H
 #define DIG_ESTIMATOR_APPROACH_INTERPOLATE_H
@@ -10,13 +11,13 @@
 
 #define DIG_CELL_CORNERS (1 << DIG_AXES)
 
-/// The entries around a gravel, and what each weighs; corners without weight are left out.
+/// The entries around a gravel and their weights; corners without weight are left out.
 struct dig_cell {
     size_t                  corners;
     const struct dig_curve *curve[DIG_CELL_CORNERS];
     double                  weight[DIG_CELL_CORNERS];
     double                  inverse_packings; // weighted mean of 1 / packings
-    double mean_variance; // what the mean is off by: sum of weight^2 / packings, of one dig's
+    double mean_variance; // of the mean, in variances of one dig: sum of weight^2 / packings
 };
 
 /// Position of a value on an axis of the set, 0 … 1 from its first to its last point, linear in the
@@ -24,21 +25,20 @@ struct dig_cell {
 double dig_axis_position(const struct dig_curve_set *set, enum dig_axis axis, double value);
 double dig_axis_value(const struct dig_curve_set *set, enum dig_axis axis, double position);
 
-/// Where a value lies on an axis of the set: behind which of its points, and how far along to the
-/// next.
-struct dig_axis_place {
+/// A value on an axis of the set: the point before it, and the fraction of the way to the next.
+struct dig_axis_interval {
     size_t index;
     double fraction; // 0 … 1
 };
 
 /// DIG_ENOMATCH when the value is outside the axis; one within 1e-9 of its end counts as on it.
 DIG_MUST_CHECK enum dig_status dig_axis_locate(const struct dig_curve_set *set, enum dig_axis axis,
-                                               double value, struct dig_axis_place *place);
+                                               double value, struct dig_axis_interval *place);
 
 /// The cell at a place on each axis, which must have points. DIG_ENOMATCH when a corner with weight
 /// is missing or lacks the trajectory.
-DIG_MUST_CHECK enum dig_status dig_cell_at(const struct dig_curve_set *set,
-                                           const struct dig_axis_place place[DIG_AXES],
+DIG_MUST_CHECK enum dig_status dig_cell_at(const struct dig_curve_set    *set,
+                                           const struct dig_axis_interval place[DIG_AXES],
                                            size_t trajectory, struct dig_cell *cell);
 
 /// The cell around a gravel. DIG_ENOMATCH when the gravel is outside the grid or a corner with

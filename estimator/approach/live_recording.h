@@ -1,6 +1,5 @@
-// A dig going on, followed from what each tick tells: another thread's own copy of what the
-// estimator records, so that it can look at the dig before it is over without asking the tick for
-// anything.
+// The recording of the dig in progress, made from the tick's estimates. Another thread keeps its
+// own copy, so that it can observe the dig before it is over without asking the tick.
 
 #ifndef DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H
 #define DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H
@@ -11,28 +10,28 @@
 #include "estimator/track/settings.h"
 
 struct dig_live_recording {
-    bool                    on;   // a dig goes on
-    uint32_t                digs; // finished before it
-    struct dig_recorded_dig raw;
+    bool                    digging;   // a dig is in progress
+    uint32_t                dig_count; // digs finished before it
+    struct dig_recorded_dig recording;
 };
 
-/// Forgets all; a dig that goes on is not seen any more. Before the first estimate, and when the
-/// table becomes another.
-void dig_live_recording_forget(struct dig_live_recording *shadow, const struct dig_curve_set *set);
+/// Drops the recording; the rest of a dig in progress is not recorded. Required before the first
+/// estimate and when the table changes.
+void dig_live_recording_clear(struct dig_live_recording *live, const struct dig_curve_set *set);
 
-/// What a tick of a machine lambda times the table's size told; each of them, in order. Some that
-/// are missing are samples that are missing. Constant time.
-void dig_live_recording_take(struct dig_live_recording *shadow, const struct dig_curve_set *set,
-                             double lambda, const struct dig_estimate *estimate);
+/// Adds the estimate of one tick of a machine lambda times the table's size. Estimates come in
+/// order; one that is left out counts as a missing sample. Constant time.
+void dig_live_recording_add(struct dig_live_recording *live, const struct dig_curve_set *set,
+                            double lambda, const struct dig_estimate *estimate);
 
-/// What was dug so far, as dig_recorded_dig_observe() has it, up to where samples on both sides
-/// smooth it: last is less than 1 until the path is done. dig_count is that of the dig when it will
-/// be finished. DIG_ENOMATCH when no dig goes on, too. Copies what was recorded into scratch, 2.5
-/// MB at most, and works there: two to three milliseconds.
+/// Observes the dig so far, as dig_recorded_dig_observe() does a finished one. The observation ends
+/// half a smoothing window before the newest sample. dig_count is the one the dig will get.
+/// DIG_ENOMATCH also when no dig is in progress. Copies the recording (2 MB at most) into scratch
+/// and works there: two to three milliseconds.
 DIG_MUST_CHECK enum dig_status
 dig_live_recording_observe(const struct dig_curve_set          *set,
                            const struct dig_estimator_settings *settings,
-                           const struct dig_live_recording     *shadow,
-                           struct dig_recorded_dig *scratch, struct dig_observation *observation);
+                           const struct dig_live_recording *live, struct dig_recorded_dig *scratch,
+                           struct dig_observation *observation);
 
 #endif // DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H

@@ -11,15 +11,15 @@
 #include <assert.h>
 #include <math.h>
 
-// The soil is looked for from so much deeper than the table was dug, to see what is off it.
+// The soil is searched from deeper than the table was dug by this factor, to detect digs off it.
 static const double probe_deeper = 1.5;
 
-// A dig along a trajectory that the table was dug along in several ways: the turn is the track's,
-// the depth is told by where the soil began to resist, looked for along the way of the deepest dig.
-// What of the two lies beyond the table counts as distance.
+// Observes a dig whose trajectory the table has at several depths and attacks. The attack is the
+// track's turn; the depth follows from where the soil began to resist, searched along the path of
+// the deepest dig. What lies beyond the table counts as distance.
 static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
                                       const struct dig_track *const  track,
-                                      struct dig_recorded_dig *const raw,
+                                      struct dig_recorded_dig *const recording,
                                       struct dig_observation *const  out)
 {
     const size_t t = (size_t)out->trajectory;
@@ -27,8 +27,8 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
         fmin(probe_deeper * dig_approach_deepest(set, t), DIG_APPROACH_DEPTH_MOST);
     const struct dig_route deep = dig_approach_route_deep(set, t, deepest);
     struct dig_observation seen = *out;
-    enum dig_status        status =
-        dig_window_observe(&raw->window, &deep, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    enum dig_status status = dig_window_observe(&recording->window, &deep, track, 2.0 * limit_m,
+                                                set->smooth_half_s, &seen);
     if (status != DIG_OK) {
         return status;
     }
@@ -44,8 +44,8 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
     if (!(off_m <= limit_m)) {
         return DIG_ENOMATCH;
     }
-    status =
-        dig_window_observe(&raw->window, &route, track, 2.0 * limit_m, set->smooth_half_s, &seen);
+    status = dig_window_observe(&recording->window, &route, track, 2.0 * limit_m,
+                                set->smooth_half_s, &seen);
     if (status == DIG_OK) {
         seen.off_path_m = off_m;
         *out            = seen;
@@ -53,38 +53,40 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
     return status;
 }
 
-// Once the path has left the trajectory, no way out near a later leg of it counts as dug.
+// Observes a dig along a plain trajectory. After an abort, a way out near a later leg is not dug.
 static enum dig_status observe_plain(const struct dig_curve_set *const set, const double limit_m,
                                      const struct dig_route route[], const struct dig_track whole[],
-                                     struct dig_recorded_dig *const raw,
+                                     struct dig_recorded_dig *const recording,
                                      struct dig_observation *const  out)
 {
     const int                  t = out->trajectory;
-    struct dig_abort_detection departure;
+    struct dig_abort_detection aborted;
     const bool                 left =
-        !raw->followed.missing &&
-        dig_abort_detection_choose(set->trajectories, route, &raw->path, limit_m,
-                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &departure) == t;
-    const struct dig_track *const track  = left ? &departure.track : &whole[t];
-    const enum dig_status         status = dig_window_observe(
-                &raw->window, &route[t], track, left ? limit_m : 2.0 * limit_m, set->smooth_half_s, out);
+        !recording->followed.missing &&
+        dig_abort_detection_choose(set->trajectories, route, &recording->path, limit_m,
+                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &aborted) == t;
+    const struct dig_track *const track = left ? &aborted.track : &whole[t];
+    const enum dig_status         status =
+        dig_window_observe(&recording->window, &route[t], track, left ? limit_m : 2.0 * limit_m,
+                           set->smooth_half_s, out);
     if (status == DIG_OK && out->ending == DIG_ENDING_ABORTED &&
-        !dig_ending_is_known(&route[t], track, &raw->path, limit_m)) {
+        !dig_ending_is_known(&route[t], track, &recording->path, limit_m)) {
         out->ending = DIG_ENDING_OPEN;
     }
     return status;
 }
 
-// The whole path decides which trajectory it was; an observation is made if it was one.
+// Chooses the trajectory by the whole path, and observes along it.
 static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
-                               const struct dig_route route[], struct dig_recorded_dig *const raw,
-                               struct dig_observation *const observation)
+                               const struct dig_route         route[],
+                               struct dig_recorded_dig *const recording,
+                               struct dig_observation *const  observation)
 {
     const size_t            tracks = set->trajectories;
     struct dig_track        fitted[DIG_TRAJECTORY_MAX];
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
-        fitted[t]   = dig_track_fit(&route[t], &raw->path, limit_m);
+        fitted[t]   = dig_track_fit(&route[t], &recording->path, limit_m);
         track_of[t] = &fitted[t];
     }
     const int chosen =
@@ -92,10 +94,11 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
     if (chosen < 0) {
         return DIG_ENOMATCH;
     }
-    struct dig_observation out    = { .dig_count = raw->dig_count, .trajectory = chosen };
-    const enum dig_status  status = dig_approach_varies(set, (size_t)chosen)
-                                        ? observe_as_dug(set, limit_m, &fitted[chosen], raw, &out)
-                                        : observe_plain(set, limit_m, route, fitted, raw, &out);
+    struct dig_observation out = { .dig_count = recording->dig_count, .trajectory = chosen };
+    const enum dig_status  status =
+        dig_approach_varies(set, (size_t)chosen)
+             ? observe_as_dug(set, limit_m, &fitted[chosen], recording, &out)
+             : observe_plain(set, limit_m, route, fitted, recording, &out);
     if (status != DIG_OK) {
         return status;
     }
@@ -108,34 +111,34 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
 
 enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const          set,
                                          const struct dig_estimator_settings *const settings,
-                                         struct dig_recorded_dig *const             raw,
+                                         struct dig_recorded_dig *const             recording,
                                          struct dig_observation *const              observation)
 {
-    assert(set != NULL && settings != NULL && raw != NULL && observation != NULL);
+    assert(set != NULL && settings != NULL && recording != NULL && observation != NULL);
     struct dig_route route[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < set->trajectories; t++) {
         route[t] = dig_approach_route(set, t);
     }
-    return observe(set, settings->path_limit_m, route, raw, observation);
+    return observe(set, settings->path_limit_m, route, recording, observation);
 }
 
-bool dig_recorded_dig_gave_up(const struct dig_curve_set *const          set,
-                              const struct dig_estimator_settings *const settings,
-                              const struct dig_recorded_dig *const raw, int *const trajectory,
-                              double *const progress)
+bool dig_recorded_dig_was_aborted(const struct dig_curve_set *const          set,
+                                  const struct dig_estimator_settings *const settings,
+                                  const struct dig_recorded_dig *const       recording,
+                                  int *const trajectory, double *const progress)
 {
-    assert(set != NULL && settings != NULL && raw != NULL && trajectory != NULL &&
+    assert(set != NULL && settings != NULL && recording != NULL && trajectory != NULL &&
            progress != NULL);
     struct dig_route route[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < set->trajectories; t++) {
         route[t] = dig_approach_route(set, t);
     }
     const double limit_m = settings->path_limit_m;
-    if (!dig_followed_gave_up(&raw->followed, set->trajectories, route, &raw->path, limit_m,
-                              DIG_TRACK_TIE_SHARE * limit_m)) {
+    if (!dig_followed_was_aborted(&recording->followed, set->trajectories, route, &recording->path,
+                                  limit_m, DIG_TRACK_TIE_SHARE * limit_m)) {
         return false;
     }
-    *trajectory = raw->followed.trajectory;
-    *progress   = raw->followed.progress;
+    *trajectory = recording->followed.trajectory;
+    *progress   = recording->followed.progress;
     return true;
 }

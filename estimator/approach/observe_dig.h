@@ -1,5 +1,5 @@
-// From a recorded dig to what is matched: which trajectory it was, and its moment along it. For the
-// matching thread and offline tools.
+// Observes a recorded dig: its trajectory, and its moment along it. For the matching thread and
+// offline tools.
 
 #ifndef DIG_ESTIMATOR_APPROACH_OBSERVE_DIG_H
 #define DIG_ESTIMATOR_APPROACH_OBSERVE_DIG_H
@@ -11,20 +11,20 @@
 
 #include <stdbool.h>
 
-/// What was dug: fits the path to every trajectory of the set and reads the moment off along the
-/// one it was. DIG_ENOMATCH: it was none of them, or too little of one. Sorts raw's samples; one to
+/// Fits the path to every trajectory of the set, and observes the moment along the one it was.
+/// DIG_ENOMATCH: it was none of them, or too little of one. Sorts the recording's samples; one to
 /// two milliseconds.
 DIG_MUST_CHECK enum dig_status
 dig_recorded_dig_observe(const struct dig_curve_set          *set,
                          const struct dig_estimator_settings *settings,
-                         struct dig_recorded_dig *raw, struct dig_observation *observation);
+                         struct dig_recorded_dig *recording, struct dig_observation *observation);
 
-/// Of a dig of which dig_recorded_dig_observe() told nothing: true when it followed a trajectory of
-/// the set and left it before its end, and then which, and where. Its moment is not told: the way
-/// out belongs to its path. About a millisecond.
-bool dig_recorded_dig_gave_up(const struct dig_curve_set          *set,
-                              const struct dig_estimator_settings *settings,
-                              const struct dig_recorded_dig *raw, int *trajectory,
-                              double *progress);
+/// For a dig that dig_recorded_dig_observe() refused: true when it followed a trajectory of the set
+/// and left it before its end; then *trajectory and *progress say which and where. Its moment is
+/// not observed, as the way out belongs to its path. About a millisecond.
+bool dig_recorded_dig_was_aborted(const struct dig_curve_set          *set,
+                                  const struct dig_estimator_settings *settings,
+                                  const struct dig_recorded_dig *recording, int *trajectory,
+                                  double *progress);
 
 #endif // DIG_ESTIMATOR_APPROACH_OBSERVE_DIG_H

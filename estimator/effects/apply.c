@@ -1,4 +1,4 @@
-// A model's effects put to use: the machine's as one correction, the soil's in a table's curves.
+// Applies a model's effects: the machine's as one correction, the soil's to a table's curves.
 
 #include "estimator/effects/effect.h"
 
@@ -57,7 +57,7 @@ static void add_unlisted(const struct dig_model_unlisted *const unlisted, const 
     }
 }
 
-// One curve of the table, with everything in it.
+// Applies all effects to one curve of the table.
 static enum dig_status apply(const struct dig_curve_set *const  plain,
                              const struct dig_effect_set *const effects,
                              const struct dig_model *const model, const size_t entry,
@@ -98,7 +98,7 @@ enum dig_status dig_effects_apply(const struct dig_curve_set *const  plain,
 {
     assert(plain != NULL && model != NULL && out != NULL && out != plain);
     assert(out->entries == plain->entries && out->trajectories == plain->trajectories);
-    size_t told = 0;
+    size_t applied = 0;
     for (size_t e = 0; e < plain->entries; e++) {
         for (size_t t = 0; t < plain->trajectories; t++) {
             const size_t slot = e * plain->trajectories + t;
@@ -107,13 +107,13 @@ enum dig_status dig_effects_apply(const struct dig_curve_set *const  plain,
             }
             const enum dig_status status = apply(plain, effects, model, e, t, &out->curve[slot]);
             if (status == DIG_ENOMATCH) {
-                out->packings[slot] = 0; // no bed tells it: not known, rather than wrong
+                out->packings[slot] = 0; // no template: not known, rather than wrong
             } else if (status != DIG_OK) {
                 return status;
             } else {
-                told++;
+                applied++;
             }
         }
     }
-    return told > 0 ? DIG_OK : DIG_ENOMATCH;
+    return applied > 0 ? DIG_OK : DIG_ENOMATCH;
 }

@@ -1,4 +1,4 @@
-// The bucket is harder to turn than the file says: shows where its turning speeds up or slows down.
+// The bucket has more inertia than the file says: shows where its turning accelerates.
 
 #include "estimator/effects/list.h"
 

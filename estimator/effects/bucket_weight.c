@@ -1,4 +1,5 @@
-// The bucket is heavier or lighter than the file says, or its weight lies elsewhere: in every dig.
+// The bucket is heavier or lighter than the file says, or its centre of mass lies elsewhere: in
+// every dig.
 
 #include "estimator/effects/list.h"
 

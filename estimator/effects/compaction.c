@@ -1,6 +1,6 @@
 // Ground that was dug before and lies denser: the more passes, the stiffer. The template's
-// magnitude is the number of earlier digs a bed was made with; here it is what one pass counts as,
-// 1 when the ground is as the DEM's. Reduced form: every channel grows by a share for each earlier
+// magnitude is the number of earlier digs a bed was made with; here it is the weight of one pass,
+// 1 for the DEM's ground. Reduced form: every channel grows by a share for each earlier
 // pass.
 
 #include "estimator/effects/list.h"

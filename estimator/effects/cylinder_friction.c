@@ -1,6 +1,6 @@
-// Seals rub: the pressures push harder than the rod does, against its motion. Each drive has a dry
-// part, one that grows with its speed and one that grows with its push; at a crawl the dry part is
-// larger by a share common to all (Stribeck; Armstrong-Helouvry 1994). Plain names are the
+// Friction of the seals: the rod pushes less than the pressures, against its motion. Each drive has
+// a dry part, one that grows with its speed and one that grows with its push; at a crawl the dry
+// part is larger by a share common to all (Stribeck; Armstrong-Helouvry 1994). Plain names are the
 // bucket's.
 
 #include "estimator/effects/list.h"

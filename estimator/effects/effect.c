@@ -69,7 +69,7 @@ enum dig_status dig_effect_values(const struct dig_model_effect *const found,
     return DIG_OK;
 }
 
-// The plain curve of a gravel: what a reduced form grows with.
+// The plain curve of a gravel, which a reduced form scales.
 static enum dig_status plain_at(const struct dig_curve_set *const plain,
                                 const struct dig_gravel *const gravel, const size_t trajectory,
                                 struct dig_curve *const curve)

@@ -1,6 +1,6 @@
-// A rock lies half buried in the bucket's way: its diameter, rig scale. One that lies elsewhere, or
-// deeper, has no template: ahead_m says where it is felt, from where the table's rock is, and what
-// it adds is the model's measured residual.
+// A rock half buried in the bucket's path: its diameter, rig scale. One that lies elsewhere or
+// deeper has no template: ahead_m is its distance from the table's rock, and the addition is the
+// model's measured residual.
 
 #include "estimator/effects/list.h"
 

@@ -1,5 +1,5 @@
-// Soil that stayed in the bucket after the last dump and is carried through this dig. A weight like
-// the bucket's own, but another one in every dig, and none in the first.
+// Soil that stayed in the bucket after the last dump and is carried through this dig. Acts like
+// a weight of the bucket, but differs from dig to dig, and is zero in the first.
 
 #include "estimator/effects/list.h"
 

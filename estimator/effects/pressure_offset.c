@@ -1,5 +1,6 @@
-// A pressure sensor reads offset + (1 + gain) times what is there. An offset of either chamber of a
-// drive is the same force throughout; free air tells which only by the return side's back pressure.
+// A pressure sensor reads offset + (1 + gain) times the pressure. Offsets of both chambers of a
+// drive act alike, a constant force; in free air only the return side's back pressure separates
+// them.
 
 #include "estimator/effects/list.h"
 

@@ -1,7 +1,7 @@
 // Ground that resists more when it is dug faster. Reduced form, no bed needed: every channel grows
 // as (pace speed^along)^exponent. pace 1 is the table's own; speed is that of the tooth at this
-// point of the path, over the mean of the table's trajectories: along 1 is ground that feels the
-// tooth's own speed, along 0 one that feels how fast the whole dig is. It shows only over digs of
+// point of the path, over the mean of the table's trajectories: with along 1 the ground depends on
+// the tooth's local speed, with along 0 on the pace of the whole dig. It shows only over digs of
 // different pace.
 
 #include "estimator/effects/list.h"
@@ -11,15 +11,15 @@
 
 enum { EXPONENT, ALONG, PARAMETERS };
 
-static const double half_s = 0.16; // curves are smoothed over as much
+static const double half_s = 0.16; // half the smoothing of curves
 static const double step_s = 0.01;
 
-// Over the mean: where it turns about, the tooth stands still for a moment.
+// Least speed, over the mean: the tooth rests for an instant where it reverses.
 static const double least_speed = 0.1;
 
-// Way of the tooth from time to time, step by step.
-static double way_m(const struct dig_trajectory *const t, const double tooth_m, const double from_s,
-                    const int steps)
+// Path length of the tooth between two times, step by step.
+static double path_m(const struct dig_trajectory *const t, const double tooth_m,
+                     const double from_s, const int steps)
 {
     double sum = 0.0;
     for (int i = 0; i < steps; i++) {
@@ -42,7 +42,7 @@ void dig_effect_speeds(const struct dig_curve_set *const set, const size_t traje
     for (size_t t = 0; t < set->trajectories; t++) {
         const double duration_s = dig_trajectory_duration_s(&set->trajectory[t]);
         const int    steps      = (int)(duration_s / step_s);
-        all_m += way_m(&set->trajectory[t], set->tooth_m, 0.0, steps);
+        all_m += path_m(&set->trajectory[t], set->tooth_m, 0.0, steps);
         all_s += step_s * (double)steps;
     }
     const struct dig_trajectory *const t     = &set->trajectory[trajectory];
@@ -52,7 +52,7 @@ void dig_effect_speeds(const struct dig_curve_set *const set, const size_t traje
             dig_trajectory_time_s(t, set->tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
         const double from_s = fmax(at_s - half_s, 0.0);
         const int    steps  = (int)fmax((fmin(at_s + half_s, end_s) - from_s) / step_s, 1.0);
-        const double mps    = way_m(t, set->tooth_m, from_s, steps) / ((double)steps * step_s);
+        const double mps    = path_m(t, set->tooth_m, from_s, steps) / ((double)steps * step_s);
         speed[k]            = fmax(mps / (all_m / all_s), least_speed);
     }
 }

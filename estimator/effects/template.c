@@ -18,7 +18,7 @@ struct base {
     int                     packings[KNOTS_MAX];
 };
 
-// The two knots around a magnitude and what each weighs.
+// The two knots around a magnitude and their weights.
 struct between {
     size_t knot[2];
     double weight[2];
@@ -107,7 +107,7 @@ static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *c
     return same;
 }
 
-// Keeps the knots in order of magnitude.
+// Inserts a knot in order of magnitude.
 static void insert_knot(struct base *const base, const double magnitude,
                         const struct dig_curve *const curve, const int packings)
 {
@@ -169,7 +169,7 @@ static enum dig_status gather(const struct dig_curve_set *const  plain,
     return *bases > 0 ? DIG_OK : DIG_ENOMATCH;
 }
 
-// The bases next to a strength, weaker and stronger, and what each weighs.
+// The bases next to a strength, weaker and stronger, and their weights.
 static void choose(const struct base base[], const size_t bases, const double at,
                    struct between *const chosen)
 {
@@ -194,7 +194,7 @@ static void choose(const struct base base[], const size_t bases, const double at
     *chosen           = (struct between){ { weaker, stronger }, { 1.0 - f, f } };
 }
 
-// The knots next to a magnitude; beyond the last the last two go on.
+// The knots around a magnitude; beyond the last, the last two extrapolate.
 static struct between locate(const struct base *const base, const double magnitude)
 {
     size_t i = 0;

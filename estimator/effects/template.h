@@ -1,4 +1,4 @@
-// What an effect of the soil adds to a curve, read off the beds a DEM dug with the effect in them.
+// Templates: the change of a curve by an effect of the soil, from beds dug with the effect.
 //
 //   share(b, m) = (curve of the bed with effect at magnitude m - plain curve) / amplitude
 //
@@ -17,13 +17,12 @@
 
 #include <stdbool.h>
 
-/// A magnitude goes on beyond the table's last by this share of its distance from absent; on the
-/// side of absent that the table lacks, as far as half its first.
+/// Extrapolation: beyond the table's last magnitude by this share of its distance from absent; on
+/// the side of absent that the table lacks, as far as half its first.
 #define DIG_TEMPLATE_BEYOND 0.5
 
-/// What is added to the mean curve, the curve's own units, and 1 sigma of it: the templates are
-/// means of few packings, and so are the plain curves they are taken from. Errors of the points of
-/// one channel are correlated as packings are.
+/// The addition to the mean curve, in its units, and 1 sigma of it: templates and plain curves are
+/// means of few packings. Errors of the points of one channel are correlated as packings are.
 struct dig_template {
     double delta[DIG_CHANNELS][DIG_CURVE_POINTS];
     double sigma[DIG_CHANNELS][DIG_CURVE_POINTS];
@@ -33,7 +32,7 @@ struct dig_template {
 /// 0 for all others.
 double dig_template_absent(enum dig_effect_id effect);
 
-/// The magnitudes for which there is a template along this trajectory, beyond included; false when
+/// Range of magnitudes with a template along this trajectory, extrapolation included; false when
 /// the set has none. set NULL: false. O(entries).
 bool dig_template_range(const struct dig_effect_set *effects, enum dig_effect_id effect,
                         size_t trajectory, double *low, double *high);

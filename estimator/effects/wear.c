@@ -1,6 +1,6 @@
 // A tooth that blunts: resistance grows (or falls) from dig to dig. Reduced form, no bed needed:
-// every channel grows by a share per dig done. digs is what the tooth had done when counting began:
-// a campaign counts from its own first dig, a daemon from the campaign's last.
+// every channel grows by a share per dig done. digs is the number before counting starts: a
+// campaign counts from its first dig, a daemon from the campaign's last.
 
 #include "estimator/effects/list.h"
 

@@ -21,11 +21,11 @@ static double normal(uint64_t *const state)
     return sqrt(-2.0 * log(u)) * cos(2.0 * DIG_PI * uniform(state));
 }
 
-// What each point feels of the knots around it; the squares sum to 1.
+// Weights of the knots around each point; their squares sum to 1.
 void dig_entry_scatter_make(const struct dig_trajectory *const trajectory, const double tooth_m,
-                            struct dig_entry_scatter *const spread)
+                            struct dig_entry_scatter *const scatter)
 {
-    assert(trajectory != NULL && spread != NULL);
+    assert(trajectory != NULL && scatter != NULL);
     const double whole_m =
         dig_trajectory_path_m(trajectory, tooth_m, dig_trajectory_duration_s(trajectory));
     const double own_m = DIG_ENTRY_SCATTER_WIDTH * tooth_m / sqrt(2.0 * DIG_PI);
@@ -34,34 +34,34 @@ void dig_entry_scatter_make(const struct dig_trajectory *const trajectory, const
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at =
             (double)k / spacing; // knot 0 lies DIG_ENTRY_SCATTER_REACH before the path
-        double norm2     = 0.0;
-        spread->first[k] = (size_t)at;
+        double norm2      = 0.0;
+        scatter->first[k] = (size_t)at;
         for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
-            const double off   = (double)(spread->first[k] + i) - DIG_ENTRY_SCATTER_REACH - at;
-            spread->felt[k][i] = exp(-off * off);
-            norm2 += spread->felt[k][i] * spread->felt[k][i];
+            const double off    = (double)(scatter->first[k] + i) - DIG_ENTRY_SCATTER_REACH - at;
+            scatter->felt[k][i] = exp(-off * off);
+            norm2 += scatter->felt[k][i] * scatter->felt[k][i];
         }
         for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
-            spread->felt[k][i] /= sqrt(norm2);
+            scatter->felt[k][i] /= sqrt(norm2);
         }
     }
-    spread->knots = spread->first[DIG_CURVE_POINTS - 1] + DIG_ENTRY_SCATTER_WIDE;
-    assert(spread->knots <= DIG_ENTRY_SCATTER_KNOTS);
+    scatter->knots = scatter->first[DIG_CURVE_POINTS - 1] + DIG_ENTRY_SCATTER_WIDE;
+    assert(scatter->knots <= DIG_ENTRY_SCATTER_KNOTS);
 }
 
-void dig_entry_scatter_draw(const struct dig_entry_scatter *const spread, uint64_t *const seed,
+void dig_entry_scatter_draw(const struct dig_entry_scatter *const scatter, uint64_t *const seed,
                             double error[const DIG_CURVE_POINTS])
 {
-    assert(spread != NULL && seed != NULL && error != NULL);
+    assert(scatter != NULL && seed != NULL && error != NULL);
     double       knot[DIG_ENTRY_SCATTER_KNOTS];
     const double whole = sqrt(DIG_ENTRY_SCATTER_SHARED) * normal(seed);
-    for (size_t j = 0; j < spread->knots; j++) {
+    for (size_t j = 0; j < scatter->knots; j++) {
         knot[j] = sqrt(1.0 - DIG_ENTRY_SCATTER_SHARED) * normal(seed);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         double sum = whole;
         for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
-            sum += spread->felt[k][i] * knot[spread->first[k] + i];
+            sum += scatter->felt[k][i] * knot[scatter->first[k] + i];
         }
         error[k] = sum;
     }
@@ -74,22 +74,22 @@ static double of_channels(const double v[const DIG_FORCE_CHANNELS])
                   DIG_POSTERIOR_FX_FZ * v[1] * v[2]);
 }
 
-double dig_entry_scatter_variance(const struct dig_entry_scatter *const spread,
+double dig_entry_scatter_variance(const struct dig_entry_scatter *const scatter,
                                   const struct dig_channels *const      weight)
 {
-    assert(spread != NULL && weight != NULL);
+    assert(scatter != NULL && weight != NULL);
     double knot[DIG_ENTRY_SCATTER_KNOTS][DIG_FORCE_CHANNELS] = { { 0.0 } };
     double whole[DIG_FORCE_CHANNELS]                         = { 0.0 };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             whole[c] += weight->of[c][k];
             for (size_t i = 0; i < DIG_ENTRY_SCATTER_WIDE; i++) {
-                knot[spread->first[k] + i][c] += spread->felt[k][i] * weight->of[c][k];
+                knot[scatter->first[k] + i][c] += scatter->felt[k][i] * weight->of[c][k];
             }
         }
     }
     double own = 0.0;
-    for (size_t j = 0; j < spread->knots; j++) {
+    for (size_t j = 0; j < scatter->knots; j++) {
         own += of_channels(knot[j]);
     }
     return (1.0 - DIG_ENTRY_SCATTER_SHARED) * own + DIG_ENTRY_SCATTER_SHARED * of_channels(whole);

@@ -1,5 +1,6 @@
-// The only file of the estimator that knows NLopt. NLopt allocates inside nlopt_optimize(), so this
-// runs on a thread of its own, never in the tick; it is bounded by evaluations, not by the clock.
+// Refinement by NLopt, which only this file of the estimator includes. NLopt allocates inside
+// nlopt_optimize(), so this runs on a thread of its own, never in the tick; it is bounded by
+// evaluations, not by the clock.
 
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"
@@ -15,13 +16,13 @@
 
 enum { STARTS = 3, EXCESS_EVALUATIONS = 100 };
 
-// Distance of what the table does not hold: worse than any curve.
+// Distance of a gravel outside the table: greater than of any curve.
 static const double no_curve = 1e6;
 
 // The fit in positions 0 … 1 along the axes that have more than one point.
 struct problem {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *summary; // or NULL
+    const struct dig_prefilter *prefilter; // or NULL
     const struct dig_pool_sums *sums;
     unsigned                    dimensions;
     enum dig_axis               axis[DIG_AXES];
@@ -88,18 +89,18 @@ static double excess_of(const unsigned n, const double *const x, double *const g
     (void)gradient;
     const struct problem *const problem = context;
     const struct dig_gravel     gravel  = gravel_of(problem, x);
-    return fmin(dig_posterior_excess(problem->set, problem->summary, problem->sums, &gravel),
+    return fmin(dig_posterior_excess(problem->set, problem->prefilter, problem->sums, &gravel),
                 no_curve);
 }
 
-// Places to start from, the best first.
+// Starting points, the best first.
 struct starts {
     size_t count;
     double distance[STARTS];
     double x[STARTS][DIG_AXES];
 };
 
-// Keeps a place among the others if it is good enough; the first, the nearest entry, stays first.
+// Inserts a starting point if it is good enough; the nearest entry stays first.
 static void keep_start(struct starts *const starts, const double distance, const double x[DIG_AXES])
 {
     size_t place = starts->count;
@@ -122,7 +123,7 @@ static void keep_start(struct starts *const starts, const double distance, const
     }
 }
 
-// Index of the axis's point that a gravel of the table stands on.
+// Index of a gravel of the table on an axis.
 static size_t index_on(const struct dig_curve_set *const set, const enum dig_axis axis,
                        const double value)
 {
@@ -142,9 +143,9 @@ static void position_of(const struct problem *const problem, const struct dig_gr
     }
 }
 
-// The nearest entry; the middle of the posterior, which lies in the right valley where there are
-// several; and the nearest's best neighbours along the axes: a ridge may pass between two entries
-// of which the nearest is not the better start.
+// Starting points: the nearest entry; the posterior's mean, which lies in the right valley where
+// there are several; and the best neighbours of the nearest along the axes, as a ridge may separate
+// it from the minimum.
 static struct starts choose_starts(const struct problem *const    problem,
                                    const struct dig_gravel *const middle)
 {
@@ -218,7 +219,7 @@ static enum dig_status improve(struct problem *const problem, const nlopt_func m
     return DIG_OK;
 }
 
-// Of every dig.
+// Whether every dig has forces.
 static bool has_forces(const struct dig_pool_sums *const sums)
 {
     bool has = true;
@@ -228,20 +229,20 @@ static bool has_forces(const struct dig_pool_sums *const sums)
     return has;
 }
 
-// Whether the forces say that no gravel of the table is that of the digs. The most probable lies on
-// a grid, which digs that scatter little may be finer than: where it is too far, around it.
+// Whether the gravel is outside the table by the forces. The most probable gravel lies on a grid,
+// which may be too coarse for digs of little scatter: then its surroundings are searched too.
 static enum dig_status contradict(const struct dig_curve_set *const set,
-                                  const struct dig_prefilter *const summary,
+                                  const struct dig_prefilter *const prefilter,
                                   const struct dig_pool_sums *const sums,
                                   const struct dig_match *const     match,
                                   const struct dig_gravel *const mode, bool *const contradicted)
 {
-    double least = dig_posterior_excess(set, summary, sums, mode);
+    double least = dig_posterior_excess(set, prefilter, sums, mode);
     if (least > DIG_POSTERIOR_OUTSIDE) {
         static const double step[DIG_AXES] = { 0.04, 0.04, 0.04 };
         struct problem      problem        = make_problem(set, sums, match);
         double              x[DIG_AXES]    = { 0.0 };
-        problem.summary                    = summary;
+        problem.prefilter                  = prefilter;
         position_of(&problem, mode, x);
         const enum dig_status status =
             problem.dimensions > 0
@@ -255,36 +256,36 @@ static enum dig_status contradict(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-// The posterior. Where no gravel of the table both resists and pushes like the digs, which is the
-// forces' to tell, the one that resists like them says more about the next dig than one between.
+// The posterior. Where no gravel of the table fits both moment and forces, that of the moment alone
+// predicts the next dig better than a compromise.
 static enum dig_status judge(const struct dig_curve_set *const set,
-                             const struct dig_prefilter *const summary,
+                             const struct dig_prefilter *const prefilter,
                              struct dig_pool_sums *const sums, struct dig_match *const refined,
                              bool *const contradicted)
 {
     *contradicted          = false;
-    enum dig_status status = dig_posterior_fill(set, summary, sums, refined);
+    enum dig_status status = dig_posterior_fill(set, prefilter, sums, refined);
     if (status == DIG_OK && has_forces(sums)) {
-        status = contradict(set, summary, sums, refined, &refined->mode, contradicted);
+        status = contradict(set, prefilter, sums, refined, &refined->mode, contradicted);
     }
     if (*contradicted) {
         for (size_t g = 0; g < sums->groups; g++) {
             sums->group[g].forces = false;
         }
-        status = dig_posterior_fill(set, summary, sums, refined);
+        status = dig_posterior_fill(set, prefilter, sums, refined);
     }
     return status;
 }
 
 static enum dig_status refine(const struct dig_curve_set *const set,
-                              const struct dig_prefilter *const summary,
+                              const struct dig_prefilter *const prefilter,
                               struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
 {
-    // A table of scattered points has no cell to be unsure in: the nearest entry stands.
+    // A table of scattered points has no cell, so no posterior: the nearest entry stands.
     struct dig_match      refined = *match;
     bool                  contradicted;
-    const enum dig_status judged = judge(set, summary, sums, &refined, &contradicted);
+    const enum dig_status judged = judge(set, prefilter, sums, &refined, &contradicted);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -312,8 +313,7 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.gravel = gravel_of(&problem, x);
     }
 
-    // How far the table is, its nearest gravel says, and the forces; which gravel it is, all that
-    // was measured.
+    // Outside the table: by the smallest distance, or by the forces. The gravel: by all channels.
     struct dig_distance at_best = distance_at(&problem, &refined.gravel);
     if (at_best.distance < no_curve) {
         refined.outside =
@@ -329,19 +329,18 @@ static enum dig_status refine(const struct dig_curve_set *const set,
         refined.noise_floor = at_best.noise_floor;
     }
 
-    // The smallest distance and the posterior weigh errors differently; an interval that left out
-    // the gravel it belongs to would only puzzle.
+    // Distance and posterior weight errors differently; the interval is widened to hold its gravel.
     for (int a = 0; a < DIG_AXES; a++) {
         refined.low.value[a]  = fmin(refined.low.value[a], refined.gravel.value[a]);
         refined.high.value[a] = fmax(refined.high.value[a], refined.gravel.value[a]);
     }
-    dig_match_tell_family(set, &refined);
+    dig_match_find_family(set, &refined);
     *match = refined;
     return DIG_OK;
 }
 
 static enum dig_status check_and_refine(const struct dig_curve_set *const set,
-                                        const struct dig_prefilter *const summary,
+                                        const struct dig_prefilter *const prefilter,
                                         const size_t digs, const struct dig_observation dig[],
                                         const int max_evaluations, struct dig_match *const match)
 {
@@ -356,28 +355,21 @@ static enum dig_status check_and_refine(const struct dig_curve_set *const set,
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    return refine(set, summary, &sums, max_evaluations, match);
+    return refine(set, prefilter, &sums, max_evaluations, match);
 }
 
-enum dig_status dig_fit_refine_pool(const struct dig_curve_set *const set, const size_t digs,
-                                    const struct dig_observation dig[], const int max_evaluations,
-                                    struct dig_match *const match)
+enum dig_status dig_fit_refine(const struct dig_curve_set *const set, const size_t digs,
+                               const struct dig_observation dig[], const int max_evaluations,
+                               struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
     return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
 }
 
-enum dig_status dig_fit_refine_by(const struct dig_prefilter *const summary, const size_t digs,
-                                  const struct dig_observation dig[], const int max_evaluations,
-                                  struct dig_match *const match)
+enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const prefilter,
+                                           const size_t digs, const struct dig_observation dig[],
+                                           const int max_evaluations, struct dig_match *const match)
 {
-    assert(summary != NULL && dig != NULL && match != NULL);
-    return check_and_refine(summary->set, summary, digs, dig, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine(const struct dig_curve_set *const   set,
-                               const struct dig_observation *const observation,
-                               const int max_evaluations, struct dig_match *const match)
-{
-    return dig_fit_refine_pool(set, 1, observation, max_evaluations, match);
+    assert(prefilter != NULL && dig != NULL && match != NULL);
+    return check_and_refine(prefilter->set, prefilter, digs, dig, max_evaluations, match);
 }

@@ -17,12 +17,12 @@ enum {
 };
 _Static_assert(HALVES == 2 * BLOCKS, "a block is two of an outline's");
 
-// How far C is drawn towards correlations that depend on the distance of two blocks alone, and how
-// much smaller those are made, so that it stays positive definite.
+// Shrinkage of C towards correlations that depend on the distance of two blocks alone, and a factor
+// on these that keeps it positive definite.
 static const double towards_even   = 0.25;
 static const double even_reduction = 0.95;
 
-// Share of a number's variance that goes with no other.
+// Share of a number's variance that is independent of all others.
 static const double own_share = 0.05;
 
 // Keeps variances apart from 0.
@@ -81,10 +81,9 @@ static double between(const double point_m, const double width_m, const int lag)
     return (1.0 - DIG_ENTRY_SCATTER_SHARED) * sum / (WIDE * WIDE) + DIG_ENTRY_SCATTER_SHARED;
 }
 
-// The same as entry_scatter.h has it, where too few packings are known; the variances into
-// *variance.
+// The same by entry_scatter.h, where there are too few packings; the variances into *variance.
 static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
-                               const struct dig_prefilter *const summary, struct matrix *const c,
+                               const struct dig_prefilter *const prefilter, struct matrix *const c,
                                double variance[NUMBERS])
 {
     const double across[CHANNELS][CHANNELS] = {
@@ -103,8 +102,8 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     for (size_t i = 0; i < NUMBERS; i++) {
         const enum dig_channel channel = (enum dig_channel)(i / BLOCKS);
         variance[i] =
-            lag_of[0] * (summary != NULL ? summary->relative2[trajectory][channel]
-                                         : dig_prefilter_relative2(set, trajectory, channel));
+            lag_of[0] * (prefilter != NULL ? prefilter->relative2[trajectory][channel]
+                                           : dig_prefilter_relative2(set, trajectory, channel));
         for (size_t j = 0; j < NUMBERS; j++) {
             const size_t one   = i % BLOCKS;
             const size_t other = j % BLOCKS;
@@ -114,8 +113,8 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     }
 }
 
-// The share of each number's standard deviation that is the digs' own and goes together, beside
-// what the measurement is off by; of digs as large as those measured.
+// Share of each number's standard deviation that comes from the digs' correlated scatter, the rest
+// being the measurement's; for digs as large as those measured.
 static void tell_shares(const struct dig_gaussian *const g, double share[NUMBERS])
 {
     double size2[CHANNELS] = { 0.0 };
@@ -180,7 +179,7 @@ static struct half half_of(const struct dig_pooled *const group, const size_t ch
     return h;
 }
 
-// The order in which blocks are looked at: those inside the path, which tell most, first.
+// Order of the blocks: the inner ones, which discriminate best, first.
 static const size_t telling[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
 
 static void measure(const struct dig_pooled *const group, const double variance[NUMBERS],
@@ -216,12 +215,13 @@ static void measure(const struct dig_pooled *const group, const double variance[
     }
 }
 
-static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const summary,
+static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const prefilter,
                  const struct dig_pooled *const group, const bool assume,
                  struct dig_gaussian *const g)
 {
-    assert(set != NULL && (summary == NULL || summary->set == set) && group != NULL && g != NULL);
-    *g = (struct dig_gaussian){ .summary    = summary,
+    assert(set != NULL && (prefilter == NULL || prefilter->set == set) && group != NULL &&
+           g != NULL);
+    *g = (struct dig_gaussian){ .prefilter  = prefilter,
                                 .trajectory = group->trajectory,
                                 .channels   = group->forces ? CHANNELS : 1 };
     struct matrix c;
@@ -233,7 +233,7 @@ static bool make(const struct dig_curve_set *const set, const struct dig_prefilt
             variance[i] = set->covariance[group->trajectory].of[i][i];
         }
     } else if (assume) {
-        assume_correlation(set, group->trajectory, summary, &c, variance);
+        assume_correlation(set, group->trajectory, prefilter, &c, variance);
     } else {
         return false;
     }
@@ -245,17 +245,18 @@ static bool make(const struct dig_curve_set *const set, const struct dig_prefilt
 }
 
 bool dig_gaussian_make(const struct dig_curve_set *const set,
-                       const struct dig_prefilter *const summary,
+                       const struct dig_prefilter *const prefilter,
                        const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
 {
-    return make(set, summary, group, false, gaussian);
+    return make(set, prefilter, group, false, gaussian);
 }
 
-bool dig_gaussian_assume(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const summary,
-                         const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
+bool dig_gaussian_make_default(const struct dig_curve_set *const set,
+                               const struct dig_prefilter *const prefilter,
+                               const struct dig_pooled *const    group,
+                               struct dig_gaussian *const        gaussian)
 {
-    return make(set, summary, group, true, gaussian);
+    return make(set, prefilter, group, true, gaussian);
 }
 
 // Means of the cell over an outline's blocks.
@@ -272,9 +273,9 @@ static void blend(const struct dig_gaussian *const g, const struct dig_cell *con
         for (size_t c = 0; c < g->channels; c++) {
             struct dig_outline drawn;
             const float       *of = drawn.block;
-            if (g->summary != NULL) {
-                of = dig_outline_mean(g->summary, c,
-                                      (size_t)(cell->curve[i] - g->summary->set->curve));
+            if (g->prefilter != NULL) {
+                of = dig_outline_mean(g->prefilter, c,
+                                      (size_t)(cell->curve[i] - g->prefilter->set->curve));
             } else {
                 dig_outline_draw(cell->curve[i]->mean[c], &drawn);
             }
@@ -296,7 +297,7 @@ static double size2_of(const double mean[HALVES])
     return sum / BLOCKS;
 }
 
-// What is compared with the i-th number, and its u^2, of a cell.
+// The cell's value for the i-th number, and its u^2.
 struct there {
     double mean, u2;
 };
@@ -320,8 +321,8 @@ static void look(const struct dig_gaussian *const g, const struct dig_cell *cons
     }
 }
 
-struct dig_misses dig_gaussian_misses(const struct dig_gaussian *const g,
-                                      const struct dig_cell *const     cell)
+struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const g,
+                                                const struct dig_cell *const     cell)
 {
     assert(g != NULL && g->numbers > 0 && cell != NULL);
     struct there there[NUMBERS];
@@ -338,7 +339,7 @@ struct dig_misses dig_gaussian_misses(const struct dig_gaussian *const g,
             exponent += more;
         }
     }
-    struct dig_misses misses = { .log_det = log(mantissa) + (double)exponent * ln_2 };
+    struct dig_mahalanobis misses = { .log_det = log(mantissa) + (double)exponent * ln_2 };
     for (size_t i = 0; i < g->numbers; i++) {
         for (size_t j = 0; j < i; j++) {
             miss[i] -= g->lower[i][j] * miss[j];

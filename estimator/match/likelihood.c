@@ -10,10 +10,10 @@
 enum { STRIDE = 16 };
 _Static_assert(DIG_CURVE_POINTS % STRIDE == 0 && DIG_OUTLINE_BLOCKS % STRIDE == 0, "whole strides");
 
-// How many packings the pooled spread is worth against an entry's own.
+// Weight of the pooled spread against an entry's own, in packings.
 static const double pooled_weight = 4.0;
 
-// Share of the table's pooled spread below which no point of a curve is believed.
+// Lower bound of a point's spread, as a share of the table's pooled spread: less is chance.
 static const double least_spread = 0.25;
 
 // Keeps variances apart from 0, and products of six of them from the end of the numbers.
@@ -27,7 +27,7 @@ struct channel_curve {
     double spread2[DIG_CURVE_POINTS];
 };
 
-static void blend_outlines(const struct dig_prefilter *const summary,
+static void blend_outlines(const struct dig_prefilter *const prefilter,
                            const struct dig_cell *const cell, const size_t channel, double mean[],
                            double sd[])
 {
@@ -36,10 +36,10 @@ static void blend_outlines(const struct dig_prefilter *const summary,
         sd[b]   = 0.0;
     }
     for (size_t c = 0; c < cell->corners; c++) {
-        const size_t       slot    = (size_t)(cell->curve[c] - summary->set->curve);
+        const size_t       slot    = (size_t)(cell->curve[c] - prefilter->set->curve);
         const double       weight  = cell->weight[c];
-        const float *const mean_of = dig_outline_mean(summary, channel, slot);
-        const float *const sd_of   = dig_outline_sd(summary, channel, slot);
+        const float *const mean_of = dig_outline_mean(prefilter, channel, slot);
+        const float *const sd_of   = dig_outline_sd(prefilter, channel, slot);
         for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
             mean[b] += weight * (double)mean_of[b];
         }
@@ -81,8 +81,7 @@ static void make_curve(const struct dig_likelihood *const restrict l,
     }
 }
 
-// A product as mantissa and exponent: it never leaves the range of the numbers, and a logarithm,
-// which is dear, is drawn once.
+// A product as mantissa and exponent: it cannot overflow, and only one logarithm is computed.
 struct product {
     double mantissa;
     int    exponent;
@@ -203,7 +202,7 @@ double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig
 {
     assert(l != NULL && cell != NULL);
     if (l->is_gaussian) {
-        const struct dig_misses all = dig_gaussian_misses(&l->gaussian, cell);
+        const struct dig_mahalanobis all = dig_gaussian_mahalanobis(&l->gaussian, cell);
         return -0.5 * DIG_POSTERIOR_TRUST * (all.square + all.log_det);
     }
     struct misses misses;
@@ -212,7 +211,8 @@ double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig
     return -0.5 * l->effective * sum / l->measured_count;
 }
 
-double dig_likelihood_miss2(const struct dig_likelihood *const l, const struct dig_cell *const cell)
+double dig_likelihood_reduced_chi2(const struct dig_likelihood *const l,
+                                   const struct dig_cell *const       cell)
 {
     assert(l != NULL && cell != NULL);
     struct misses misses;
@@ -225,18 +225,18 @@ double dig_likelihood_miss2(const struct dig_likelihood *const l, const struct d
 }
 
 void dig_likelihood_make(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const summary,
+                         const struct dig_prefilter *const prefilter,
                          const struct dig_pooled *const group, struct dig_likelihood *const l)
 {
     assert(set != NULL && group != NULL && l != NULL);
     *l             = (struct dig_likelihood){ .trajectory = group->trajectory,
                                               .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
                                               .count      = DIG_CURVE_POINTS };
-    l->is_gaussian = dig_gaussian_make(set, summary, group, &l->gaussian);
+    l->is_gaussian = dig_gaussian_make(set, prefilter, group, &l->gaussian);
     for (size_t c = 0; c < l->channels; c++) {
-        l->relative2[c] =
-            summary != NULL ? summary->relative2[group->trajectory][c]
-                            : dig_prefilter_relative2(set, group->trajectory, (enum dig_channel)c);
+        l->relative2[c] = prefilter != NULL ? prefilter->relative2[group->trajectory][c]
+                                            : dig_prefilter_relative2(set, group->trajectory,
+                                                                      (enum dig_channel)c);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double n = group->count[k];
@@ -269,10 +269,10 @@ static double mean_of_block(const double of[], const size_t block)
     return sum / DIG_OUTLINE_POINTS;
 }
 
-bool dig_likelihood_outline(const struct dig_prefilter *const summary,
+bool dig_likelihood_outline(const struct dig_prefilter *const prefilter,
                             struct dig_likelihood *const      l)
 {
-    assert(summary != NULL && l != NULL && l->rough == NULL);
+    assert(prefilter != NULL && l != NULL && l->rough == NULL);
     double whole = 0.0;
     for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
         whole += mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
@@ -290,7 +290,7 @@ bool dig_likelihood_outline(const struct dig_prefilter *const summary,
         }
         l->measured[b] = mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
     }
-    l->rough          = summary;
+    l->rough          = prefilter;
     l->count          = DIG_OUTLINE_BLOCKS;
     l->measured_count = whole;
     return true;

@@ -1,5 +1,5 @@
-// How likely digs along one trajectory are at one gravel of the table: the formula of posterior.h.
-// Point by point, or, from the outlines of a summary, roughly and an eighth of the work.
+// Likelihood of digs along one trajectory given a gravel, by the formula of posterior.h: point by
+// point, or approximately by the outlines of a prefilter, at an eighth of the work.
 
 #ifndef DIG_ESTIMATOR_MATCH_LIKELIHOOD_H
 #define DIG_ESTIMATOR_MATCH_LIKELIHOOD_H
@@ -10,9 +10,9 @@
 #include "estimator/match/pool.h"
 #include "estimator/match/prefilter.h"
 
-/// What does not depend on the gravel; 22 kB.
+/// The part that does not depend on the gravel; 22 kB.
 struct dig_likelihood {
-    bool                is_gaussian; // the logarithm is of block means, by the packings' covariance
+    bool                is_gaussian; // by block means and the packings' covariance
     struct dig_gaussian gaussian;
 
     const struct dig_prefilter *rough; // NULL: point by point
@@ -29,20 +29,22 @@ struct dig_likelihood {
     double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
-/// Without a summary (NULL) every curve of the trajectory is looked at: O(entries).
-void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_prefilter *summary,
+/// Without a prefilter (NULL) it reads every curve of the trajectory: O(entries).
+void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
                          const struct dig_pooled *group, struct dig_likelihood *likelihood);
 
-/// Makes it rough: of the blocks that were measured whole. The summary must outlive it. False, and
-/// nothing is changed, when they are fewer than half of what was measured.
-bool dig_likelihood_outline(const struct dig_prefilter *summary, struct dig_likelihood *likelihood);
+/// Makes it approximate, by the blocks that were measured completely. The prefilter must outlive
+/// it. False, and unchanged, when these are less than half of what was measured.
+bool dig_likelihood_outline(const struct dig_prefilter *prefilter,
+                            struct dig_likelihood      *likelihood);
 
-/// Its logarithm at a cell of the trajectory (dig_cell_find), but for a constant. 4 microseconds,
+/// Its logarithm at a cell of the trajectory (dig_cell_find), up to a constant. 4 microseconds,
 /// with forces 11.
 double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
 
-/// Mean over points and channels of (m - t)' D^-1 (m - t): 1 is expected of digs in the cell's
-/// gravel. The same cost.
-double dig_likelihood_miss2(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
+/// Reduced chi-squared: mean over points and channels of (m - t)' D^-1 (m - t), 1 expected for digs
+/// in the cell's gravel. The same cost.
+double dig_likelihood_reduced_chi2(const struct dig_likelihood *likelihood,
+                                   const struct dig_cell       *cell);
 
 #endif // DIG_ESTIMATOR_MATCH_LIKELIHOOD_H

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-void dig_match_tell_family(const struct dig_curve_set *const set, struct dig_match *const match)
+void dig_match_find_family(const struct dig_curve_set *const set, struct dig_match *const match)
 {
     assert(set != NULL && match != NULL);
     for (int a = 0; a < DIG_AXES; a++) {
@@ -91,7 +91,7 @@ struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
     }
     return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
                                 .floor2_Nm2 = floor2,
-                                .whole2_Nm2 = group->whole_Nm2 };
+                                .norm2_Nm2  = group->norm2_Nm2 };
 }
 
 enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
@@ -154,9 +154,9 @@ static int look_at_all(const struct dig_curve_set *const set,
     return nearest;
 }
 
-// By the summary, if there is one.
+// By the prefilter, if there is one.
 static enum dig_status find(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const summary, const size_t digs,
+                            const struct dig_prefilter *const prefilter, const size_t digs,
                             const struct dig_observation dig[], const double outside_floors,
                             struct dig_match *const match)
 {
@@ -172,7 +172,7 @@ static enum dig_status find(const struct dig_curve_set *const set,
     dig_pool_sum(digs, dig, &sums);
 
     const int nearest =
-        summary != NULL ? dig_nearest_find(summary, &sums) : look_at_all(set, &sums);
+        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : look_at_all(set, &sums);
     if (nearest < 0) {
         return DIG_ENOMATCH;
     }
@@ -200,37 +200,32 @@ static enum dig_status find(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-void dig_match_weigh(const struct dig_curve_set *const set,
-                     const struct dig_prefilter *const summary, const size_t digs,
-                     const struct dig_observation dig[], struct dig_match *const match)
+void dig_match_find_weighted(const struct dig_curve_set *const set,
+                             const struct dig_prefilter *const prefilter, const size_t digs,
+                             const struct dig_observation dig[], struct dig_match *const match)
 {
     assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    const struct dig_weighted best = dig_weighted_find(set, summary, &sums, (size_t)match->nearest);
-    match->weighted                = best.entry;
-    match->weighted_distance       = best.entry >= 0 ? best.distance : (double)NAN;
+    const struct dig_weighted best =
+        dig_weighted_find(set, prefilter, &sums, (size_t)match->nearest);
+    match->weighted          = best.entry;
+    match->weighted_distance = best.entry >= 0 ? best.distance : (double)NAN;
 }
 
-enum dig_status dig_match_nearest_pool(const struct dig_curve_set *const set, const size_t digs,
-                                       const struct dig_observation dig[],
-                                       const double outside_floors, struct dig_match *const match)
+enum dig_status dig_match_nearest(const struct dig_curve_set *const set, const size_t digs,
+                                  const struct dig_observation dig[], const double outside_floors,
+                                  struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
     return find(set, NULL, digs, dig, outside_floors, match);
 }
 
-enum dig_status dig_match_nearest_by(const struct dig_prefilter *const summary, const size_t digs,
-                                     const struct dig_observation dig[],
-                                     const double outside_floors, struct dig_match *const match)
+enum dig_status dig_match_nearest_prefiltered(const struct dig_prefilter *const prefilter,
+                                              const size_t digs, const struct dig_observation dig[],
+                                              const double            outside_floors,
+                                              struct dig_match *const match)
 {
-    assert(summary != NULL && dig != NULL && match != NULL);
-    return find(summary->set, summary, digs, dig, outside_floors, match);
-}
-
-enum dig_status dig_match_nearest(const struct dig_curve_set *const   set,
-                                  const struct dig_observation *const observation,
-                                  const double outside_floors, struct dig_match *const match)
-{
-    return dig_match_nearest_pool(set, 1, observation, outside_floors, match);
+    assert(prefilter != NULL && dig != NULL && match != NULL);
+    return find(prefilter->set, prefilter, digs, dig, outside_floors, match);
 }

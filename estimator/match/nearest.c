@@ -4,15 +4,15 @@
 #include <float.h>
 #include <math.h>
 
-// Every so many entries one is looked at first, for a good entry to begin with. A prime, so that
-// the look goes along every axis of the table's grid.
+// A first pass compares every so many entries, for a good bound to start with. A prime, so that it
+// varies along every axis of the table's grid.
 enum { FIRST_LOOK = 17 };
 
 // Sums of a few hundred squares are this far off at most, relative to themselves.
 static const double sum_slack = 1e-12;
 
-// What rounding to float moves an outline by, and the slack of the sums drawn through a root,
-// relative to the norm of what was measured.
+// Slack for the rounding of outlines to float and of the sums, relative to the norm of the
+// measurement.
 static const double outline_slack = 1e-6;
 
 // What was measured along one trajectory, block by block.
@@ -23,10 +23,10 @@ struct measured {
 };
 
 struct search {
-    const struct dig_prefilter *summary;
+    const struct dig_prefilter *prefilter;
     const struct dig_pool_sums *sums;
     struct measured             group[DIG_TRAJECTORY_MAX];
-    double                      scatter_Nm2, whole_Nm2;
+    double                      scatter_Nm2, norm2_Nm2;
     int                         nearest; // -1: none yet
     double                      distance;
     double                      limit_Nm2; // a miss above is certainly farther
@@ -53,13 +53,13 @@ static struct measured measure(const struct dig_pooled *const group)
 // Never above the squared miss of the curve, but for rounding; NaN for a curve that is none.
 static double bound_Nm2(const struct search *const s, const size_t entry)
 {
-    const size_t trajectories = s->summary->set->trajectories;
+    const size_t trajectories = s->prefilter->set->trajectories;
 
     double sum[4] = { 0.0 }; // four at a time: a chain of additions waits for each
     for (size_t g = 0; g < s->sums->groups; g++) {
         const struct measured *const m = &s->group[g];
         const float *const           moment_Nm =
-            dig_outline_mean(s->summary, DIG_CHANNEL_MY_Nm, entry * trajectories + m->trajectory);
+            dig_outline_mean(s->prefilter, DIG_CHANNEL_MY_Nm, entry * trajectories + m->trajectory);
         for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b += 4) {
             for (size_t i = 0; i < 4; i++) {
                 const double miss = m->mean_Nm[b + i] - (double)moment_Nm[b + i];
@@ -74,7 +74,7 @@ static double bound_Nm2(const struct search *const s, const size_t entry)
 // limit, and for an entry that lacks a trajectory.
 static double miss_Nm2(const struct search *const s, const size_t entry)
 {
-    const struct dig_curve_set *const set = s->summary->set;
+    const struct dig_curve_set *const set = s->prefilter->set;
 
     double all = 0.0;
     for (size_t g = 0; g < s->sums->groups; g++) {
@@ -103,14 +103,14 @@ static double miss_Nm2(const struct search *const s, const size_t entry)
 static void look_at(struct search *const s, const size_t entry)
 {
     const double miss2    = miss_Nm2(s, entry);
-    const double distance = sqrt(miss2 / s->whole_Nm2);
+    const double distance = sqrt(miss2 / s->norm2_Nm2);
     const bool   first    = !(distance > s->distance) && (int)entry < s->nearest;
     if (!(distance < s->distance || first)) {
         return;
     }
     const double own = sqrt(fmax(miss2 - s->scatter_Nm2, 0.0));
     const double reach =
-        own + outline_slack * (own + sqrt(s->whole_Nm2)) + (double)FLT_MIN; // denormals' rounding
+        own + outline_slack * (own + sqrt(s->norm2_Nm2)) + (double)FLT_MIN; // denormals' rounding
     s->nearest   = (int)entry;
     s->distance  = distance;
     s->limit_Nm2 = miss2 * (1.0 + sum_slack);
@@ -122,7 +122,7 @@ static void begin(struct search *const s)
 {
     int    at    = -1;
     double least = INFINITY;
-    for (size_t e = 0; e < s->summary->set->entries; e += FIRST_LOOK) {
+    for (size_t e = 0; e < s->prefilter->set->entries; e += FIRST_LOOK) {
         const double bound = bound_Nm2(s, e);
         if (bound < least) {
             least = bound;
@@ -134,12 +134,12 @@ static void begin(struct search *const s)
     }
 }
 
-int dig_nearest_find(const struct dig_prefilter *const summary,
+int dig_nearest_find(const struct dig_prefilter *const prefilter,
                      const struct dig_pool_sums *const sums)
 {
-    assert(summary != NULL && sums != NULL);
+    assert(prefilter != NULL && sums != NULL);
     struct search s = {
-        .summary   = summary,
+        .prefilter = prefilter,
         .sums      = sums,
         .nearest   = -1,
         .distance  = INFINITY,
@@ -149,10 +149,10 @@ int dig_nearest_find(const struct dig_prefilter *const summary,
     for (size_t g = 0; g < sums->groups; g++) {
         s.group[g] = measure(&sums->group[g]);
         s.scatter_Nm2 += sums->group[g].scatter_Nm2;
-        s.whole_Nm2 += sums->group[g].whole_Nm2;
+        s.norm2_Nm2 += sums->group[g].norm2_Nm2;
     }
     begin(&s);
-    for (size_t e = 0; e < summary->set->entries; e++) {
+    for (size_t e = 0; e < prefilter->set->entries; e++) {
         if (!(bound_Nm2(&s, e) > s.reach_Nm2)) {
             look_at(&s, e);
         }

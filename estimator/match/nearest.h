@@ -1,7 +1,7 @@
-// The nearest of very many entries, exactly, without a look at each curve: the outlines of a
-// summary bound the distances from below, and only what may be nearer than the best so far is
-// compared in full. After the bounds of nearest-neighbour search by block means (Keogh et al. 2001,
-// "piecewise aggregate approximation"); docs/numerics/estimator.md shows that nothing is missed.
+// Exact search for the nearest of many entries: the outlines of a prefilter bound the distances
+// from below, and only entries that may be nearer than the best so far are compared in full. After
+// the bounds of nearest-neighbour search by block means (Keogh et al. 2001, "piecewise aggregate
+// approximation"); docs/numerics/estimator.md proves that nothing is missed.
 
 #ifndef DIG_ESTIMATOR_MATCH_NEAREST_H
 #define DIG_ESTIMATOR_MATCH_NEAREST_H
@@ -9,9 +9,9 @@
 #include "estimator/match/pool.h"
 #include "estimator/match/prefilter.h"
 
-/// Index of the entry that dig_match_nearest_pool() finds by looking at all, the first of several
-/// that are equally near; -1: no entry has a finite distance. O(entries): 64 bytes a trajectory of
-/// each, and all of those curves that the outlines cannot tell from the nearest.
-int dig_nearest_find(const struct dig_prefilter *summary, const struct dig_pool_sums *sums);
+/// Index of the entry that dig_match_nearest() finds, the first of several equally near; -1: no
+/// entry has a finite distance. O(entries): reads 64 bytes a trajectory of each, and the curves
+/// whose bound is below the least distance.
+int dig_nearest_find(const struct dig_prefilter *prefilter, const struct dig_pool_sums *sums);
 
 #endif // DIG_ESTIMATOR_MATCH_NEAREST_H

@@ -44,7 +44,7 @@ static void add(struct dig_pooled *const group, const struct dig_observation *co
         group->mean_Nm[k] += off / group->count[k];
         group->sigma2_Nm2[k] += (sigma2 - group->sigma2_Nm2[k]) / group->count[k];
         group->scatter_Nm2 += off * (value - group->mean_Nm[k]);
-        group->whole_Nm2 += value * value;
+        group->norm2_Nm2 += value * value;
         for (size_t c = 0; group->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
             const double share  = 1.0 / group->count[k];
             const double force2 = dig->force_sigma_N[c][k] * dig->force_sigma_N[c][k];

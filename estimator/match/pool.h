@@ -1,5 +1,5 @@
-// Simple digs of one ground, matched together. The scatter of single digs averages down in their
-// mean; the error of the table's own means, which all of them are compared with, does not.
+// The pool: digs of one ground, matched together. The scatter of single digs averages down in their
+// mean; the error of the table's means, common to all, does not.
 
 #ifndef DIG_ESTIMATOR_MATCH_POOL_H
 #define DIG_ESTIMATOR_MATCH_POOL_H
@@ -18,7 +18,7 @@ struct dig_pool {
 /// Appends a dig; from a full pool the oldest leaves.
 void dig_pool_add(struct dig_pool *pool, const struct dig_observation *dig);
 
-/// Digs along one trajectory, summed up point by point.
+/// Sums of the digs along one trajectory, point by point.
 struct dig_pooled {
     size_t trajectory;
     double count[DIG_CURVE_POINTS];      // digs that measured the point
@@ -30,10 +30,10 @@ struct dig_pooled {
     double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
     double force_sigma2_N2[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
     double scatter_Nm2; // squares of moment less mean, over digs and points
-    double whole_Nm2;   // squares of the moments, over digs and points
+    double norm2_Nm2;   // squares of the moments, over digs and points
 };
 
-/// The same along each trajectory that was dug.
+/// The sums along each trajectory that was dug.
 struct dig_pool_sums {
     size_t            digs;
     uint32_t          dig_count; // of the youngest

@@ -10,13 +10,12 @@
 
 enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
 
-// How much less likely, in logarithms, than the likeliest a point may look by the outlines and
-// still be worth a closer look. All that are not together weigh less than a thousandth of the
-// likeliest.
+// A point whose log-likelihood by the outlines is this far below the greatest is skipped. All
+// skipped points together weigh less than a thousandth of the likeliest.
 static const double unlikely = 16.0;
 
 double dig_posterior_excess(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const summary,
+                            const struct dig_prefilter *const prefilter,
                             const struct dig_pool_sums *const sums,
                             const struct dig_gravel *const    gravel)
 {
@@ -26,24 +25,24 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
     for (size_t g = 0; g < sums->groups; g++) {
         struct dig_likelihood l;
         struct dig_cell       cell;
-        dig_likelihood_make(set, summary, &sums->group[g], &l);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l);
         if (dig_cell_find(set, gravel, l.trajectory, &cell) != DIG_OK) {
             return INFINITY;
         }
         const double own = (double)l.channels * l.effective;
         errors += own;
-        miss2 += own * dig_likelihood_miss2(&l, &cell);
+        miss2 += own * dig_likelihood_reduced_chi2(&l, &cell);
     }
     return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
 }
 
 // The fine grid: points are centres of equal intervals of each axis's position. What belongs to a
-// point lies on its axes, and is told once for each of their values.
+// point depends on single axes, and is computed once for each of their values.
 struct fine {
-    size_t                count[DIG_AXES];
-    size_t                all;
-    double                value[DIG_AXES][FINE];
-    struct dig_axis_place place[DIG_AXES][FINE];
+    size_t                   count[DIG_AXES];
+    size_t                   all;
+    double                   value[DIG_AXES][FINE];
+    struct dig_axis_interval place[DIG_AXES][FINE];
 };
 
 // DIG_ENOMATCH when an axis has no points.
@@ -102,8 +101,8 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
                                 const struct fine *const fine, const size_t point,
                                 const size_t groups, const struct dig_likelihood l[])
 {
-    const struct indices  at = indices_of(fine, point);
-    struct dig_axis_place place[DIG_AXES];
+    const struct indices     at = indices_of(fine, point);
+    struct dig_axis_interval place[DIG_AXES];
     for (int a = 0; a < DIG_AXES; a++) {
         place[a] = fine->place[a][at.on[a]];
     }
@@ -178,18 +177,18 @@ static void draw_samples(const struct fine *const fine, const double weight[],
     match->samples = DIG_MATCH_SAMPLES;
 }
 
-// Which points are worth a look: 0, or -infinity. All, if there is nothing to tell it from.
+// Marks the points to evaluate by 0, others by -infinity; all without a prefilter.
 static void look_roughly(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const summary,
+                         const struct dig_prefilter *const prefilter,
                          const struct dig_pool_sums *const sums, const struct fine *const fine,
                          struct dig_likelihood l[], double weight[])
 {
-    bool rough = summary != NULL;
+    bool rough = prefilter != NULL;
     bool dear  = false; // more than the rough look
     for (size_t g = 0; rough && g < sums->groups; g++) {
-        dig_likelihood_make(set, summary, &sums->group[g], &l[g]);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
         dear  = dear || !l[g].is_gaussian;
-        rough = l[g].is_gaussian || dig_likelihood_outline(summary, &l[g]);
+        rough = l[g].is_gaussian || dig_likelihood_outline(prefilter, &l[g]);
     }
     rough       = rough && dear;
     double most = -INFINITY;
@@ -203,7 +202,7 @@ static void look_roughly(const struct dig_curve_set *const set,
 }
 
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
-                                   const struct dig_prefilter *const summary,
+                                   const struct dig_prefilter *const prefilter,
                                    const struct dig_pool_sums *const sums,
                                    struct dig_match *const           match)
 {
@@ -214,10 +213,10 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
     struct dig_likelihood l[DIG_TRAJECTORY_MAX];
     double                weight[GRID_MAX];
-    look_roughly(set, summary, sums, &fine, l, weight);
+    look_roughly(set, prefilter, sums, &fine, l, weight);
 
     for (size_t g = 0; g < sums->groups; g++) {
-        dig_likelihood_make(set, summary, &sums->group[g], &l[g]);
+        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
     }
     double most = -INFINITY;
     for (size_t i = 0; i < fine.all; i++) {

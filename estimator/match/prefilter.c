@@ -57,9 +57,9 @@ size_t dig_prefilter_outlines(const struct dig_curve_set *const set)
 }
 
 void dig_prefilter_make(const struct dig_curve_set *const set, struct dig_outline outline[],
-                        struct dig_prefilter *const summary)
+                        struct dig_prefilter *const prefilter)
 {
-    assert(set != NULL && outline != NULL && summary != NULL);
+    assert(set != NULL && outline != NULL && prefilter != NULL);
     const size_t curves = set->entries * set->trajectories;
     for (size_t slot = 0; slot < curves; slot++) {
         for (size_t layer = 0; layer < DIG_OUTLINE_LAYERS; layer++) {
@@ -73,10 +73,10 @@ void dig_prefilter_make(const struct dig_curve_set *const set, struct dig_outlin
             }
         }
     }
-    *summary = (struct dig_prefilter){ .set = set, .outline = outline };
+    *prefilter = (struct dig_prefilter){ .set = set, .outline = outline };
     for (size_t t = 0; t < set->trajectories; t++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            summary->relative2[t][c] = dig_prefilter_relative2(set, t, (enum dig_channel)c);
+            prefilter->relative2[t][c] = dig_prefilter_relative2(set, t, (enum dig_channel)c);
         }
     }
 }

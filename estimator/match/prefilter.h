@@ -1,5 +1,5 @@
-// A table summed up once, when it is loaded, so that no match has to look at every curve of it: the
-// outline of each curve, block by block along the path, and the table's pooled spread.
+// Prefilter of the nearest search, made once when a table is loaded: the outline of each curve
+// (means over blocks of the path) and the table's pooled spread. No match has to read every curve.
 
 #ifndef DIG_ESTIMATOR_MATCH_PREFILTER_H
 #define DIG_ESTIMATOR_MATCH_PREFILTER_H
@@ -12,7 +12,7 @@
 #define DIG_OUTLINE_POINTS 16 // of a curve, in a block
 _Static_assert(DIG_OUTLINE_BLOCKS *DIG_OUTLINE_POINTS == DIG_CURVE_POINTS, "all of a curve");
 
-/// What is outlined of a curve: of each channel the mean, then the standard deviation.
+/// Layers of a curve: of each channel the mean, then the standard deviation.
 #define DIG_OUTLINE_LAYERS 6
 _Static_assert(DIG_OUTLINE_LAYERS == 2 * DIG_FORCE_CHANNELS, "two of each channel");
 
@@ -21,12 +21,12 @@ struct dig_outline {
     float block[DIG_OUTLINE_BLOCKS];
 };
 
-/// Read-only once made. It tells of the set as it was then: change a curve, and make it anew.
+/// Read-only once made. It must be made again when a curve of the set changes.
 struct dig_prefilter {
     const struct dig_curve_set *set;
-    // [entries * trajectories] of the moments' means, in the set's order, as who looks for the
-    // nearest reads no more; then of each curve the forces' means, which the noise-weighted
-    // distance looks at besides; then of each the standard deviations.
+    // Ordered by use: [entries * trajectories] of the moment's means, in the set's order, for the
+    // nearest search; then of each curve the forces' means, for the noise-weighted distance; then
+    // of each curve the standard deviations.
     const struct dig_outline *outline;
     double                    relative2[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
 };
@@ -34,10 +34,10 @@ struct dig_prefilter {
 /// Means over the blocks of one layer of a curve.
 void dig_outline_draw(const float of[DIG_CURVE_POINTS], struct dig_outline *outline);
 
-/// Outlines that a summary of the set needs: the caller brings the memory, 384 bytes a curve.
+/// Number of outlines of a set, 384 bytes a curve, in memory of the caller.
 size_t dig_prefilter_outlines(const struct dig_curve_set *set);
 
-/// Where the outline of a layer of curve [slot] lies.
+/// Index of the outline of a layer of curve [slot].
 static inline size_t dig_outline_place(const struct dig_curve_set *const set, const size_t layer,
                                        const size_t slot)
 {
@@ -50,25 +50,25 @@ static inline size_t dig_outline_place(const struct dig_curve_set *const set, co
 }
 
 /// The outline of the set's curve [slot]: of its mean, and of its standard deviation.
-static inline const float *dig_outline_mean(const struct dig_prefilter *const summary,
+static inline const float *dig_outline_mean(const struct dig_prefilter *const prefilter,
                                             const size_t channel, const size_t slot)
 {
-    return summary->outline[dig_outline_place(summary->set, 2 * channel, slot)].block;
+    return prefilter->outline[dig_outline_place(prefilter->set, 2 * channel, slot)].block;
 }
 
-static inline const float *dig_outline_sd(const struct dig_prefilter *const summary,
+static inline const float *dig_outline_sd(const struct dig_prefilter *const prefilter,
                                           const size_t channel, const size_t slot)
 {
-    return summary->outline[dig_outline_place(summary->set, 2 * channel + 1, slot)].block;
+    return prefilter->outline[dig_outline_place(prefilter->set, 2 * channel + 1, slot)].block;
 }
 
-/// Sums the set up; it and the outlines must outlive *summary. Reads every curve once: a few
+/// Makes the prefilter; set and outlines must outlive it. Reads every curve once: a few
 /// microseconds each.
 void dig_prefilter_make(const struct dig_curve_set *set, struct dig_outline outline[],
-                        struct dig_prefilter *summary);
+                        struct dig_prefilter *prefilter);
 
-/// Squared spread of one dig relative to the mean, over all entries of the trajectory, each
-/// counting alike; 0 when there is none. O(entries).
+/// Squared spread of one dig relative to the mean, averaged over the entries of the trajectory; 0
+/// when there is none. O(entries).
 double dig_prefilter_relative2(const struct dig_curve_set *set, size_t trajectory,
                                enum dig_channel channel);
 

@@ -7,13 +7,13 @@
 
 enum { NUMBERS = DIG_COVARIANCE_NUMBERS };
 
-// Every so many entries one is looked at first, for a good entry to begin with: the nearest by the
-// Euclidean norm can be a hundred times as far by this distance. A prime, so that the look goes
-// along every axis of the table's grid.
+// A first pass compares every so many entries, for a good bound to start with: the nearest by the
+// Euclidean norm can be a hundred times as far by this distance. A prime, so that it varies along
+// every axis of the table's grid.
 enum { FIRST_LOOK = 17 };
 
-// One trajectory, made white: q is the sum of (white_i - sum_j by_ij t_j)^2.
-struct along {
+// One trajectory, whitened: q is the sum of (white_i - sum_j by_ij t_j)^2.
+struct compared_group {
     struct dig_gaussian gaussian;
     double              by[NUMBERS][NUMBERS]; // below the diagonal and on it
     double              white[NUMBERS];
@@ -21,16 +21,16 @@ struct along {
 
 struct search {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *summary;
+    const struct dig_prefilter *prefilter;
     size_t                      groups;
-    struct along                along[DIG_TRAJECTORY_MAX];
+    struct compared_group       group[DIG_TRAJECTORY_MAX];
     size_t                      entry; // the nearest so far
     double                      least; // its q
 };
 
 // by = L^-1 U^-1.
 static void whiten(const struct dig_curve_set *const set, const size_t nearest,
-                   struct along *const a)
+                   struct compared_group *const a)
 {
     const struct dig_gaussian *const g    = &a->gaussian;
     const size_t                     slot = nearest * set->trajectories + g->trajectory;
@@ -54,7 +54,7 @@ static void whiten(const struct dig_curve_set *const set, const size_t nearest,
     }
 }
 
-// What of an entry's outline is compared with a number.
+// The value of an entry's outline that is compared with a number.
 static double there(const struct dig_compared *const n, const float outline[])
 {
     const double first  = (double)outline[2 * n->block];
@@ -64,8 +64,8 @@ static double there(const struct dig_compared *const n, const float outline[])
 
 // q of one trajectory and what was summed up before; above the limit not to its end. NaN of a curve
 // that is none.
-static double square(const struct along *const a, const float *const outline[], const double limit,
-                     double sum)
+static double square(const struct compared_group *const a, const float *const outline[],
+                     const double limit, double sum)
 {
     double t[NUMBERS];
     for (size_t i = 0; i < a->gaussian.numbers && sum <= limit; i++) {
@@ -85,16 +85,16 @@ static double square_of(const struct search *const s, const size_t entry, const 
 {
     double sum = 0.0;
     for (size_t g = 0; g < s->groups && sum <= limit; g++) {
-        const struct along *const a    = &s->along[g];
-        const size_t              slot = entry * s->set->trajectories + a->gaussian.trajectory;
-        struct dig_outline        drawn[DIG_FORCE_CHANNELS];
-        const float              *outline[DIG_FORCE_CHANNELS];
+        const struct compared_group *const a = &s->group[g];
+        const size_t       slot = entry * s->set->trajectories + a->gaussian.trajectory;
+        struct dig_outline drawn[DIG_FORCE_CHANNELS];
+        const float       *outline[DIG_FORCE_CHANNELS];
         if (s->set->packings[slot] <= 0) {
             return INFINITY;
         }
         for (size_t c = 0; c < a->gaussian.channels; c++) {
-            if (s->summary != NULL) {
-                outline[c] = dig_outline_mean(s->summary, c, slot);
+            if (s->prefilter != NULL) {
+                outline[c] = dig_outline_mean(s->prefilter, c, slot);
             } else {
                 dig_outline_draw(s->set->curve[slot].mean[c], &drawn[c]);
                 outline[c] = drawn[c].block;
@@ -115,18 +115,18 @@ static void look_at(struct search *const s, const size_t entry)
 }
 
 struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
-                                      const struct dig_prefilter *const summary,
+                                      const struct dig_prefilter *const prefilter,
                                       const struct dig_pool_sums *const sums, const size_t nearest)
 {
     assert(set != NULL && sums != NULL && nearest < set->entries);
-    struct search s       = { .set = set, .summary = summary, .groups = sums->groups };
+    struct search s       = { .set = set, .prefilter = prefilter, .groups = sums->groups };
     double        numbers = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        if (!dig_gaussian_assume(set, summary, &sums->group[g], &s.along[g].gaussian)) {
+        if (!dig_gaussian_make_default(set, prefilter, &sums->group[g], &s.group[g].gaussian)) {
             return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
         }
-        whiten(set, nearest, &s.along[g]);
-        numbers += (double)s.along[g].gaussian.numbers;
+        whiten(set, nearest, &s.group[g]);
+        numbers += (double)s.group[g].gaussian.numbers;
     }
     s.entry = nearest;
     s.least = square_of(&s, nearest, INFINITY);

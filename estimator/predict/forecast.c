@@ -34,11 +34,11 @@ void dig_forecast_make(const struct dig_curve_set *const set, const double lambd
 {
     assert(set != NULL && match != NULL && forecast != NULL);
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
-        forecast->along[t].off_table = false;
-        forecast->along[t].valid     = false;
-        forecast->along[t].approach  = dig_approach_plain();
+        forecast->expected[t].off_table = false;
+        forecast->expected[t].valid     = false;
+        forecast->expected[t].approach  = dig_approach_plain();
         if (t < set->trajectories) {
-            expect(set, lambda, match, t, &forecast->along[t]);
+            expect(set, lambda, match, t, &forecast->expected[t]);
         }
     }
 }

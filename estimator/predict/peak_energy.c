@@ -6,8 +6,8 @@
 #include <math.h>
 #include <stdint.h>
 
-void dig_peak_energy_energy_weights(const struct dig_trajectory *const trajectory,
-                                    const double tooth_m, struct dig_channels *const weight)
+void dig_peak_energy_weights(const struct dig_trajectory *const trajectory, const double tooth_m,
+                             struct dig_channels *const weight)
 {
     assert(trajectory != NULL && weight != NULL);
     struct dig_channels sum    = { { { 0.0 } } };
@@ -31,7 +31,7 @@ void dig_peak_energy_energy_weights(const struct dig_trajectory *const trajector
     *weight = sum;
 }
 
-// Digs and their opposites that a peak is told from, over all gravels: the mean of so many is off
+// Draws of a peak, each with its antithetic one, over all gravels: the mean of so many is off
 // by a twelfth of what one scatters by, at most.
 enum { DRAWN_PAIRS = 128 };
 
@@ -47,7 +47,7 @@ static double larger(const double a, const double b)
 
 // Of some of the draws; the seed moves on.
 static struct expected peak_Nm(const struct dig_cell *const cell, const double mean_Nm[],
-                               const double sd_Nm[], const struct dig_entry_scatter *const spread,
+                               const double sd_Nm[], const struct dig_entry_scatter *const scatter,
                                const size_t pairs, uint64_t *const seed)
 {
     const double within  = sqrt(fmax(1.0 - cell->mean_variance, 0.0));
@@ -57,7 +57,7 @@ static struct expected peak_Nm(const struct dig_cell *const cell, const double m
     double       wide2   = 0.0;
     for (size_t d = 0; d < pairs; d++) {
         double error[DIG_CURVE_POINTS];
-        dig_entry_scatter_draw(spread, seed, error);
+        dig_entry_scatter_draw(scatter, seed, error);
         // NOLINTNEXTLINE(readability-isolate-declaration)
         double up = -INFINITY, down = -INFINITY, more = -INFINITY, less = -INFINITY;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -81,7 +81,7 @@ static struct expected energy_J(const struct dig_cell *const          cell,
                                 const struct dig_channels *const      weight,
                                 const struct dig_channels *const      mean,
                                 const struct dig_channels *const      sd,
-                                const struct dig_entry_scatter *const spread)
+                                const struct dig_entry_scatter *const scatter)
 {
     double              sum = 0.0;
     struct dig_channels one;
@@ -93,7 +93,7 @@ static struct expected energy_J(const struct dig_cell *const          cell,
     }
     const double widened2 = 1.0 + cell->inverse_packings;
     return (struct expected){ .mean     = sum,
-                              .variance = widened2 * dig_entry_scatter_variance(spread, &one) };
+                              .variance = widened2 * dig_entry_scatter_variance(scatter, &one) };
 }
 
 // Over gravels that are equally likely.
@@ -133,10 +133,10 @@ enum dig_status dig_peak_energy_predict(const struct dig_curve_set *const set,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_entry_scatter spread;
+    struct dig_entry_scatter scatter;
     struct dig_channels      weight;
-    dig_entry_scatter_make(&set->trajectory[trajectory], set->tooth_m, &spread);
-    dig_peak_energy_energy_weights(&set->trajectory[trajectory], set->tooth_m, &weight);
+    dig_entry_scatter_make(&set->trajectory[trajectory], set->tooth_m, &scatter);
+    dig_peak_energy_weights(&set->trajectory[trajectory], set->tooth_m, &weight);
 
     const size_t pairs  = (DRAWN_PAIRS + cells - 1) / cells;
     uint64_t     seed   = 1; // the same draws at every call
@@ -148,9 +148,9 @@ enum dig_status dig_peak_energy_predict(const struct dig_curve_set *const set,
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             dig_cell_blend(&cell[i], (enum dig_channel)c, mean.of[c], sd.of[c]);
         }
-        add(&peak, peak_Nm(&cell[i], mean.of[DIG_CHANNEL_MY_Nm], sd.of[DIG_CHANNEL_MY_Nm], &spread,
+        add(&peak, peak_Nm(&cell[i], mean.of[DIG_CHANNEL_MY_Nm], sd.of[DIG_CHANNEL_MY_Nm], &scatter,
                            pairs, &seed));
-        add(&energy, energy_J(&cell[i], &weight, &mean, &sd, &spread));
+        add(&energy, energy_J(&cell[i], &weight, &mean, &sd, &scatter));
     }
     *whole = (struct dig_peak_energy){
         .peak_Nm        = mean_of(&peak),

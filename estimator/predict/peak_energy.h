@@ -1,18 +1,17 @@
-// Peak and energy of a whole dig, as they are to be expected, and how far one dig is off them.
+// Expected peak and energy of a whole dig, and their standard deviation for one dig.
 //
-// The mean of many digs is smoother than any of them: its peak lies below theirs. So the peak told
-// is the mean, over the gravels that stand for the match and over draws of one dig's spread z
+// The mean of many digs is smoother than each: its peak lies below theirs. So the expected peak is
+// the mean, over the samples of the match and over draws of one dig's scatter z
 // (estimator/match/entry_scatter.h), of
 //
 //   max over points ( m + sd sqrt(1 - v) z ),    v = sum w^2 / n
 //
-// m: the table's mean at the gravel, of n packings at each corner of weight w. It has itself the
-// share v of one dig's variance in it, by which it peaks too high already; what is added makes the
-// whole of one dig's. Of a table with one packing a gravel the peak is the table's, which is a
-// dig's.
+// m: the table's mean at the gravel, of n packings at each corner of weight w. It already contains
+// the share v of one dig's variance; the draw adds the rest. With one packing a gravel the peak is
+// the table's, which is a single dig's.
 //
-// Energy is linear in the curve: that of the mean curve is the one to be expected. Variance of
-// both: law of total variance, of one dig about a mean of few (1 + 1/n) and between the gravels.
+// Energy is linear in the curve: its expectation is that of the mean curve. Variance of both: law
+// of total variance, of one dig about a mean of few (1 + 1/n) and between the gravels.
 
 #ifndef DIG_ESTIMATOR_PREDICT_PEAK_ENERGY_H
 #define DIG_ESTIMATOR_PREDICT_PEAK_ENERGY_H
@@ -33,12 +32,11 @@ struct dig_peak_energy {
 /// theta turns against +y, and My > 0 resists it, so both terms are positive when the soil resists.
 /// It is linear in the curve: the sum over channels and points of these weights times it
 /// (trapezoids over the path).
-void dig_peak_energy_energy_weights(const struct dig_trajectory *trajectory, double tooth_m,
-                                    struct dig_channels *weight);
+void dig_peak_energy_weights(const struct dig_trajectory *trajectory, double tooth_m,
+                             struct dig_channels *weight);
 
-/// At the match, along one trajectory, the table's scale. Fails as dig_predict_curve() does, and
-/// then *whole is unchanged. Off the tick: a millisecond, 60 kB of stack, no allocation. The
-/// same of the same match, always.
+/// Predicts both along one trajectory, at the table's scale. Fails as dig_predict_curve(); *whole
+/// is unchanged then. Deterministic. Off the tick: a millisecond, 60 kB of stack, no allocation.
 DIG_MUST_CHECK enum dig_status dig_peak_energy_predict(const struct dig_curve_set *set,
                                                        const struct dig_match     *match,
                                                        size_t                      trajectory,

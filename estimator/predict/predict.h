@@ -1,5 +1,5 @@
-// What a prediction is made of, and a predicted curve read off ahead of the bucket. Machine scale
-// follows from Froude similarity: moments and energy lambda^4, forces lambda^3.
+// Cells and points of a prediction. Machine scale follows from Froude similarity: moments and
+// energy lambda^4, forces lambda^3.
 
 #ifndef DIG_ESTIMATOR_PREDICT_PREDICT_H
 #define DIG_ESTIMATOR_PREDICT_PREDICT_H
@@ -9,9 +9,8 @@
 #include "estimator/match/gravel_match.h"
 #include "estimator/predict/prediction.h"
 
-/// The cells of the gravels that stand for the match and for which the table has the trajectory,
-/// equally likely: of the match's samples; if none is there, of its gravel or its nearest entry.
-/// Fails as dig_predict_curve() does.
+/// The cells of the match's samples for which the table has the trajectory, equally likely; without
+/// any, of its gravel or nearest entry. Fails as dig_predict_curve().
 DIG_MUST_CHECK enum dig_status dig_predict_cells(const struct dig_curve_set *set,
                                                  const struct dig_match *match, size_t trajectory,
                                                  struct dig_cell cell[DIG_MATCH_SAMPLES],

@@ -1,4 +1,4 @@
-// What a dig will resist, for whoever asks.
+// The predicted resistance of a dig.
 
 #ifndef DIG_ESTIMATOR_PREDICT_PREDICTION_H
 #define DIG_ESTIMATOR_PREDICT_PREDICTION_H
@@ -10,19 +10,19 @@
 
 #define DIG_PREDICTION_POINTS 64
 
-/// What the real dig will resist, along one trajectory, machine scale, rig axes.
+/// Along one trajectory, machine scale, rig axes.
 struct dig_prediction {
     bool                valid;
     int                 trajectory;
-    struct dig_approach approach; // how that is dug; zeroed: as it stands
+    struct dig_approach approach; // depth and attack; zeroed: the plain trajectory
     double              progress_now;
     double from_progress, to_progress; // the points below are equally spaced over this range
     double moment_Nm[DIG_PREDICTION_POINTS];
     double sigma_Nm[DIG_PREDICTION_POINTS]; // 1 sigma of one dig about the prediction
     double Fx_N[DIG_PREDICTION_POINTS], Fz_N[DIG_PREDICTION_POINTS];
     double sigma_Fx_N[DIG_PREDICTION_POINTS], sigma_Fz_N[DIG_PREDICTION_POINTS];
-    double peak_Nm, peak_sigma_Nm;   // of the whole dig: as it is to be expected, and 1 sigma of
-    double energy_J, energy_sigma_J; // one dig about that (estimator/predict/peak_energy.h)
+    double peak_Nm, peak_sigma_Nm;   // of the whole dig: expectation and 1 sigma of one
+    double energy_J, energy_sigma_J; // dig about it (estimator/predict/peak_energy.h)
 };
 
 #endif // DIG_ESTIMATOR_PREDICT_PREDICTION_H

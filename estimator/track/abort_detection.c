@@ -5,46 +5,46 @@
 #include <assert.h>
 #include <math.h>
 
-// Where the path may have left: after so many parts of it. The last it was, the better is known
-// where, so these are looked at from behind.
+// The path may have left after any of so many parts. The latest one that fits is taken, as the
+// longest fit locates it best.
 enum { PARTS = 8, FIRST_PART = 2 };
 
-// What fits within this share of limit_m is on the route.
+// A vertex within this share of limit_m is on the route.
 static const double on_share = 0.25;
 
-// What is left must fit by so much better than the whole.
+// The part before the abort must fit better than the whole by this factor.
 static const double better = 0.5;
 
-// A path that fits as a whole within this share has left by nothing.
+// A path whose whole fits within this share of limit_m was not aborted.
 static const double well_share = 0.0625;
 
-// Of the way out, what goes on as it was going: 45 degrees.
+// Cosine below which the way out turns off: 45 degrees.
 static const double ahead_share = 0.7;
 
-// The way it was going is that over so many vertices.
-enum { WAY_VERTICES = 4 };
+// The direction of the path is that over so many vertices.
+enum { DIRECTION_VERTICES = 4 };
 
-// The place of a vertex along what was left to dig at progress from.
-static struct dig_place place_of(const struct dig_route *const route,
-                                 const struct dig_track *const track,
-                                 const struct dig_path *const path, const size_t vertex,
-                                 const double from)
+// Projects a vertex on what was left to dig at progress from.
+static struct dig_projection project(const struct dig_route *const route,
+                                     const struct dig_track *const track,
+                                     const struct dig_path *const path, const size_t vertex,
+                                     const double from)
 {
     const struct dig_path_point at = dig_track_turned(track, &path->vertex[vertex]);
-    return dig_route_place(route, track->dx_m, track->dz_m, &at, from, 1.0);
+    return dig_route_project(route, track->dx_m, track->dz_m, &at, from, 1.0);
 }
 
-// Whether a vertex lies ahead of another, as the path came to that, rather than beside it.
+// Whether a vertex lies straight ahead of another, in the direction the path came from.
 static bool is_ahead(const struct dig_path *const path, const size_t vertex, const size_t of)
 {
-    const size_t                before = of >= WAY_VERTICES ? of - WAY_VERTICES : 0;
+    const size_t                before = of >= DIRECTION_VERTICES ? of - DIRECTION_VERTICES : 0;
     const struct dig_path_point came   = dig_path_point_sub(path->vertex[of], path->vertex[before]);
     const struct dig_path_point goes   = dig_path_point_sub(path->vertex[vertex], path->vertex[of]);
     const double length_m2 = dig_path_point_dot(came, came) * dig_path_point_dot(goes, goes);
     return dig_path_point_dot(came, goes) > ahead_share * sqrt(length_m2);
 }
 
-// Follows the path on from where the track was fitted to.
+// Follows the path beyond the fitted part: whether it leaves the route, and where.
 static bool leaves(const struct dig_route *const route, const struct dig_path *const path,
                    const double limit_m, struct dig_abort_detection *const d)
 {
@@ -53,7 +53,7 @@ static bool leaves(const struct dig_route *const route, const struct dig_path *c
     d->progress    = d->track.progress;
     double reached = d->progress;
     for (size_t i = d->until; i < path->end; i++) {
-        const struct dig_place place = place_of(route, &d->track, path, i, reached);
+        const struct dig_projection place = project(route, &d->track, path, i, reached);
         if (place.distance_m <= on_share * limit_m) {
             on          = i;
             reached     = fmax(reached, place.progress);
@@ -68,9 +68,9 @@ static bool leaves(const struct dig_route *const route, const struct dig_path *c
 bool dig_abort_detection_find(const struct dig_route *const route,
                               const struct dig_path *const path, const double limit_m,
                               const struct dig_track *const     whole,
-                              struct dig_abort_detection *const departure)
+                              struct dig_abort_detection *const aborted)
 {
-    assert(route != NULL && path != NULL && whole != NULL && departure != NULL);
+    assert(route != NULL && path != NULL && whole != NULL && aborted != NULL);
     const double    length_m = route->at_m[route->corners - 1];
     const double    known    = (route->at_m[1] + limit_m) / length_m;
     struct dig_path until    = *path;
@@ -87,7 +87,7 @@ bool dig_abort_detection_find(const struct dig_route *const route,
         const bool fits = d.track.rms_m <= fmin(on_share * limit_m, better * whole->rms_m) &&
                           d.track.progress >= known;
         if (fits && leaves(route, path, limit_m, &d)) {
-            *departure = d;
+            *aborted = d;
             return true;
         }
     }
@@ -97,9 +97,9 @@ bool dig_abort_detection_find(const struct dig_route *const route,
 int dig_abort_detection_choose(const size_t routes, const struct dig_route route[],
                                const struct dig_path *const path, const double limit_m,
                                const double tie_m, const struct dig_track whole[],
-                               struct dig_abort_detection *const departure)
+                               struct dig_abort_detection *const aborted)
 {
-    assert(routes <= DIG_TRAJECTORY_MAX && departure != NULL);
+    assert(routes <= DIG_TRAJECTORY_MAX && aborted != NULL);
     for (size_t r = 0; r < routes; r++) {
         struct dig_abort_detection d;
         if (!dig_abort_detection_find(&route[r], path, limit_m, &whole[r], &d)) {
@@ -114,7 +114,7 @@ int dig_abort_detection_choose(const size_t routes, const struct dig_route route
             track_of[o] = &fitted[o];
         }
         if (dig_track_choose(routes, track_of, limit_m, tie_m, -1) == (int)r) {
-            *departure = d;
+            *aborted = d;
             return (int)r;
         }
     }

@@ -4,12 +4,12 @@
 #include <math.h>
 #include <stddef.h>
 
-// A vertex within this share of limit_m lies on the route, and a corner is gone round that is
-// this far behind, and was ahead.
+// A vertex within this share of limit_m lies on the route. A corner counts as passed when it lay
+// this far ahead and then lies this far behind.
 static const double on_share   = 0.25;
 static const double past_share = 0.5;
 
-// Before contact, which is noticed late.
+// Part of limit_m before contact that counts: contact is detected late.
 enum { LEAD_VERTICES = 16 };
 
 enum dig_ending dig_ending_of(const struct dig_route *const route,
@@ -21,8 +21,8 @@ enum dig_ending dig_ending_of(const struct dig_route *const route,
         return DIG_ENDING_WHOLE;
     }
     const struct dig_path_point at = dig_track_turned(track, last);
-    const struct dig_place      place =
-        dig_route_place(route, track->dx_m, track->dz_m, &at, reached, 1.0);
+    const struct dig_projection place =
+        dig_route_project(route, track->dx_m, track->dz_m, &at, reached, 1.0);
     return place.distance_m > limit_m ? DIG_ENDING_ABORTED : DIG_ENDING_OPEN;
 }
 
@@ -36,8 +36,8 @@ bool dig_ending_is_known(const struct dig_route *const route, const struct dig_t
     double       last_m   = -INFINITY;
     for (size_t i = from; i < path->end; i++) {
         const struct dig_path_point at = dig_track_turned(track, &path->vertex[i]);
-        const struct dig_place      place =
-            dig_route_place(route, track->dx_m, track->dz_m, &at, 0.0, 1.0);
+        const struct dig_projection place =
+            dig_route_project(route, track->dx_m, track->dz_m, &at, 0.0, 1.0);
         if (place.distance_m <= on_share * limit_m) {
             first_m = fmin(first_m, place.progress * length_m);
             last_m  = fmax(last_m, place.progress * length_m);

@@ -24,7 +24,7 @@ void dig_followed_on(struct dig_followed *const followed, const int trajectory,
         followed->any        = true;
         followed->trajectory = trajectory;
         followed->progress   = progress;
-        followed->way_m      = (double)path->vertices * path->spacing_m;
+        followed->path_m     = (double)path->vertices * path->spacing_m;
     }
     followed->left = !(off_path_m <= limit_m);
 }
@@ -35,9 +35,9 @@ void dig_followed_off(struct dig_followed *const followed)
     followed->left = true;
 }
 
-bool dig_followed_gave_up(const struct dig_followed *const followed, const size_t routes,
-                          const struct dig_route route[], const struct dig_path *const path,
-                          const double limit_m, const double tie_m)
+bool dig_followed_was_aborted(const struct dig_followed *const followed, const size_t routes,
+                              const struct dig_route route[], const struct dig_path *const path,
+                              const double limit_m, const double tie_m)
 {
     assert(followed != NULL && route != NULL && path != NULL && routes <= DIG_TRAJECTORY_MAX);
     if (!followed->any || !followed->left || followed->missing ||
@@ -45,7 +45,7 @@ bool dig_followed_gave_up(const struct dig_followed *const followed, const size_
         return false;
     }
     struct dig_path until = *path;
-    until.end             = (size_t)fmin((double)path->end, followed->way_m / path->spacing_m);
+    until.end             = (size_t)fmin((double)path->end, followed->path_m / path->spacing_m);
     if (until.end <= until.contact) {
         return false;
     }

@@ -1,6 +1,6 @@
-// What was told of a dig while it went on, kept for its end. A load that is lifted off the path
-// belongs to the path measured, which then is none of the table's: that the dig was given up, and
-// where, only the path before still says.
+// The trajectory that a dig followed while it was in progress, kept for its end. When a load is
+// lifted off the path, the whole path fits no trajectory; only the part before shows that the dig
+// was aborted, and where.
 
 #ifndef DIG_ESTIMATOR_TRACK_FOLLOWED_H
 #define DIG_ESTIMATOR_TRACK_FOLLOWED_H
@@ -11,35 +11,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Zeroed: nothing was told.
+/// Zeroed: no trajectory was followed.
 struct dig_followed {
-    bool    any;        // it was told to be along
-    int     trajectory; // this one, and was at
-    double  progress;   // this place when it was last near it;
-    double  way_m;      // its own path was so long then
-    bool    left;       // since then it is not on it any more
-    bool    missing;    // samples were, for too long: where it was then no one knows
-    int64_t last_ns;    // of the newest sample
+    bool    any;        // a trajectory was followed
+    int     trajectory; // the last one
+    double  progress;   // where the dig was last near it
+    double  path_m;     // length of the dig's path then
+    bool    left;       // the dig has left it since
+    bool    missing;    // samples were missing for too long: the path has a hole
+    int64_t last_ns;    // time of the newest sample
 };
 
-/// A sample of the dig going on, or, not open, in the air before it. hole_s: longer without one is
-/// missing.
+/// Adds the time of a sample; open: of a dig in progress, else in the air before it. A gap longer
+/// than hole_s sets missing.
 void dig_followed_sample(struct dig_followed *followed, bool open, int64_t time_ns, double hole_s);
 
-/// It is told to be along the trajectory, at progress, off_path_m from it. Within half of limit_m
-/// is near; farther than limit_m is not on it.
+/// The dig is along the trajectory, off_path_m from it: near within half of limit_m; beyond limit_m
+/// it has left.
 void dig_followed_on(struct dig_followed *followed, int trajectory, double progress,
                      double off_path_m, double limit_m, const struct dig_path *path);
 
-/// It is told to be along none.
+/// The dig is along no trajectory.
 void dig_followed_off(struct dig_followed *followed);
 
-/// Of a dig whose whole path is along none of the routes: whether it left the one it was told to
-/// be along before the end of that. What was told too soon is found out: the path up to where it
-/// left must fit that route within limit_m, and better by tie_m than any other. As long as fitting
-/// a whole path.
-bool dig_followed_gave_up(const struct dig_followed *followed, size_t routes,
-                          const struct dig_route route[], const struct dig_path *path,
-                          double limit_m, double tie_m);
+/// For a dig whose whole path fits no route: whether it left the followed one before its end. A
+/// trajectory chosen too soon does not count: the path up to where it left must fit the route
+/// within limit_m, and better by tie_m than any other. Costs as much as fitting a whole path.
+bool dig_followed_was_aborted(const struct dig_followed *followed, size_t routes,
+                              const struct dig_route route[], const struct dig_path *path,
+                              double limit_m, double tie_m);
 
 #endif // DIG_ESTIMATOR_TRACK_FOLLOWED_H

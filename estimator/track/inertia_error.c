@@ -7,8 +7,8 @@
 // Newtons per kilogram of the links.
 static const double unmodelled_mps2 = 0.1;
 
-void dig_inertia_error_forces(const struct dig_machine *const machine, const double lambda,
-                              struct dig_observation *const dig)
+void dig_inertia_error_add(const struct dig_machine *const machine, const double lambda,
+                           struct dig_observation *const dig)
 {
     assert(machine != NULL && lambda > 0.0 && dig != NULL);
     double mass_kg = 0.0;

@@ -1,6 +1,6 @@
-// What the forces of a dig may be wrong by beyond what their sensors say: the balance that tells
-// them is quasi-static, and a bucket gathers and loses speed at the corners of its path. The moment
-// about the bucket's pin hardly minds (docs/numerics/estimator.md).
+// Force error from unmodelled inertia: the balance is quasi-static, and the bucket accelerates at
+// the corners of its path. The effect on the moment about the bucket's pin is negligible
+// (docs/numerics/estimator.md).
 
 #ifndef DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H
 #define DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H
@@ -8,10 +8,9 @@
 #include "core/machine.h"
 #include "estimator/track/observation.h"
 
-/// Adds to the sigmas of both forces, in quadrature, what the inertia of the machine's links may
-/// add to a force told without it. lambda as in dig_estimator_init(). Nothing when the dig has no
-/// forces.
-void dig_inertia_error_forces(const struct dig_machine *machine, double lambda,
-                              struct dig_observation *dig);
+/// Adds the error to the sigmas of both forces, in quadrature. lambda as in dig_estimator_init().
+/// Does nothing for a dig without forces.
+void dig_inertia_error_add(const struct dig_machine *machine, double lambda,
+                           struct dig_observation *dig);
 
 #endif // DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H

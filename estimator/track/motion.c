@@ -6,21 +6,21 @@
 #include <math.h>
 #include <stddef.h>
 
-// The rope's length, of the tooth's.
+// Length of the rope, in tooth lengths.
 static const double rope_share = 1.0 / 30.0;
 
-// Noise of the angles averages out over this: else, in a long pause, its rarest would turn the
-// rope.
+// Time constant of the low-pass: without it, rare noise of the angles turns the rope in a long
+// pause.
 static const double settle_s = 0.03;
 
-// A tooth that goes up or down more steeply than this is not dragged; a bucket whose turn is more
-// of its way than the pin's, at 45 degrees between the two, curls. And by how much either border
-// lies farther from what was told last.
+// A tooth that moves up or down more steeply than this is not dragged; a bucket curls when its turn
+// exceeds the path of the pin (45 degrees). The hysteresis moves each border away from the last
+// motion.
 static const double steep_rad = 30.0 * DIG_RAD_PER_DEG;
 static const double turns_rad = 45.0 * DIG_RAD_PER_DEG;
 static const double more_rad  = 5.0 * DIG_RAD_PER_DEG;
 
-// Tows the tail; false: the rope is slack, and its direction says nothing.
+// Tows the tail; false: the rope is slack, and has no direction.
 static bool tow(struct dig_motion_state *const state, const double rope_m, const double share,
                 const struct dig_path_point *const point, struct dig_path_point *const way)
 {

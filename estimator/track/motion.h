@@ -1,18 +1,19 @@
-// What the bucket does in the soil, told from how its tooth moves, whatever the table holds:
+// The motion of the bucket in the soil, by how its tooth moves, whatever the table holds:
 //
 //   penetration   down            drag   along, towards the cab
 //   lift          up              curl   turning more than moving
 //
-//     tail o----------o pose     The tail is towed behind the pose on a rope through (x, z, turn),
-//            rope_m   |          rig scale. Its direction is that of the last way, smoothed over
-//                     v          it: the clock, a pause, noise and steps back shorter than the
-//                                rope change nothing.
+//     tail o----------o pose     A tail is towed behind the pose on a rope through (x, z, turn),
+//     rig
+//            rope_m   |          scale. The rope's direction is that of the path, smoothed over its
+//                     v          length: the clock, a pause, noise and steps back shorter than the
+//                                rope have no effect.
 //
-// At a way behind a corner by an angle a0 the rope still lies at a, a tractrix:
+// At path length s behind a corner of angle a0 the rope's angle is a (a tractrix):
 //
-//   tan(a/2) = tan(a0/2) exp(-way / rope)
+//   tan(a/2) = tan(a0/2) exp(-s / rope)
 //
-// so that a right angle is told after 0.65 to 1 rope.
+// so that a right angle is detected after 0.65 to 1 rope.
 
 #ifndef DIG_ESTIMATOR_TRACK_MOTION_H
 #define DIG_ESTIMATOR_TRACK_MOTION_H
@@ -22,7 +23,7 @@
 
 #include <stdbool.h>
 
-/// What the bucket does in the soil; NONE: it is not in it, or has not moved yet.
+/// NONE: not in the soil, or not moved yet.
 enum dig_motion {
     DIG_MOTION_NONE,
     DIG_MOTION_PENETRATION,
@@ -36,13 +37,13 @@ struct dig_motion_state {
     bool                  towed; // the tail was laid
     struct dig_path_point point; // low-passed over some samples
     struct dig_path_point tail;
-    enum dig_motion       motion; // of the dig going on, kept while the bucket stands
+    enum dig_motion       motion; // of the dig in progress, kept while the bucket rests
 };
 
-/// Moves the tail on to a pose in rig scale, dt_s (machine time) after the last, and tells what the
-/// bucket does: NONE unless the phase is CONTACT or DIG, and before it has moved by a rope's
-/// length. What fits none of them (going back, opening the bucket) leaves it as it was. In EXIT it
-/// is followed, but not told: the dig may go on. In AIR it is forgotten. Constant time.
+/// Moves the tail on to a pose in rig scale, dt_s (machine time) after the last, and returns the
+/// motion: NONE unless the phase is CONTACT or DIG, and until the pose has moved by a rope's
+/// length. A movement that fits none (going back, opening the bucket) leaves the last motion. In
+/// EXIT the state is kept, as the dig may go on; in AIR it is cleared. Constant time.
 enum dig_motion dig_motion_step(struct dig_motion_state *state, double tooth_m, double dt_s,
                                 enum dig_dig_phase phase, const struct dig_path_point *point);
 

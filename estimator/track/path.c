@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-// Keeps every other vertex and doubles the spacing.
+// Drops every other vertex and doubles the spacing.
 static void thin(struct dig_path *const path)
 {
     size_t kept = 0;
@@ -42,7 +42,7 @@ bool dig_path_add(struct dig_path *const path, const struct dig_path_point *cons
     return away;
 }
 
-void dig_path_touch(struct dig_path *const path, const struct dig_path_point *const point)
+void dig_path_add_contact(struct dig_path *const path, const struct dig_path_point *const point)
 {
     assert(path != NULL && point != NULL);
     append(path, point);

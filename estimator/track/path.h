@@ -1,5 +1,5 @@
-// The way a bucket went in one dig, as vertices a fixed distance apart: a pause adds none, noise of
-// the angles hardly any.
+// The path of the bucket in one dig, as vertices a fixed distance apart: a pause adds none, noise
+// of the angles hardly any.
 
 #ifndef DIG_ESTIMATOR_TRACK_PATH_H
 #define DIG_ESTIMATOR_TRACK_PATH_H
@@ -15,16 +15,16 @@
 struct dig_path {
     double                spacing_m; // doubles when the array is full
     size_t                vertices;
-    size_t                contact; // first vertex in contact; those before it only help
-    size_t                end;     // vertices up to the last one in soil: what fits are made to
+    size_t                contact; // first vertex in contact; those before it only support the fit
+    size_t                end;     // vertices up to the last one in soil: fits use these
     struct dig_path_point vertex[DIG_PATH_MAX];
 };
 
-/// Appends a vertex if it is spacing_m away from the last; true if it did. in_soil: the soil is
-/// felt at this point.
+/// Appends a vertex if it is spacing_m away from the last; true if it did. in_soil: the soil
+/// resists at this point.
 bool dig_path_add(struct dig_path *path, const struct dig_path_point *point, bool in_soil);
 
-/// Appends the vertex in which contact is noticed, however near the last.
-void dig_path_touch(struct dig_path *path, const struct dig_path_point *point);
+/// Appends the vertex of contact, however near the last.
+void dig_path_add_contact(struct dig_path *path, const struct dig_path_point *point);
 
 #endif // DIG_ESTIMATOR_TRACK_PATH_H

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stddef.h>
 
-// What the statics lack, in sigmas of one sample.
+// Error of the statics (inertia, seals), in sigmas of one sample.
 static const double unmodelled_share = 0.5;
 
-// Adds dt to a timer while its condition holds and tells whether it has held for long enough.
+// Times a condition; true once it has held for long enough.
 static bool held(double *const held_s, const bool condition, const double dt_s,
                  const double needed_s)
 {
@@ -21,7 +21,7 @@ static void enter(struct dig_phase_state *const state, const enum dig_dig_phase 
     state->held_s = 0.0;
 }
 
-// Free air shows what the pressures read when the soil does nothing.
+// In free air the moment is the bias.
 static void learn_bias(struct dig_phase_state *const              state,
                        const struct dig_estimator_settings *const settings, const double dt_s,
                        const double limit_Nm)
@@ -51,7 +51,7 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state *const              s
         learn_bias(state, settings, dt_s, 0.5 * threshold_Nm);
         if (held(&state->held_s, high, dt_s, settings->contact_hold_s)) {
             enter(state, DIG_PHASE_CONTACT);
-            return DIG_EVENT_TOUCHED;
+            return DIG_EVENT_CONTACT;
         }
         break;
     case DIG_PHASE_CONTACT:
@@ -75,7 +75,7 @@ enum dig_phase_event dig_phase_step(struct dig_phase_state *const              s
             enter(state, DIG_PHASE_AIR);
             const bool was_done = state->done;
             state->done         = false;
-            return was_done ? DIG_EVENT_NONE : DIG_EVENT_GONE;
+            return was_done ? DIG_EVENT_NONE : DIG_EVENT_FINISHED;
         }
         break;
     default: break;
@@ -90,7 +90,7 @@ void dig_phase_end(struct dig_phase_state *const state)
     state->done = true;
 }
 
-void dig_phase_forget(struct dig_phase_state *const state)
+void dig_phase_reset(struct dig_phase_state *const state)
 {
     assert(state != NULL);
     state->filtered_Nm = 0.0;

@@ -5,30 +5,30 @@
 #include <assert.h>
 #include <math.h>
 
-// Vertices this far apart, rig scale: several times what a bus's steps of angle move the pin.
+// Spacing of vertices, rig scale: several times the pin's step by one step of a bus's angles.
 static double vertex_spacing_m(const struct dig_curve_set *const set)
 {
     return 0.025 * set->tooth_m;
 }
 
-void dig_recorded_dig_forget(struct dig_recorded_dig *const    raw,
-                             const struct dig_curve_set *const set)
+void dig_recorded_dig_clear(struct dig_recorded_dig *const    recording,
+                            const struct dig_curve_set *const set)
 {
-    assert(raw != NULL && set != NULL);
-    dig_window_close(&raw->window);
-    raw->followed = (struct dig_followed){ .last_ns = raw->followed.last_ns };
-    raw->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
+    assert(recording != NULL && set != NULL);
+    dig_window_close(&recording->window);
+    recording->followed = (struct dig_followed){ .last_ns = recording->followed.last_ns };
+    recording->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
 }
 
-void dig_recorded_dig_touch(struct dig_recorded_dig *const     raw,
-                            const struct dig_path_point *const point)
+void dig_recorded_dig_contact(struct dig_recorded_dig *const     recording,
+                              const struct dig_path_point *const point)
 {
-    assert(raw != NULL && point != NULL);
-    dig_window_open(&raw->window);
-    for (size_t i = 0; i < raw->window.count; i++) {
-        (void)dig_path_add(&raw->path, &raw->window.sample[i].pose, false);
+    assert(recording != NULL && point != NULL);
+    dig_window_open(&recording->window);
+    for (size_t i = 0; i < recording->window.count; i++) {
+        (void)dig_path_add(&recording->path, &recording->window.sample[i].pose, false);
     }
-    dig_path_touch(&raw->path, point);
+    dig_path_add_contact(&recording->path, point);
 }
 
 struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const set,
@@ -44,11 +44,11 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const s
     };
 }
 
-void dig_recorded_dig_add(struct dig_recorded_dig *const raw, const double lambda,
+void dig_recorded_dig_add(struct dig_recorded_dig *const recording, const double lambda,
                           const int64_t time_ns, const struct dig_wrench *const wrench,
                           const double bias_Nm, const struct dig_path_point *const point)
 {
-    assert(raw != NULL && wrench != NULL && point != NULL);
+    assert(recording != NULL && wrench != NULL && point != NULL);
     const double                   lambda3 = lambda * lambda * lambda;
     const double                   lambda4 = lambda * lambda3;
     const struct dig_window_sample sample  = {
@@ -65,7 +65,7 @@ void dig_recorded_dig_add(struct dig_recorded_dig *const raw, const double lambd
          .force_slow_N  = { (float)(wrench->slow_sigma_Fx_N / lambda3),
                             (float)(wrench->slow_sigma_Fz_N / lambda3) },
     };
-    dig_window_add(&raw->window, &sample);
+    dig_window_add(&recording->window, &sample);
 }
 
 size_t dig_recorded_dig_size(void)

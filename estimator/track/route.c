@@ -18,9 +18,9 @@ struct dig_route dig_route_make(const struct dig_trajectory *const trajectory, c
     return route;
 }
 
-struct dig_place dig_route_place(const struct dig_route *const route, const double dx_m,
-                                 const double dz_m, const struct dig_path_point *const point,
-                                 const double from, const double to)
+struct dig_projection dig_route_project(const struct dig_route *const route, const double dx_m,
+                                        const double dz_m, const struct dig_path_point *const point,
+                                        const double from, const double to)
 {
     assert(route != NULL && point != NULL && route->corners >= 2);
     const double                whole_m = route->at_m[route->corners - 1];
@@ -29,9 +29,9 @@ struct dig_place dig_route_place(const struct dig_route *const route, const doub
     const struct dig_path_point at      = { point->x_m - dx_m, point->z_m - dz_m, point->turn_m };
 
     // Squared distances decide; roots are drawn once, of the nearest.
-    struct dig_place best    = { .distance_m = INFINITY };
-    double           best_m2 = INFINITY;
-    double           scale   = 0.0; // of the best leg to its unit tangent, 0 at a corner
+    struct dig_projection best    = { .distance_m = INFINITY };
+    double                best_m2 = INFINITY;
+    double                scale   = 0.0; // of the best leg to its unit tangent, 0 at a corner
     for (size_t i = 0; i + 1 < route->corners; i++) {
         const double at_m     = route->at_m[i];
         const double length_m = route->at_m[i + 1] - at_m;

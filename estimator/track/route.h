@@ -1,8 +1,8 @@
-// A trajectory of the table as the bucket's path through (x, z, turn), and where a pose lies on it.
+// A trajectory as a route through (x, z, turn), and the projection of a pose on it.
 //
 // A pose is a point (x, z, turn) with turn = tooth_m * theta, in rig scale; a trajectory of
-// constant rates is a polyline there. Progress is the share of the path, |pin| + tooth |turn|,
-// never of the clock.
+// constant rates is a polyline there. Progress is the share of the path length, |pin| + tooth
+// |turn|, not of time.
 
 #ifndef DIG_ESTIMATOR_TRACK_ROUTE_H
 #define DIG_ESTIMATOR_TRACK_ROUTE_H
@@ -35,8 +35,7 @@ static inline double dig_path_point_dot(const struct dig_path_point a,
     return a.x_m * b.x_m + a.z_m * b.z_m + a.turn_m * b.turn_m;
 }
 
-/// A trajectory as a polyline, and by how much the bucket may stand otherwise all along it: 0 and 0
-/// unless said.
+/// A polyline, and the range of a constant turn of the bucket along it: 0 and 0 by default.
 struct dig_route {
     size_t                corners;
     struct dig_path_point corner[DIG_PHASES_MAX + 1];
@@ -46,8 +45,8 @@ struct dig_route {
 
 struct dig_route dig_route_make(const struct dig_trajectory *trajectory, double tooth_m);
 
-/// Where a point lies on a route shifted by (dx, dz).
-struct dig_place {
+/// The projection of a point on a route shifted by (dx, dz).
+struct dig_projection {
     double progress;   // 0 … 1
     double distance_m; // in (x, z, turn)
     // Unit tangent, or 0 at a corner, and the vector from route to point.
@@ -57,9 +56,9 @@ struct dig_place {
 /// The point of the route at a progress. O(corners).
 struct dig_path_point dig_route_point(const struct dig_route *route, double progress);
 
-/// Nearest place between progress from and to. The first leg goes on backwards beyond the start
-/// (progress stays 0): approaching along it is no distance. O(corners).
-struct dig_place dig_route_place(const struct dig_route *route, double dx_m, double dz_m,
-                                 const struct dig_path_point *point, double from, double to);
+/// Projects a point on the route between progress from and to. The first leg is extended backwards
+/// beyond the start (progress stays 0): approaching along it is no distance. O(corners).
+struct dig_projection dig_route_project(const struct dig_route *route, double dx_m, double dz_m,
+                                        const struct dig_path_point *point, double from, double to);
 
 #endif // DIG_ESTIMATOR_TRACK_ROUTE_H

@@ -1,4 +1,4 @@
-// How digs are recognised: a plain struct with defaults and a check.
+// Settings of the estimator: a plain struct with defaults and a check.
 
 #ifndef DIG_ESTIMATOR_TRACK_SETTINGS_H
 #define DIG_ESTIMATOR_TRACK_SETTINGS_H

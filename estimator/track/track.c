@@ -4,36 +4,36 @@
 #include <math.h>
 #include <stdbool.h>
 
-// How far from the start of the route contact may be noticed, 1 sigma, against the scatter of one
-// vertex: what the prior on the shift weighs, in vertices.
+// Weight of the prior on the shift, in vertices: (scatter of one vertex / 1 sigma of the distance
+// from the start of the route at which contact is detected)^2.
 static const double anchor_weight = 2.5e-3;
 
-// Before contact the bucket may come from anywhere: in the end only vertices this near count, in
-// limit_m. A fit begins with more, to be drawn along a leg dug before contact was felt.
+// Before contact the bucket may come from anywhere: only vertices this near the route count, in
+// limit_m. A fit starts with the wider share, to follow a leg dug before contact was detected.
 static const double lead_in_share = 0.1;
 static const double wide_in_share = 0.5;
 
-// What a contact far from the start of the route counts as, in distance: contact is noticed late,
-// but a fit that needs it very late is worse than one that does not.
+// Share of the shift from the anchor that counts in the score: contact is detected late, but a fit
+// that needs it very late is worse than one that does not.
 static const double anchor_share = 0.05;
 
-// The last vertices before contact are likely to lie on the route too: contact is noticed late.
-// What does not counts this much, and never more than limit_m; it may still have been air.
+// Vertices before contact that count in the score, limit_m each at most: they are likely to lie on
+// the route too, but may be air.
 enum { LEAD_VERTICES = 16 };
 
-// Turns of every follower for which a choice must hold before it is told.
+// Turns of every follower for which a choice must hold before it is accepted.
 enum { CHOICE_TURNS = 24 };
 
-// Places of the route where contact may have been noticed, late as it is: where fits start from.
+// Fits start from contact at these places of the route; steps of one fit.
 enum { STARTS = 8, CHALLENGE_STEPS = 6 };
 static const double start_step = 0.05;
 
-// A vertex is looked for this far behind and ahead of the last one's place.
+// A vertex is projected from this far behind to this far ahead of the last one's progress.
 static const double look_behind = 0.10;
 static const double look_ahead  = 0.35;
 
-struct dig_track dig_track_start(const struct dig_route *const route,
-                                 const struct dig_path *const path, const double start)
+static struct dig_track track_start(const struct dig_route *const route,
+                                    const struct dig_path *const path, const double start)
 {
     assert(route != NULL && path != NULL && path->contact < path->end);
     const struct dig_path_point *const touched = &path->vertex[path->contact];
@@ -48,13 +48,13 @@ struct dig_track dig_track_start(const struct dig_route *const route,
     };
 }
 
-// Normal equations of the shift, symmetric, and of the turn where the route lets it be one.
+// Normal equations of the shift, symmetric, and of the turn where the route has a range of it.
 struct normal {
     double xx, xz, zz, bx, bz;
     double xt, zt, tt, bt;
 };
 
-static void add_equation(struct normal *const normal, const struct dig_place *const place)
+static void add_equation(struct normal *const normal, const struct dig_projection *const place)
 {
     const struct dig_path_point t = place->tangent;
     normal->xx += 1.0 - t.x_m * t.x_m;
@@ -68,14 +68,14 @@ static void add_equation(struct normal *const normal, const struct dig_place *co
     normal->bt += place->off.turn_m;
 }
 
-// Moves the turn, and takes what that explains off the shift's side of the equations.
+// Steps the turn, and eliminates it from the equations of the shift.
 static void turn(const struct dig_route *const route, struct normal *const n,
                  struct dig_track *const track)
 {
     if (!(route->turn_most_m > route->turn_least_m)) {
         return;
     }
-    // What is left of the turn's equation when the shift is eliminated.
+    // The turn's equation with the shift eliminated.
     const double det  = n->xx * n->zz - n->xz * n->xz;
     const double px   = (n->zz * n->xt - n->xz * n->zt) / det;
     const double pz   = (n->xx * n->zt - n->xz * n->xt) / det;
@@ -92,7 +92,7 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
 {
     assert(route != NULL && path != NULL && track != NULL && path->contact < path->end);
 
-    // The anchor pulls weakly towards "contact was at the start".
+    // A weak prior: contact was at the start.
     struct normal normal = {
         .xx = anchor_weight,
         .zz = anchor_weight,
@@ -108,8 +108,8 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
         const double                from = last - look_behind;
         const double                to   = last + look_ahead;
         const struct dig_path_point at   = dig_track_turned(track, &path->vertex[i]);
-        const struct dig_place      place =
-            dig_route_place(route, track->dx_m, track->dz_m, &at, from, fmin(to, 1.0));
+        const struct dig_projection place =
+            dig_route_project(route, track->dx_m, track->dz_m, &at, from, fmin(to, 1.0));
 
         if (i < path->contact) {
             if (i + LEAD_VERTICES >= path->contact) {
@@ -122,7 +122,7 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
             continue;
         }
 
-        // Past its end the route says nothing about the shift, but a bucket far off it is a miss.
+        // Past the route's end a vertex does not constrain the shift, but its distance counts.
         const bool past = place.progress >= 1.0 && last >= 1.0 - look_behind;
         if (past) {
             sum_m2 += pow(fmin(place.distance_m, limit_m), 2.0);
@@ -147,14 +147,14 @@ static void refine(const struct dig_route *const route, const struct dig_path *c
     track->progress = last;
 }
 
-// How near vertices before contact must lie to count in this step of a new fit.
+// The share of vertices before contact, by step of a new fit.
 static double lead_in_m(const unsigned step, const double limit_m)
 {
     return (step < CHALLENGE_STEPS / 2 ? wide_in_share : lead_in_share) * limit_m;
 }
 
-void dig_track_refine(const struct dig_route *const route, const struct dig_path *const path,
-                      const double limit_m, struct dig_track *const track)
+static void step_track(const struct dig_route *const route, const struct dig_path *const path,
+                       const double limit_m, struct dig_track *const track)
 {
     refine(route, path, limit_m, lead_in_share * limit_m, track);
 }
@@ -162,8 +162,8 @@ void dig_track_refine(const struct dig_route *const route, const struct dig_path
 struct dig_follower dig_follower_start(const struct dig_route *const route,
                                        const struct dig_path *const path, const double limit_m)
 {
-    struct dig_follower follower = { .track = dig_track_start(route, path, 0.0) };
-    dig_track_refine(route, path, limit_m, &follower.track);
+    struct dig_follower follower = { .track = track_start(route, path, 0.0) };
+    step_track(route, path, limit_m, &follower.track);
     return follower;
 }
 
@@ -173,11 +173,11 @@ void dig_follower_step(const struct dig_route *const route, const struct dig_pat
     assert(follower != NULL);
     struct dig_track *const track      = &follower->track;
     struct dig_track *const challenger = &follower->challenger;
-    dig_track_refine(route, path, limit_m, track);
+    step_track(route, path, limit_m, track);
 
     if (follower->turn % CHALLENGE_STEPS == 0) {
         const double start = start_step * (double)(follower->turn / CHALLENGE_STEPS % STARTS);
-        *challenger        = dig_track_start(route, path, start);
+        *challenger        = track_start(route, path, start);
     }
     const unsigned step = follower->turn % CHALLENGE_STEPS;
     refine(route, path, limit_m, lead_in_m(step, limit_m), challenger);
@@ -192,14 +192,14 @@ struct dig_track dig_track_fit(const struct dig_route *const route,
 {
     struct dig_track best = { .score_m = INFINITY };
     for (size_t k = 0; k < STARTS; k++) {
-        struct dig_track track = dig_track_start(route, path, start_step * (double)k);
+        struct dig_track track = track_start(route, path, start_step * (double)k);
         for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
             refine(route, path, limit_m, lead_in_m(step, limit_m), &track);
         }
         best = track.score_m < best.score_m ? track : best;
     }
     for (unsigned step = 0; step < CHALLENGE_STEPS; step++) {
-        dig_track_refine(route, path, limit_m, &best);
+        step_track(route, path, limit_m, &best);
     }
     return best;
 }
@@ -210,13 +210,13 @@ int dig_choice_step(struct dig_choice *const choice, const size_t tracks, const 
     choice->held      = chosen == choice->candidate ? choice->held + 1 : 0;
     choice->candidate = chosen;
     if (choice->held >= tracks * CHOICE_TURNS) {
-        choice->told = chosen;
+        choice->current = chosen;
     }
-    return choice->told;
+    return choice->current;
 }
 
 int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
-                     const double limit_m, const double tie_m, const int sitting)
+                     const double limit_m, const double tie_m, const int current)
 {
     int    best     = -1;
     double best_m   = INFINITY;
@@ -236,5 +236,5 @@ int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
     if (second_m - best_m >= tie_m) {
         return best;
     }
-    return sitting >= 0 && track[sitting]->rms_m - best_m < tie_m ? sitting : -1;
+    return current >= 0 && track[current]->rms_m - best_m < tie_m ? current : -1;
 }

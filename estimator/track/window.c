@@ -11,7 +11,7 @@
 // Steps forward smaller than this are noise of the angles.
 #define STANDING 0.004
 
-// Where the next sample goes once the window is full. Doubling number g drops, of what is there,
+// Slot of the next sample once the window is full. Doubling number g drops, of what is there,
 // the slots whose bit g - 1 is set; within each residue of the lower bits slots ascend in time, and
 // so do the residues. Slots are filled in that order, each dropped one giving way when its turn
 // comes.
@@ -102,7 +102,7 @@ struct range {
     size_t first, end;
 };
 
-// Furthest progress up to each sample, and the samples from the last one still at the start to the
+// Furthest progress up to each sample, and the range from the last sample still at the start to the
 // first one at the end.
 static struct range follow(struct dig_window *const window, const struct dig_route *const route,
                            const struct dig_track *const track, const double limit_m)
@@ -112,8 +112,8 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     double       furthest = 0.0;
     for (size_t i = 0; i < window->count && furthest < 1.0; i++) {
         const struct dig_path_point at    = dig_track_turned(track, &window->sample[i].pose);
-        const struct dig_place      place = dig_route_place(route, track->dx_m, track->dz_m, &at,
-                                                            last - LOOK, fmin(last + LOOK, 1.0));
+        const struct dig_projection place = dig_route_project(route, track->dx_m, track->dz_m, &at,
+                                                              last - LOOK, fmin(last + LOOK, 1.0));
         if (place.distance_m <= limit_m) {
             last     = place.progress;
             furthest = fmax(furthest, place.progress);
@@ -123,7 +123,7 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
         range.end           = i + 1;
     }
 
-    // Broken off: what came after the bucket's last step forward is the way out.
+    // Aborted: after the bucket's last step forward comes the way out.
     while (furthest < 1.0 && range.end > range.first + 1 &&
            window->progress[range.end - 2] > furthest - STANDING) {
         range.end--;
@@ -131,12 +131,12 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     return range;
 }
 
-// The progress told of the range: of a dig that goes on, no more than is smoothed from both sides.
+// The progress observed: of a dig in progress only as far as samples on both sides smooth it.
 static double told_until(const struct dig_window *const window, const struct range range,
                          const double half_s)
 {
     size_t i = range.end - 1;
-    if (window->goes_on && window->progress[i] < 1.0) {
+    if (window->in_progress && window->progress[i] < 1.0) {
         const double until_s = window->time_s[i] - half_s;
         while (i > range.first && window->time_s[i] > until_s) {
             i--;
@@ -145,7 +145,8 @@ static double told_until(const struct dig_window *const window, const struct ran
     return window->progress[i];
 }
 
-// Samples of the range within half_s of sample i, at least 1: what white noise averages over.
+// Number of samples of the range within half_s of sample i, at least 1: white noise averages over
+// these.
 static double samples_within(const struct dig_window *const window, const struct range range,
                              const size_t i, const double half_s)
 {
@@ -156,7 +157,7 @@ static double samples_within(const struct dig_window *const window, const struct
     return fmax((to_s - from_s) * per_s, 1.0);
 }
 
-// Where samples are missing for longer than is smoothed over, no one knows what the moment was.
+// Whether the range has a hole: a gap longer than the smoothing.
 double dig_window_hole_s(const double half_s)
 {
     return fmax(half_s, 0.02);
@@ -175,7 +176,7 @@ static bool has_hole(const struct dig_window *const window, const struct range r
     return false;
 }
 
-// Where on the path a point of the grid was first reached: between a sample and the next.
+// Where a point of the grid was first reached: between a sample and the next.
 struct spot {
     bool   measured;
     size_t sample;
@@ -204,7 +205,7 @@ static size_t find_spots(const struct dig_window *const window, const struct ran
     return points;
 }
 
-// Smooths what lies in window->value and reads it off.
+// Smooths window->value and evaluates it at the grid.
 static void read_off(struct dig_window *const window, const struct range range, const double half_s,
                      const struct spot spot[], double out[DIG_CURVE_POINTS])
 {
@@ -218,7 +219,7 @@ static void read_off(struct dig_window *const window, const struct range range, 
     }
 }
 
-// Of a sample's sigma, what smoothing leaves: white noise averages, the slow part does not.
+// A sample's sigma after smoothing: white noise averages, the slow part does not.
 static double smoothed_sigma(const struct dig_window *const window, const struct range range,
                              const size_t i, const double half_s, const double sigma,
                              const double slow)
@@ -292,8 +293,9 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     read_forces(window, range, half_s, spot, observation);
     const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
 
-    observation->ending =
-        window->goes_on ? DIG_ENDING_OPEN : dig_ending_of(route, track, last, left, 0.5 * limit_m);
+    observation->ending     = window->in_progress
+                                  ? DIG_ENDING_OPEN
+                                  : dig_ending_of(route, track, last, left, 0.5 * limit_m);
     observation->first      = first;
     observation->last       = last;
     observation->off_path_m = track->rms_m;

@@ -1,9 +1,9 @@
-// The samples of one dig, kept in a fixed place, and the observation made of them in its end.
+// The window: the samples of one dig in fixed memory, and their observation along a route.
 //
-// In the air the window only remembers the last DIG_WINDOW_BEFORE samples, as contact is noticed
-// late; opened, it keeps everything. A full window goes on at half the rate, and every sample that
-// comes then takes the place of one of every second that is there: no tick moves more than one. So
-// samples of a long dig do not lie in the order of time until dig_window_observe() sorts them.
+// In the air the window keeps the last DIG_WINDOW_BEFORE samples, as contact is detected late;
+// opened, it keeps all. A full window goes on at half the rate: each new sample replaces one of
+// every second stored, so that no tick moves more than one. The samples of a long dig are therefore
+// out of order until dig_window_observe() sorts them.
 
 #ifndef DIG_ESTIMATOR_TRACK_WINDOW_H
 #define DIG_ESTIMATOR_TRACK_WINDOW_H
@@ -13,9 +13,8 @@
 #include "estimator/track/route.h"
 #include "estimator/track/track.h"
 
-#define DIG_WINDOW_MAX 16384 // samples of one dig that are kept
-
-#define DIG_WINDOW_BEFORE 1024
+#define DIG_WINDOW_MAX    16384 // samples of one dig: 80 s at 200 Hz
+#define DIG_WINDOW_BEFORE 1024  // samples before contact: 5 s
 
 /// One sample in rig scale and rig time.
 struct dig_window_sample {
@@ -37,7 +36,7 @@ struct dig_window {
     size_t                   count;
     size_t                   stride, skipped; // every stride-th sample is kept
     size_t                   replaced;        // samples replaced since the stride doubled last
-    bool                     goes_on; // more will come: the last half_s cannot be smoothed yet
+    bool                     in_progress;     // in progress: the last half_s cannot be smoothed yet
     struct dig_window_sample sample[DIG_WINDOW_MAX];
     // filled by dig_window_observe()
     double time_s[DIG_WINDOW_MAX];
@@ -46,28 +45,27 @@ struct dig_window {
     double smooth[DIG_WINDOW_MAX];
 };
 
-/// Remembers or keeps a sample. Constant time.
+/// Adds a sample. Constant time.
 void dig_window_add(struct dig_window *window, const struct dig_window_sample *sample);
 
-/// Opens the window with the samples remembered (they are copied: some microseconds); closes it and
-/// forgets all.
+/// Opens the window with the samples before contact (copied: some microseconds); closes and empties
+/// it.
 void dig_window_open(struct dig_window *window);
 void dig_window_close(struct dig_window *window);
 
-/// Samples missing for longer than this, rig time, are a hole.
+/// A gap between samples longer than this, rig time, is a hole.
 double dig_window_hole_s(double half_s);
 
-/// The observation of the dig along route at the track's shift: samples from the start of the route
-/// to its end (or to where the dig stopped), smoothed over +-half_s of rig time, read off at
-/// DIG_CURVE_POINTS of progress where the furthest progress so far first reached them: a pause or a
-/// step back changes nothing. A sample farther than limit_m from the route moves no progress.
-/// sigma: white noise averages over the smoothing, the slow part does not. Of a dig that goes on,
-/// only what is half_s old is told, and no ending; aborted is what left the route by more than
-/// half of limit_m. Forces are told where all samples of the dig have them.
+/// Observes the dig along the route at the track's shift. Samples are smoothed over +-half_s of rig
+/// time and evaluated at DIG_CURVE_POINTS of progress, each where the furthest progress first
+/// reached it: a pause or a step back has no effect. A sample farther than limit_m from the route
+/// does not advance progress. sigma: white noise averages over the smoothing, the slow part does
+/// not. Forces are observed where all samples have them. Aborted: the dig left the route by more
+/// than half of limit_m. A dig in progress is observed up to half_s before its newest sample,
+/// without an ending.
 ///
-/// DIG_ENOMATCH when fewer than two points of the grid were reached, or samples are missing for
-/// longer than half_s of rig time: what was not measured is not made up. Uses the window's own
-/// arrays; O(samples * corners).
+/// DIG_ENOMATCH: fewer than two points of the grid were reached, or a gap is longer than half_s of
+/// rig time, which is not interpolated. Uses the window's arrays; O(samples * corners).
 DIG_MUST_CHECK enum dig_status dig_window_observe(struct dig_window      *window,
                                                   const struct dig_route *route,
                                                   const struct dig_track *track, double limit_m,

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-// What the chamber holds when its sensor reads this.
+// Pressure of a chamber by its sensor's reading.
 static double truth_Pa(const struct dig_correction *const correction, const int joint,
                        const enum dig_chamber chamber, const double read_Pa)
 {

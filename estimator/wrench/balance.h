@@ -1,5 +1,5 @@
-// The balance of moments about the three pins, solved at one instant: what wrench.c makes a wrench
-// of, and what must be nothing in free air.
+// The balance of moments about the three pins at one instant. wrench.c makes a wrench of it; in
+// free air it must be zero.
 
 #ifndef DIG_ESTIMATOR_WRENCH_BALANCE_H
 #define DIG_ESTIMATOR_WRENCH_BALANCE_H
@@ -13,7 +13,7 @@
 #include "estimator/wrench/rates.h"
 #include "estimator/wrench/statics.h"
 
-/// What a sample says, by joint. friction and rates may be NULL: none.
+/// The readings of a sample, by joint. friction and rates may be NULL: none.
 struct dig_readings {
     double                     joint_rad[DIG_JOINTS];
     double                     pitch_rad;
@@ -35,8 +35,8 @@ struct dig_balance {
     bool             moment_ok, force_ok;
 };
 
-/// Reads a sample: with a correction (NULL: none) its pressures are put right first. A drive that
-/// lacks a pressure pushes by 0 and is not valid. DIG_ESTALE, DIG_EINVAL as dig_wrench_solve().
+/// Converts a sample; a correction (NULL: none) is applied to its pressures first. A drive that
+/// lacks a pressure has push 0 and is not valid. DIG_ESTALE, DIG_EINVAL as dig_wrench_solve().
 /// rates: NULL only without correction.
 DIG_MUST_CHECK enum dig_status dig_readings_take(const struct dig_machine    *machine,
                                                  const struct dig_correction *correction,
@@ -44,7 +44,7 @@ DIG_MUST_CHECK enum dig_status dig_readings_take(const struct dig_machine    *ma
                                                  const struct dig_rates      *rates,
                                                  struct dig_readings         *readings);
 
-/// What a drive loses of its push at this speed of the rod, N; drives against the motion.
+/// Friction loss of a drive's push at this speed of the rod, N; against the motion.
 double dig_friction_loss_N(const struct dig_friction *friction, double push_N, double rod_mps);
 
 /// Solves. Constant time.
@@ -52,7 +52,7 @@ struct dig_balance dig_balance_solve(const struct dig_machine  *machine,
                                      const struct dig_readings *readings,
                                      const struct dig_front    *front);
 
-/// Whether the force can be told where the front stands: boom and arm not in one line.
+/// Whether the pose determines the force: boom and arm not in one line.
 bool dig_balance_tells_force(const struct dig_front *front);
 
 #endif // DIG_ESTIMATOR_WRENCH_BALANCE_H

@@ -21,8 +21,8 @@ bool dig_correction_is_none(const struct dig_correction *const correction)
     return none;
 }
 
-// The centre of mass moves; the inertia about it is the file's and what the burden says.
-static void add_burden(struct dig_link *const link, const struct dig_burden *const burden)
+// Moves the centre of mass and adds to the inertia about it.
+static void add_burden(struct dig_link *const link, const struct dig_added_mass *const burden)
 {
     const double mass_kg = link->mass_kg + burden->mass_kg;
     link->com_m          = dig_vec2_add_scaled(link->com_m, 1.0 / mass_kg, burden->moment_kgm);
@@ -30,7 +30,7 @@ static void add_burden(struct dig_link *const link, const struct dig_burden *con
     link->inertia_kgm2 += burden->inertia_kgm2;
 }
 
-// sign 1: as it is; -1: as the file has it.
+// sign 1: applies the geometry; -1: removes it.
 static void move_pins(struct dig_machine *const machine, const double sign,
                       const struct dig_correction *const by)
 {
@@ -108,24 +108,24 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
     return status;
 }
 
-enum dig_status dig_correction_take(const struct dig_machine *const    machine,
-                                    const struct dig_correction *const correction,
-                                    struct dig_taken *const            taken)
+enum dig_status dig_correction_apply(const struct dig_machine *const     machine,
+                                     const struct dig_correction *const  correction,
+                                     struct dig_corrected_machine *const corrected)
 {
-    assert(machine != NULL && taken != NULL);
-    struct dig_taken made = { .corrects = false };
+    assert(machine != NULL && corrected != NULL);
+    struct dig_corrected_machine made = { .corrects = false };
     if (correction != NULL) {
         const enum dig_status status = dig_correction_check(machine, correction);
         if (status != DIG_OK) {
             return status;
         }
-        // Of a force sensor's rig there is nothing to correct, or it was refused.
+        // A force sensor's rig has no correction; one was refused before.
         made.corrects = !machine->sensor.fitted;
     }
     if (made.corrects) {
         made.correction = *correction;
         made.machine    = dig_correction_machine(machine, correction);
     }
-    *taken = made;
+    *corrected = made;
     return DIG_OK;
 }

@@ -1,10 +1,8 @@
-// Everything in which a machine may differ from its file. Zeroed it is the machine as the file
-// says.
+// The correction: everything in which a machine may differ from its file. Zeroed: no difference.
 //
-// The closed loop finds these in free air (closed_loop/machine/machine_side.h), a model file
-// carries them, dig_wrench_correct() takes them off. Signs are those of the truth: what is added to
-// the file's value gives the machine's own, and what a sensor reads is offset + (1 + gain) *
-// pressure.
+// The closed loop estimates it in free air (closed_loop/machine/machine_side.h), a model file holds
+// it, dig_wrench_correct() applies it. Signs: file's value + correction = machine's value; a sensor
+// reads offset + (1 + gain) * pressure.
 
 #ifndef DIG_ESTIMATOR_WRENCH_CORRECTION_H
 #define DIG_ESTIMATOR_WRENCH_CORRECTION_H
@@ -16,7 +14,7 @@
 
 enum dig_chamber { DIG_CHAMBER_HEAD, DIG_CHAMBER_ROD, DIG_CHAMBERS };
 
-/// Between piston and bore of one whole drive: what is lost of the push, against the rod's motion.
+/// Friction of one drive, between piston and bore: loss of push, against the rod's motion.
 ///
 ///   loss = [ coulomb + stribeck exp(-|v| / stribeck_mps) + load_share |push| ] tanh(v / still_mps)
 ///          + viscous v
@@ -28,23 +26,23 @@ struct dig_friction {
     double load_share; // of the push that the pressures make
 };
 
-/// Below this speed of the rod the direction of friction is not told, m/s.
+/// Width of the transition about standstill, where the direction of friction is not defined, m/s.
 #define DIG_FRICTION_STILL_mps 0.003
 
-/// What is more in or on the bucket than the file says. Alone, mass_kg lies in the file's centre of
-/// mass and leaves the inertia about the centre as it is.
-struct dig_burden {
+/// Mass in or on the bucket beyond the file's. With mass_kg alone it lies in the file's centre of
+/// mass and leaves the inertia about the centre unchanged.
+struct dig_added_mass {
     double          mass_kg;
     struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, bucket frame
     double          inertia_kgm2; // about the centre of mass of all
 };
 
 struct dig_correction {
-    struct dig_friction friction[DIG_JOINTS];
-    double              offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
-    double              gain[DIG_JOINTS][DIG_CHAMBERS];
-    struct dig_burden   bucket;  // of the bucket itself: every dig
-    struct dig_burden   payload; // carried over from the dig before: this dig only
+    struct dig_friction   friction[DIG_JOINTS];
+    double                offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
+    double                gain[DIG_JOINTS][DIG_CHAMBERS];
+    struct dig_added_mass bucket;  // of the bucket itself: every dig
+    struct dig_added_mass payload; // carried over from the dig before: this dig only
     // Geometry: added to the file's lengths and places.
     double          rocker_m, link_m;
     struct dig_vec2 rocker_pin_m, ear_m;
@@ -55,9 +53,9 @@ struct dig_correction {
 /// True when it changes nothing.
 bool dig_correction_is_none(const struct dig_correction *correction);
 
-/// DIG_EINVAL: a number that is not finite, a gain of -1 or less, or a machine that is none any
-/// more with it (dig_machine_check() and the linkage's closing over its range), or a force sensor's
-/// rig, whose corrections would be its sensor's own: none is known here. About a millisecond.
+/// DIG_EINVAL: a number that is not finite; a gain of -1 or less; a corrected machine that fails
+/// dig_machine_check() or whose linkage does not close over its range; a rig with a force sensor,
+/// for which no correction is defined. About a millisecond.
 DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    *machine,
                                                     const struct dig_correction *correction);
 
@@ -68,22 +66,22 @@ struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
 /// True when it moves a pin or makes a bar longer or shorter.
 bool dig_correction_is_geometric(const struct dig_correction *correction);
 
-/// Of a machine that dig_correction_machine() made: with the geometry of its file again, for the
-/// file's lengths of a cylinder at its stops hold there.
+/// Restores the file's geometry in a machine of dig_correction_machine(): the file's lengths of a
+/// cylinder at its stops hold there.
 struct dig_machine dig_correction_drawn(const struct dig_machine    *corrected,
                                         const struct dig_correction *correction);
 
-/// A machine as it is taken to be: made where there is time, copied where there is none.
-struct dig_taken {
-    bool                  corrects; // false: as its file says; then the rest is zero
+/// A machine with its correction: made off the tick, copied in it.
+struct dig_corrected_machine {
+    bool                  corrects; // false: the machine as its file says; the rest is zero
     struct dig_correction correction;
-    struct dig_machine    machine; // with it
+    struct dig_machine    machine; // corrected
 };
 
-/// correction NULL, or of a rig with a force sensor: as its file says. Errors and cost as
-/// dig_correction_check(); then nothing is written.
-DIG_MUST_CHECK enum dig_status dig_correction_take(const struct dig_machine    *machine,
-                                                   const struct dig_correction *correction,
-                                                   struct dig_taken            *taken);
+/// Makes it; correction NULL, or a rig with a force sensor: the machine as its file says. Errors
+/// and cost as dig_correction_check(); nothing is written then.
+DIG_MUST_CHECK enum dig_status dig_correction_apply(const struct dig_machine     *machine,
+                                                    const struct dig_correction  *correction,
+                                                    struct dig_corrected_machine *corrected);
 
 #endif // DIG_ESTIMATOR_WRENCH_CORRECTION_H

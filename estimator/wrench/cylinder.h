@@ -1,10 +1,10 @@
-// What one drive's two pressures say about the push of its rod.
+// Push of a drive's rod by its two pressures.
 //
 //   head side  |=====[piston]-----rod-----o eye      push > 0 lengthens the cylinder
 //
 //   push = count * (head_Pa * head area - rod_Pa * annulus area)
 //
-// Seal friction stands between these pressures and the eye; it is not known here.
+// Seal friction acts between these pressures and the eye; it is corrected elsewhere (correction.h).
 
 #ifndef DIG_ESTIMATOR_WRENCH_CYLINDER_H
 #define DIG_ESTIMATOR_WRENCH_CYLINDER_H
@@ -14,8 +14,8 @@
 
 #include <stdbool.h>
 
-/// Nearer than this to either end of its stroke a cylinder may stand on its stop, which then
-/// carries what the pressures do not.
+/// Nearer than this to either end of its stroke a cylinder may rest on its stop, which then carries
+/// load that the pressures do not show.
 #define DIG_CYLINDER_STOP_MARGIN_m 0.005
 
 struct dig_push {

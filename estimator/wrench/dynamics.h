@@ -1,8 +1,9 @@
-// What the front's own masses ask of the joints: weight and inertia, by recursive Newton-Euler.
+// Moments of the front's own masses about the joints: weight and inertia, by recursive
+// Newton-Euler.
 //
-// Outward from the boom foot, which stands still: attitude rates of each link and accelerations of
-// its pin and centre of mass. Inward from the bucket: the force F_j and moment N_j that what lies
-// before pin j must put on what lies beyond it,
+// Outward from the boom foot, which is at rest: attitude rates of each link and accelerations of
+// its pin and centre of mass. Inward from the bucket: the force F_j and moment N_j that the links
+// before pin j exert on those beyond it,
 //
 //   F_j = m_j (a_j - g) + F_{j+1}
 //   N_j = I_j alpha_j + (com_j - pin_j) x m_j (a_j - g) + N_{j+1} + (pin_{j+1} - pin_j) x F_{j+1}
@@ -22,8 +23,8 @@
 void dig_dynamics_Nm(const struct dig_machine *machine, const struct dig_front *front,
                      const struct dig_rates *rates, double pitch_rad, double moment_Nm[DIG_JOINTS]);
 
-/// The front's inertia as the joints feel it: by[j][k] is the moment about pin j that one rad/s2 of
-/// joint k asks for, kgm2; symmetric. Constant time.
+/// The front's inertia matrix in joint coordinates: by[j][k] is the moment about pin j for one
+/// rad/s2 of joint k, kgm2; symmetric. Constant time.
 void dig_dynamics_inertia_kgm2(const struct dig_machine *machine, const struct dig_front *front,
                                double by[DIG_JOINTS][DIG_JOINTS]);
 

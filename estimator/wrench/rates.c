@@ -69,7 +69,7 @@ struct dig_rates dig_rates_step(struct dig_rates_filter *const filter, const int
     assert(filter != NULL && filter->window_s > 0.0 && joint_rad != NULL);
     const struct dig_rates still = { .velocity_sigma = 0.0 };
 
-    // Push, then let go of what is older than the window.
+    // Push, then drop what is older than the window.
     filter->head                  = (filter->head + 1) % DIG_RATES_MAX;
     filter->time_ns[filter->head] = time_ns;
     memcpy(filter->joint_rad[filter->head], joint_rad, sizeof filter->joint_rad[0]);
@@ -97,7 +97,7 @@ void dig_rates_centred(const size_t n, const double time_s[], const double joint
                        const double half_s, const double sigma_rad, struct dig_rates rates[])
 {
     assert(n == 0 || (time_s != NULL && joint_rad != NULL && rates != NULL));
-    // A hair wider, so that rounding leaves no sample out on one side alone.
+    // Slightly wider, so that rounding does not drop a sample on one side alone.
     const double reach_s = half_s + 1e-6;
     size_t       first   = 0;
     for (size_t i = 0; i < n; i++) {

@@ -1,4 +1,4 @@
-// How fast the joints turn: velocities and accelerations from angles alone, by local parabolas.
+// Rates of the joints: velocities and accelerations from angles alone, by local parabolas.
 //
 // Causal, for the tick: the parabola fitted to the angles of the last window_s. Its acceleration is
 // that of the window's middle, its velocity is taken at its end; both are unbiased for motion of
@@ -46,7 +46,7 @@ struct dig_rates dig_rates_step(struct dig_rates_filter *filter, int64_t time_ns
 void dig_rates_centred(size_t n, const double time_s[], const double joint_rad[], double half_s,
                        double sigma_rad, struct dig_rates rates[]);
 
-/// Rates so far of the way from a to b, 0 … 1.
+/// Interpolates rates between a and b, f from 0 to 1.
 struct dig_rates dig_rates_between(const struct dig_rates *a, const struct dig_rates *b, double f);
 
 #endif // DIG_ESTIMATOR_WRENCH_RATES_H

@@ -9,7 +9,7 @@
 enum input { IN_FX, IN_FZ, IN_MY, IN_PHI, IN_PIN_X, IN_PIN_Z, IN_TURN, INPUTS };
 enum part { PART_FX, PART_FZ, PART_MY, PARTS };
 
-// All that errs: what the sensor reads, the bucket's angle and the accelerations.
+// The quantities with errors: the sensor's readings, the bucket's angle and the accelerations.
 struct inputs {
     double value[INPUTS], sigma[INPUTS], slow[INPUTS];
 };
@@ -18,7 +18,7 @@ struct parts {
     double of[PARTS]; // of the soil, rig axes
 };
 
-// A vector of a frame whose +x stands at this angle, in the frame that the angle is told in.
+// Rotates a vector from a frame whose +x stands at this angle.
 static struct dig_vec2 turned(const struct dig_vec2 v, const double rad)
 {
     const double c = cos(rad);
@@ -41,7 +41,7 @@ static struct parts solve(const struct dig_machine *const machine, const double 
     com_mps2                        = dig_vec2_add_scaled(com_mps2, in[IN_TURN], across);
     com_mps2 = dig_vec2_add_scaled(com_mps2, -turn_radps * turn_radps, to_com);
 
-    // What its own mass puts on the sensor, and what is left for the soil.
+    // Weight and inertia on the sensor; the rest is the soil's.
     const struct dig_vec2 felt   = dig_vec2_sub(gravity, com_mps2);
     const struct dig_vec2 mass_N = { bucket->mass_kg * felt.x, bucket->mass_kg * felt.y };
     const struct dig_vec2 read_N =
@@ -103,7 +103,7 @@ static enum dig_status take(const struct dig_machine *const       machine,
     return DIG_OK;
 }
 
-// Adds what one length or mass of `near`, off by this much, makes of the parts.
+// Adds the variance of the parts by one length or mass of `near` with this error.
 static void add_off(struct dig_machine *const near, double *const number, const double by,
                     const struct inputs *const in, const struct dig_vec2 gravity,
                     const struct parts *const parts, double variance[const PARTS])
@@ -117,7 +117,7 @@ static void add_off(struct dig_machine *const near, double *const number, const 
     }
 }
 
-// What the bucket and the sensor's place may differ from their file makes of the parts.
+// Variance of the parts by the tolerances of the bucket and of the sensor's position.
 static void tolerate(const struct dig_machine *const machine, const struct inputs *const in,
                      const struct dig_vec2 gravity, double variance[const PARTS])
 {
@@ -198,7 +198,7 @@ struct dig_sensed_motion dig_sensed_move(struct dig_rates_filter *const  filter,
                                        sample->value[DIG_SIGNAL_PIN_Z_m],
                                        sample->value[DIG_SIGNAL_BUCKET_rad] };
 
-    // Of three coordinates instead of three joints, each with a noise of its own.
+    // Three coordinates in place of three joints, each with its own noise.
     const struct dig_rates rates = dig_rates_step(filter, sample->time_ns, place, 1.0);
     const double turn_rad = dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad);
     return (struct dig_sensed_motion){

@@ -1,5 +1,4 @@
-// From one sample of a rig whose bucket hangs on a force sensor to the soil's moment and force on
-// the bucket, and how far they may be wrong.
+// The soil's wrench on the bucket by a force sensor that carries it (a rig), with its uncertainty.
 //
 // Free body of the bucket and all that hangs on the sensor beyond it, mass m at C, inertia I about
 // C; Q the bucket's pin, S the sensor's origin; (F_s, M_s) what it reads, turned into the machine
@@ -21,7 +20,7 @@
 #include "estimator/wrench/soil_wrench.h"
 #include "estimator/wrench/statics.h"
 
-/// How the bucket moves, machine frame. Zeroed: standing still, known exactly.
+/// Motion of the bucket, machine frame. Zeroed: at rest, known exactly.
 struct dig_sensed_motion {
     struct dig_vec2 pin_mps2;
     double          turn_radps;
@@ -30,9 +29,9 @@ struct dig_sensed_motion {
     double          turn_sigma_radps2;
 };
 
-/// The motion told by the sample's place and angle and those before it, as dig_rates_step() tells
-/// it of joints: the accelerations are those of the middle of the filter's window. The sample must
-/// be one that dig_sensed_solve() takes.
+/// The motion by the sample's pose and those before it, as by dig_rates_step() for joints: the
+/// accelerations are those of the middle of the filter's window. The sample must be one that
+/// dig_sensed_solve() takes.
 struct dig_sensed_motion dig_sensed_move(struct dig_rates_filter  *filter,
                                          const struct dig_machine *machine,
                                          const struct dig_sample  *sample);

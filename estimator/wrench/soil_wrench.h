@@ -1,4 +1,4 @@
-// What the soil does to the bucket at one instant.
+// The wrench of the soil on the bucket at one instant.
 
 #ifndef DIG_ESTIMATOR_WRENCH_SOIL_WRENCH_H
 #define DIG_ESTIMATOR_WRENCH_SOIL_WRENCH_H

@@ -1,11 +1,10 @@
-// Where the front stands and what its own weight does about its three pins.
+// Pose of the front, and the moments of its weight about the three pins.
 //
 // Machine frame: origin boom foot, +X forward, +Z up (the y of a dig_vec2), counter-clockwise
 // positive. Gravity points along (-sin pitch, -cos pitch): pitch is the angle of machine X against
 // the horizontal, nose up positive.
 //
-// Quasi-static: what the links' inertia asks of the cylinders is not taken off. When it is, it adds
-// to the weight's moments here, from filtered accelerations of the same attitudes.
+// Quasi-static: without the links' inertia, which dynamics.h adds.
 
 #ifndef DIG_ESTIMATOR_WRENCH_STATICS_H
 #define DIG_ESTIMATOR_WRENCH_STATICS_H

@@ -19,7 +19,7 @@ static void add_moments(const struct dig_balance *const balance,
     }
 }
 
-// One length or coordinate of `near` is off by the tolerance: the lever of a drive is another one.
+// Adds the error by one length or coordinate of `near`: it changes the lever of a drive.
 static void add_length(struct dig_machine *const near, double *const length_m, const int joint,
                        const struct dig_readings *const readings,
                        const struct dig_balance *const balance, double variance[const DIG_PARTS])
@@ -72,7 +72,7 @@ static void add_pins(const struct dig_machine *const  machine,
     }
 }
 
-// The weight of a link errs with its mass, and turns about other places with its centre.
+// Adds the errors of a link's weight, by its mass and its centre of mass.
 static void add_weights(const struct dig_machine *const machine, const double pitch_rad,
                         const struct dig_front *const   front,
                         const struct dig_balance *const balance, double variance[const DIG_PARTS])

@@ -1,8 +1,8 @@
-// What the tolerances of a machine (core/machine.h) make wrong of the soil's moment and force.
+// Error of the soil's wrench by the tolerances of a machine (core/machine.h).
 //
-// The parts are linear in the drives' moments and in the moments of the weights, whose partials the
-// balance knows. Left are the levers by their pins (differences over one tolerance) and the weights
-// by mass and centre (exact). Not in it: the bores (H9, a tenth of a per cent of a push), the pins
+// The wrench is linear in the moments of drives and weights, whose partials the balance has. The
+// levers vary with their pins (differences over one tolerance), the weights with mass and centre
+// (exact). Neglected are the bores (H9, a tenth of a per cent of a push), the pins
 // between the links (a few millimetres of metres), angles' zeros, inertia.
 
 #ifndef DIG_ESTIMATOR_WRENCH_TOLERANCE_H
@@ -12,8 +12,8 @@
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/statics.h"
 
-/// Variance of each part. A length off by whose tolerance the linkage cannot be solved counts as 0:
-/// the pose is within a few millimetres of where it is not told anyway. Constant time; nothing to
+/// Variance of each part. A length by whose tolerance the linkage cannot be solved counts as 0: the
+/// pose is within a few millimetres of where there is no wrench anyway. Constant time; nothing to
 /// do where all tolerances are 0.
 void dig_tolerance_variance(const struct dig_machine *machine, const struct dig_readings *readings,
                             const struct dig_front *front, const struct dig_balance *balance,

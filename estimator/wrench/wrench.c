@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
-// Variances of the parts, all of it and what does not average down.
+// Variances of the parts: total, and the part that does not average down.
 struct variance {
     double all[DIG_PARTS], slow[DIG_PARTS];
 };
@@ -26,8 +26,8 @@ static void add_push_variance(const struct dig_readings *const readings,
     }
 }
 
-// Adds what an error of one joint's angle does to every part. A pose that cannot be solved a sigma
-// away is too near a singularity to be told.
+// Adds the variance of every part by one joint's angle. False when the pose one sigma away cannot
+// be solved: too near a singularity.
 static void add_angle_variance(const struct dig_machine *const  machine,
                                const struct dig_readings *const readings, const int joint,
                                struct dig_balance *const balance, struct variance *const variance)
@@ -54,7 +54,7 @@ static void add_angle_variance(const struct dig_machine *const  machine,
     }
 }
 
-// The same of whether it can be solved, alone: an angle changes its own joint's lever and no other,
+// The same check without variances: an angle changes its own joint's lever and no other,
 // and the bucket's moves no pin.
 static void check_angle(const struct dig_machine *const  machine,
                         const struct dig_readings *const readings, const int joint,
@@ -79,7 +79,7 @@ static void check_angle(const struct dig_machine *const  machine,
     }
 }
 
-// Adds what errors of the rates do through inertia and friction.
+// Adds the variance by the rates, through inertia and friction.
 static void add_rate_variance(const struct dig_machine *const  machine,
                               const struct dig_front *const    front,
                               const struct dig_readings *const readings,
@@ -111,8 +111,8 @@ static void add_rate_variance(const struct dig_machine *const  machine,
     }
 }
 
-// Pin to pin as the file draws the linkages: its lengths at the stops were taken there, and pins
-// that are elsewhere leave the angles of the stops where they are.
+// Pin-to-pin length by the file's geometry: the file's lengths at the stops belong to it, and a
+// corrected pin does not move the angles of the stops.
 static void draw_lengths(const struct dig_machine *const    corrected,
                          const struct dig_correction *const correction,
                          const struct dig_readings *const readings, struct dig_balance *const b)
@@ -126,7 +126,7 @@ static void draw_lengths(const struct dig_machine *const    corrected,
     }
 }
 
-// A stop carries load past the pressures; a valve lets oil past them.
+// A stop carries load that the pressures do not show; an open valve lets oil through.
 static bool is_trusted(const struct dig_machine *const  machine,
                        const struct dig_readings *const readings,
                        const struct dig_balance *const balance, const int j)
@@ -163,7 +163,7 @@ static struct dig_wrench finish(const struct dig_balance *const balance,
     return w;
 }
 
-// All variances, and whether what errs a little can still be solved.
+// All variances; false when a pose within the errors cannot be solved.
 static void add_variances(const struct dig_machine *const  machine,
                           const struct dig_readings *const readings,
                           const struct dig_front *const placed, struct dig_balance *const balance,

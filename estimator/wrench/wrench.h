@@ -1,14 +1,14 @@
-// From one sample to the soil's moment and force on the bucket, and how far they may be wrong.
+// The soil's wrench on the bucket by one sample of a machine with cylinders, with its uncertainty.
 //
-// Free-body balance of what lies beyond each pin, T_j the moment of drive j, G_j of the weights
+// Free-body balance of the links beyond each pin, T_j the moment of drive j, G_j of the weights
 // beyond pin j, r_j the vector from pin j to the bucket pin, (M, F) the soil on the bucket:
 //
 //   bucket about its pin     T_bucket + G_bucket + M             = 0
 //   arm + bucket             T_arm    + G_arm    + M + r_arm  x F = 0
 //   boom + arm + bucket      T_boom   + G_boom   + M + r_boom x F = 0
 //
-// M is the rig's My as it stands: mirroring x and turning the axis about cancel. Fx is minus the
-// machine's. The last two equations cannot be told apart when the arm is stretched out.
+// M is the rig's My: mirroring x and reversing the axis cancel. Fx is minus the
+// machine's. The last two equations are dependent when the arm is stretched out.
 
 #ifndef DIG_ESTIMATOR_WRENCH_WRENCH_H
 #define DIG_ESTIMATOR_WRENCH_WRENCH_H
@@ -21,13 +21,14 @@
 #include "estimator/wrench/soil_wrench.h"
 #include "estimator/wrench/statics.h"
 
-/// Below this sine of the angle between r_arm and r_boom the soil's force is not told.
+/// Below this sine of the angle between r_arm and r_boom the force is not solved: it is
+/// ill-conditioned.
 #define DIG_WRENCH_MIN_SINE 0.05
 
 /// Solves one sample and places the front. A drive at relief or at its stop, or a linkage at its
 /// toggle, clears moment_valid (the bucket's) or force_valid (any) and leaves those numbers 0; the
 /// front is placed all the same. A missing pitch counts as 0. Without the boom's or the arm's
-/// pressures the force is not told; the moment and its sigma are what they are with them.
+/// pressures there is no force; the moment and its sigma are unaffected.
 ///
 /// DIG_ESTALE: an angle or a pressure of the bucket's is missing. DIG_EINVAL: a number that is not
 /// finite. Then nothing is written. Constant time: seven solutions of the balance.
@@ -39,17 +40,16 @@ DIG_MUST_CHECK enum dig_status dig_wrench_solve(const struct dig_machine *machin
                                                 const struct dig_sample  *sample,
                                                 struct dig_wrench *wrench, struct dig_front *front);
 
-/// The same of the machine as corrected, weight and inertia both taken off: corrected is
-/// dig_correction_machine() of the same correction, whose zero is allowed. The front is where it
-/// was when the pressures were: delay_s before the sample's angles. sigma also holds what the
-/// rates' noise does through friction and inertia.
+/// The same for a corrected machine, with weight and inertia subtracted: corrected is
+/// dig_correction_machine() of the same correction, which may be zero. The front is placed at the
+/// time of the pressures, delay_s before the sample's angles. sigma includes the rates' noise
+/// through friction and inertia.
 DIG_MUST_CHECK enum dig_status
 dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correction *correction,
                    const struct dig_sample *sample, const struct dig_rates *rates,
                    struct dig_wrench *wrench, struct dig_front *front);
 
-/// The same without any sigma, all 0: what is told, and whether, is the same to the bit. A third of
-/// the work.
+/// The same without sigmas (0): values and flags are the same to the bit. A third of the work.
 DIG_MUST_CHECK enum dig_status dig_wrench_without_sigma(const struct dig_machine    *corrected,
                                                         const struct dig_correction *correction,
                                                         const struct dig_sample     *sample,

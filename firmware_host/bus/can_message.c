@@ -26,8 +26,8 @@ static int64_t to_ns(const struct timespec *const t)
     return (int64_t)t->tv_sec * NS_PER_S + t->tv_nsec;
 }
 
-// What the socket said of that kind; NULL: nothing.
-static const void *said(struct msghdr *const message, const int kind)
+// The ancillary data of that kind; NULL: none.
+static const void *ancillary(struct msghdr *const message, const int kind)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
         if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == kind) {
@@ -41,7 +41,7 @@ int64_t dig_can_stamp_ns(struct msghdr *const message, const struct timespec *co
                          const int64_t now_ns)
 {
     assert(message != NULL && wall != NULL);
-    const void *const bytes = said(message, SCM_TIMESTAMPNS);
+    const void *const bytes = ancillary(message, SCM_TIMESTAMPNS);
     if (bytes == NULL) {
         return now_ns;
     }
@@ -54,7 +54,7 @@ int64_t dig_can_stamp_ns(struct msghdr *const message, const struct timespec *co
 uint32_t dig_can_dropped(struct msghdr *const message, const uint32_t before)
 {
     assert(message != NULL);
-    const void *const bytes = said(message, SO_RXQ_OVFL);
+    const void *const bytes = ancillary(message, SO_RXQ_OVFL);
     uint32_t          count = before;
     if (bytes != NULL) {
         memcpy(&count, bytes, sizeof count);

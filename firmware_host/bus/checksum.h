@@ -1,5 +1,5 @@
-// Checksums that makers put into their frames, above the CRC that CAN has of its own: they tell a
-// frame that a gateway or a sender's memory damaged.
+// Checksums that makers put into their frames beside CAN's own CRC: they detect damage by a gateway
+// or in the sender's memory.
 //
 //   sum8              the other bytes added, the low 8 bits
 //   xor8              the other bytes exclusive-or'ed
@@ -22,7 +22,7 @@ enum dig_checksum {
     DIG_CHECKSUM_J1939_TSC1,
 };
 
-/// What the frame's checksum should be. at: the byte it stands in, which does not count itself. id:
+/// The expected checksum of a frame. at: the byte that holds it, which is left out. id:
 /// 29 bits; counter: the frame's own.
 uint8_t dig_checksum_of(enum dig_checksum kind, size_t bytes, const uint8_t data[], size_t at,
                         uint32_t id, uint64_t counter);

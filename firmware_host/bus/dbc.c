@@ -10,18 +10,18 @@
 
 #define EXTENDED_FLAG 0x80000000U
 
-// Where the reader stands, for messages.
-struct place {
+// Position of the reader, for errors.
+struct cursor {
     const char       *path;
     int               line;
     struct dig_error *error;
 };
 
-static enum dig_status refuse(const struct place *const place, const char *const found,
+static enum dig_status refuse(const struct cursor *const cursor, const char *const found,
                               const char *const expected)
 {
-    return dig_error_set(place->error, DIG_EINVAL, "%s:%d: \"%.60s\", expected %s", place->path,
-                         place->line, found, expected);
+    return dig_error_set(cursor->error, DIG_EINVAL, "%s:%d: \"%.60s\", expected %s", cursor->path,
+                         cursor->line, found, expected);
 }
 
 // Room for one more: arrays double.
@@ -32,7 +32,7 @@ static void *grow(void *const array, const size_t count, const size_t size)
 }
 
 // BO_ 2566879720 Pressure_1: 8 Machine
-static enum dig_status read_message(const struct place *const place, const char *const text,
+static enum dig_status read_message(const struct cursor *const cursor, const char *const text,
                                     struct dig_dbc *const dbc)
 {
     static const char grammar[] = "BO_ ID NAME: BYTES SENDER";
@@ -42,7 +42,7 @@ static enum dig_status read_message(const struct place *const place, const char 
     unsigned           bytes                   = 0;
     // NOLINTNEXTLINE(cert-err34-c): ranges are checked below
     if (sscanf(text, " BO_ %10llu %63[A-Za-z0-9_] : %4u", &id, name, &bytes) != 3) {
-        return refuse(place, text, grammar);
+        return refuse(cursor, text, grammar);
     }
     const uint32_t most = (id & EXTENDED_FLAG) != 0 ? 0x1FFFFFFFU : 0x7FFU;
     // What makers' files use for signals that belong to no message: it has neither id nor length.
@@ -50,17 +50,17 @@ static enum dig_status read_message(const struct place *const place, const char 
     if (nowhere) {
         bytes = 64;
     } else if (id > UINT32_MAX || (id & ~(unsigned long long)EXTENDED_FLAG) > most) {
-        return refuse(place, text, "an 11-bit id, or a 29-bit id with bit 31 set");
+        return refuse(cursor, text, "an 11-bit id, or a 29-bit id with bit 31 set");
     }
     if (bytes > 64) {
-        return refuse(place, text, "at most 64 bytes");
+        return refuse(cursor, text, "at most 64 bytes");
     }
     if (dig_dbc_find(dbc, name) != NULL) {
-        return refuse(place, name, "every message once");
+        return refuse(cursor, name, "every message once");
     }
     struct dig_dbc_message *const grown = grow(dbc->message, dbc->messages, sizeof *grown);
     if (grown == NULL) {
-        return dig_error_set(place->error, DIG_ENOMEM, "%s: no memory", place->path);
+        return dig_error_set(cursor->error, DIG_ENOMEM, "%s: no memory", cursor->path);
     }
     dbc->message                  = grown;
     dbc->message[dbc->messages++] = (struct dig_dbc_message){
@@ -68,7 +68,7 @@ static enum dig_status read_message(const struct place *const place, const char 
         .extended = (id & EXTENDED_FLAG) != 0,
         .bytes    = bytes,
         .first    = dbc->signals,
-        .line     = place->line,
+        .line     = cursor->line,
     };
     memcpy(dbc->message[dbc->messages - 1].name, name, sizeof name);
     return DIG_OK;
@@ -87,52 +87,52 @@ static unsigned end_bit(const struct dig_dbc_signal *const signal)
     return (signal->start_bit / 8 + 1 + after) * 8;
 }
 
-static enum dig_status check_signal(const struct place *const          place,
+static enum dig_status check_signal(const struct cursor *const         cursor,
                                     const struct dig_dbc_signal *const signal,
                                     const struct dig_dbc *const        dbc)
 {
     const struct dig_dbc_message *const message = &dbc->message[dbc->messages - 1];
     if (signal->bits < 1 || signal->bits > 64) {
-        return refuse(place, signal->name, "1 to 64 bits");
+        return refuse(cursor, signal->name, "1 to 64 bits");
     }
     if (end_bit(signal) > message->bytes * 8) {
-        return dig_error_set(place->error, DIG_EINVAL,
+        return dig_error_set(cursor->error, DIG_EINVAL,
                              "%s:%d: %s: reaches bit %u, expected to end within the %u bytes of %s",
-                             place->path, place->line, signal->name, end_bit(signal),
+                             cursor->path, cursor->line, signal->name, end_bit(signal),
                              message->bytes, message->name);
     }
     if (!isfinite(signal->factor) || !(fabs(signal->factor) > 0.0) || !isfinite(signal->offset)) {
-        return refuse(place, signal->name, "a factor that is not 0 and a finite offset");
+        return refuse(cursor, signal->name, "a factor that is not 0 and a finite offset");
     }
     if (dig_dbc_find_signal(dbc, message, signal->name) != NULL) {
-        return refuse(place, signal->name, "every signal of a message once");
+        return refuse(cursor, signal->name, "every signal of a message once");
     }
     return DIG_OK;
 }
 
 //  SG_ name : 8|16@1+ (0.2,-10) [-10|40] "MPa" Receiver
-static enum dig_status read_signal(const struct place *const place, const char *const text,
+static enum dig_status read_signal(const struct cursor *const cursor, const char *const text,
                                    struct dig_dbc *const dbc)
 {
     static const char grammar[] =
         "SG_ NAME [MUX] : START|BITS@ORDER SIGN (FACTOR,OFFSET) [MIN|MAX] \"UNIT\"";
 
-    struct dig_dbc_signal signal = { .line = place->line };
+    struct dig_dbc_signal signal = { .line = cursor->line };
     char                  mux[8] = "";
     char                  order  = 0;
     char                  sign   = 0;
     int                   used   = 0;
     if (dbc->messages == 0) {
-        return refuse(place, text, "a BO_ line before the first SG_");
+        return refuse(cursor, text, "a BO_ line before the first SG_");
     }
     if (sscanf(text, " SG_ %63[A-Za-z0-9_] %n", signal.name, &used) != 1) {
-        return refuse(place, text, grammar);
+        return refuse(cursor, text, grammar);
     }
     const char *rest = text + used;
     if (*rest != ':') {
         used = 0;
         if (sscanf(rest, "%7[mM0-9] %n", mux, &used) != 1) {
-            return refuse(place, text, grammar);
+            return refuse(cursor, text, grammar);
         }
         signal.multiplexed = mux[0] == 'm';
         rest += used;
@@ -142,21 +142,21 @@ static enum dig_status read_signal(const struct place *const place, const char *
     if (sscanf(rest, ": %3u | %3u @ %c %c ( %lf , %lf ) [ %*f | %*f ] %n", &signal.start_bit,
                &signal.bits, &order, &sign, &signal.factor, &signal.offset, &used) != 6 ||
         used == 0 || rest[used] != '"' || strchr(rest + used + 1, '"') == NULL) {
-        return refuse(place, text, grammar);
+        return refuse(cursor, text, grammar);
     }
     (void)sscanf(rest + used, "\"%15[^\"]", signal.unit); // "" leaves it empty
     if ((order != '0' && order != '1') || (sign != '+' && sign != '-')) {
-        return refuse(place, text, "@1 (Intel) or @0 (Motorola), then + or -");
+        return refuse(cursor, text, "@1 (Intel) or @0 (Motorola), then + or -");
     }
     signal.intel                 = order == '1';
     signal.is_signed             = sign == '-';
-    const enum dig_status status = check_signal(place, &signal, dbc);
+    const enum dig_status status = check_signal(cursor, &signal, dbc);
     if (status != DIG_OK) {
         return status;
     }
     struct dig_dbc_signal *const grown = grow(dbc->signal, dbc->signals, sizeof *grown);
     if (grown == NULL) {
-        return dig_error_set(place->error, DIG_ENOMEM, "%s: no memory", place->path);
+        return dig_error_set(cursor->error, DIG_ENOMEM, "%s: no memory", cursor->path);
     }
     dbc->signal                 = grown;
     dbc->signal[dbc->signals++] = signal;
@@ -206,23 +206,23 @@ static void read_cycle(const char *const text, const struct dig_dbc *const dbc)
 static enum dig_status read_lines(const char *const path, char *const text,
                                   struct dig_dbc *const dbc, struct dig_error *const error)
 {
-    struct place place     = { .path = path, .line = 0, .error = error };
-    bool         in_string = false; // comments and attributes may run over several lines
+    struct cursor cursor    = { .path = path, .line = 0, .error = error };
+    bool          in_string = false; // comments and attributes may run over several lines
     for (char *line = text; line != NULL;) {
         char *const end = strchr(line, '\n');
         if (end != NULL) {
             *end = '\0';
         }
-        place.line++;
+        cursor.line++;
         const char *word = line;
         while (isspace((unsigned char)*word)) {
             word++;
         }
         enum dig_status status = DIG_OK;
         if (!in_string && strncmp(word, "BO_ ", 4) == 0) {
-            status = read_message(&place, word, dbc);
+            status = read_message(&cursor, word, dbc);
         } else if (!in_string && strncmp(word, "SG_ ", 4) == 0) {
-            status = read_signal(&place, word, dbc);
+            status = read_signal(&cursor, word, dbc);
         } else if (!in_string && strncmp(word, "SIG_VALTYPE_ ", 13) == 0) {
             read_type(word, dbc);
         } else if (!in_string && strncmp(word, "BA_ ", 4) == 0) {
@@ -238,7 +238,7 @@ static enum dig_status read_lines(const char *const path, char *const text,
     }
     if (dbc->messages == 0) {
         return dig_error_set(error, DIG_EINVAL, "%s:%d: no BO_ line, expected a CAN database", path,
-                             place.line);
+                             cursor.line);
     }
     return DIG_OK;
 }

@@ -1,8 +1,7 @@
-// What of a CAN database (.dbc) it takes to read frames: messages (BO_) and their signals (SG_),
+// Reads the part of a CAN database (.dbc) that decodes frames: messages (BO_), their signals (SG_)
 // with start bit, length, byte order, sign, factor, offset and unit, and the cycle of a message
-// (the attribute GenMsgCycleTime). Every other section is passed over. Multiplexed signals, and
-// floating-point ones (SIG_VALTYPE_), are refused when they are asked for, as they would decode to
-// nonsense.
+// (the attribute GenMsgCycleTime). Other sections are skipped. Multiplexed and floating-point
+// signals (SIG_VALTYPE_) are marked; a map that names one is refused.
 //
 //   BO_ 2566879720 Pressure_1: 8 Machine         id (bit 31: extended frame), name, bytes, sender
 //    SG_ name : 8|16@1+ (0.2,-10) [-10|40] "MPa" Receiver
@@ -37,7 +36,7 @@ struct dig_dbc_message {
     bool     extended;
     unsigned bytes;
     size_t   first, signals; // in dig_dbc.signal
-    double   cycle_s;        // 0: not said
+    double   cycle_s;        // 0: not given
     int      line;
 };
 
@@ -61,8 +60,7 @@ const struct dig_dbc_signal  *dig_dbc_find_signal(const struct dig_dbc         *
                                                   const struct dig_dbc_message *message,
                                                   const char                   *name);
 
-/// The signal's bits as they stand in a frame of at least its message's length, before sign, factor
-/// and offset.
+/// The signal's bits in a frame of at least its message's length, before sign, factor and offset.
 uint64_t dig_dbc_raw(const struct dig_dbc_signal *signal, const uint8_t data[]);
 
 /// factor * raw + offset, in the DBC's unit.

@@ -1,10 +1,10 @@
-// Which frames of a cyclic message did not come, came twice or came late.
+// Detects frames of a cyclic message that did not come, or came twice.
 //
-// A message with a counter of its own is followed by it. Another that comes in a fixed cycle is
-// followed by the clock: a phase-locked expectation of the next stamp, so that jitter below half a
-// cycle means nothing; a burst after a pause pays back what the pause owed, as the frames were only
-// late. What is still owed after DIG_WATCH_FRAMES frames that pay nothing back, or
-// DIG_WATCH_LONGEST in any case, was missed.
+// A message with a counter is watched by it. Another one in a fixed cycle is watched by the clock:
+// a phase-locked prediction of the next stamp, so that jitter below half a cycle does not count.
+// After a pause the frames due are owed; a burst pays them back, as they were only late. What is
+// still owed after DIG_WATCH_FRAMES frames that pay nothing back, or DIG_WATCH_LONGEST in any case,
+// counts as missed.
 
 #ifndef DIG_FIRMWARE_HOST_BUS_FRAME_WATCH_H
 #define DIG_FIRMWARE_HOST_BUS_FRAME_WATCH_H
@@ -31,8 +31,8 @@ struct dig_frame_watch {
     int64_t  missed, repeated;
 };
 
-/// Takes a frame's stamp (machine time) and counter; false: it repeats or is older than the last
-/// and is to be dropped. Constant time.
+/// Steps by a frame's stamp (machine time) and counter. False: it repeats or is older than the last
+/// one and must be dropped. Constant time.
 bool dig_frame_watch_take(struct dig_frame_watch *watch, const struct dig_frame_settings *settings,
                           int64_t time_ns, uint64_t counter);
 

@@ -31,20 +31,20 @@ void dig_input_pause(const struct dig_input *const input, const int64_t pause_ns
     }
 }
 
-void dig_input_give(struct dig_input *const input, const struct dig_reading *const reading)
+void dig_input_put(struct dig_input *const input, const struct dig_reading *const reading)
 {
     if (!dig_ring_push(input->readings, reading)) {
         atomic_fetch_add(&input->overflow, 1);
     }
 }
 
-void dig_input_say(struct dig_input *const input, const struct dig_error *const error)
+void dig_input_log(struct dig_input *const input, const struct dig_error *const error)
 {
-    struct dig_note note = { "" };
+    struct dig_log_line note = { "" };
     if (error != NULL) {
         (void)snprintf(note.text, sizeof note.text, "%.199s", error->text);
     }
-    dig_latest_put(input->notes, &note);
+    dig_latest_put(input->log, &note);
 }
 
 // Reads an open source until it fails, ends, or all is to stop.
@@ -69,7 +69,7 @@ void dig_input_run(struct dig_input *const input)
                 atomic_fetch_add(&input->reconnects, 1);
             }
             before = true;
-            dig_input_say(input, NULL);
+            dig_input_log(input, NULL);
             const long long frames = atomic_load(&input->frames);
             atomic_store(&input->connected, true);
             read_on(input, &error);
@@ -82,7 +82,7 @@ void dig_input_run(struct dig_input *const input)
             }
         }
         if (error.text[0] != '\0') {
-            dig_input_say(input, &error);
+            dig_input_log(input, &error);
             dig_input_pause(input, pause_ns);
             pause_ns = 2 * pause_ns < LONGEST_PAUSE ? 2 * pause_ns : LONGEST_PAUSE;
         }

@@ -1,6 +1,6 @@
-// Where readings come from: one struct and one thread for CAN, Modbus and replay alike. A source is
-// opened, read until it fails, closed, and opened again after a pause that doubles up to 5 s.
-// A source only listens: none has a way to send anything but Modbus' read requests.
+// Source of readings: one struct and one thread for CAN, Modbus and replay. A source is opened,
+// read until it fails, closed, and opened again after a pause that doubles up to 5 s. A source only
+// listens: nothing but Modbus' read requests is ever sent.
 
 #ifndef DIG_FIRMWARE_HOST_BUS_INPUT_H
 #define DIG_FIRMWARE_HOST_BUS_INPUT_H
@@ -13,12 +13,12 @@
 
 struct dig_input;
 
-/// What a kind of source can do. Each is called on the input thread only.
+/// Operations of a kind of source, called on the input thread only.
 struct dig_input_ops {
     /// Tries once. On failure nothing stays open.
     enum dig_status (*open)(struct dig_input *input, struct dig_error *error);
-    /// Waits at most about 100 ms for something to come and hands it on by dig_input_give(). DIG_OK
-    /// also when nothing came; DIG_EIO: the source is gone, to be closed and opened again.
+    /// Waits at most about 100 ms for readings and puts them by dig_input_put(). DIG_OK also when
+    /// none came. DIG_EIO: the source is gone; it will be closed and opened again.
     enum dig_status (*read)(struct dig_input *input, struct dig_error *error);
     /// Closes what open() opened.
     void (*close)(struct dig_input *input);
@@ -26,7 +26,8 @@ struct dig_input_ops {
     void (*destroy)(struct dig_input *input);
 };
 
-struct dig_note {
+/// A line for the log, from a thread to the publisher.
+struct dig_log_line {
     char text[200];
 };
 
@@ -36,7 +37,7 @@ struct dig_input {
     void                       *source; // of the ops
     char                        name[160];
     struct dig_ring            *readings;
-    struct dig_latest          *notes; // out: struct dig_note, the last trouble; "" when it is over
+    struct dig_latest          *log; // out: struct dig_log_line, the last error; "" when it is over
     const atomic_bool          *stop;
     atomic_llong                frames;    // frames or polls that were received
     atomic_llong                malformed; // too short, refused by the other side
@@ -70,17 +71,17 @@ DIG_MUST_CHECK enum dig_status dig_input_modbus_create(struct dig_input         
                                                        const struct dig_modbus_address *address,
                                                        const struct dig_signal_map     *map);
 
-/// Takes the recording over (it is freed with the input). speed: seconds of the recording per
+/// Takes ownership of the recording. speed: seconds of the recording per
 /// second.
 DIG_MUST_CHECK enum dig_status dig_input_replay_create(struct dig_input             *input,
                                                        struct dig_machine_recording *recording,
                                                        const char *file, double speed);
 
-/// Hands a reading on, or counts it as lost.
-void dig_input_give(struct dig_input *input, const struct dig_reading *reading);
+/// Puts a reading into the ring, or counts it as lost.
+void dig_input_put(struct dig_input *input, const struct dig_reading *reading);
 
-/// Publishes the last trouble in words; NULL: it is over.
-void dig_input_say(struct dig_input *input, const struct dig_error *error);
+/// Logs the last error; NULL: it is over.
+void dig_input_log(struct dig_input *input, const struct dig_error *error);
 
 /// The input thread: returns when *stop is set or a replay ended.
 void dig_input_run(struct dig_input *input);
@@ -91,7 +92,7 @@ void dig_input_destroy(struct dig_input *input);
 /// CLOCK_MONOTONIC, ns.
 int64_t dig_input_now_ns(void);
 
-/// Sleeps for so long, or until *stop, looking every 50 ms.
+/// Sleeps, or until *stop, which is checked every 50 ms.
 void dig_input_pause(const struct dig_input *input, int64_t pause_ns);
 
 #endif // DIG_FIRMWARE_HOST_BUS_INPUT_H

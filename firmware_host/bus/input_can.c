@@ -52,7 +52,7 @@ static int set_filters(const int fd, const struct dig_signal_map *const map)
         setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) != 0) {
         return -1;
     }
-    // A kernel without it says so by time stamps that do not come; the time of reading serves then.
+    // A kernel without time stamps sends none; the time of reading is used then.
     (void)setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
     // Nor do counts of what it had no room for.
     (void)setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
@@ -95,15 +95,15 @@ static enum dig_status open_can(struct dig_input *const input, struct dig_error 
 
 static void note(struct dig_input *const input, const char *const text)
 {
-    struct dig_note note = { "" };
+    struct dig_log_line note = { "" };
     if (text[0] != '\0') {
         (void)snprintf(note.text, sizeof note.text, "%.40s: %.150s", input->name, text);
     }
-    dig_latest_put(input->notes, &note);
+    dig_latest_put(input->log, &note);
 }
 
-// What the controller says of its bus. A daemon that only listens cannot bring a bus back: that is
-// the interface's restart-ms. It says so, counts, and goes on when frames come again.
+// Error frames of the controller. A daemon that only listens cannot restart a bus; the interface's
+// restart-ms does. It logs, counts, and continues when frames come again.
 static void take_error(struct dig_input *const input, const struct can_frame *const frame)
 {
     struct can_source *const s   = input->source;
@@ -142,7 +142,7 @@ static void take_frame(struct dig_input *const input, const struct can_frame *co
         note(input, "");
     }
     atomic_fetch_add(&input->frames, 1);
-    dig_input_give(input, &reading);
+    dig_input_put(input, &reading);
 }
 
 static enum dig_status read_can(struct dig_input *const input, struct dig_error *const error)

@@ -2,8 +2,8 @@
 // own rate, one request at a time: the one that is due longest. Only functions 3 and 4, which read;
 // no call of this file can write.
 //
-// A block that does not answer holds up the others for RESPONSE_us each time. One that can be done
-// without, and is silent while the others answer, is asked only now and then.
+// A block that does not answer delays the others by RESPONSE_us each time. A dispensable one that
+// is silent while the others answer is polled only now and then.
 
 #include "firmware_host/bus/input.h"
 #include "firmware_host/bus/signal_map.h"
@@ -15,18 +15,18 @@
 #include <stdlib.h>
 #include <sys/socket.h>
 
-#define NS_PER_S       1000000000LL
-#define RESPONSE_us    200000 // a server that is slower than this is taken for gone
-#define FAILURES_BORNE 5
-#define SPARED_ns      NS_PER_S // between polls of a block that can be done without and fails
-#define SILENCES_BORNE 3
-#define SILENT_s       5 // between polls of one that does not even answer
+#define NS_PER_S           1000000000LL
+#define RESPONSE_us        200000 // a server that is slower than this is taken for gone
+#define FAILURES_BORNE     5
+#define DISPENSABLE_ns     NS_PER_S // between polls of a block that can be done without and fails
+#define SILENCES_TOLERATED 3
+#define SILENT_s           5 // between polls of one that does not even answer
 
 struct modbus_source {
     struct dig_modbus_address    address;
     const struct dig_signal_map *map;
     modbus_t                    *bus;
-    bool                         doubted; // serial: the next answer may be one that came too late
+    bool                         resync; // serial: the next answer may be a late one
     // of each block
     int64_t next_ns[DIG_GROUPS_MAX];  // when the next poll is due
     int     failures[DIG_GROUPS_MAX]; // in a row
@@ -81,12 +81,12 @@ static struct dig_error registers_of(const struct dig_input *const     input,
     return error;
 }
 
-static bool can_be_spared(const struct dig_map_group *const group)
+static bool is_dispensable(const struct dig_map_group *const group)
 {
-    return !group->needed || group->spared;
+    return !group->needed || group->dispensable;
 }
 
-// A time-out. While nobody answers it is the server that is silent, not the block.
+// A time-out. While no block answers, the server is silent, not the block.
 static void hear_nothing(struct dig_input *const input, const size_t block)
 {
     struct modbus_source *const       s     = input->source;
@@ -95,20 +95,20 @@ static void hear_nothing(struct dig_input *const input, const size_t block)
         s->silences[block]++;
     }
     s->answers_at[block] = s->answers;
-    if (!can_be_spared(group) || s->silences[block] < SILENCES_BORNE) {
+    if (!is_dispensable(group) || s->silences[block] < SILENCES_TOLERATED) {
         return;
     }
-    if (s->silences[block] == SILENCES_BORNE) {
+    if (s->silences[block] == SILENCES_TOLERATED) {
         const struct dig_error error =
             registers_of(input, group, "silent while others answer, asked every few seconds", "");
-        dig_input_say(input, &error);
+        dig_input_log(input, &error);
     }
     s->next_ns[block] = dig_input_now_ns() + SILENT_s * NS_PER_S;
 }
 
-// A poll that failed. A frame that did not survive the wire, a refusal or a late answer is borne a
-// few times, and for ever of a block that can be done without (optional signals, or the force's
-// alone): it is only asked for less often. A connection that broke is not borne.
+// A poll that failed. A damaged frame, a refusal or a late answer is tolerated a few times; without
+// limit for a dispensable block (optional signals, or the force's alone), which is polled less
+// often then. A broken connection is not tolerated.
 static enum dig_status bear(struct dig_input *const input, const size_t block,
                             struct dig_error *const error)
 {
@@ -121,14 +121,14 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
     } else if (why == ETIMEDOUT) {
         atomic_fetch_add(&input->timeouts, 1);
     }
-    // A refusal is an answer; what did not come, or came damaged, may come yet.
+    // A refusal is an answer; after a missing or damaged one, a late answer may still come.
     if (s->address.host[0] == '\0' && (why == ETIMEDOUT || why >= EMBBADCRC)) {
-        s->doubted = true;
+        s->resync = true;
     }
     const bool few = ++s->failures[block] < FAILURES_BORNE;
-    if (borne && (few || can_be_spared(group))) {
+    if (borne && (few || is_dispensable(group))) {
         (void)modbus_flush(s->bus);
-        s->next_ns[block] += few ? 0 : SPARED_ns;
+        s->next_ns[block] += few ? 0 : DISPENSABLE_ns;
         if (why == ETIMEDOUT) {
             hear_nothing(input, block);
         }
@@ -140,7 +140,7 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
     return DIG_EIO;
 }
 
-// The block that is due longest.
+// The block that has been due longest.
 static size_t due(const struct modbus_source *const s)
 {
     size_t block = 0;
@@ -150,8 +150,8 @@ static size_t due(const struct modbus_source *const s)
     return block;
 }
 
-// What lies on a serial line before the question cannot be the answer to it. Over TCP an answer
-// says which question it belongs to.
+// Discards what is on a serial line before a request: it cannot be its answer. Over TCP an answer
+// carries the number of its request.
 static int ask(const struct modbus_source *const s, const size_t block,
                uint16_t registers[const DIG_REGISTERS_MAX])
 {
@@ -175,7 +175,7 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     if (*next > now_ns) {
         dig_input_pause(input, *next - now_ns);
     }
-    // A late poll shifts the ones after it: two polls on each other's heels say nothing new.
+    // A late poll shifts the following ones: two polls in quick succession give nothing new.
     const double  poll_s    = group->poll_s > 0.0 ? group->poll_s : s->address.poll_s;
     const int64_t period_ns = (int64_t)(poll_s * (double)NS_PER_S);
     *next                   = (now_ns > *next + period_ns ? now_ns : *next) + period_ns;
@@ -184,10 +184,10 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     if (ask(s, block, registers) != (int)group->registers) {
         return bear(input, block, error);
     }
-    // An answer on a serial line does not say which question it belongs to: after one that failed
-    // it may be that one's, from before.
-    if (s->doubted) {
-        s->doubted         = false;
+    // A serial answer does not carry the number of its request: after a failed one it may belong to
+    // that.
+    if (s->resync) {
+        s->resync          = false;
         s->failures[block] = 0;
         atomic_fetch_add(&input->malformed, 1);
         return DIG_OK;
@@ -195,11 +195,11 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     struct dig_reading reading;
     dig_signal_map_registers(s->map, (unsigned)block, registers, dig_input_now_ns(), &reading);
     atomic_fetch_add(&input->frames, 1);
-    dig_input_give(input, &reading);
+    dig_input_put(input, &reading);
     s->failures[block] = 0;
     s->answers++;
-    if (s->silences[block] >= SILENCES_BORNE) {
-        dig_input_say(input, NULL);
+    if (s->silences[block] >= SILENCES_TOLERATED) {
+        dig_input_log(input, NULL);
     }
     s->silences[block] = 0;
     return DIG_OK;

@@ -38,7 +38,7 @@ static void give_row(struct dig_input *const input, const struct dig_sample *con
                                                                 : DIG_READING_OK);
     }
     atomic_fetch_add(&input->frames, 1);
-    dig_input_give(input, &reading);
+    dig_input_put(input, &reading);
 }
 
 static enum dig_status read_replay(struct dig_input *const input, struct dig_error *const error)

@@ -1,4 +1,4 @@
-// What one frame or one poll said, decoded: what the input thread hands to the tick.
+// A reading: one frame or one poll, decoded, from the input thread to the tick.
 
 #ifndef DIG_FIRMWARE_HOST_BUS_READING_H
 #define DIG_FIRMWARE_HOST_BUS_READING_H

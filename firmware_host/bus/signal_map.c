@@ -14,8 +14,8 @@ static bool is_not_available(const struct dig_map_entry *const entry, const uint
     return false;
 }
 
-// What J1939-71 sets apart for "error" and "not available" in a field of so many bits.
-static bool is_apart(const unsigned bits, const uint64_t raw)
+// The values J1939-71 reserves for "error" and "not available" in a field of so many bits.
+static bool is_reserved(const unsigned bits, const uint64_t raw)
 {
     if (bits < 8 || (bits > 8 && bits < 16)) {
         const uint64_t top = (UINT64_C(1) << bits) - 1;
@@ -84,7 +84,7 @@ enum dig_status dig_signal_map_frame(const struct dig_signal_map *const map, con
         if (entry->used && entry->group == group) {
             const uint64_t raw = dig_dbc_raw(&entry->can, data);
             decode(entry, raw, dig_dbc_value(&entry->can, raw), &out.state[i], &out.value[i]);
-            if (map->j1939 && is_apart(entry->can.bits, raw)) {
+            if (map->j1939 && is_reserved(entry->can.bits, raw)) {
                 out.state[i] = DIG_READING_NOT_AVAILABLE;
             }
         }
@@ -97,7 +97,7 @@ enum dig_status dig_signal_map_frame(const struct dig_signal_map *const map, con
     return DIG_OK;
 }
 
-// A register or two as they stand, the first the high word unless the map says otherwise.
+// One or two registers as a raw value; the first is the high word unless the map says otherwise.
 static uint64_t raw_of(const struct dig_signal_map *const map,
                        const struct dig_map_entry *const entry, const uint16_t registers[])
 {

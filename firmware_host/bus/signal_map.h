@@ -1,12 +1,12 @@
-// Which raw value on the bus is which of our signals: from a YAML map (docs/formats.md) over a
-// DBC's signals or over Modbus registers, to SI in the machine's frames.
+// The signal map: decodes raw values of the bus to signals, SI, in the machine's frames. A YAML
+// file (docs/formats.md) over a DBC's signals or over Modbus registers.
 //
 //   SI value = sign * (scale * physical + offset)
 //
 // where physical is the DBC's factor * raw + DBC offset, or the raw register. Raw values listed as
-// not_available, and values outside min … max, never become a number. Nor do, where the map says
-// j1939, the values that SAE J1939-71 sets apart: the topmost raw value ("not available") and the
-// one below ("error"), of 8 bits all from 0xFB on, of more the top bytes 0xFB to 0xFF.
+// not_available, and values outside min … max, are not decoded. With `j1939` neither are the values
+// that SAE J1939-71 reserves: the topmost raw value ("not available") and the one below ("error");
+// of 8 bits all from 0xFB on; of more bits the top bytes 0xFB to 0xFF.
 
 #ifndef DIG_FIRMWARE_HOST_BUS_SIGNAL_MAP_H
 #define DIG_FIRMWARE_HOST_BUS_SIGNAL_MAP_H
@@ -45,11 +45,10 @@ struct dig_map_entry {
     uint64_t               not_available_raw[DIG_NOT_AVAILABLE_MAX];
 };
 
-/// What comes together: a CAN message that is listened to, or a block of Modbus registers that is
-/// asked for.
+/// Signals that arrive together: a CAN message, or a block of Modbus registers.
 struct dig_map_group {
-    bool                      needed; // carries a signal that force or moment need
-    bool                      spared; // and none that the moment needs
+    bool                      needed;      // carries a signal that force or moment need
+    bool                      dispensable; // needed, but for the force alone
     struct dig_frame_settings frame;
     // CAN
     uint32_t              id;
@@ -70,9 +69,9 @@ struct dig_signal_map {
     struct dig_map_entry entry[DIG_SIGNALS];
     bool                 has_alive;
     struct dig_map_entry alive;
-    double               frozen_s;   // the alive counter may stand still this long
+    double               frozen_s;   // the alive counter may be constant this long
     double               coherent_s; // signals of one sample may lie this far apart
-    double               stuck_s;    // values may stand this long; 0: for ever
+    double               stuck_s;    // values may be constant this long; 0: for ever
     bool                 j1939;
     size_t               groups;
     struct dig_map_group group[DIG_GROUPS_MAX];
@@ -87,7 +86,7 @@ DIG_MUST_CHECK enum dig_status dig_signal_map_read(const char *path, const struc
                                                    struct dig_signal_map *map,
                                                    struct dig_error      *error);
 
-/// Of which kind of machine the map's signals are.
+/// The kind of machine the map's signals belong to.
 enum dig_sensing dig_signal_map_sensing(const struct dig_signal_map *map);
 
 /// The group (in map->group) of a CAN id, or -1.
@@ -100,7 +99,7 @@ DIG_MUST_CHECK enum dig_status dig_signal_map_frame(const struct dig_signal_map 
                                                     const uint8_t data[], int64_t time_ns,
                                                     struct dig_reading *reading);
 
-/// Decodes one block of a Modbus map: what a request for its registers brought.
+/// Decodes one block of a Modbus map from the registers of a reply.
 void dig_signal_map_registers(const struct dig_signal_map *map, unsigned group,
                               const uint16_t registers[], int64_t time_ns,
                               struct dig_reading *reading);

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-// Keeps what stands; true when it is other than it was.
+// Stores the values; true when they changed.
 static bool changed(const size_t count, const double value[], double kept[])
 {
     const bool same = memcmp(value, kept, count * sizeof value[0]) == 0;
@@ -13,7 +13,7 @@ static bool changed(const size_t count, const double value[], double kept[])
     return !same;
 }
 
-// The range of values since a moment; how wide it is at most. NaN: no value.
+// Widens the range of each value, or starts it anew; returns the widest. A NaN has no range.
 static double widen(const size_t count, const double value[], const bool anew, double low[],
                     double high[])
 {

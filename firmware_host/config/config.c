@@ -1,311 +1,104 @@
 #include "firmware_host/config/config.h"
 
 #include "files/yaml.h"
-#include "firmware_host/config/config_text.h"
+#include "firmware_host/config/config_parts.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_LCM_URL "udpm://239.255.76.67:7667?ttl=0"
 
-// What is being read, for messages.
-struct work {
-    const char        *path;
-    struct dig_config *config;
-    struct dig_error  *error;
-};
-
-// A number where given, within its range; *to holds the default.
-struct number {
-    const char   *key;
-    const double *from;
-    double        least;
-    double        most;
-    double       *to;
-};
-
-static enum dig_status take_numbers(const struct work *const work, const size_t count,
-                                    const struct number number[])
-{
-    for (size_t i = 0; i < count; i++) {
-        const struct number *const n = &number[i];
-        if (n->from == NULL) {
-            continue;
-        }
-        if (!(*n->from >= n->least && *n->from <= n->most)) {
-            return dig_yaml_refuse(work->path, n->key, work->error, "%g, expected %g … %g",
-                                   *n->from, n->least, n->most);
-        }
-        *n->to = *n->from;
-    }
-    return DIG_OK;
-}
-
-struct whole {
-    const char *key;
-    const int  *from;
-    int         least;
-    int         most;
-    int        *to;
-};
-
-static enum dig_status take_wholes(const struct work *const work, const size_t count,
-                                   const struct whole whole[])
-{
-    for (size_t i = 0; i < count; i++) {
-        const struct whole *const n = &whole[i];
-        if (n->from == NULL) {
-            continue;
-        }
-        if (*n->from < n->least || *n->from > n->most) {
-            return dig_yaml_refuse(work->path, n->key, work->error, "%d, expected %d … %d",
-                                   *n->from, n->least, n->most);
-        }
-        *n->to = *n->from;
-    }
-    return DIG_OK;
-}
-
-static enum dig_status take_text(const struct work *const work, const char *const key,
-                                 const char *const from, const size_t size, char to[])
-{
-    const int length = snprintf(to, size, "%s", from);
-    if (length < 0 || (size_t)length >= size) {
-        return dig_yaml_refuse(work->path, key, work->error, "%d characters, expected at most %zu",
-                               length, size - 1);
-    }
-    return DIG_OK;
-}
-
-// A file's name as seen from the configuration's folder.
-static enum dig_status take_path(const struct work *const work, const char *const key,
-                                 const char *const from, struct dig_file_name *const to)
-{
-    const char *const slash  = strrchr(work->path, '/');
-    const int         folder = from[0] == '/' || slash == NULL ? 0 : (int)(slash + 1 - work->path);
-    const int length = snprintf(to->text, sizeof to->text, "%.*s%s", folder, work->path, from);
-    if (length < 0 || (size_t)length >= sizeof to->text) {
-        return dig_yaml_refuse(work->path, key, work->error, "too long a path");
-    }
-    return DIG_OK;
-}
-
-// "127.0.0.1:1502" or "[::1]:1502"
-static enum dig_status take_address(const struct work *const work, const char *const text,
-                                    struct dig_modbus_address *const address)
-{
-    const char *const colon  = strrchr(text, ':');
-    const size_t      length = colon != NULL ? (size_t)(colon - text) : 0;
-    char             *end    = NULL;
-    const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
-    if (length == 0 || length >= sizeof address->host || end == colon + 1 || *end != '\0' ||
-        port < 1 || port > 65535) {
-        return dig_yaml_refuse(work->path, "input.modbus.address", work->error,
-                               "\"%.60s\", expected HOST:PORT", text);
-    }
-    const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
-    memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
-    address->host[length - 2 * (size_t)brackets] = '\0';
-    address->port                                = (int)port;
-    return DIG_OK;
-}
-
-static enum dig_status take_parity(const struct work *const work, const char *const text,
-                                   struct dig_modbus_address *const address)
-{
-    static const char *const words[]   = { "none", "even", "odd" };
-    static const char        letters[] = { 'N', 'E', 'O' };
-    for (size_t i = 0; text != NULL && i < sizeof letters; i++) {
-        if (strcmp(text, words[i]) == 0) {
-            address->parity = letters[i];
-            return DIG_OK;
-        }
-    }
-    return text == NULL ? DIG_OK
-                        : dig_yaml_refuse(work->path, "input.modbus.parity", work->error,
-                                          "\"%.20s\", expected none, even or odd", text);
-}
-
-static enum dig_status take_server(const struct work *const            work,
-                                   const struct dig_modbus_text *const text)
-{
-    struct dig_modbus_address *const address = &work->config->modbus;
-    const bool                       tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
-    const char *const                key     = tcp ? "input.modbus.address" : "input.modbus.device";
-    if ((tcp ? text->address : text->device) == NULL) {
-        return dig_yaml_refuse(work->path, key, work->error, "missing, expected %s",
-                               tcp ? "HOST:PORT" : "a serial device");
-    }
-    return tcp ? take_address(work, text->address, address)
-               : take_text(work, key, text->device, sizeof address->device, address->device);
-}
-
-static enum dig_status take_modbus(const struct work *const            work,
-                                   const struct dig_modbus_text *const text)
-{
-    struct dig_config *const         config   = work->config;
-    struct dig_modbus_address *const address  = &config->modbus;
-    double                           poll_Hz  = 200.0;
-    const struct number              number[] = {
-                     { "input.modbus.poll_Hz", text->poll_Hz, 1.0, 1000.0, &poll_Hz },
-    };
-    const struct whole whole[] = {
-        { "input.modbus.baud", text->baud, 1200, 4000000, &address->baud },
-        { "input.modbus.unit", text->unit, 0, 247, &address->unit },
-    };
-    enum dig_status status = take_server(work, text);
-    status = status == DIG_OK ? take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
-    status = status == DIG_OK ? take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
-    status = status == DIG_OK ? take_parity(work, text->parity, address) : status;
-    status =
-        status == DIG_OK ? take_path(work, "input.modbus.map", text->map, &config->map) : status;
-
-    address->poll_s          = 1.0 / poll_Hz;
-    config->estimator.tick_s = 1.0 / poll_Hz;
-    return status;
-}
-
-static enum dig_status take_can(const struct work *const         work,
-                                const struct dig_can_text *const text)
-{
-    struct dig_config *const config = work->config;
-    config->estimator.tick_s        = 0.01; // the cycle of pressures and angles
-    enum dig_status status          = take_text(work, "input.can.interface", text->interface,
-                                                sizeof config->can_interface, config->can_interface);
-    status = status == DIG_OK ? take_path(work, "input.can.dbc", text->dbc, &config->dbc) : status;
-    return status == DIG_OK ? take_path(work, "input.can.map", text->map, &config->map) : status;
-}
-
-static enum dig_status take_replay(const struct work *const            work,
-                                   const struct dig_replay_text *const text)
-{
-    struct dig_config *const config   = work->config;
-    const struct number      number[] = {
-             { "input.replay.speed", text->speed, 0.01, 100.0, &config->replay_speed },
-    };
-    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
-    config->time_scale           = config->replay_speed;
-    config->estimator.tick_s     = 0.005; // what digrig records at
-    return status == DIG_OK ? take_path(work, "input.replay.file", text->file, &config->replay)
-                            : status;
-}
-
-static enum dig_status refuse_absent(const struct work *const work, const char *const key)
-{
-    return dig_yaml_refuse(work->path, key, work->error, "missing, expected the settings of %s",
-                           dig_input_kind_name(work->config->kind));
-}
-
-static enum dig_status take_input(const struct work *const           work,
-                                  const struct dig_input_text *const text)
-{
-    work->config->kind = text->kind;
-    switch (text->kind) {
-    case DIG_INPUT_CAN:
-        return text->can != NULL ? take_can(work, text->can) : refuse_absent(work, "input.can");
-    case DIG_INPUT_REPLAY:
-        return text->replay != NULL ? take_replay(work, text->replay)
-                                    : refuse_absent(work, "input.replay");
-    case DIG_INPUT_MODBUS_TCP:
-    case DIG_INPUT_MODBUS_RTU: break;
-    }
-    return text->modbus != NULL ? take_modbus(work, text->modbus)
-                                : refuse_absent(work, "input.modbus");
-}
-
-static enum dig_status take_estimator(const struct work *const               work,
+static enum dig_status take_estimator(const struct dig_config_work *const    work,
                                       const struct dig_estimator_text *const text)
 {
     struct dig_estimator_settings *const to       = &work->config->estimator;
-    const struct number                  number[] = {
-                         { "estimator.sample_s", text->sample_s, 0.001, 0.1, &to->tick_s },
-                         { "estimator.contact_sigmas", text->contact_sigmas, 1.0, 1000.0, &to->contact_sigmas },
-                         { "estimator.contact_hold_s", text->contact_hold_s, 0.0, 10.0, &to->contact_hold_s },
-                         { "estimator.exit_hold_s", text->exit_hold_s, 0.0, 10.0, &to->exit_hold_s },
-                         { "estimator.air_bias_s", text->air_bias_s, 0.0, 1000.0, &to->air_bias_s },
-                         { "estimator.path_limit_m", text->path_limit_m, 1e-4, 10.0, &to->path_limit_m },
-                         { "estimator.outside_floors", text->outside_floors, 0.1, 1000.0, &to->outside_floors },
+    const struct dig_config_number       number[] = {
+              { "estimator.sample_s", text->sample_s, 0.001, 0.1, &to->tick_s },
+              { "estimator.contact_sigmas", text->contact_sigmas, 1.0, 1000.0, &to->contact_sigmas },
+              { "estimator.contact_hold_s", text->contact_hold_s, 0.0, 10.0, &to->contact_hold_s },
+              { "estimator.exit_hold_s", text->exit_hold_s, 0.0, 10.0, &to->exit_hold_s },
+              { "estimator.air_bias_s", text->air_bias_s, 0.0, 1000.0, &to->air_bias_s },
+              { "estimator.path_limit_m", text->path_limit_m, 1e-4, 10.0, &to->path_limit_m },
+              { "estimator.outside_floors", text->outside_floors, 0.1, 1000.0, &to->outside_floors },
     };
     const char           *reason = NULL;
-    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    const enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
     if (status == DIG_OK && dig_estimator_settings_check(to, &reason) != DIG_OK) {
         return dig_yaml_refuse(work->path, "estimator", work->error, "%s", reason);
     }
     return status;
 }
 
-static enum dig_status take_realtime(const struct work *const              work,
+static enum dig_status take_realtime(const struct dig_config_work *const   work,
                                      const struct dig_realtime_text *const text)
 {
     struct dig_rt_settings *const to      = &work->config->realtime;
-    const struct whole            whole[] = {
-                   { "realtime.priority", text->priority, 0, 99, &to->priority },
-                   { "realtime.cpu", text->cpu, -1, 1023, &to->cpu },
+    const struct dig_config_whole whole[] = {
+        { "realtime.priority", text->priority, 0, 99, &to->priority },
+        { "realtime.cpu", text->cpu, -1, 1023, &to->cpu },
     };
     if (text->lock_memory != NULL) {
         to->lock_memory = *text->lock_memory;
     }
-    return take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
+    return dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
 }
 
-static enum dig_status take_identify(const struct work *const              work,
+static enum dig_status take_identify(const struct dig_config_work *const   work,
                                      const struct dig_identify_text *const text)
 {
     struct dig_config *const config = work->config;
     enum dig_status          status = DIG_OK;
     for (unsigned i = 0; status == DIG_OK && i < text->trajectories_count; i++) {
-        status = take_text(work, "identify.trajectories", text->trajectories[i], DIG_NAME_SIZE,
-                           config->identify_trajectory[i]);
+        status = dig_config_take_text(work, "identify.trajectories", text->trajectories[i],
+                                      DIG_NAME_SIZE, config->identify_trajectory[i]);
         config->identify_trajectories = i + 1;
     }
     return status;
 }
 
-static enum dig_status take_publish(const struct work *const             work,
+static enum dig_status take_publish(const struct dig_config_work *const  work,
                                     const struct dig_publish_text *const text)
 {
-    struct dig_config *const config        = work->config;
-    double                   prediction_Hz = 1.0 / config->prediction_s;
-    const struct number      number[]      = {
-                  { "publish.prediction_Hz", text->prediction_Hz, 0.1, 100.0, &prediction_Hz },
+    struct dig_config *const       config        = work->config;
+    double                         prediction_Hz = 1.0 / config->prediction_s;
+    const struct dig_config_number number[]      = {
+             { "publish.prediction_Hz", text->prediction_Hz, 0.1, 100.0, &prediction_Hz },
     };
-    const struct whole whole[] = {
+    const struct dig_config_whole whole[] = {
         { "publish.estimate_every", text->estimate_every, 1, 1000, &config->estimate_every },
     };
-    const enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    const enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
     config->prediction_s         = 1.0 / prediction_Hz;
-    return status == DIG_OK ? take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
+    return status == DIG_OK ? dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
 }
 
-static enum dig_status take_match(const struct work *const           work,
-                                  const struct dig_match_text *const text)
+static enum dig_status take_match(const struct dig_config_work *const work,
+                                  const struct dig_match_text *const  text)
 {
-    struct dig_config *const config    = work->config;
-    double                   expires_h = config->match_expires_s / 3600.0;
-    const struct whole       whole[]   = {
-                { "match.max_evaluations", text->max_evaluations, 1, 1000000, &config->match_evaluations },
+    struct dig_config *const      config    = work->config;
+    double                        expires_h = config->match_expires_s / 3600.0;
+    const struct dig_config_whole whole[]   = {
+          { "match.max_evaluations", text->max_evaluations, 1, 1000000, &config->match_evaluations },
     };
-    const struct number number[] = {
+    const struct dig_config_number number[] = {
         { "match.least_path", text->least_path, 0.01, 1.0, &config->match_least_path },
         { "match.early_path", text->early_path, 0.1, 1.0, &config->match_early_path },
         { "match.expires_h", text->expires_h, 0.01, 1000.0, &expires_h },
         { "match.drift_floors", text->drift_floors, 1.0, 1000.0, &config->drift_floors },
     };
-    enum dig_status status = take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
-    status = status == DIG_OK ? take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
+    enum dig_status status = dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
+    status =
+        status == DIG_OK ? dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
     if (status == DIG_OK && text->state != NULL) {
-        status = take_path(work, "match.state", text->state, &config->match_state);
+        status = dig_config_take_path(work, "match.state", text->state, &config->match_state);
     }
     config->match_expires_s = expires_h * 3600.0;
     return status;
 }
 
 // A part that is absent takes its defaults: nothing of it is given.
-static enum dig_status take_parts(const struct work *const            work,
+static enum dig_status take_parts(const struct dig_config_work *const work,
                                   const struct dig_config_text *const text)
 {
     const struct dig_estimator_text no_estimator = { 0 };
@@ -329,36 +122,39 @@ static enum dig_status take_parts(const struct work *const            work,
         status = take_match(work, text->match != NULL ? text->match : &no_match);
     }
     if (status == DIG_OK && text->lcm != NULL && text->lcm->url != NULL) {
-        status = take_text(work, "lcm.url", text->lcm->url, sizeof work->config->lcm_url,
-                           work->config->lcm_url);
+        status = dig_config_take_text(work, "lcm.url", text->lcm->url, sizeof work->config->lcm_url,
+                                      work->config->lcm_url);
     }
     return status;
 }
 
-static enum dig_status take_top(const struct work *const            work,
+static enum dig_status take_top(const struct dig_config_work *const work,
                                 const struct dig_config_text *const text)
 {
-    struct dig_config *const config   = work->config;
-    double                   tick_Hz  = 1.0 / config->tick_s;
-    double                   stale_ms = config->stale_s * 1e3;
-    const struct number      number[] = {
-             { "tick_Hz", text->tick_Hz, 100.0, 2000.0, &tick_Hz },
-             { "stale_ms", text->stale_ms, 1.0, 60e3, &stale_ms },
-             { "time_scale", text->time_scale, 0.01, 100.0, &config->time_scale },
+    struct dig_config *const       config   = work->config;
+    double                         tick_Hz  = 1.0 / config->tick_s;
+    double                         stale_ms = config->stale_s * 1e3;
+    const struct dig_config_number number[] = {
+        { "tick_Hz", text->tick_Hz, 100.0, 2000.0, &tick_Hz },
+        { "stale_ms", text->stale_ms, 1.0, 60e3, &stale_ms },
+        { "time_scale", text->time_scale, 0.01, 100.0, &config->time_scale },
     };
-    enum dig_status status = take_numbers(work, CYAML_ARRAY_LEN(number), number);
+    enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
     if (status == DIG_OK && text->time_scale != NULL && text->input.kind == DIG_INPUT_REPLAY) {
         status = dig_yaml_refuse(work->path, "time_scale", work->error,
                                  "given with a replay, expected input.replay.speed alone");
     }
     if (status == DIG_OK && text->scene != NULL) {
-        status = take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
+        status =
+            dig_config_take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
     }
-    status = status == DIG_OK ? take_path(work, "table", text->table, &config->table) : status;
-    status =
-        status == DIG_OK ? take_path(work, "machine", text->machine, &config->machine) : status;
+    status = status == DIG_OK ? dig_config_take_path(work, "table", text->table, &config->table)
+                              : status;
+    status = status == DIG_OK
+                 ? dig_config_take_path(work, "machine", text->machine, &config->machine)
+                 : status;
     if (status == DIG_OK && text->model != NULL) {
-        status = take_path(work, "model", text->model, &config->model);
+        status = dig_config_take_path(work, "model", text->model, &config->model);
     }
 
     config->tick_s           = 1.0 / tick_Hz;
@@ -400,10 +196,10 @@ enum dig_status dig_config_read(const char *const path, struct dig_config *const
         return status;
     }
     struct dig_config                   loaded = defaults();
-    const struct work                   work = { .path = path, .config = &loaded, .error = error };
+    const struct dig_config_work        work = { .path = path, .config = &loaded, .error = error };
     const struct dig_config_text *const text = (const struct dig_config_text *)data;
     status                                   = take_top(&work, text);
-    status = status == DIG_OK ? take_input(&work, &text->input) : status;
+    status = status == DIG_OK ? dig_config_take_input(&work, &text->input) : status;
     status = status == DIG_OK ? take_parts(&work, text) : status;
     dig_yaml_free(&dig_config_schema, data);
     if (status == DIG_OK) {

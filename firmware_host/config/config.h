@@ -1,12 +1,13 @@
-// The daemon's configuration: a YAML file (docs/formats.md) as plain settings. All of them are
-// fixed at start but the table, which a reload exchanges. File names in it are relative to the
-// folder of the configuration.
+// The daemon's configuration: a YAML file (docs/formats.md) as plain settings. All but table and
+// model are fixed at start; a reload reads these again. File names are relative to the
+// configuration's folder.
 
 #ifndef DIG_FIRMWARE_HOST_CONFIG_CONFIG_H
 #define DIG_FIRMWARE_HOST_CONFIG_CONFIG_H
 
+#include "core/curve.h"
 #include "core/error.h"
-#include "estimator/estimator.h"
+#include "estimator/track/settings.h"
 #include "firmware_host/bus/input.h"
 #include "firmware_host/threads/rt.h"
 
@@ -27,8 +28,8 @@ struct dig_file_name {
 
 struct dig_config {
     struct dig_file_name table, machine;
-    struct dig_file_name model;     // what the closed loop found; "": none
-    char                 scene[65]; // the scene the table must be of: its name or its hash; "": any
+    struct dig_file_name model;     // of the closed loop; "": none
+    char                 scene[65]; // the table's, by name or hash; "": any
 
     enum dig_input_kind       kind;
     char                      can_interface[16];
@@ -38,21 +39,21 @@ struct dig_config {
     double                    replay_speed;
 
     double                        tick_s;
-    double                        stale_s;    // without a complete sample for so long: missing
+    double                        stale_s;    // samples older than this are not fresh
     double                        time_scale; // machine seconds per second; 1 on a machine
     struct dig_rt_settings        realtime;
     char                          lcm_url[256];
     struct dig_estimator_settings estimator;
     int                           match_evaluations;
-    double                        match_least_path; // of a dig's path that identifies
-    double match_early_path;          // after which a dig is matched while it goes on; 1: never
-    struct dig_file_name match_state; // where the gravel known is kept; "": nowhere
+    double                        match_least_path; // share of the path a match needs
+    double match_early_path;          // share after which a dig in progress is matched; 1: never
+    struct dig_file_name match_state; // file that keeps the gravel; "": none
     double               match_expires_s;
     double               drift_floors;
     size_t               identify_trajectories; // 0: all whose name begins with "simple"
     char                 identify_trajectory[DIG_TRAJECTORY_MAX][DIG_NAME_SIZE];
-    int    estimate_every; // of the samples and estimates, one in so many is published
-    double prediction_s;   // between predictions
+    int                  estimate_every; // one sample and estimate in so many is published
+    double               prediction_s;   // between predictions
 };
 
 /// Reads and checks a file. DIG_EINVAL names file, line, key and what was expected. Writes on

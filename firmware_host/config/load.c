@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// The table asked for by name or hash, and a bucket of the machine's shape: else its curves say
-// nothing about this machine.
+// The table must be of the scene asked for, and of a bucket of the machine's shape: otherwise its
+// curves do not apply.
 static enum dig_status check_scene(const char *const path, const struct dig_config *const config,
                                    const struct dig_machine *const   machine_read,
                                    const struct dig_curve_set *const set,
@@ -74,7 +74,7 @@ static enum dig_status load_recording(struct dig_loaded *const l, struct dig_err
                                 : dig_machine_recording_read(path, &l->recording, error);
 }
 
-// What has an entry in the map, or a value anywhere in the recording.
+// A signal is measured when it has an entry in the map, or a value anywhere in the recording.
 static void find_measured(struct dig_loaded *const l)
 {
     for (size_t s = 0; s < DIG_SIGNALS; s++) {
@@ -85,7 +85,7 @@ static void find_measured(struct dig_loaded *const l)
     }
 }
 
-// What tells the forces must be what the machine has.
+// Cylinders or force sensor: input and machine file must agree.
 static enum dig_status check_sensing(const char *const path, const struct dig_loaded *const l,
                                      struct dig_error *const error)
 {
@@ -135,16 +135,17 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
 }
 
 enum dig_status dig_load_table(const char *const path, const struct dig_machine *const machine,
-                               struct dig_curve_set **const set, struct dig_taken *const taken,
-                               struct dig_error *const error)
+                               struct dig_curve_set **const        set,
+                               struct dig_corrected_machine *const corrected,
+                               struct dig_error *const             error)
 {
-    assert(path != NULL && machine != NULL && set != NULL && taken != NULL);
-    struct dig_config     config;
-    struct dig_correction correction;
-    struct dig_taken      made;
-    bool                  corrects = false;
-    struct dig_curve_set *loaded   = NULL;
-    enum dig_status       status   = dig_config_read(path, &config, error);
+    assert(path != NULL && machine != NULL && set != NULL && corrected != NULL);
+    struct dig_config            config;
+    struct dig_correction        correction;
+    struct dig_corrected_machine made;
+    bool                         corrects = false;
+    struct dig_curve_set        *loaded   = NULL;
+    enum dig_status              status   = dig_config_read(path, &config, error);
     status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
     status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
     if (status == DIG_OK && config.model.text[0] != '\0') {
@@ -152,14 +153,14 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
                                 &corrects, error);
     }
     if (status == DIG_OK) {
-        status = dig_correction_take(machine, corrects ? &correction : NULL, &made);
+        status = dig_correction_apply(machine, corrects ? &correction : NULL, &made);
     }
     if (status != DIG_OK) {
         dig_curve_set_destroy(loaded);
         return status;
     }
-    *set   = loaded;
-    *taken = made;
+    *set       = loaded;
+    *corrected = made;
     return DIG_OK;
 }
 

@@ -46,7 +46,8 @@ static double rms(const float y[const DIG_CURVE_POINTS])
     return sqrt(sum / DIG_CURVE_POINTS);
 }
 
-// What the effects did to the plain curve is done to one dug otherwise, in proportion to its size.
+// Applies the change of the plain curve to one at another depth or attack, in proportion to its
+// size.
 static void follow(const struct dig_curve *const before, const struct dig_curve *const after,
                    struct dig_curve *const curve)
 {
@@ -86,7 +87,7 @@ static void change_approaches(const struct dig_curve_set *const before,
     }
 }
 
-// Every curve of *set with the model's effects in it; the table is read once more, as it is.
+// Applies the model's effects to every curve of *set; the plain table is read once more.
 static enum dig_status change_curves(const char *const model_path, const char *const table_path,
                                      const struct dig_model *const model,
                                      struct dig_curve_set *const set, struct dig_error *const error)
@@ -110,8 +111,7 @@ static enum dig_status change_curves(const char *const model_path, const char *c
                             "it does not have; expected those of the table of effects");
     }
     if (status == DIG_OK) {
-        // Curves with effects are off by more than digs scatter: what they are off by is in their
-        // sd.
+        // The covariance is of plain digs; the templates' error is in the curves' sd.
         free(set->covariance);
         set->covariance = NULL;
     }

@@ -1,5 +1,5 @@
-// What the closed loop found, put to use: a model file's effects of the soil go into the table's
-// curves, those of the machine become a correction.
+// Applies a model file: its effects of the soil change the table's curves, those of the machine
+// become a correction.
 
 #ifndef DIG_FIRMWARE_HOST_CONFIG_LOAD_MODEL_H
 #define DIG_FIRMWARE_HOST_CONFIG_LOAD_MODEL_H
@@ -11,12 +11,12 @@
 
 #include <stdbool.h>
 
-/// Reads the model file and changes the curves of *set, which was loaded from the table; corrects:
-/// the model names effects of the machine, which may be NULL where none is at hand. Its table of
-/// effects is looked for beside the table first, then where the model says. DIG_EINVAL, DIG_EIO,
-/// DIG_ESCHEMA with the file and what was expected: also a model of another scene, an effect no
-/// table at hand tells, or a correction the machine cannot have; then *set may be half changed and
-/// nothing else is written.
+/// Reads the model file and changes the curves of *set, which was loaded from the table. corrects:
+/// the model names effects of the machine. machine may be NULL: the correction is not checked. The
+/// table of effects is looked for beside the table first, then where the model names it.
+/// DIG_EINVAL, DIG_EIO, DIG_ESCHEMA with the file and what was expected: also a model of another
+/// scene, an effect without a table, or a correction the machine cannot have. *set may be half
+/// changed then; nothing else is written.
 DIG_MUST_CHECK enum dig_status dig_load_model(const char *model_path, const char *table_path,
                                               const struct dig_machine *machine,
                                               struct dig_curve_set     *set,

@@ -1,36 +1,42 @@
-// The dig going on, as the matching thread sees it: what the tick tells is kept
-// (estimator/approach/live_recording.h) and looked at again and again while the dig moves on.
+// Observation of the dig in progress on the matching thread: records the tick's estimates
+// (estimator/approach/live_recording.h) and observes the dig again and again while it advances.
 
 #ifndef DIG_FIRMWARE_HOST_MATCHING_EARLY_MATCH_H
 #define DIG_FIRMWARE_HOST_MATCHING_EARLY_MATCH_H
 
 #include "estimator/approach/live_recording.h"
 #include "firmware_host/config/config.h"
+#include "firmware_host/matching/gravel_track.h"
 #include "firmware_host/threads/handoff.h"
 
-#define DIG_EARLY_MATCH_STEP 0.1  // of the path between two looks
-#define DIG_EARLY_MATCH_s    30.0 // how long what was seen may be used
+/// Progress between two observations of one dig: one takes two to three milliseconds, and less of
+/// a path changes a match little.
+#define DIG_EARLY_MATCH_STEP 0.1
 
-/// Zeroed but for estimates and forgotten once: no dig goes on. About 4.5 MB.
+/// Lifetime of a provisional match: longer than a dig takes.
+#define DIG_EARLY_MATCH_s 30.0
+
+/// Zeroed but for estimates, then cleared: no dig in progress. About 4 MB.
 struct dig_early_match {
-    struct dig_ring    *estimates; // in: struct dig_estimate, every one the tick made
+    struct dig_ring    *estimates; // in: struct dig_estimate, one a tick
     struct dig_estimate last;
-    double              next; // progress at which the dig is looked at again
-    int                 off;  // trajectory of the table it was along, dug as the table was not; -1
-    struct dig_live_recording shadow;
+    double              next_progress;        // where the dig is observed again
+    int                 off_table_trajectory; // the one it is dug along, as the table was not; -1
+
+    struct dig_live_recording live;
     struct dig_recorded_dig   scratch;
+    struct dig_gravel_track   provisional; // from the dig in progress; ends with it
 };
 
-/// Forgets the dig going on. At start, and when the table becomes another.
-void dig_early_match_forget(struct dig_early_match *early, const struct dig_curve_set *set);
+/// Drops the dig in progress. Required at start and when the table changes.
+void dig_early_match_clear(struct dig_early_match *early, const struct dig_curve_set *set);
 
-/// Takes up what the tick told since the last turn. True when the dig going on is worth a look: of
-/// a trajectory that identifies or that the table was dug along in several ways, at least
-/// match_early_path of it measured, and DIG_EARLY_MATCH_STEP farther than at the last look.
-/// early->off says when a look saw a dig off the table. Then *dig is what was dug so far; a look is
-/// two to three milliseconds.
-bool dig_early_match_look(struct dig_early_match *early, const struct dig_curve_set *set,
-                          double lambda, const struct dig_config *config,
-                          struct dig_observation *dig);
+/// Records the estimates that came. Then observes the dig in progress if it is due: its trajectory
+/// identifies or was dug in several ways for the table, at least match_early_path of it was
+/// measured, and it advanced DIG_EARLY_MATCH_STEP since the last observation. True when *dig was
+/// written. Sets off_table_trajectory.
+bool dig_early_match_observe(struct dig_early_match *early, const struct dig_curve_set *set,
+                             double lambda, const struct dig_config *config,
+                             struct dig_observation *dig);
 
 #endif // DIG_FIRMWARE_HOST_MATCHING_EARLY_MATCH_H

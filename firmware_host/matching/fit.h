@@ -1,82 +1,89 @@
-// The matching thread: digs that are finished go in as the tick recorded them, gravels and what
-// they will resist with come out. It also exchanges the table when asked to. Allocates (in NLopt,
-// in SQLite), so it lives beside the tick, never in it.
+// The matching thread: recorded digs in, gravel and forecast out. It also exchanges the table on
+// request. It allocates (NLopt, SQLite), so it runs beside the tick, never in it.
+//
+//   digs ------> observe -> gate -> match -> track ---> basis ----> tick
+//   estimates -> observe the dig in progress -> provisional   `---> results -> publisher
 
 #ifndef DIG_FIRMWARE_HOST_MATCHING_FIT_H
 #define DIG_FIRMWARE_HOST_MATCHING_FIT_H
 
-#include "estimator/match/match.h"
+#include "estimator/match/pool.h"
 #include "firmware_host/config/config.h"
 #include "firmware_host/matching/early_match.h"
 #include "firmware_host/matching/gravel_track.h"
-#include "firmware_host/matching/matcher.h"
+#include "firmware_host/matching/table_in_use.h"
 #include "firmware_host/tick/loop.h"
 
 #include <stdatomic.h>
 
-/// What is known, for the publisher; whole in itself, whatever table is in use.
+/// The gravel for the publisher. A copy: it holds whatever table is in use.
 struct dig_fit_result {
-    struct dig_gravel_track known;
-    char                    hint_trajectory[DIG_NAME_SIZE]; // "" not known
+    struct dig_gravel_track track;
+    char                    hint_trajectory[DIG_NAME_SIZE]; // "": none
     double                  hint_J_per_kg;
 };
 
-/// A table in use, for the publisher's names.
-struct dig_table_news {
+/// A table in use, for the publisher.
+struct dig_table_update {
     const struct dig_curve_set *set;
     int64_t                     generation;
 };
 
-struct dig_fit {
-    const char                      *config_path; // read again for a reload
-    const struct dig_config         *config;
-    const struct dig_machine        *machine;
-    struct dig_curve_set            *set;        // in use; owned
-    struct dig_curve_set            *retiring;   // the one before, until no one looks at it; owned
-    int64_t                          generation; // of set, counted from 1
-    double                           lambda;
-    struct dig_gravel_track_settings known_settings;
-    struct dig_ring                 *digs;   // in:  struct dig_recorded_dig *
-    struct dig_ring                 *spares; // out: the same memory, back
-    struct dig_early_match *early;   // in:  the dig going on; NULL: digs are matched when over
-    struct dig_latest      *offer;   // out: struct dig_offer, to the tick
-    struct dig_latest      *table;   // out: struct dig_offer of another table, to the tick
-    struct dig_ring        *results; // out: struct dig_fit_result, to the publisher
-    struct dig_latest      *tables;  // out: struct dig_table_news, to the publisher
-    struct dig_latest      *notes;   // out: struct dig_note, what went wrong
-    const atomic_bool      *stop;
-    const atomic_llong     *tick_generation;    // that the tick uses
-    const atomic_llong     *publish_generation; // that the publisher uses
-    atomic_bool             reload;             // asked for; taken by the thread
-    atomic_llong            seen;               // digs taken
-    atomic_llong            matches;            // digs matched
-    atomic_llong            whole, aborted;     // digs taken, by how they ended
-    atomic_llong            unknown;            // digs along none of the table's trajectories
-    atomic_llong            reloads, reloads_refused;
-    atomic_bool             busy;
-
-    // the thread's own
-    struct dig_matcher      matcher; // of set; zeroed: without a summary
-    struct dig_gravel_track known;
-    struct dig_gravel_track hunch; // of the dig going on
-    struct dig_pool         pool;  // the digs it is known from; none: restored without them
-    struct dig_offer        next;  // what is offered
-    bool                    dug;   // it is of the dig going on, as that is dug
-    struct dig_expected     own;   // what was expected of a dig as it was dug
+/// Queues to the tick, to the publisher and to the log.
+struct dig_fit_ports {
+    struct dig_ring   *digs;    // in:  struct dig_recorded_dig *
+    struct dig_ring   *spares;  // out: the same memory, back to the tick
+    struct dig_latest *basis;   // out: struct dig_prediction_basis of the tick's table
+    struct dig_latest *table;   // out: struct dig_prediction_basis of another table
+    struct dig_ring   *results; // out: struct dig_fit_result
+    struct dig_latest *tables;  // out: struct dig_table_update
+    struct dig_latest *log;     // out: struct dig_log_line
 };
 
-/// Takes up what the state file knows, if there is one, and offers it. Before the thread starts.
-/// What is wrong with the file is noted, no error: the daemon then knows nothing.
+/// Written by the matching thread, read by others. Never reset.
+struct dig_fit_counters {
+    atomic_llong seen;           // digs taken from the queue
+    atomic_llong matches;        // digs matched
+    atomic_llong whole, aborted; // digs, by how they ended
+    atomic_llong unknown;        // digs along no trajectory of the table
+    atomic_llong reloads, reloads_refused;
+};
+
+struct dig_fit {
+    // fixed at start
+    const char                      *config_path; // read again on a reload
+    const struct dig_config         *config;
+    const struct dig_machine        *machine; // NULL: forces keep their sensors' sigma
+    struct dig_gravel_track_settings track_settings;
+    struct dig_fit_ports             ports;
+    const atomic_bool               *stop;
+
+    // shared with other threads
+    atomic_bool             reload; // request; cleared by the thread
+    atomic_bool             busy;   // a turn is in progress
+    struct dig_fit_counters count;
+
+    // the thread's own
+    struct dig_table_in_use     table;
+    struct dig_early_match     *early; // NULL: digs are matched when they are over
+    struct dig_gravel_track     track;
+    struct dig_pool             pool;         // digs the track is matched from
+    struct dig_prediction_basis basis;        // last one published to the tick
+    bool                        basis_as_dug; // its forecast is adapted to the dig in progress
+    struct dig_expected         expected;     // scratch: forecast of a dig as it was dug
+};
+
+/// Restores the gravel from the state file, if there is one, and publishes it. Before the thread
+/// starts. A bad file is logged; the gravel is then not known.
 void dig_fit_restore(struct dig_fit *fit);
 
-/// One dig as observed. Of a trajectory that does not identify: compared with what was expected.
-/// Of one that does: matched together with the digs before when it is of their ground, by itself
-/// when it is of another (dig_gravel_track_judge).
+/// Takes one observed dig. One that identifies is gated (dig_gravel_track_gate) and matched with
+/// the digs before it or alone; any other is compared with what was forecast.
 void dig_fit_take(struct dig_fit *fit, const struct dig_observation *dig);
 
-/// One turn: a dig that waits in the ring, the dig going on, a reload asked for, what is too old.
-/// True when a dig was taken. What the dig going on tells (a hunch) is published; it is predicted
-/// from only while nothing else is known; nothing of it is kept, and it ends with the dig.
+/// One turn: table, age of the gravel, dig in progress, one finished dig. True when there was a
+/// finished dig. A provisional match is published, and predicted from only while no gravel is
+/// known; it is not saved, and it ends with its dig.
 bool dig_fit_once(struct dig_fit *fit);
 
 /// The thread: a turn every 20 ms until *stop.

@@ -1,108 +1,92 @@
-// Which gravel is known: from which dig, since when, until when, and whether the ground is still
-// that. It outlives the daemon in a file, which is an identity as `digloop identify --json` writes
-// it (files/identity_json.h), with the digs it was made of; how old it is, the file's modification
-// time says.
+// The tracked gravel: from which dig it is known, since when and until when, and whether new digs
+// still agree with it. gravel_state.h keeps it over a restart.
 
 #ifndef DIG_FIRMWARE_HOST_MATCHING_GRAVEL_TRACK_H
 #define DIG_FIRMWARE_HOST_MATCHING_GRAVEL_TRACK_H
 
-#include "core/error.h"
-#include "estimator/estimator.h"
-#include "estimator/match/pool.h"
+#include "estimator/match/gravel_match.h"
+#include "estimator/predict/forecast.h"
+#include "estimator/track/observation.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define DIG_DRIFT_DIGS 2   // in a row that must differ before the ground counts as another
-#define DIG_DRIFT_FAR  2.0 // times drift_floors: a simple dig so far off needs no second
+/// Digs in a row that must differ before the ground counts as another: one alone may be chance.
+#define DIG_TRACK_DRIFT_DIGS 2
+
+/// A simple dig off by more than this many times drift_floors needs no second: chance does not
+/// reach so far.
+#define DIG_TRACK_DRIFT_FAR 2.0
 
 struct dig_gravel_track_settings {
-    double expires_s; // after the dig it came from
-    double
-        drift_floors; // a dig farther than this many noise floors from what was predicted differs
+    double expires_s;    // lifetime of a match
+    double drift_floors; // a dig farther from its forecast than this many noise floors differs
 };
 
-/// Zeroed: nothing is known, and never was.
+/// Zeroed: no gravel was ever known.
 struct dig_gravel_track {
-    bool              any;   // a gravel was known once
-    bool              valid; // and still is
-    bool              restored;
+    bool              any;      // a gravel was known once
+    bool              valid;    // and still is
+    bool              restored; // from the state file
     struct dig_match  match;
     char              trajectory[DIG_NAME_SIZE]; // of the dig it came from
     char              table[65];                 // scene hash
     struct dig_gravel nearest;
-    struct dig_gravel weighted; // the entry of the least noise-weighted distance, if there is one
-    int64_t           time_ns, expires_ns; // CLOCK_MONOTONIC
-    double            drift;               // of the last dig compared, in noise floors; NaN: none
-    int               differed;            // digs in a row that did
-    char              wanted[96];          // what is to be done, for people; "" nothing
-    double            path_measured;       // share of that dig's path; NaN: not known any more
-    bool              going_on;            // that dig is not over
-    enum dig_ending   ending;              // of that dig; not told after a restart
+    struct dig_gravel
+                    weighted; // entry of the least noise-weighted distance, if match.weighted >= 0
+    int64_t         time_ns, expires_ns; // CLOCK_MONOTONIC
+    double          drift;               // of the last dig compared, in noise floors; NaN: none
+    int             differed;            // digs in a row that differed
+    char            wanted[96];          // what the operator should do; "": nothing
+    double          path_measured;       // share of that dig's path; NaN: unknown after a restart
+    bool            going_on;            // that dig is in progress: a provisional match
+    enum dig_ending ending;              // of that dig; OPEN after a restart
 
     struct dig_approach made, matched; // of that dig: struct dig_observation's made and approach
 };
 
-/// What is known from a match of digs of which dig is the youngest.
-struct dig_gravel_track dig_gravel_track_of(const struct dig_curve_set   *set,
-                                            const struct dig_match       *match,
-                                            const struct dig_observation *dig, int64_t now_ns,
-                                            const struct dig_gravel_track_settings *settings);
+/// The track of a match; dig is the youngest of the digs matched.
+struct dig_gravel_track dig_gravel_track_make(const struct dig_curve_set   *set,
+                                              const struct dig_match       *match,
+                                              const struct dig_observation *dig, int64_t now_ns,
+                                              const struct dig_gravel_track_settings *settings);
 
-/// What a simple dig is to the ground that is known.
+/// Gating of a dig that identifies.
 enum dig_gating {
-    DIG_ACCEPTED, // of the same ground: to be matched together with the digs before
-    DIG_HELD,     // it differs, and may be a chance: what is known stays, another is asked for
-    DIG_REJECTED  // of another ground, or of the first
+    DIG_ACCEPTED, // same ground: matched together with the digs before it
+    DIG_HELD,     // differs, perhaps by chance: the track stays, another dig is wanted
+    DIG_REJECTED  // other ground, or the first: matched alone
 };
 
-/// Compares a simple dig with what was expected of it. It is a stranger when nothing is known or
-/// expected; when it differs by more than DIG_DRIFT_FAR * drift_floors; when it is one of
-/// DIG_DRIFT_DIGS in a row that differ; or when it differs from a ground known from a single dig:
-/// of two digs that contradict each other the younger counts. Remembers the drift.
-enum dig_gating dig_gravel_track_judge(struct dig_gravel_track                *known,
-                                       const struct dig_observation           *dig,
-                                       const struct dig_expected              *expected,
-                                       const struct dig_gravel_track_settings *settings);
+/// Gates a dig by its distance from its forecast, and records the drift. Rejected when
+///   * no gravel is known, or the dig has no forecast;
+///   * it is off by more than DIG_TRACK_DRIFT_FAR * drift_floors;
+///   * it is one of DIG_TRACK_DRIFT_DIGS in a row that differ;
+///   * it differs from a track of a single dig: of two digs that disagree the younger counts.
+enum dig_gating dig_gravel_track_gate(struct dig_gravel_track                *track,
+                                      const struct dig_observation           *dig,
+                                      const struct dig_expected              *expected,
+                                      const struct dig_gravel_track_settings *settings);
 
-/// Compares a dig that identifies nothing with what was expected of it. After DIG_DRIFT_DIGS in a
-/// row that differ, what is known is known no longer. True when anything changed that is worth
-/// telling. An observation of a trajectory without an expected curve changes nothing.
-bool dig_gravel_track_watch(struct dig_gravel_track *known, const struct dig_observation *dig,
-                            const struct dig_expected              *expected,
-                            const struct dig_gravel_track_settings *settings);
+/// Compares a dig that does not identify with its forecast. DIG_TRACK_DRIFT_DIGS in a row that
+/// differ invalidate the track. True when the track changed; false, and unchanged, without a
+/// forecast.
+bool dig_gravel_track_compare(struct dig_gravel_track *track, const struct dig_observation *dig,
+                              const struct dig_expected              *expected,
+                              const struct dig_gravel_track_settings *settings);
 
-/// It is known no longer, and why; a simple dig is asked for.
-void dig_gravel_track_end(struct dig_gravel_track *known, const char *why);
+/// Invalidates the track and asks for a simple dig, for the reason given.
+void dig_gravel_track_invalidate(struct dig_gravel_track *track, const char *why);
 
-/// True when it expired just now.
-bool dig_gravel_track_age(struct dig_gravel_track *known, int64_t now_ns);
+/// Invalidates a track past its expiry; true when it did.
+bool dig_gravel_track_expire(struct dig_gravel_track *track, int64_t now_ns);
 
-/// Writes all of it, with the digs (of trajectories of the set), or nothing. DIG_EIO: it cannot be
-/// written (no room); the old file stands.
-DIG_MUST_CHECK enum dig_status dig_gravel_track_write(const char                    *path,
-                                                      const struct dig_gravel_track *known,
-                                                      const struct dig_curve_set    *set,
-                                                      const struct dig_pool         *pool,
-                                                      struct dig_error              *error);
+/// Moves the track to another table of the same scene: finds nearest entry and undetermined axes
+/// again. False, and unchanged, when the table does not cover the gravel.
+bool dig_gravel_track_set_table(struct dig_gravel_track *track, const struct dig_curve_set *set);
 
-/// DIG_EINVAL: not an identity, of another table (scene hash) or of a gravel the table does not
-/// have; DIG_ESTALE: older than settings->expires_s, or more than an hour younger than now (a wall
-/// clock that was set back: its age cannot be known); DIG_EIO: it cannot be read, as when there is
-/// none. A file that holds none of its digs leaves the pool empty: what is known stands until the
-/// next simple dig begins anew. Writes on success only.
-DIG_MUST_CHECK enum dig_status
-dig_gravel_track_read(const char *path, const struct dig_curve_set *set, int64_t now_ns,
-                      const struct dig_gravel_track_settings *settings,
-                      struct dig_gravel_track *known, struct dig_pool *pool,
-                      struct dig_error *error);
-
-/// The same gravel judged by another table: nearest entry and untold axes anew. False when that
-/// table does not hold it; *known is untouched then.
-bool dig_gravel_track_move(struct dig_gravel_track *known, const struct dig_curve_set *set);
-
-/// The trajectory that moves a kilogram with the least energy among those that fill the bucket at
-/// least half as well as the best, or -1 when the table does not know what a bucket carries.
+/// The trajectory that moves a kilogram with the least energy, of those that fill the bucket at
+/// least half as well as the best. -1 where the table does not hold the load carried.
 int dig_gravel_track_hint(const struct dig_curve_set *set, const struct dig_forecast *forecast,
                           double lambda, double *J_per_kg);
 

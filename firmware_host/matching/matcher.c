@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-void dig_matcher_take_up(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
+void dig_matcher_set_table(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
 {
     assert(matcher != NULL && set != NULL);
     dig_matcher_finish(matcher);
     matcher->outline = calloc(dig_prefilter_outlines(set) + 1, sizeof *matcher->outline);
     if (matcher->outline != NULL) {
-        dig_prefilter_make(set, matcher->outline, &matcher->summary);
+        dig_prefilter_make(set, matcher->outline, &matcher->prefilter);
     }
     matcher->varies = dig_approach_varies_any(set);
     for (size_t t = 0; t < set->trajectories; t++) {
@@ -35,8 +35,8 @@ static bool make_room(struct dig_matcher *const matcher, const size_t bytes)
     return true;
 }
 
-// The table at the depths and attacks of the digs, and the digs along its trajectories in
-// matcher->dig; NULL without the memory.
+// The table at the depths and attacks of the digs; matcher->dig holds the digs along its
+// trajectories. NULL without memory.
 static const struct dig_curve_set *as_dug(struct dig_matcher *const         matcher,
                                           const struct dig_curve_set *const set, const size_t digs,
                                           const struct dig_observation dig[])
@@ -59,25 +59,27 @@ enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
                                     const struct dig_observation dig[], const double outside_floors,
                                     struct dig_match *const match)
 {
-    assert(matcher != NULL && (matcher->outline == NULL || matcher->summary.set == set));
+    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
     if (matcher->varies) {
         const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
         if (dug == NULL) {
             return DIG_ENOMEM;
         }
         const enum dig_status status =
-            dig_match_nearest_pool(dug, digs, matcher->dig, outside_floors, match);
+            dig_match_nearest(dug, digs, matcher->dig, outside_floors, match);
         if (status == DIG_OK) {
-            dig_match_weigh(dug, NULL, digs, matcher->dig, match);
+            dig_match_find_weighted(dug, NULL, digs, matcher->dig, match);
         }
         return status;
     }
-    const struct dig_prefilter *const summary = matcher->outline != NULL ? &matcher->summary : NULL;
-    const enum dig_status             status =
-        summary != NULL ? dig_match_nearest_by(summary, digs, dig, outside_floors, match)
-                                    : dig_match_nearest_pool(set, digs, dig, outside_floors, match);
+    const struct dig_prefilter *const prefilter =
+        matcher->outline != NULL ? &matcher->prefilter : NULL;
+    const enum dig_status status =
+        prefilter != NULL
+            ? dig_match_nearest_prefiltered(prefilter, digs, dig, outside_floors, match)
+            : dig_match_nearest(set, digs, dig, outside_floors, match);
     if (status == DIG_OK) {
-        dig_match_weigh(set, summary, digs, dig, match);
+        dig_match_find_weighted(set, prefilter, digs, dig, match);
     }
     return status;
 }
@@ -87,15 +89,15 @@ enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
                                    const struct dig_observation dig[], const int max_evaluations,
                                    struct dig_match *const match)
 {
-    assert(matcher != NULL && (matcher->outline == NULL || matcher->summary.set == set));
+    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
     if (matcher->varies) {
         const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
-        return dug != NULL ? dig_fit_refine_pool(dug, digs, matcher->dig, max_evaluations, match)
+        return dug != NULL ? dig_fit_refine(dug, digs, matcher->dig, max_evaluations, match)
                            : DIG_ENOMEM;
     }
     return matcher->outline != NULL
-               ? dig_fit_refine_by(&matcher->summary, digs, dig, max_evaluations, match)
-               : dig_fit_refine_pool(set, digs, dig, max_evaluations, match);
+               ? dig_fit_refine_prefiltered(&matcher->prefilter, digs, dig, max_evaluations, match)
+               : dig_fit_refine(set, digs, dig, max_evaluations, match);
 }
 
 void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curve_set *const set,

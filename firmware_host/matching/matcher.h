@@ -1,7 +1,7 @@
-// The table's summary beside the table, on the matching thread: made when a table is taken up, so
-// that a dig is matched in milliseconds however large the table is. Of a table dug at several
-// depths and attacks, the one at those of the digs (estimator/approach/approach_slots.h) is made
-// for every match.
+// Matches digs with the table in use, by a prefilter that is made when the table changes: a dig is
+// matched in milliseconds however large the table is. For a table dug at several depths and
+// attacks, the table at those of the digs (estimator/approach/approach_slots.h) is made for every
+// match.
 
 #ifndef DIG_FIRMWARE_HOST_MATCHING_MATCHER_H
 #define DIG_FIRMWARE_HOST_MATCHING_MATCHER_H
@@ -12,11 +12,11 @@
 #include "estimator/match/prefilter.h"
 #include "estimator/predict/forecast.h"
 
-/// Zeroed: no summary, and every curve is looked at.
+/// Zeroed: no prefilter, every curve is compared.
 struct dig_matcher {
     struct dig_outline  *outline; // owned
-    struct dig_prefilter summary;
-    // Where the table was dug in several ways along a trajectory: how wrong what lies between is.
+    struct dig_prefilter prefilter;
+    // For a table dug at several depths and attacks: errors of the interpolation between them.
     bool                      varies;
     struct dig_approach_error error[DIG_TRAJECTORY_MAX];
     void                     *memory; // owned, of the table last made
@@ -24,13 +24,12 @@ struct dig_matcher {
     struct dig_observation    dig[DIG_POOL_MAX];
 };
 
-/// Sums a table up, in place of the one before; without the memory for it there is no summary then.
-/// The set must outlive it, or dig_matcher_finish() comes first. A few microseconds a curve.
-void dig_matcher_take_up(struct dig_matcher *matcher, const struct dig_curve_set *set);
+/// Makes the prefilter of a table, in place of the one before; without memory there is none. The
+/// set must outlive it, or dig_matcher_finish() comes first. A few microseconds a curve.
+void dig_matcher_set_table(struct dig_matcher *matcher, const struct dig_curve_set *set);
 
-/// As dig_match_nearest_pool() and dig_fit_refine_pool() of the set that was taken up, or, without
-/// a summary, of any; each dig with the curves of its own depth and attack. DIG_ENOMEM: there is
-/// no memory for these.
+/// As dig_match_nearest() and dig_fit_refine() of the matcher's table (without a prefilter, of
+/// any); each dig with the curves of its own depth and attack. DIG_ENOMEM: no memory for these.
 DIG_MUST_CHECK enum dig_status dig_matcher_nearest(struct dig_matcher         *matcher,
                                                    const struct dig_curve_set *set, size_t digs,
                                                    const struct dig_observation dig[],
@@ -40,13 +39,13 @@ DIG_MUST_CHECK enum dig_status dig_matcher_refine(struct dig_matcher         *ma
                                                   const struct dig_observation dig[],
                                                   int max_evaluations, struct dig_match *match);
 
-/// What is expected of a dig made so: dig_forecast_as_dug() in the matcher's memory. valid = false
-/// without the memory.
+/// The forecast of a dig as it was dug: dig_forecast_as_dug() in the matcher's memory. valid =
+/// false without memory.
 void dig_matcher_expect(struct dig_matcher *matcher, const struct dig_curve_set *set, double lambda,
                         const struct dig_match *match, size_t trajectory,
                         const struct dig_approach *approach, struct dig_expected *expected);
 
-/// Frees the summary; zeroed then.
+/// Frees the prefilter; zeroed then.
 void dig_matcher_finish(struct dig_matcher *matcher);
 
 #endif // DIG_FIRMWARE_HOST_MATCHING_MATCHER_H

@@ -1,4 +1,4 @@
-// What the daemon tells the world: its five LCM channels. LCM itself is known to output_lcm.c only.
+// The daemon's five LCM channels. Only output_lcm.c knows LCM.
 
 #ifndef DIG_FIRMWARE_HOST_PUBLISH_OUTPUT_H
 #define DIG_FIRMWARE_HOST_PUBLISH_OUTPUT_H
@@ -8,14 +8,14 @@
 #include "firmware_host/matching/fit.h"
 #include "firmware_host/tick/loop.h"
 
-/// What every message says of itself.
+/// A field of every message.
 #define DIG_ADVICE "advice, not a safety function"
 
-/// How long samples took from their last frame's stamp to LCM: counts over bins a quarter of an
+/// Histogram of the latency of samples, from their last frame's stamp to LCM: bins a quarter of an
 /// octave wide, from 16 us on.
 #define DIG_LATENCY_BINS 80
 struct dig_latency {
-    int64_t count[DIG_LATENCY_BINS]; // the last one holds all that was later
+    int64_t count[DIG_LATENCY_BINS]; // the last bin holds all that took longer
     int64_t samples;
 };
 
@@ -29,18 +29,18 @@ double dig_latency_quantile_us(const struct dig_latency *latency, double share);
 
 /// HEALTH in plain words; the fields are those of messages/health_t.lcm.
 struct dig_health {
-    int64_t             time_ns; // CLOCK_MONOTONIC
-    const char         *state, *input, *note;
-    struct dig_rt_grant rt;
-    double              tick_s;
-    struct dig_pulse    pulse;
-    int64_t             frames, malformed, reconnects, lost;
-    int64_t             checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
-    int32_t             matches;
-    int32_t             whole, aborted, unknown; // digs, by how they ended
-    struct dig_latency  latency;
-    const char         *table;                          // scene hash
-    char                missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
+    int64_t                time_ns; // CLOCK_MONOTONIC
+    const char            *state, *input, *note;
+    struct dig_rt_grant    rt;
+    double                 tick_s;
+    struct dig_tick_status tick_status;
+    int64_t                frames, malformed, reconnects, lost;
+    int64_t                checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
+    int32_t                matches;
+    int32_t                whole, aborted, unknown; // digs, by how they ended
+    struct dig_latency     latency;
+    const char            *table;                          // scene hash
+    char                   missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
 };
 
 struct dig_output;
@@ -59,9 +59,9 @@ DIG_MUST_CHECK enum dig_status dig_output_record(struct dig_output          *out
                                                  const struct dig_record    *record);
 DIG_MUST_CHECK enum dig_status dig_output_match(struct dig_output           *output,
                                                 const struct dig_fit_result *result);
-DIG_MUST_CHECK enum dig_status dig_output_outlook(struct dig_output          *output,
-                                                  const struct dig_curve_set *set,
-                                                  const struct dig_outlook   *outlook);
+DIG_MUST_CHECK enum dig_status dig_output_prediction(struct dig_output                  *output,
+                                                     const struct dig_curve_set         *set,
+                                                     const struct dig_prediction_record *record);
 DIG_MUST_CHECK enum dig_status dig_output_health(struct dig_output       *output,
                                                  const struct dig_health *health);
 

@@ -155,7 +155,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
                                  const struct dig_fit_result *const result)
 {
     assert(output != NULL && result != NULL);
-    const struct dig_gravel_track *const k       = &result->known;
+    const struct dig_gravel_track *const k       = &result->track;
     const struct dig_match *const        m       = &k->match;
     const struct dig_gravel *const       nearest = &k->nearest;
     const struct dig_gravel              weighted =
@@ -234,25 +234,25 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     return sent(digsight_match_t_publish(output->lcm, "DIGSIGHT_MATCH", &message));
 }
 
-enum dig_status dig_output_outlook(struct dig_output *const          output,
-                                   const struct dig_curve_set *const set,
-                                   const struct dig_outlook *const   outlook)
+enum dig_status dig_output_prediction(struct dig_output *const                  output,
+                                      const struct dig_curve_set *const         set,
+                                      const struct dig_prediction_record *const record)
 {
-    assert(output != NULL && set != NULL && outlook != NULL);
-    struct dig_prediction     prediction = outlook->prediction;
+    assert(output != NULL && set != NULL && record != NULL);
+    struct dig_prediction     prediction = record->prediction;
     const struct dig_approach dug        = dig_approach_told(&prediction.approach);
     char                      name[TEXT_SIZE];
     char                      reason[TEXT_SIZE];
-    (void)snprintf(reason, sizeof reason, "%s", dig_why_not_str(outlook->why_not));
+    (void)snprintf(reason, sizeof reason, "%s", dig_prediction_state_str(record->state));
     (void)snprintf(name, sizeof name, "%s",
                    prediction.valid ? trajectory_name(set, prediction.trajectory) : "");
     const digsight_prediction_t message = {
-        .time_ns         = outlook->time_ns,
-        .utc_us          = utc_us(outlook->time_ns),
+        .time_ns         = record->time_ns,
+        .utc_us          = utc_us(record->time_ns),
         .valid           = prediction.valid ? 1 : 0,
-        .expires_ns      = outlook->expires_ns,
+        .expires_ns      = record->expires_ns,
         .trajectory      = name,
-        .dig_count       = (int32_t)outlook->dig_count,
+        .dig_count       = (int32_t)record->dig_count,
         .progress_now    = prediction.progress_now,
         .from_progress   = prediction.from_progress,
         .to_progress     = prediction.to_progress,
@@ -263,7 +263,7 @@ enum dig_status dig_output_outlook(struct dig_output *const          output,
         .force_z_N       = prediction.Fz_N,
         .peak_Nm         = prediction.peak_Nm,
         .energy_J        = prediction.energy_J,
-        .outside         = outlook->outside ? 1 : 0,
+        .outside         = record->outside ? 1 : 0,
         .depth           = prediction.valid ? dug.depth : (double)NAN,
         .attack_rad      = prediction.valid ? dug.attack_rad : (double)NAN,
         .reason          = reason,
@@ -296,53 +296,53 @@ enum dig_status dig_output_health(struct dig_output *const       output,
     (void)snprintf(state, sizeof state, "%s", health->state);
     (void)snprintf(input, sizeof input, "%s", health->input);
     (void)snprintf(note, sizeof note, "%s", health->note);
-    const struct dig_pulse *const pulse   = &health->pulse;
-    const digsight_health_t       message = {
-              .time_ns               = health->time_ns,
-              .utc_us                = utc_us(health->time_ns),
-              .state                 = state,
-              .input                 = input,
-              .note                  = note,
-              .realtime              = health->rt.realtime ? 1 : 0,
-              .memory_locked         = health->rt.memory_locked ? 1 : 0,
-              .tick_s                = health->tick_s,
-              .ticks                 = pulse->ticks,
-              .overruns              = pulse->overruns,
-              .worst_tick_us         = pulse->worst_tick_us,
-              .frames                = health->frames,
-              .dropped_malformed     = health->malformed,
-              .dropped_nan           = pulse->drops.nan,
-              .dropped_not_available = pulse->drops.not_available,
-              .dropped_out_of_range  = pulse->drops.out_of_range,
-              .dropped_frozen        = pulse->drops.frozen,
-              .missing               = pulse->missing,
-              .reconnects            = health->reconnects,
-              .digs                  = (int32_t)pulse->digs,
-              .matches               = health->matches,
-              .lost                  = health->lost,
-              .dropped_checksum      = health->checksum,
-              .dropped_repeated      = pulse->drops.repeated,
-              .dropped_jump          = pulse->drops.jump,
-              .dropped_stuck         = pulse->drops.stuck,
-              .missed                = pulse->drops.missed,
-              .error_frames          = health->errors,
-              .bus_offs              = health->bus_offs,
-              .timeouts              = health->timeouts,
-              .unsent                = health->unsent,
-              .reloads               = health->reloads,
-              .reloads_refused       = health->reloads_refused,
-              .worst_tick_cpu_us     = pulse->worst_tick_cpu_us,
-              .latency_p99_us        = dig_latency_quantile_us(&health->latency, 0.99),
-              .latency_bins          = DIG_LATENCY_BINS,
-              .latency_to_us         = latency_to_us,
-              .latency_count         = latency_count,
-              .missing_signals       = missing,
-              .table                 = table,
-              .without_force         = pulse->drops.without_force,
-              .advice                = advice(),
-              .digs_whole            = health->whole,
-              .digs_aborted          = health->aborted,
-              .digs_unknown          = health->unknown,
+    const struct dig_tick_status *const tick    = &health->tick_status;
+    const digsight_health_t             message = {
+                    .time_ns               = health->time_ns,
+                    .utc_us                = utc_us(health->time_ns),
+                    .state                 = state,
+                    .input                 = input,
+                    .note                  = note,
+                    .realtime              = health->rt.realtime ? 1 : 0,
+                    .memory_locked         = health->rt.memory_locked ? 1 : 0,
+                    .tick_s                = health->tick_s,
+                    .ticks                 = tick->ticks,
+                    .overruns              = tick->overruns,
+                    .worst_tick_us         = tick->worst_tick_us,
+                    .frames                = health->frames,
+                    .dropped_malformed     = health->malformed,
+                    .dropped_nan           = tick->drops.nan,
+                    .dropped_not_available = tick->drops.not_available,
+                    .dropped_out_of_range  = tick->drops.out_of_range,
+                    .dropped_frozen        = tick->drops.frozen,
+                    .missing               = tick->missing,
+                    .reconnects            = health->reconnects,
+                    .digs                  = (int32_t)tick->digs,
+                    .matches               = health->matches,
+                    .lost                  = health->lost,
+                    .dropped_checksum      = health->checksum,
+                    .dropped_repeated      = tick->drops.repeated,
+                    .dropped_jump          = tick->drops.jump,
+                    .dropped_stuck         = tick->drops.stuck,
+                    .missed                = tick->drops.missed,
+                    .error_frames          = health->errors,
+                    .bus_offs              = health->bus_offs,
+                    .timeouts              = health->timeouts,
+                    .unsent                = health->unsent,
+                    .reloads               = health->reloads,
+                    .reloads_refused       = health->reloads_refused,
+                    .worst_tick_cpu_us     = tick->worst_tick_cpu_us,
+                    .latency_p99_us        = dig_latency_quantile_us(&health->latency, 0.99),
+                    .latency_bins          = DIG_LATENCY_BINS,
+                    .latency_to_us         = latency_to_us,
+                    .latency_count         = latency_count,
+                    .missing_signals       = missing,
+                    .table                 = table,
+                    .without_force         = tick->drops.without_force,
+                    .advice                = advice(),
+                    .digs_whole            = health->whole,
+                    .digs_aborted          = health->aborted,
+                    .digs_unknown          = health->unknown,
     };
     return sent(digsight_health_t_publish(output->lcm, "DIGSIGHT_HEALTH", &message));
 }

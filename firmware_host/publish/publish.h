@@ -1,5 +1,5 @@
-// The publishing thread: empties the tick's and the matcher's rings into LCM, keeps an eye on the
-// state of things, and tells the service manager the daemon lives.
+// The publishing thread: publishes the other threads' queues over LCM, writes the log, and feeds
+// the service manager's watchdog.
 
 #ifndef DIG_FIRMWARE_HOST_PUBLISH_PUBLISH_H
 #define DIG_FIRMWARE_HOST_PUBLISH_PUBLISH_H
@@ -12,49 +12,48 @@
 #define DIG_STATE_RUNNING  "running"
 #define DIG_STATE_STOPPING "stopping"
 
-/// How the daemon speaks to a person. say: every line worth an eye, as often as log_limit.h lets.
-/// show: where things stand, twice a second, each line in place of the one before; NULL: no one
-/// looks.
-struct dig_voice {
+/// The daemon's text output. say: a log line, as often as log_limit.h allows. show: the state,
+/// twice a second, each line in place of the one before; NULL: no terminal.
+struct dig_console {
     void (*say)(const char *line);
     void (*show)(const char *line);
 };
 
-/// Its other ends are the tick's, the matcher's and the input's.
+/// The queues' other ends are the tick's, the matching thread's and the input's.
 struct dig_publisher {
     const struct dig_config    *config;
     const struct dig_curve_set *set;
     struct dig_input           *input;
     struct dig_fit             *fit;
     struct dig_ring            *records;     // in
-    struct dig_latest          *outlook;     // in
+    struct dig_latest          *predictions; // in
     struct dig_ring            *results;     // in
     struct dig_latest          *tables;      // in
-    struct dig_latest          *pulse;       // in
-    struct dig_latest          *input_notes; // in
-    struct dig_latest          *fit_notes;   // in
+    struct dig_latest          *tick_status; // in
+    struct dig_latest          *input_log;   // in
+    struct dig_latest          *fit_log;     // in
     const atomic_bool          *stop;
     atomic_llong               *generation; // out: of the table in use here
     struct dig_rt_grant         grant;
-    struct dig_voice            voice; // used on this thread
+    struct dig_console          console; // used on this thread
 
     // the thread's own
     struct dig_output    *output;
     struct dig_health     health;
-    struct dig_note       note;
+    struct dig_log_line   note;
     struct dig_fit_result result; // the last one
     bool                  any_result;
     const char           *state;
-    int64_t               next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_say_ns;
-    int64_t               lcm_pause_ns;
-    struct dig_table_news news; // a table the tick may not use yet
-    int64_t               said_drops;
-    int64_t               next_show_ns;
-    struct dig_log_limit  talk; // of what may come as often as a bus comes and goes
-    uint64_t              records_seen;
-    bool                  seen[DIG_SIGNALS]; // signals that had a value since HEALTH was told last
-    bool                  any_seen;
-    struct dig_estimate   estimate; // the last one
+    int64_t next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_drops_ns;
+    int64_t lcm_pause_ns;
+    struct dig_table_update update; // a table, from when the tick uses it
+    int64_t                 logged_drops;
+    int64_t                 next_show_ns;
+    struct dig_log_limit    log_limit; // of lines that repeat as a bus comes and goes
+    uint64_t                record_count;
+    bool                    seen[DIG_SIGNALS]; // signals that had a value since the last HEALTH
+    bool                    any_seen;
+    struct dig_estimate     estimate; // the last one
 };
 
 /// The thread: returns after *stop, when all that was left is published.

@@ -1,6 +1,6 @@
-// How threads of the daemon meet without a lock: a ring of records for what must not be lost, and a
-// slot for what only the newest of matters. One producer and one consumer each; wait-free on both
-// sides, no system call, no allocation. Both hold bytes by value in memory the caller gives.
+// Lock-free queues between two threads: a ring of records where none may be lost, a slot where only
+// the newest matters. One producer and one consumer each; wait-free on both sides, no system call,
+// no allocation. Both hold bytes by value in memory the caller gives.
 
 #ifndef DIG_FIRMWARE_HOST_THREADS_HANDOFF_H
 #define DIG_FIRMWARE_HOST_THREADS_HANDOFF_H
@@ -31,13 +31,13 @@ bool dig_ring_push(struct dig_ring *ring, const void *record);
 /// False when the ring is empty; *record is untouched then. Consumer only.
 bool dig_ring_pop(struct dig_ring *ring, void *record);
 
-/// Three copies: the producer's, the consumer's, and the one that changes hands.
+/// A triple buffer: the producer's copy, the consumer's, and the one exchanged.
 struct dig_latest {
     unsigned char *memory;
     size_t         size;
     unsigned       back; // producer's copy
     char           apart0[DIG_CACHE_LINE];
-    atomic_uint    middle; // index, and a bit that says it is news
+    atomic_uint    middle; // index, and a bit: not read yet
     char           apart1[DIG_CACHE_LINE];
     unsigned       front; // consumer's copy
 };

@@ -14,8 +14,8 @@
 
 #define STACK_BYTES (64 * 1024)
 
-// What is mapped later is locked too only where no limit stands in its way: beyond a limit the
-// mapping itself would fail, and a thread or LCM with it.
+// Locks later mappings too only without a limit: beyond one the mapping itself fails, and a thread
+// or LCM with it.
 static bool lock_memory(void)
 {
     struct rlimit limit;
@@ -25,7 +25,7 @@ static bool lock_memory(void)
     return mlockall(all ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0;
 }
 
-// Touched once, the stack's pages stay: with mlockall() in memory, without it at least mapped.
+// Touches the stack's pages, which stay locked with mlockall(), or at least mapped.
 static void prefault_stack(void)
 {
     volatile char stack[STACK_BYTES];

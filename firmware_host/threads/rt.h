@@ -1,4 +1,4 @@
-// What the real-time thread asks of the kernel, and what it got.
+// Scheduling, memory and CPU of the real-time thread: requested and granted.
 
 #ifndef DIG_FIRMWARE_HOST_THREADS_RT_H
 #define DIG_FIRMWARE_HOST_THREADS_RT_H
@@ -12,7 +12,7 @@ struct dig_rt_settings {
     int  cpu;         // to run on alone; -1: any
 };
 
-/// What was granted. Not getting it is no failure: the daemon says so and runs on.
+/// A refusal is no failure: the daemon logs it and runs on.
 struct dig_rt_grant {
     bool realtime, memory_locked, pinned;
 };

@@ -18,7 +18,7 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(seconds * 1e9);
 }
 
-// Whole seconds apart from the rest, so that hours on the machine stay exact to the nanosecond.
+// Scales the time elapsed, not the time: hours on the machine stay exact to the nanosecond.
 static int64_t machine_time(const struct dig_assembler *const a, const int64_t time_ns)
 {
     const int64_t elapsed_ns = time_ns - a->first_ns;
@@ -36,32 +36,32 @@ static void count_drop(struct dig_drops *const drops, const uint8_t state)
     }
 }
 
-// Frames that a busy bus or host bunches up carry the changes of this long at once.
+// A busy bus or host bunches frames up: one may carry the change of this long at once.
 static const double bunched_s = 0.02;
 
-// Within what the signal can have changed by since it was last believed: a value that stays where
-// it jumped to is believed once it could have come there.
-static bool is_believable(struct dig_assembler *const a, const size_t signal, const double value,
-                          const int64_t time_ns)
+// Whether the signal can have come here from its last valid value. A value that stays where it
+// jumped to becomes valid once it could have.
+static bool is_within_rate(struct dig_assembler *const a, const size_t signal, const double value,
+                           const int64_t time_ns)
 {
     const double rate = a->settings.max_rate[signal];
-    if (rate > 0.0 && a->good_ns[signal] > 0) {
-        const double since_s = 1e-9 * (double)(time_ns - a->good_ns[signal]);
-        if (!(fabs(value - a->good[signal]) <= rate * (fmax(since_s, 0.0) + bunched_s))) {
+    if (rate > 0.0 && a->last_valid_ns[signal] > 0) {
+        const double since_s = 1e-9 * (double)(time_ns - a->last_valid_ns[signal]);
+        if (!(fabs(value - a->last_valid[signal]) <= rate * (fmax(since_s, 0.0) + bunched_s))) {
             a->drops.jump += dig_signal_is_optional((enum dig_signal)signal) ? 0 : 1;
             return false;
         }
     }
-    a->good[signal]    = value;
-    a->good_ns[signal] = time_ns;
+    a->last_valid[signal]    = value;
+    a->last_valid_ns[signal] = time_ns;
     return true;
 }
 
-static void remember(struct dig_assembler *const a, const struct dig_reading *const reading,
-                     const int64_t time_ns)
+static void store_reading(struct dig_assembler *const a, const struct dig_reading *const reading,
+                          const int64_t time_ns)
 {
     const unsigned                 group = reading->group;
-    struct dig_past_reading *const past  = &a->past[group][a->came[group]++ % DIG_HISTORY];
+    struct dig_past_reading *const past  = &a->past[group][a->received[group]++ % DIG_HISTORY];
 
     *past = (struct dig_past_reading){ .time_ns = time_ns };
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
@@ -71,7 +71,7 @@ static void remember(struct dig_assembler *const a, const struct dig_reading *co
         a->carried[i]  = true;
         a->group_of[i] = group;
         past->valid[i] =
-            reading->state[i] == DIG_READING_OK && is_believable(a, i, reading->value[i], time_ns);
+            reading->state[i] == DIG_READING_OK && is_within_rate(a, i, reading->value[i], time_ns);
         past->value[i] = past->valid[i] ? reading->value[i] : 0.0;
         if (!dig_signal_is_optional((enum dig_signal)i)) {
             count_drop(&a->drops, reading->state[i]);
@@ -79,7 +79,7 @@ static void remember(struct dig_assembler *const a, const struct dig_reading *co
     }
 }
 
-// False when the reading is a repetition of the one before.
+// Steps the alive counter. False when the reading repeats the one before.
 static bool watch_alive(struct dig_assembler *const a, const struct dig_reading *const reading,
                         const int64_t time_ns)
 {
@@ -98,17 +98,17 @@ static bool watch_alive(struct dig_assembler *const a, const struct dig_reading 
     return moved || !reading->has_alive || !a->settings.repeats;
 }
 
-// The n-th last reading of a group, n below what it remembers; NULL: there is none.
+// The n-th last reading of a group; NULL: not stored.
 static const struct dig_past_reading *past_of(const struct dig_assembler *const a,
                                               const unsigned group, const size_t n)
 {
-    return n < a->came[group] && n < DIG_HISTORY
-               ? &a->past[group][(a->came[group] - 1 - n) % DIG_HISTORY]
+    return n < a->received[group] && n < DIG_HISTORY
+               ? &a->past[group][(a->received[group] - 1 - n) % DIG_HISTORY]
                : NULL;
 }
 
-// The cycle a group comes in: as it is said, or the shortest of those remembered, so that a silence
-// among them does not count.
+// The cycle of a group: as configured, or the shortest one stored, so that a silence among them
+// does not count.
 static int64_t cycle_ns(const struct dig_assembler *const a, const unsigned group)
 {
     const struct dig_past_reading *younger     = past_of(a, group, 0);
@@ -120,16 +120,17 @@ static int64_t cycle_ns(const struct dig_assembler *const a, const unsigned grou
         }
         younger = older;
     }
-    const int64_t said_ns = ns(a->settings.frame[group].cycle_s);
-    return shortest_ns == INT64_MAX || shortest_ns < said_ns ? said_ns : shortest_ns;
+    const int64_t configured_ns = ns(a->settings.frame[group].cycle_s);
+    return shortest_ns == INT64_MAX || shortest_ns < configured_ns ? configured_ns : shortest_ns;
 }
 
-// A group that can be done without, and that does not come while the others do. The clock alone
-// would not tell: after a pause of the whole bus the others may only be the first.
+// A dispensable group is silent when it does not come while the others do. The clock alone does not
+// show it: after a pause of the whole bus the others may only be the first.
 static bool is_silent(const struct dig_assembler *const a, const unsigned group,
                       const int64_t now_ns)
 {
-    if (!a->settings.spared[group] || a->beats - a->beat_of[group] < DIG_SILENT_CYCLES) {
+    if (!a->settings.dispensable[group] ||
+        a->lead_readings - a->lead_readings_at[group] < DIG_SILENT_CYCLES) {
         return false;
     }
     const struct dig_past_reading *const last     = past_of(a, group, 0);
@@ -138,31 +139,33 @@ static bool is_silent(const struct dig_assembler *const a, const unsigned group,
     return now_ns - since_ns > (most_ns > ns(DIG_SILENT_s) ? most_ns : ns(DIG_SILENT_s));
 }
 
-// A reading of this group came: counts what silence is measured by, and finds who is silent.
-static void hear(struct dig_assembler *const a, const unsigned group, const int64_t now_ns)
+// Counts a reading of this group, and finds the silent groups.
+static void update_silence(struct dig_assembler *const a, const unsigned group,
+                           const int64_t now_ns)
 {
     unsigned lead = 0;
-    while (lead < a->settings.groups && (!a->settings.needed[lead] || a->settings.spared[lead])) {
+    while (lead < a->settings.groups &&
+           (!a->settings.needed[lead] || a->settings.dispensable[lead])) {
         lead++;
     }
-    a->beats += group == lead ? 1 : 0;
-    a->beat_of[group] = a->beats;
+    a->lead_readings += group == lead ? 1 : 0;
+    a->lead_readings_at[group] = a->lead_readings;
     for (unsigned g = 0; g < a->settings.groups; g++) {
         a->silent[g] = is_silent(a, g, now_ns);
     }
 }
 
-static bool lacks_any(const struct dig_assembler *const a)
+static bool any_silent(const struct dig_assembler *const a)
 {
-    bool lacks = false;
+    bool silent = false;
     for (unsigned g = 0; g < a->settings.groups; g++) {
-        lacks = lacks || a->silent[g];
+        silent = silent || a->silent[g];
     }
-    return lacks;
+    return silent;
 }
 
-// Every needed group that speaks came since the last sample, and they belong together: *time_ns is
-// the moment all of them reach.
+// A sample is due when every needed group that is not silent came since the last one, and they are
+// coherent: *time_ns is the time all of them reach.
 static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
 {
     int64_t oldest   = INT64_MAX;
@@ -183,10 +186,10 @@ static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
     return youngest >= oldest && youngest - oldest <= ns(a->settings.coherent_s);
 }
 
-// A signal at a moment: between the two readings around it, the younger alone where the older has
-// no value, the last one for what is older than the moment.
-static void read_off(const struct dig_assembler *const a, const size_t signal,
-                     const int64_t time_ns, struct dig_sample *const sample)
+// A signal at a time: between the two readings around it; the younger alone where the older has no
+// value; the last one where that is older.
+static void interpolate(const struct dig_assembler *const a, const size_t signal,
+                        const int64_t time_ns, struct dig_sample *const sample)
 {
     const unsigned                 group   = a->group_of[signal];
     const struct dig_past_reading *younger = past_of(a, group, 0);
@@ -216,15 +219,15 @@ static struct dig_sample sample_at(const struct dig_assembler *const a, const in
                          (dig_signal_is_optional((enum dig_signal)i) &&
                           time_ns - last->time_ns > ns(a->settings.optional_s));
         if (!old) {
-            read_off(a, i, time_ns, &sample);
+            interpolate(a, i, time_ns, &sample);
         }
     }
     return sample;
 }
 
-// Takes the frame's stamp and counters; false when it says nothing new or nothing true.
-static bool is_news(struct dig_assembler *const a, const struct dig_reading *const reading,
-                    const int64_t time_ns)
+// Steps the frame's stamp and counters. False for a repeated frame, or a frozen sender.
+static bool is_new_frame(struct dig_assembler *const a, const struct dig_reading *const reading,
+                         const int64_t time_ns)
 {
     const unsigned                group = reading->group;
     struct dig_frame_watch *const watch = &a->watch[group];
@@ -253,15 +256,15 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
     }
     const int64_t time_ns =
         machine_time(a, reading->time_ns) - ns(a->settings.frame[reading->group].delay_s);
-    if (!is_news(a, reading, time_ns)) {
+    if (!is_new_frame(a, reading, time_ns)) {
         return false;
     }
     const struct dig_past_reading *const before = past_of(a, reading->group, 0);
     if (before != NULL && time_ns <= before->time_ns) {
         return false; // a clock that was set back; samples ascend
     }
-    remember(a, reading, time_ns);
-    hear(a, reading->group, time_ns);
+    store_reading(a, reading, time_ns);
+    update_silence(a, reading->group, time_ns);
     a->fresh[reading->group] = true;
     int64_t due_ns           = 0;
     if (!is_due(a, &due_ns)) {
@@ -281,7 +284,7 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
         a->drops.stuck++;
         return false;
     }
-    a->drops.without_force += lacks_any(a) ? 1 : 0;
+    a->drops.without_force += any_silent(a) ? 1 : 0;
     *sample = made;
     return true;
 }

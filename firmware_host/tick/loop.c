@@ -6,30 +6,30 @@
 
 #define NS_PER_S 1000000000LL
 
-const char *dig_why_not_str(const enum dig_why_not why)
+const char *dig_prediction_state_str(const enum dig_prediction_state state)
 {
-    static const char *const words[DIG_WHY_NOTS] = {
-        [DIG_WHY_NOT_VALID]      = "",
-        [DIG_WHY_NOT_KNOWN]      = "no gravel known",
-        [DIG_WHY_NOT_EXPIRED]    = "the gravel known has expired",
-        [DIG_WHY_NOT_STALE]      = "no fresh samples",
-        [DIG_WHY_NOT_TRAJECTORY] = "which dig it is cannot be told yet",
-        [DIG_WHY_NOT_ON_TABLE]   = "off the table",
-        [DIG_WHY_NOT_OVER]       = "the dig is over",
+    static const char *const words[DIG_PREDICTION_STATES] = {
+        [DIG_PREDICTION_VALID]         = "",
+        [DIG_PREDICTION_NO_GRAVEL]     = "no gravel known",
+        [DIG_PREDICTION_EXPIRED]       = "the gravel known has expired",
+        [DIG_PREDICTION_STALE]         = "no fresh samples",
+        [DIG_PREDICTION_NO_TRAJECTORY] = "which dig it is cannot be told yet",
+        [DIG_PREDICTION_OFF_TABLE]     = "off the table",
+        [DIG_PREDICTION_DIG_OVER]      = "the dig is over",
     };
-    return (unsigned)why < DIG_WHY_NOTS ? words[why] : "";
+    return (unsigned)state < DIG_PREDICTION_STATES ? words[state] : "";
 }
 
 void dig_loop_init(struct dig_loop *const loop, const struct dig_loop_settings *const settings,
                    const struct dig_loop_ports *const ports, struct dig_estimator *const estimator)
 {
     assert(loop != NULL && settings != NULL && ports != NULL && estimator != NULL);
-    *loop = (struct dig_loop){ .settings  = *settings,
-                               .ports     = *ports,
-                               .estimator = estimator,
-                               .set       = settings->set,
-                               .said      = DIG_WHY_NOT_KNOWN,
-                               .pulse     = { .generation = 1 } };
+    *loop = (struct dig_loop){ .settings        = *settings,
+                               .ports           = *ports,
+                               .estimator       = estimator,
+                               .set             = settings->set,
+                               .published_state = DIG_PREDICTION_NO_GRAVEL,
+                               .tick_status     = { .generation = 1 } };
     atomic_store(&loop->generation, 1);
     dig_assembler_init(&loop->assembler, &settings->assembler);
 }
@@ -39,8 +39,8 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(seconds * (double)NS_PER_S);
 }
 
-// One assembled sample: through the estimator if it tells the moment, out in any case. True when
-// there is an estimate of it.
+// Steps the estimator by a sample that gives the moment; records the sample in any case. True when
+// there is an estimate.
 static bool take_sample(struct dig_loop *const loop, const struct dig_sample *const sample,
                         const int64_t arrived_ns, const int64_t now_ns)
 {
@@ -49,146 +49,153 @@ static bool take_sample(struct dig_loop *const loop, const struct dig_sample *co
                                  .expires_ns = now_ns + ns(loop->settings.stale_s) };
     if (dig_sample_has_moment(sample) &&
         dig_estimator_step(loop->estimator, sample, &loop->estimate) == DIG_OK) {
-        loop->sampled_ns    = now_ns;
-        loop->pulse.digs    = loop->estimate.dig_count;
-        record.estimate     = loop->estimate;
-        record.has_estimate = true;
+        loop->sampled_ns       = now_ns;
+        loop->tick_status.digs = loop->estimate.dig_count;
+        record.estimate        = loop->estimate;
+        record.has_estimate    = true;
     }
-    loop->pulse.lost += dig_ring_push(loop->ports.records, &record) ? 0 : 1;
+    loop->tick_status.lost += dig_ring_push(loop->ports.records, &record) ? 0 : 1;
     return record.has_estimate;
 }
 
-// Digs that ended leave, memory for the next comes in. The ring has room for all memory there is.
+// Hands out the finished dig and lends memory for the next. The ring has room for all of it.
 static void exchange_digs(struct dig_loop *const loop)
 {
-    struct dig_recorded_dig *raw = dig_estimator_take_raw(loop->estimator);
-    if (raw != NULL) {
-        (void)dig_ring_push(loop->ports.digs, &raw);
+    struct dig_recorded_dig *recording = dig_estimator_take_recording(loop->estimator);
+    if (recording != NULL) {
+        (void)dig_ring_push(loop->ports.digs, &recording);
     }
-    if (dig_estimator_wants_raw(loop->estimator) && dig_ring_pop(loop->ports.spares, &raw)) {
-        dig_estimator_lend(loop->estimator, raw);
+    if (dig_estimator_wants_spare(loop->estimator) &&
+        dig_ring_pop(loop->ports.spares, &recording)) {
+        dig_estimator_lend(loop->estimator, recording);
     }
 }
 
-// Behind the dig it may have ended: who finds the end here finds the dig there.
-static void share_estimate(struct dig_loop *const loop)
+// After exchange_digs(): a reader that finds the end of a dig here finds its recording there.
+static void publish_estimate(struct dig_loop *const loop)
 {
     if (loop->ports.estimates != NULL) {
         (void)dig_ring_push(loop->ports.estimates, &loop->estimate);
     }
 }
 
-// A gravel at once; another table and machine only while no dig goes on.
-static void take_offers(struct dig_loop *const loop)
+// Takes a new forecast at once, another table and machine only between two digs.
+static void take_basis(struct dig_loop *const loop)
 {
-    const struct dig_offer *const offer = dig_latest_look(loop->ports.offer);
-    if (offer != NULL && offer->generation == loop->pulse.generation) {
-        loop->offer = offer;
-        dig_estimator_give_forecast(loop->estimator, offer->known ? &offer->forecast : NULL);
+    const struct dig_prediction_basis *const basis = dig_latest_look(loop->ports.basis);
+    if (basis != NULL && basis->generation == loop->tick_status.generation) {
+        loop->basis = basis;
+        dig_estimator_set_forecast(loop->estimator, basis->known ? &basis->forecast : NULL);
     }
     if (!dig_estimator_is_idle(loop->estimator)) {
         return;
     }
-    const struct dig_offer *const table = dig_latest_look(loop->ports.table);
+    const struct dig_prediction_basis *const table = dig_latest_look(loop->ports.table);
     if (table != NULL) {
-        dig_estimator_adopt(loop->estimator, table->set);
-        dig_estimator_take(loop->estimator, &table->machine);
-        dig_estimator_give_forecast(loop->estimator, table->known ? &table->forecast : NULL);
-        loop->set              = table->set;
-        loop->offer            = table;
-        loop->pulse.generation = table->generation;
+        dig_estimator_set_table(loop->estimator, table->set);
+        dig_estimator_set_machine(loop->estimator, &table->machine);
+        dig_estimator_set_forecast(loop->estimator, table->known ? &table->forecast : NULL);
+        loop->set                    = table->set;
+        loop->basis                  = table;
+        loop->tick_status.generation = table->generation;
         atomic_store(&loop->generation, table->generation);
         loop->estimate.trajectory = -1;
-        loop->ahead               = 0;
+        loop->next_dig_trajectory = 0;
     }
 }
 
-static void hand_on(struct dig_loop *const loop, const int64_t now_ns, const double lives_s)
+static void publish_prediction(struct dig_loop *const loop, const int64_t now_ns,
+                               const double lifetime_s)
 {
-    struct dig_outlook *const     outlook = &loop->outlook;
-    const struct dig_offer *const offer   = loop->offer;
-    outlook->time_ns                      = loop->estimate.time_ns;
-    outlook->expires_ns                   = now_ns + ns(lives_s);
-    outlook->generation                   = loop->pulse.generation;
-    outlook->dig_count                    = offer != NULL ? offer->dig_count : 0;
-    outlook->outside                      = offer != NULL && offer->known && offer->outside;
-    dig_latest_put(loop->ports.outlook, outlook);
+    struct dig_prediction_record *const      record = &loop->published;
+    const struct dig_prediction_basis *const basis  = loop->basis;
+    record->time_ns                                 = loop->estimate.time_ns;
+    record->expires_ns                              = now_ns + ns(lifetime_s);
+    record->generation                              = loop->tick_status.generation;
+    record->dig_count                               = basis != NULL ? basis->dig_count : 0;
+    record->outside = basis != NULL && basis->known && basis->outside;
+    dig_latest_put(loop->ports.predictions, record);
 }
 
-// Why nothing can be predicted at all, whatever is dug.
-static enum dig_why_not why_not_at_all(const struct dig_loop *const loop, const int64_t now_ns)
+// Whether anything can be predicted, whatever is dug.
+static enum dig_prediction_state basis_state(const struct dig_loop *const loop,
+                                             const int64_t                now_ns)
 {
-    if (!loop->pulse.fresh) {
-        return DIG_WHY_NOT_STALE;
+    if (!loop->tick_status.fresh) {
+        return DIG_PREDICTION_STALE;
     }
-    if (loop->offer == NULL || (!loop->offer->known && loop->offer->expires_ns == 0)) {
-        return DIG_WHY_NOT_KNOWN;
+    if (loop->basis == NULL || (!loop->basis->known && loop->basis->expires_ns == 0)) {
+        return DIG_PREDICTION_NO_GRAVEL;
     }
-    return loop->offer->known && now_ns < loop->offer->expires_ns ? DIG_WHY_NOT_VALID
-                                                                  : DIG_WHY_NOT_EXPIRED;
+    return loop->basis->known && now_ns < loop->basis->expires_ns ? DIG_PREDICTION_VALID
+                                                                  : DIG_PREDICTION_EXPIRED;
 }
 
-// In the air, what each of the table's digs would resist with, one trajectory after the other. Not
-// in a tick that has just said that a dig is over: the slot holds one outlook.
-static void look_ahead(struct dig_loop *const loop, const int64_t now_ns)
+// In the air, predicts the table's digs one trajectory after the other. Not in a tick that has just
+// published the end of a dig: the slot holds one record.
+static void predict_next_dig(struct dig_loop *const loop, const int64_t now_ns)
 {
     const int trajectories = (int)loop->set->trajectories;
     if (trajectories == 0 || loop->estimate.phase != DIG_PHASE_AIR ||
-        loop->predicted_ns == now_ns || now_ns - loop->ahead_ns < ns(loop->settings.ahead_s) ||
-        why_not_at_all(loop, now_ns) != DIG_WHY_NOT_VALID) {
+        loop->predicted_ns == now_ns ||
+        now_ns - loop->next_dig_ns < ns(loop->settings.next_dig_s) ||
+        basis_state(loop, now_ns) != DIG_PREDICTION_VALID) {
         return;
     }
-    loop->ahead = (loop->ahead + 1) % trajectories;
-    dig_estimator_predict_whole(loop->estimator, loop->ahead, &loop->outlook.prediction);
-    loop->outlook.why_not = DIG_WHY_NOT_VALID;
-    if (loop->outlook.prediction.valid) {
-        loop->ahead_ns = now_ns;
-        hand_on(loop, now_ns, 2.0 * loop->settings.ahead_s * trajectories);
+    loop->next_dig_trajectory = (loop->next_dig_trajectory + 1) % trajectories;
+    dig_estimator_predict_trajectory(loop->estimator, loop->next_dig_trajectory,
+                                     &loop->published.prediction);
+    loop->published.state = DIG_PREDICTION_VALID;
+    if (loop->published.prediction.valid) {
+        loop->next_dig_ns = now_ns;
+        publish_prediction(loop, now_ns, 2.0 * loop->settings.next_dig_s * trajectories);
     }
 }
 
-static enum dig_why_not why_not(struct dig_loop *const loop, const int64_t now_ns)
+// Predicts the dig in progress; the state says why there is no prediction.
+static enum dig_prediction_state predict_dig(struct dig_loop *const loop, const int64_t now_ns)
 {
-    const enum dig_why_not at_all = why_not_at_all(loop, now_ns);
+    const enum dig_prediction_state basis = basis_state(loop, now_ns);
     if (loop->estimate.phase == DIG_PHASE_AIR) {
-        return DIG_WHY_NOT_OVER;
+        return DIG_PREDICTION_DIG_OVER;
     }
-    if (at_all != DIG_WHY_NOT_VALID) {
-        return at_all;
+    if (basis != DIG_PREDICTION_VALID) {
+        return basis;
     }
-    dig_estimator_predict(loop->estimator, &loop->outlook.prediction);
-    if (loop->outlook.prediction.valid) {
-        return DIG_WHY_NOT_VALID;
+    dig_estimator_predict(loop->estimator, &loop->published.prediction);
+    if (loop->published.prediction.valid) {
+        return DIG_PREDICTION_VALID;
     }
-    return dig_estimator_is_off_table(loop->estimator) ? DIG_WHY_NOT_ON_TABLE
-                                                       : DIG_WHY_NOT_TRAJECTORY;
+    return dig_estimator_is_off_table(loop->estimator) ? DIG_PREDICTION_OFF_TABLE
+                                                       : DIG_PREDICTION_NO_TRAJECTORY;
 }
 
-// Predictions while a dig goes on on fresh samples; and why there is none, said once.
-static void predict(struct dig_loop *const loop, const int64_t now_ns)
+// Publishes predictions of the dig in progress; a reason for having none is published once.
+static void publish_dig(struct dig_loop *const loop, const int64_t now_ns)
 {
     if (now_ns - loop->predicted_ns < ns(loop->settings.prediction_s)) {
         return;
     }
-    loop->outlook.prediction.valid = false;
-    const enum dig_why_not why     = why_not(loop, now_ns);
-    if (why != DIG_WHY_NOT_VALID && why == loop->said) {
+    loop->published.prediction.valid      = false;
+    const enum dig_prediction_state state = predict_dig(loop, now_ns);
+    if (state != DIG_PREDICTION_VALID && state == loop->published_state) {
         return;
     }
-    const bool in_the_air_as_before = why == DIG_WHY_NOT_OVER && loop->said != DIG_WHY_NOT_VALID;
-    loop->said                      = why;
-    if (in_the_air_as_before) {
-        return; // nothing was predicted that would have to end
+    const bool nothing_to_end =
+        state == DIG_PREDICTION_DIG_OVER && loop->published_state != DIG_PREDICTION_VALID;
+    loop->published_state = state;
+    if (nothing_to_end) {
+        return;
     }
-    loop->outlook.why_not = why;
+    loop->published.state = state;
     loop->predicted_ns    = now_ns;
-    hand_on(loop, now_ns, 2.0 * loop->settings.prediction_s);
+    publish_prediction(loop, now_ns, 2.0 * loop->settings.prediction_s);
 }
 
 void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
 {
     assert(loop != NULL);
-    take_offers(loop);
+    take_basis(loop);
     struct dig_reading reading;
     for (int i = 0; i < DIG_READINGS_PER_TICK && dig_ring_pop(loop->ports.readings, &reading);
          i++) {
@@ -197,22 +204,22 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
             const bool estimated = take_sample(loop, &sample, reading.time_ns, now_ns);
             exchange_digs(loop);
             if (estimated) {
-                share_estimate(loop);
+                publish_estimate(loop);
             }
         }
     }
     exchange_digs(loop);
-    loop->pulse.fresh =
+    loop->tick_status.fresh =
         loop->sampled_ns > 0 && now_ns - loop->sampled_ns <= ns(loop->settings.stale_s);
-    predict(loop, now_ns);
-    look_ahead(loop, now_ns);
+    publish_dig(loop, now_ns);
+    predict_next_dig(loop, now_ns);
 
-    loop->pulse.ticks++;
-    loop->pulse.missing += loop->pulse.fresh ? 0 : 1;
-    loop->pulse.time_ns   = now_ns;
-    loop->pulse.drops     = loop->assembler.drops;
-    loop->pulse.lost_digs = dig_estimator_lost(loop->estimator);
-    dig_latest_put(loop->ports.pulse, &loop->pulse);
+    loop->tick_status.ticks++;
+    loop->tick_status.missing += loop->tick_status.fresh ? 0 : 1;
+    loop->tick_status.time_ns   = now_ns;
+    loop->tick_status.drops     = loop->assembler.drops;
+    loop->tick_status.lost_digs = dig_estimator_lost_digs(loop->estimator);
+    dig_latest_put(loop->ports.tick_status, &loop->tick_status);
 }
 
 static int64_t clock_ns(const clockid_t clock)
@@ -231,15 +238,15 @@ void dig_loop_run(struct dig_loop *const loop, const atomic_bool *const stop)
         const int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
         const int64_t cpu_ns   = clock_ns(CLOCK_THREAD_CPUTIME_ID);
         if (start_ns - due_ns >= period_ns) {
-            loop->pulse.overruns++;
+            loop->tick_status.overruns++;
             due_ns = start_ns;
         }
         dig_loop_tick(loop, start_ns);
         const double took_us = (double)(clock_ns(CLOCK_MONOTONIC) - start_ns) * 1e-3;
         const double cpu_us  = (double)(clock_ns(CLOCK_THREAD_CPUTIME_ID) - cpu_ns) * 1e-3;
 
-        loop->pulse.worst_tick_us     = fmax(loop->pulse.worst_tick_us, took_us);
-        loop->pulse.worst_tick_cpu_us = fmax(loop->pulse.worst_tick_cpu_us, cpu_us);
+        loop->tick_status.worst_tick_us     = fmax(loop->tick_status.worst_tick_us, took_us);
+        loop->tick_status.worst_tick_cpu_us = fmax(loop->tick_status.worst_tick_cpu_us, cpu_us);
         due_ns += period_ns;
         const struct timespec deadline = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
                                            .tv_nsec = (long)(due_ns % NS_PER_S) };

@@ -235,7 +235,7 @@ static void judge_recording(struct bench *const b, const char *const path)
     }
     dig_recording_finish(&recording);
     for (int a = 0; a < DIG_AXES; a++) {
-        struct dig_axis_place place;
+        struct dig_axis_interval place;
         if (dig_axis_locate(b->set, (enum dig_axis)a, truth.value[a], &place) != DIG_OK) {
             return; // no gravel of the table
         }

@@ -40,7 +40,7 @@ struct bench {
     struct dig_config            config;
     struct wires                 wires;
     struct dig_early_match       early;
-    struct dig_recorded_dig     *raw[2];
+    struct dig_recorded_dig     *buffer[2];
     struct dig_loop              loop;
     struct dig_fit               fit;
 };
@@ -85,17 +85,17 @@ static void connect(struct bench *const b)
     settings.prediction_s                = 1.0 / 15.0;
     dig_loop_init(&b->loop, &settings, &ports, b->estimator);
     for (int i = 0; i < 2; i++) {
-        b->raw[i] = calloc(1, dig_recorded_dig_size());
-        (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
+        b->buffer[i] = calloc(1, dig_recorded_dig_size());
+        (void)dig_ring_push(&b->wires.spares, &b->buffer[i]);
     }
     b->early.estimates = &b->wires.estimates;
-    dig_early_match_forget(&b->early, b->set);
+    dig_early_match_clear(&b->early, b->set);
     wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
     b->fit.machine                  = &b->machine;
     b->fit.early                    = &b->early;
-    b->fit.lambda                   = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m;
-    b->fit.known_settings.expires_s = 1e9;
-    b->fit.tick_generation          = &b->loop.generation;
+    b->fit.table.lambda             = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m;
+    b->fit.track_settings.expires_s = 1e9;
+    b->fit.table.tick_generation    = &b->loop.generation;
 }
 
 static struct bench *create(char *argv[])
@@ -127,12 +127,12 @@ static struct bench *create(char *argv[])
 // What the other threads do, between ticks and not counted.
 static void be_the_others(struct bench *const b)
 {
-    struct dig_record     record;
-    struct dig_outlook    outlook;
-    struct dig_fit_result result;
+    struct dig_record            record;
+    struct dig_prediction_record predictions;
+    struct dig_fit_result        result;
     while (dig_ring_pop(&b->wires.records, &record)) {
     }
-    (void)dig_latest_take(&b->wires.outlook, &outlook);
+    (void)dig_latest_take(&b->wires.predictions, &predictions);
     (void)dig_fit_once(&b->fit);
     (void)dig_ring_pop(&b->wires.results, &result);
 }
@@ -188,8 +188,8 @@ static int pass(char *argv[], const long ticks, struct told *const told)
         told->cost_us[ticks + i] = (float)(cpu_us() - ticked_us);
         be_the_others(b);
     }
-    told->digs    = atomic_load(&b->fit.seen);
-    told->matches = atomic_load(&b->fit.matches);
+    told->digs    = atomic_load(&b->fit.count.seen);
+    told->matches = atomic_load(&b->fit.count.matches);
     return 0;
 }
 

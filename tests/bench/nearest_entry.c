@@ -90,10 +90,10 @@ static size_t likeliest(const struct bench *const b, const struct dig_observatio
 static size_t weighted(const struct bench *const b, const struct dig_observation *const dig)
 {
     struct dig_match match;
-    if (dig_match_nearest(b->set, dig, 2.5, &match) != DIG_OK) {
+    if (dig_match_nearest(b->set, 1, dig, 2.5, &match) != DIG_OK) {
         return 0;
     }
-    dig_match_weigh(b->set, NULL, 1, dig, &match);
+    dig_match_find_weighted(b->set, NULL, 1, dig, &match);
     return (size_t)match.weighted;
 }
 
@@ -118,7 +118,7 @@ static void judge(struct bench *const b, const struct run *const run)
     struct dig_match       match;
     memcpy(dig.moment_Nm, run->value[0], sizeof dig.moment_Nm);
     memcpy(dig.force_N, run->value[1], sizeof dig.force_N);
-    if (dig_match_nearest(b->set, &dig, 2.5, &match) != DIG_OK) {
+    if (dig_match_nearest(b->set, 1, &dig, 2.5, &match) != DIG_OK) {
         return;
     }
     size_t found[WAYS] = { (size_t)match.nearest, likeliest(b, &dig), 0, weighted(b, &dig) };
@@ -131,8 +131,8 @@ static void judge(struct bench *const b, const struct run *const run)
         b->off[w] += off_by(b, &b->set->curve[slot_of(b, found[w], b->other)], run->entry);
     }
     static struct dig_curve predicted;
-    const bool              told = dig_match_nearest(b->set, &dig, 2.5, &match) == DIG_OK &&
-                      dig_fit_refine(b->set, &dig, 300, &match) == DIG_OK &&
+    const bool              told = dig_match_nearest(b->set, 1, &dig, 2.5, &match) == DIG_OK &&
+                      dig_fit_refine(b->set, 1, &dig, 300, &match) == DIG_OK &&
                       dig_predict_curve(b->set, &match, b->other, &predicted) == DIG_OK;
     b->predicted_off += told ? off_by(b, &predicted, run->entry) : (double)NAN;
 }

@@ -108,15 +108,15 @@ static void judge(const struct bench *const b, const struct dig_curve_set *const
     static struct dig_pool_sums  sums;
     const struct dig_observation o = observed(b, run);
     struct dig_match             told;
-    if (dig_match_nearest(set, &o, floors, &told) != DIG_OK ||
-        dig_fit_refine(set, &o, EVALUATIONS, &told) != DIG_OK) {
+    if (dig_match_nearest(set, 1, &o, floors, &told) != DIG_OK ||
+        dig_fit_refine(set, 1, &o, EVALUATIONS, &told) != DIG_OK) {
         return;
     }
     struct dig_match       bare;
     struct dig_observation alone = o;
     alone.forces                 = false;
-    if (dig_match_nearest(set, &alone, floors, &bare) != DIG_OK ||
-        dig_fit_refine(set, &alone, EVALUATIONS, &bare) != DIG_OK) {
+    if (dig_match_nearest(set, 1, &alone, floors, &bare) != DIG_OK ||
+        dig_fit_refine(set, 1, &alone, EVALUATIONS, &bare) != DIG_OK) {
         return;
     }
     tally->by_moment += bare.outside ? 1 : 0;

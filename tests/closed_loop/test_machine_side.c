@@ -186,12 +186,12 @@ static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
 static void a_payload_of_ones_own_lies_where_the_common_one_does(void **state)
 {
     (void)state;
-    const struct dig_burden common = { 60.0, { 6.0, -12.0 }, 0.0 };
-    const struct dig_burden hair   = { 0.01, { 0.5, -0.5 }, 0.0 };
-    struct dig_burden       two    = common;
-    struct dig_burden       alone  = { 0.0, { 0.0, 0.0 }, 0.0 };
-    struct dig_burden       any    = { 0.0, { 0.0, 0.0 }, 0.0 };
-    struct dig_burden       rid    = common;
+    const struct dig_added_mass common = { 60.0, { 6.0, -12.0 }, 0.0 };
+    const struct dig_added_mass hair   = { 0.01, { 0.5, -0.5 }, 0.0 };
+    struct dig_added_mass       two    = common;
+    struct dig_added_mass       alone  = { 0.0, { 0.0, 0.0 }, 0.0 };
+    struct dig_added_mass       any    = { 0.0, { 0.0, 0.0 }, 0.0 };
+    struct dig_added_mass       rid    = common;
     dig_lines_carry(80.0, &common, &two);
     assert_close(two.mass_kg, 140.0, 1e-12);
     assert_close(two.moment_kgm.x / two.mass_kg, 0.1, 0.01);

@@ -45,7 +45,7 @@ static struct dug dig(const double along_m)
     struct dug dug = { .at = { 0.4, -0.2, 0.0 }, .path = { .spacing_m = 0.00225 } };
     (void)dig_path_add(&dug.path, &dug.at, false);
     dug.at.z_m -= 0.01;
-    dig_path_touch(&dug.path, &dug.at);
+    dig_path_add_contact(&dug.path, &dug.at);
     go(&dug, 0.0, -0.02);
     go(&dug, along_m, 0.0);
     return dug;
@@ -132,7 +132,7 @@ static void on_the_first_leg_no_one_knows(void **state)
     static const double down_m[] = { 0.045, 0.06 };
     for (int i = 0; i < 2; i++) {
         struct dug dug = { .path = { .spacing_m = 0.00225 } };
-        dig_path_touch(&dug.path, &dug.at);
+        dig_path_add_contact(&dug.path, &dug.at);
         go(&dug, 0.0, -down_m[i]);
         go(&dug, i == 0 ? 0.0 : 0.03, 0.0);
         go(&dug, -0.03, 0.03);

@@ -30,7 +30,7 @@ static void drive(const size_t t, const struct dig_approach made, const double n
                                               p.z_m - 0.1 + noise_m * model_normal(&seed),
                                               0.09 * p.theta_rad + noise_m * model_normal(&seed) };
         if (path->vertices == 0) {
-            dig_path_touch(path, &point);
+            dig_path_add_contact(path, &point);
         }
         (void)dig_path_add(path, &point, true);
     }

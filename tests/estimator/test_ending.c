@@ -75,7 +75,7 @@ static struct dig_path dug(const double from, const double to)
         const struct dig_path_point at = { 0.5 + fmin(0.2 * p, 0.1),
                                            -0.3 + fmax(0.2 * p - 0.1, 0.0), 0.02 };
         if (p <= from) {
-            dig_path_touch(&path, &at);
+            dig_path_add_contact(&path, &at);
         }
         (void)dig_path_add(&path, &at, true);
     }

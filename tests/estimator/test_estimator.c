@@ -22,11 +22,13 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
     assert_int_equal(b->predictions, 0); // nothing is known yet
 
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(b->set, &b->observation, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(b->set, &b->observation, 500, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(b->set, 1, &b->observation, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(b->set, 1, &b->observation, 500, &match), DIG_OK);
     assert_false(match.outside);
-    const unsigned long before = allocations;
-    dig_estimator_give_match(b->estimator, &match);
+    struct dig_forecast *const forecast = calloc(1, sizeof *forecast);
+    const unsigned long        before   = allocations;
+    dig_forecast_make(b->set, driven_lambda, &match, forecast);
+    dig_estimator_set_forecast(b->estimator, forecast);
     assert_int_equal(allocations, before);
 
     driven_dig(b, (struct drive){ .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 6 });
@@ -37,7 +39,7 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
 
     // Before a dig begins, each trajectory can be asked for whole.
     struct dig_prediction whole;
-    dig_estimator_predict_whole(b->estimator, MADE_ACTUAL, &whole);
+    dig_estimator_predict_trajectory(b->estimator, MADE_ACTUAL, &whole);
     assert_true(whole.valid);
     assert_close(whole.from_progress, 0.0, 0.0);
     for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
@@ -46,17 +48,18 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
         assert_close(whole.moment_Nm[i], truth_Nm, 0.05 * truth_Nm + 1.0);
         assert_true(whole.sigma_Nm[i] >= 0.09 * truth_Nm);
     }
-    dig_estimator_predict_whole(b->estimator, MADE_TRAJECTORIES, &whole);
+    dig_estimator_predict_trajectory(b->estimator, MADE_TRAJECTORIES, &whole);
     assert_false(whole.valid);
-    dig_estimator_predict_whole(b->estimator, -1, &whole);
+    dig_estimator_predict_trajectory(b->estimator, -1, &whole);
     assert_false(whole.valid);
 
     // A match that is none takes the prediction back.
     match.valid = false;
-    dig_estimator_give_match(b->estimator, &match);
+    dig_forecast_make(b->set, driven_lambda, &match, forecast);
     driven_dig(b, (struct drive){ .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 7 });
     assert_int_equal(b->predictions, 0);
     driven_destroy(b);
+    free(forecast);
 }
 
 static void a_load_carried_away_is_no_second_dig(void **state)
@@ -168,7 +171,7 @@ static void whatever_comes_in_only_numbers_go_out(void **state)
         assert_true(isfinite(e.wrench.Fx_N) && isfinite(e.wrench.sigma_Fx_N));
         assert_true(isfinite(e.pin_X_m) && isfinite(e.phi_rad));
         assert_true(e.trajectory < 0 || (e.progress >= 0.0 && e.progress <= 1.0));
-        if (dig_estimator_take_dig(b->estimator, &o)) {
+        if (dig_estimator_take_observation(b->estimator, &o)) {
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
                 assert_true(isfinite(o.moment_Nm[k]) && o.sigma_Nm[k] >= 0.0);
             }

@@ -32,7 +32,7 @@ static struct bench *bench_create(void)
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
     approach_table_init(&b->table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
-    dig_live_recording_forget(&b->shadow, &b->table.cube.set);
+    dig_live_recording_clear(&b->shadow, &b->table.cube.set);
     return b;
 }
 
@@ -40,7 +40,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
                  const enum dig_dig_phase phase)
 {
     const struct dig_estimate e = wires_estimate(b->time_ns += TICK_NS, pose, moment_Nm, phase);
-    dig_live_recording_take(&b->shadow, &b->table.cube.set, WIRES_LAMBDA, &e);
+    dig_live_recording_add(&b->shadow, &b->table.cube.set, WIRES_LAMBDA, &e);
 }
 
 // The bucket comes down along its first leg, as it goes on in the soil, and makes the dig.

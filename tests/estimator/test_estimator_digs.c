@@ -138,12 +138,12 @@ static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct drive *const drive = &cases[i].drive;
         struct driven *const      b     = driven_create(drive->sensors);
-        b->shadow                       = calloc(1, sizeof *b->shadow);
-        dig_live_recording_forget(b->shadow, b->set);
+        b->live                         = calloc(1, sizeof *b->live);
+        dig_live_recording_clear(b->live, b->set);
         driven_dig(b, *drive);
         assert_int_equal(b->observations, 1);
         assert_int_equal(b->earlies, DRIVEN_LOOKS);
-        assert_false(b->shadow->on);
+        assert_false(b->live->digging);
         for (int s = 0; s < DRIVEN_LOOKS; s++) {
             const struct dig_observation *const o = &b->early[s];
             if (s < cases[i].known_from) {
@@ -206,7 +206,7 @@ static void a_dig_handed_out_raw_is_observed_the_same(void **state)
         assert_int_equal(beside->observations, i + 1);
         assert_memory_equal(&inside->observation, &beside->observation, sizeof inside->observation);
     }
-    assert_int_equal(dig_estimator_lost(beside->estimator), 0);
+    assert_int_equal(dig_estimator_lost_digs(beside->estimator), 0);
     assert_int_equal(beside->steps_with_allocation, 0);
 
     // The one who took the last dig keeps it: the next goes into no memory, and is counted.
@@ -214,7 +214,7 @@ static void a_dig_handed_out_raw_is_observed_the_same(void **state)
     driven_dig(beside, drives[0]);
     driven_dig(beside, drives[0]);
     assert_int_equal(beside->observations, 4);
-    assert_int_equal(dig_estimator_lost(beside->estimator), 1);
+    assert_int_equal(dig_estimator_lost_digs(beside->estimator), 1);
     driven_destroy(inside);
     // The last raw dig taken is one of the estimator's own or the spare: both are freed.
     driven_destroy(beside);

@@ -30,7 +30,7 @@ static void go(struct followed_dig *const dig, const double x_m, const double z_
     const struct dig_path_point at = { x_m, z_m, 0.0 };
     if (dig->path.vertices == 0) {
         dig->path.spacing_m = 0.002;
-        dig_path_touch(&dig->path, &at);
+        dig_path_add_contact(&dig->path, &at);
     }
     (void)dig_path_add(&dig->path, &at, true);
     dig->time_ns += 5000000;
@@ -57,7 +57,7 @@ static struct followed_dig give_up(const double until, const double away_m)
 static bool gave_up(const struct followed_dig *const dig)
 {
     const struct dig_route routes[] = { legs(0.1), legs(-0.1) };
-    return dig_followed_gave_up(&dig->followed, 2, routes, &dig->path, limit_m, tie_m);
+    return dig_followed_was_aborted(&dig->followed, 2, routes, &dig->path, limit_m, tie_m);
 }
 
 static void what_left_the_path_it_was_on_gave_up(void **state)

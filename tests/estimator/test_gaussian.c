@@ -112,7 +112,7 @@ static void misses_are_as_large_as_digs_make_them(void **state)
             assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
             assert_int_equal(g.numbers, forces ? N : BLOCKS);
             assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
-            sum += dig_gaussian_misses(&g, &cell).square / (double)g.numbers / TRIALS;
+            sum += dig_gaussian_mahalanobis(&g, &cell).square / (double)g.numbers / TRIALS;
         }
         const double error = sqrt(2.0 / (TRIALS * (forces ? N : BLOCKS)));
         print_message("%s, %s: mean q over numbers %.3f\n", forces ? "moment and forces" : "moment",
@@ -137,8 +137,8 @@ static void the_interval_holds_the_gravel(void **state)
                                                   1500 * pow(4000.0 / 1500.0, model_uniform(&seed)) } };
         const struct dig_observation dig    = dig_there(&gravel, true, true, &seed);
         struct dig_match             match;
-        assert_int_equal(dig_match_nearest(set, &dig, 3.0, &match), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, &dig, 100, &match), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, 1, &dig, 3.0, &match), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, 1, &dig, 100, &match), DIG_OK);
         for (int a = 0; a < DIG_AXES; a++) {
             in[a] +=
                 gravel.value[a] >= match.low.value[a] && gravel.value[a] <= match.high.value[a];
@@ -165,7 +165,7 @@ static void a_covariance_of_too_few_packings_is_not_believed(void **state)
     dig_pool_sum(1, &dig, &sums);
     assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
     assert_false(dig_gaussian_make(set, NULL, &sums.group[0], &g));
-    assert_true(dig_gaussian_assume(set, NULL, &sums.group[0], &g));
+    assert_true(dig_gaussian_make_default(set, NULL, &sums.group[0], &g));
     dig_likelihood_make(set, NULL, &sums.group[0], &few);
     set->covariance[MADE_SIMPLE_A].freedom += 1.0;
     assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
@@ -177,11 +177,12 @@ static void a_covariance_of_too_few_packings_is_not_believed(void **state)
     set->covariance = covariance;
     assert_close(dig_likelihood_log(&few, &cell), dig_likelihood_log(&none, &cell), 0.0);
 
-    const struct dig_misses misses = dig_gaussian_misses(&enough.gaussian, &cell);
+    const struct dig_mahalanobis misses = dig_gaussian_mahalanobis(&enough.gaussian, &cell);
     assert_close(dig_likelihood_log(&enough, &cell), -0.35 * (misses.square + misses.log_det),
                  1e-9);
     // What is asked of being outside the table is not changed by it.
-    assert_close(dig_likelihood_miss2(&enough, &cell), dig_likelihood_miss2(&none, &cell), 0.0);
+    assert_close(dig_likelihood_reduced_chi2(&enough, &cell),
+                 dig_likelihood_reduced_chi2(&none, &cell), 0.0);
     forget(set);
 }
 
@@ -211,7 +212,7 @@ static void what_was_not_measured_is_not_compared(void **state)
         }
         // What lies where nothing was measured makes no difference.
         assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
-        const struct dig_misses before = dig_gaussian_misses(&g, &cell);
+        const struct dig_mahalanobis before = dig_gaussian_mahalanobis(&g, &cell);
         for (int k = 0; k < POINTS; k++) {
             if (k / 255.0 < dig.first || k / 255.0 > dig.last) {
                 dig.moment_Nm[k] = 1e3;
@@ -219,8 +220,8 @@ static void what_was_not_measured_is_not_compared(void **state)
         }
         dig_pool_sum(1, &dig, &sums);
         assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
-        assert_close(dig_gaussian_misses(&g, &cell).square, before.square, 0.0);
-        assert_close(dig_gaussian_misses(&g, &cell).log_det, before.log_det, 0.0);
+        assert_close(dig_gaussian_mahalanobis(&g, &cell).square, before.square, 0.0);
+        assert_close(dig_gaussian_mahalanobis(&g, &cell).log_det, before.log_det, 0.0);
     }
     forget(set);
 }

@@ -48,7 +48,7 @@ static struct dig_path drive_along(const enum made_trajectory which, struct driv
         p = point_at(&t, progress, &drive);
         if (!touched && progress >= drive.late) {
             touched = true;
-            dig_path_touch(&path, &p);
+            dig_path_add_contact(&path, &p);
         }
         (void)dig_path_add(&path, &p, touched);
     }
@@ -157,7 +157,7 @@ static void a_follower_finds_its_way_while_the_dig_goes_on(void **state)
 
     // Contact is noticed nearly at the end of the first leg: the first guess is 27 mm off.
     struct dig_path_point p = point_at(&t, 0.17, &drive);
-    dig_path_touch(&path, &p);
+    dig_path_add_contact(&path, &p);
     struct dig_follower follower = dig_follower_start(&route, &path, limit_m);
     for (double progress = 0.17; progress < 1.0; progress += 2e-3) {
         p = point_at(&t, progress, &drive);
@@ -184,7 +184,7 @@ static void the_nearest_place_is_the_nearest(void **state)
     for (int trial = 0; trial < 200; trial++) {
         struct drive                drive = { .noise_m = 0.004, .seed = seed };
         const struct dig_path_point p = point_at(&t, 0.05 + 0.95 * model_uniform(&seed), &drive);
-        const struct dig_place      place  = dig_route_place(&route, 0.0, 0.0, &p, 0.0, 1.0);
+        const struct dig_projection place  = dig_route_project(&route, 0.0, 0.0, &p, 0.0, 1.0);
         double                      best_m = INFINITY;
         for (int k = 0; k <= 20000; k++) {
             const struct dig_pose pose =
@@ -208,7 +208,7 @@ static void the_way_to_the_start_is_on_the_route(void **state)
         const struct dig_path_point p     = { t.start_x_m - 0.001 * i * 0.5 - 0.3,
                                               t.start_z_m + 0.001 * i * 0.8660254 + 0.2,
                                               tooth_m * t.theta0_rad };
-        const struct dig_place      place = dig_route_place(&route, -0.3, 0.2, &p, -0.1, 1.0);
+        const struct dig_projection place = dig_route_project(&route, -0.3, 0.2, &p, -0.1, 1.0);
         assert_close(place.progress, 0.0, 0.0);
         assert_close(place.distance_m, 0.0, 1e-5);
     }
@@ -234,7 +234,7 @@ static void a_full_path_is_thinned_and_keeps_its_contact(void **state)
 static void a_choice_is_told_once_it_has_held(void **state)
 {
     (void)state;
-    struct dig_choice choice = { .told = -1, .candidate = -1 };
+    struct dig_choice choice = { .current = -1, .candidate = -1 };
     for (int i = 0; i < 1000; i++) { // flickering between two is no choice
         assert_int_equal(dig_choice_step(&choice, 3, i / 40 % 2 == 0 ? 1 : 2), -1);
     }

@@ -31,7 +31,7 @@ static void energy_is_what_the_bucket_does_on_the_soil(void **state)
     double                      is[]                      = { 0.0, 0.0 };
     for (int i = 0; i < 2; i++) {
         struct dig_channels weight;
-        dig_peak_energy_energy_weights(&t[i], 0.09, &weight);
+        dig_peak_energy_weights(&t[i], 0.09, &weight);
         for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
                 is[i] += weight.of[c][k] * force[c];
@@ -89,7 +89,7 @@ static void packings_left_out_peak_and_take_what_is_told(void **state)
     struct table_runs *const t = table_runs_read("tables/rig.sqlite");
     for (size_t j = 0; j < t->set->trajectories; j++) {
         struct dig_channels weight;
-        dig_peak_energy_energy_weights(&t->set->trajectory[j], t->set->tooth_m, &weight);
+        dig_peak_energy_weights(&t->set->trajectory[j], t->set->tooth_m, &weight);
         double digs = 0.0, peaks = 0.0, means = 0.0, one[2] = { 0.0 }, band[2] = { 0.0 };
         for (size_t i = 0; i < t->runs; i++) {
             const size_t slot = t->run[i].slot;

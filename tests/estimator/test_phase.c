@@ -26,9 +26,9 @@ static void hold(struct run *const run, const double moment_Nm, const double sec
     for (double t_s = 0.0; t_s < seconds; t_s += dt_s) {
         const double noisy_Nm = moment_Nm + sigma_Nm * model_normal(&run->seed);
         switch (dig_phase_step(&run->state, &run->settings, dt_s, noisy_Nm, sigma_Nm, 0.0)) {
-        case DIG_EVENT_TOUCHED: run->touched++; break;
+        case DIG_EVENT_CONTACT: run->touched++; break;
         case DIG_EVENT_LOST: run->lost++; break;
-        case DIG_EVENT_GONE: run->gone++; break;
+        case DIG_EVENT_FINISHED: run->gone++; break;
         case DIG_EVENT_NONE:
         default: break;
         }

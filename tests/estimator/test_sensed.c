@@ -293,7 +293,7 @@ static void a_whole_run_gives_both_digs(void **state)
         assert_int_equal(dig_estimator_step(estimator, &sample, &estimate), DIG_OK);
         truth_Nm += run.track.row[i].soil.M_Nm;
         found_Nm += estimate.wrench.My_Nm;
-        if (dig_estimator_take_dig(estimator, &o)) {
+        if (dig_estimator_take_observation(estimator, &o)) {
             assert_true(digs < DIGS);
             assert_int_equal(o.trajectory, digs == 0 ? MADE_SIMPLE_A : MADE_ACTUAL);
             // Cut corners are all that is off the path.

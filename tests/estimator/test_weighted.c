@@ -303,7 +303,7 @@ static void it_is_the_formula_written_out(void **state)
         assert_close(is.distance, expected.distance, 1e-6 * expected.distance);
 
         struct dig_match match = { .valid = true, .nearest = (int)nearest };
-        dig_match_weigh(set, NULL, digs, dig, &match);
+        dig_match_find_weighted(set, NULL, digs, dig, &match);
         assert_int_equal(match.weighted, is.entry);
         assert_close(match.weighted_distance, is.distance, 0.0);
         assert_int_equal(match.nearest, nearest);
@@ -339,11 +339,11 @@ static void what_the_forces_tell_counts(void **state)
             dig.force_N[0][k] *= trial % 2 == 0 ? 1.6 : 1.0;
         }
         struct dig_match match = { .valid = true, .nearest = (int)one };
-        dig_match_weigh(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, NULL, 1, &dig, &match);
         assert_int_equal(match.weighted, trial % 2 == 0 ? other : one);
         dig.forces    = false;
         match.nearest = (int)other;
-        dig_match_weigh(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, NULL, 1, &dig, &match);
         assert_int_equal(match.weighted, one); // the first of two that are equal
     }
     made_table_destroy(set);
@@ -376,7 +376,7 @@ static void who_is_known_worst_is_not_the_nearest_to_all(void **state)
             dig.force_N[0][k] = -8.0 * dig.moment_Nm[k];
             dig.force_N[1][k] = 5.0 * dig.moment_Nm[k];
         }
-        dig_match_weigh(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, NULL, 1, &dig, &match);
         assert_int_equal(match.weighted, OWN);
     }
     made_table_destroy(set);
@@ -391,7 +391,7 @@ static void where_nothing_can_be_compared_no_entry_is_told(void **state)
     struct dig_observation      dig   = make_dig(&set->gravel[3], MADE_SIMPLE_A, true, &seed);
     dig.first                         = 0.5;
     dig.last                          = 0.55; // less than a block, or parts of two
-    dig_match_weigh(set, NULL, 1, &dig, &match);
+    dig_match_find_weighted(set, NULL, 1, &dig, &match);
     assert_int_equal(match.weighted, -1);
     assert_true(isnan(match.weighted_distance));
 

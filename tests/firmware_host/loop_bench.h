@@ -24,7 +24,7 @@ struct bench {
     struct dig_estimator_settings estimator_settings;
     struct dig_estimator         *estimator;
     struct wires                  wires;
-    struct dig_recorded_dig      *raw[2];
+    struct dig_recorded_dig      *buffer[2];
     struct dig_loop               loop;
 };
 
@@ -68,9 +68,9 @@ static inline struct bench *bench_create(void)
     dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], BENCH_ESTIMATES,
                   b->wires.estimate_memory);
     for (int i = 0; i < 2; i++) {
-        b->raw[i] = calloc(1, dig_recorded_dig_size());
-        assert_non_null(b->raw[i]);
-        (void)dig_ring_push(&b->wires.spares, &b->raw[i]);
+        b->buffer[i] = calloc(1, dig_recorded_dig_size());
+        assert_non_null(b->buffer[i]);
+        (void)dig_ring_push(&b->wires.spares, &b->buffer[i]);
     }
     const struct dig_loop_settings settings = wires_loop_settings(&b->cube.set);
     const struct dig_loop_ports    ports    = wires_loop_ports(&b->wires);
@@ -81,19 +81,20 @@ static inline struct bench *bench_create(void)
 static inline void bench_destroy(struct bench *const b)
 {
     free(b->estimator);
-    free(b->raw[0]);
-    free(b->raw[1]);
+    free(b->buffer[0]);
+    free(b->buffer[1]);
     free(b);
 }
 
 // What the matcher says of a gravel of the table.
-static inline void bench_offer(struct bench *const b, struct dig_latest *const to, const int gravel,
-                               const int64_t generation, const int64_t expires_ns)
+static inline void bench_set_basis(struct bench *const b, struct dig_latest *const to,
+                                   const int gravel, const int64_t generation,
+                                   const int64_t expires_ns)
 {
-    const struct dig_match  match = { .valid   = true,
-                                      .gravel  = b->cube.gravel[gravel],
-                                      .nearest = gravel };
-    struct dig_offer *const made  = calloc(1, sizeof *made);
+    const struct dig_match             match = { .valid   = true,
+                                                 .gravel  = b->cube.gravel[gravel],
+                                                 .nearest = gravel };
+    struct dig_prediction_basis *const made  = calloc(1, sizeof *made);
     assert_non_null(made);
     made->set        = &b->cube.set;
     made->generation = generation;
@@ -118,11 +119,11 @@ static inline struct dig_reading bench_still(const int64_t time_ns)
     return r;
 }
 
-static inline struct dig_pulse bench_pulse(struct bench *const b)
+static inline struct dig_tick_status bench_tick_status(struct bench *const b)
 {
-    struct dig_pulse pulse = { 0 };
-    assert_true(dig_latest_take(&b->wires.pulse, &pulse));
-    return pulse;
+    struct dig_tick_status tick_status = { 0 };
+    assert_true(dig_latest_take(&b->wires.tick_status, &tick_status));
+    return tick_status;
 }
 
 #endif // DIG_TESTS_LOOP_BENCH_H

@@ -145,7 +145,7 @@ static struct dig_assembler_settings boxes(void)
     settings.has_alive                     = false;
     settings.groups                        = 4;
     settings.needed[3]                     = true;
-    settings.spared[3]                     = true;
+    settings.dispensable[3]                = true;
     return settings;
 }
 

@@ -20,13 +20,13 @@ struct bench {
     struct dig_config        config;
     struct dig_curve_set    *set;
     struct wires             wires;
-    struct dig_recorded_dig *raw;
+    struct dig_recorded_dig *buffer;
     struct dig_early_match   early;
     struct dig_fit           fit;
     // what the tick would know
     int64_t                   time_ns;
     uint32_t                  digs_done;
-    struct dig_live_recording shadow;
+    struct dig_live_recording live;
 };
 
 static struct bench *bench_create(void)
@@ -34,19 +34,19 @@ static struct bench *bench_create(void)
     struct bench *const b = calloc(1, sizeof *b);
     assert_non_null(b);
     b->set    = made_table(&plain);
-    b->raw    = calloc(1, sizeof *b->raw);
+    b->buffer = calloc(1, sizeof *b->buffer);
     b->config = wires_config();
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
     wires_init_early(&b->wires, &b->early, &b->fit);
-    dig_live_recording_forget(&b->shadow, b->set);
+    dig_live_recording_clear(&b->live, b->set);
     return b;
 }
 
 static void bench_destroy(struct bench *const b)
 {
     made_table_destroy(b->set);
-    free(b->raw);
+    free(b->buffer);
     free(b);
 }
 
@@ -58,7 +58,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
     e.dig_count           = b->digs_done;
     e.trajectory          = trajectory;
     e.progress            = progress;
-    dig_live_recording_take(&b->shadow, b->set, WIRES_LAMBDA, &e);
+    dig_live_recording_add(&b->live, b->set, WIRES_LAMBDA, &e);
     (void)dig_ring_push(&b->wires.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
@@ -90,9 +90,9 @@ static void end_dig(struct bench *const b, const enum made_trajectory which, con
 {
     const struct dig_trajectory t = made_trajectory(which);
     if (recorded) {
-        *b->raw           = b->shadow.raw;
-        b->raw->dig_count = b->digs_done + 1;
-        (void)dig_ring_push(&b->wires.digs, &b->raw);
+        *b->buffer           = b->live.recording;
+        b->buffer->dig_count = b->digs_done + 1;
+        (void)dig_ring_push(&b->wires.digs, &b->buffer);
     }
     b->digs_done++;
     tell(b, dig_trajectory_pose(&t, 1e3), 0.0, DIG_PHASE_AIR, -1, (double)NAN);
@@ -110,8 +110,8 @@ static int results(struct bench *const b, struct dig_gravel_track *const first,
     int                   n = 0;
     struct dig_fit_result result;
     while (dig_ring_pop(&b->wires.results, &result)) {
-        *first = n == 0 ? result.known : *first;
-        *last  = result.known;
+        *first = n == 0 ? result.track : *first;
+        *last  = result.track;
         n++;
     }
     return n;
@@ -124,7 +124,7 @@ static void a_dig_is_matched_while_it_goes_on(void **state)
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 0.33, 2.0);
     assert_int_equal(results(b, &first, &last), 0);
-    assert_null(dig_latest_look(&b->wires.offer));
+    assert_null(dig_latest_look(&b->wires.basis));
     dig_until(b, MADE_SIMPLE_A, 0.9, 2.0);
     const int n = results(b, &first, &last);
     assert_true(n >= 4 && n <= 6);
@@ -139,12 +139,12 @@ static void a_dig_is_matched_while_it_goes_on(void **state)
     assert_true(first.expires_ns - first.time_ns == 30000000000LL);
 
     // Nothing else is known: it is predicted from, but not kept.
-    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-    assert_non_null(offer);
-    assert_true(offer->known && offer->forecast.along[MADE_ACTUAL].valid);
-    assert_true(offer->expires_ns == last.expires_ns);
-    assert_false(b->fit.known.any);
-    assert_int_equal(atomic_load(&b->fit.matches), 0);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    assert_non_null(basis);
+    assert_true(basis->known && basis->forecast.expected[MADE_ACTUAL].valid);
+    assert_true(basis->expires_ns == last.expires_ns);
+    assert_false(b->fit.track.any);
+    assert_int_equal(atomic_load(&b->fit.count.matches), 0);
     bench_destroy(b);
 }
 
@@ -159,7 +159,7 @@ static void the_whole_dig_takes_its_place(void **state)
     // Until it is over no one says how it ended.
     struct dig_observation going_on;
     assert_int_equal(
-        dig_live_recording_observe(b->set, &b->config.estimator, &b->shadow, b->raw, &going_on),
+        dig_live_recording_observe(b->set, &b->config.estimator, &b->live, b->buffer, &going_on),
         DIG_OK);
     assert_true(going_on.last > 0.95);
     assert_int_equal(going_on.ending, DIG_ENDING_OPEN);
@@ -168,10 +168,10 @@ static void the_whole_dig_takes_its_place(void **state)
     assert_int_equal(results(b, &first, &last), 1);
     assert_true(last.valid && !last.going_on);
     assert_true(last.path_measured > 0.99);
-    assert_false(b->fit.hunch.any);
-    assert_int_equal(atomic_load(&b->fit.matches), 1);
+    assert_false(b->early.provisional.any);
+    assert_int_equal(atomic_load(&b->fit.count.matches), 1);
     assert_int_equal(last.ending, DIG_ENDING_WHOLE);
-    assert_int_equal(atomic_load(&b->fit.whole), 1);
+    assert_int_equal(atomic_load(&b->fit.count.whole), 1);
     bench_destroy(b);
 }
 
@@ -181,11 +181,11 @@ static void a_dig_with_samples_missing_is_counted_as_unknown(void **state)
     struct bench *const b = bench_create();
     dig_until(b, MADE_SIMPLE_A, 1.0, 0.5);
     end_dig(b, MADE_SIMPLE_A, true);
-    assert_int_equal(atomic_load(&b->fit.seen), 1);
-    assert_int_equal(atomic_load(&b->fit.matches), 0);
-    assert_int_equal(atomic_load(&b->fit.whole), 0);
-    assert_int_equal(atomic_load(&b->fit.aborted), 0);
-    assert_int_equal(atomic_load(&b->fit.unknown), 1);
+    assert_int_equal(atomic_load(&b->fit.count.seen), 1);
+    assert_int_equal(atomic_load(&b->fit.count.matches), 0);
+    assert_int_equal(atomic_load(&b->fit.count.whole), 0);
+    assert_int_equal(atomic_load(&b->fit.count.aborted), 0);
+    assert_int_equal(atomic_load(&b->fit.count.unknown), 1);
     bench_destroy(b);
 }
 
@@ -201,13 +201,13 @@ static void a_dig_broken_off_takes_it_back(void **state)
         assert_int_equal(results(b, &first, &last), 1);
         assert_true(!last.valid && !last.going_on);
         assert_string_equal(last.wanted, "the simple dig cannot be matched: dig a simple dig");
-        const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-        assert_non_null(offer);
-        assert_false(offer->known);
-        assert_false(b->fit.known.any);
+        const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+        assert_non_null(basis);
+        assert_false(basis->known);
+        assert_false(b->fit.track.any);
         if (lost == 0) {
-            struct dig_recorded_dig *raw;
-            assert_true(dig_ring_pop(&b->wires.spares, &raw));
+            struct dig_recorded_dig *buffer;
+            assert_true(dig_ring_pop(&b->wires.spares, &buffer));
         }
     }
     bench_destroy(b);
@@ -221,19 +221,19 @@ static void what_is_known_is_still_predicted_from(void **state)
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 1.0, 2.0);
     end_dig(b, MADE_SIMPLE_A, true);
-    const struct dig_gravel_track before = b->fit.known;
+    const struct dig_gravel_track before = b->fit.track;
     assert_true(before.valid);
     (void)results(b, &first, &last);
-    (void)dig_latest_look(&b->wires.offer);
+    (void)dig_latest_look(&b->wires.basis);
 
     dig_until(b, MADE_SIMPLE_A, 0.5, 2.0);
     assert_true(results(b, &first, &last) >= 1);
     assert_true(last.going_on && last.valid);
-    assert_null(dig_latest_look(&b->wires.offer));
+    assert_null(dig_latest_look(&b->wires.basis));
     end_dig(b, MADE_SIMPLE_A, false);
     assert_int_equal(results(b, &first, &last), 1);
     assert_true(last.valid && !last.going_on && last.time_ns == before.time_ns);
-    assert_memory_equal(&b->fit.known.match, &before.match, sizeof before.match);
+    assert_memory_equal(&b->fit.track.match, &before.match, sizeof before.match);
     bench_destroy(b);
 }
 

@@ -41,7 +41,7 @@ static struct bench *bench_create(void)
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, set, &b->fit);
     wires_init_early(&b->wires, &b->early, &b->fit);
-    dig_matcher_take_up(&b->fit.matcher, set);
+    dig_matcher_set_table(&b->fit.table.matcher, set);
 
     struct dig_observation simple = { .dig_count = 1, .first = 0.0, .last = 1.0 };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -49,15 +49,15 @@ static struct bench *bench_create(void)
         simple.sigma_Nm[k]  = 0.005;
     }
     dig_fit_take(&b->fit, &simple);
-    assert_true(b->fit.known.valid && b->fit.known.match.nearest == GRAVEL);
-    assert_false(b->fit.dug);
+    assert_true(b->fit.track.valid && b->fit.track.match.nearest == GRAVEL);
+    assert_false(b->fit.basis_as_dug);
     b->digs = 1;
     return b;
 }
 
 static void bench_destroy(struct bench *const b)
 {
-    dig_matcher_finish(&b->fit.matcher);
+    dig_matcher_finish(&b->fit.table.matcher);
     free(b);
 }
 
@@ -104,10 +104,10 @@ static void end_dig(struct bench *const b)
 
 static struct dig_expected offered(struct bench *const b)
 {
-    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-    assert_non_null(offer);
-    assert_true(offer->known);
-    return offer->forecast.along[ACTUAL];
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    assert_non_null(basis);
+    assert_true(basis->known);
+    return basis->forecast.expected[ACTUAL];
 }
 
 // rms of the offered curve less the moment of a dig made so, over what is ahead.
@@ -132,7 +132,7 @@ static void a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly(void *
     const struct dig_approach plain  = dig_approach_plain();
     const struct dig_expected before = offered(b);
     dig_until(b, deep, 0.5);
-    assert_true(b->fit.dug);
+    assert_true(b->fit.basis_as_dug);
     const struct dig_expected now = offered(b);
     assert_true(now.valid && !now.off_table);
     assert_true(off_Nm(&now, deep) < 0.4 * off_Nm(&before, deep));
@@ -140,7 +140,7 @@ static void a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly(void *
     assert_close(now.approach.depth, 1.15, 0.1); // each gravel begins to resist in a way of its own
     assert_true(dig_approach_is_plain(&before.approach));
     end_dig(b);
-    assert_false(b->fit.dug);
+    assert_false(b->fit.basis_as_dug);
     const struct dig_expected after = offered(b);
     assert_close(off_Nm(&after, plain), off_Nm(&before, plain), 1e-9);
     assert_true(dig_approach_is_plain(&after.approach));

@@ -9,23 +9,23 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
     struct bench *const b = bench_create();
     for (int gravel = 0; gravel < GRAVELS; gravel++) {
         struct dig_fit_result result;
-        b->fit.known = (struct dig_gravel_track){ .any = false };
+        b->fit.track = (struct dig_gravel_track){ .any = false };
         bench_dig(b, gravel, 0, 1.0);
-        const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-        assert_non_null(offer);
-        assert_true(offer->known && offer->set == &b->cube.set && offer->generation == 1);
-        assert_int_equal(offer->dig_count, 5);
-        assert_true(offer->forecast.along[0].valid);
-        assert_false(offer->forecast.along[1].valid); // the table has no such curve
+        const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+        assert_non_null(basis);
+        assert_true(basis->known && basis->set == &b->cube.set && basis->generation == 1);
+        assert_int_equal(basis->dig_count, 5);
+        assert_true(basis->forecast.expected[0].valid);
+        assert_false(basis->forecast.expected[1].valid); // the table has no such curve
         assert_true(dig_ring_pop(&b->wires.results, &result));
-        assert_true(result.known.valid && !result.known.restored);
-        assert_int_equal(result.known.match.nearest, gravel);
-        assert_string_equal(result.known.trajectory, "simpleA");
-        assert_int_equal(result.known.match.digs, 1);
-        assert_close(result.known.path_measured, 1.0, 0.0);
+        assert_true(result.track.valid && !result.track.restored);
+        assert_int_equal(result.track.match.nearest, gravel);
+        assert_string_equal(result.track.trajectory, "simpleA");
+        assert_int_equal(result.track.match.digs, 1);
+        assert_close(result.track.path_measured, 1.0, 0.0);
         assert_string_equal(result.hint_trajectory, ""); // nor says it what a bucket carries
     }
-    assert_int_equal(atomic_load(&b->fit.matches), GRAVELS);
+    assert_int_equal(atomic_load(&b->fit.count.matches), GRAVELS);
     assert_false(dig_fit_once(&b->fit));
     free(b);
 }
@@ -34,11 +34,11 @@ static void a_dig_that_does_not_identify_is_passed_over(void **state)
 {
     (void)state;
     struct bench *const b = bench_create();
-    struct dig_note     note;
+    struct dig_log_line note;
     bench_dig(b, 0, 1, 1.0);
-    assert_null(dig_latest_look(&b->wires.offer));
-    assert_false(dig_latest_take(&b->wires.notes, &note));
-    assert_int_equal(atomic_load(&b->fit.matches), 0);
+    assert_null(dig_latest_look(&b->wires.basis));
+    assert_false(dig_latest_take(&b->wires.log, &note));
+    assert_int_equal(atomic_load(&b->fit.count.matches), 0);
     free(b);
 }
 
@@ -46,12 +46,12 @@ static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **
 {
     (void)state;
     struct bench *const b = bench_create();
-    struct dig_note     note;
+    struct dig_log_line note;
     (void)strcpy(b->config.identify_trajectory[0], "actual");
     b->config.identify_trajectories = 1;
     bench_dig(b, 0, 1, 1.0);
-    assert_null(dig_latest_look(&b->wires.offer));
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_null(dig_latest_look(&b->wires.basis));
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_non_null(strstr(note.text, "dig 5 (actual): no match"));
     free(b);
 }
@@ -68,14 +68,14 @@ static void a_dig_broken_off_leaves_what_is_known(void **state)
     bench_dig(b, 3, 0, 1.0);
     dig.last = 0.59;
     dig_fit_take(&b->fit, &dig);
-    assert_int_equal(b->fit.known.match.dig_count, 5);
-    struct dig_note note;
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_int_equal(b->fit.track.match.dig_count, 5);
+    struct dig_log_line note;
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_non_null(strstr(note.text, "59 % of its path was measured, expected at least 60 %"));
 
     dig.last = 0.61;
     dig_fit_take(&b->fit, &dig);
-    assert_int_equal(b->fit.known.match.dig_count, 6);
+    assert_int_equal(b->fit.track.match.dig_count, 6);
     free(b);
 }
 
@@ -86,43 +86,43 @@ static void how_digs_ended_is_told_and_changes_no_number(void **state)
     struct bench *const    b    = bench_create();
     struct bench *const    same = bench_create();
     struct dig_observation dig  = { .dig_count = 1, .trajectory = 0, .last = 0.7 };
-    struct dig_note        note;
+    struct dig_log_line    note;
     for (int p = 0; p < DIG_CURVE_POINTS; p++) {
         dig.moment_Nm[p] = bench_moment_Nm(5, p);
         dig.sigma_Nm[p]  = 0.005;
     }
     dig_fit_take(&same->fit, &dig);
-    assert_int_equal(same->fit.known.ending, DIG_ENDING_OPEN);
-    assert_false(dig_latest_take(&same->wires.notes, &note));
+    assert_int_equal(same->fit.track.ending, DIG_ENDING_OPEN);
+    assert_false(dig_latest_take(&same->wires.log, &note));
 
     dig.ending = DIG_ENDING_ABORTED;
     dig_fit_take(&b->fit, &dig);
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_string_equal(note.text, "dig 1 (simpleA): aborted at 70 % of its path");
-    assert_int_equal(b->fit.known.ending, DIG_ENDING_ABORTED);
-    assert_close(b->fit.known.path_measured, 0.7, 0.0);
+    assert_int_equal(b->fit.track.ending, DIG_ENDING_ABORTED);
+    assert_close(b->fit.track.path_measured, 0.7, 0.0);
     for (int a = 0; a < DIG_AXES; a++) {
-        assert_close(b->fit.known.match.low.value[a], same->fit.known.match.low.value[a], 0.0);
-        assert_close(b->fit.known.match.high.value[a], same->fit.known.match.high.value[a], 0.0);
+        assert_close(b->fit.track.match.low.value[a], same->fit.track.match.low.value[a], 0.0);
+        assert_close(b->fit.track.match.high.value[a], same->fit.track.match.high.value[a], 0.0);
     }
     dig.last       = 0.5;
     dig.trajectory = 1;
     dig_fit_take(&b->fit, &dig);
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_string_equal(note.text, "dig 1 (actual): aborted at 50 % of its path");
     dig.trajectory = 0;
     dig_fit_take(&b->fit, &dig);
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_non_null(strstr(note.text, "aborted, no match, 50 % of its path"));
 
     dig.last   = 1.0;
     dig.ending = DIG_ENDING_WHOLE;
     dig_fit_take(&b->fit, &dig);
-    assert_int_equal(b->fit.known.ending, DIG_ENDING_WHOLE);
-    assert_false(dig_latest_take(&b->wires.notes, &note));
-    assert_int_equal(atomic_load(&b->fit.whole), 1);
-    assert_int_equal(atomic_load(&b->fit.aborted), 3);
-    assert_int_equal(atomic_load(&b->fit.unknown), 0);
+    assert_int_equal(b->fit.track.ending, DIG_ENDING_WHOLE);
+    assert_false(dig_latest_take(&b->wires.log, &note));
+    assert_int_equal(atomic_load(&b->fit.count.whole), 1);
+    assert_int_equal(atomic_load(&b->fit.count.aborted), 3);
+    assert_int_equal(atomic_load(&b->fit.count.unknown), 0);
     free(same);
     free(b);
 }

@@ -24,13 +24,13 @@ static struct bench *bench_create(void)
     b->config = wires_config();
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, &b->table.cube.set, &b->fit);
-    dig_matcher_take_up(&b->fit.matcher, &b->table.cube.set);
+    dig_matcher_set_table(&b->fit.table.matcher, &b->table.cube.set);
     return b;
 }
 
 static void bench_destroy(struct bench *const b)
 {
-    dig_matcher_finish(&b->fit.matcher);
+    dig_matcher_finish(&b->fit.table.matcher);
     free(b);
 }
 
@@ -61,18 +61,18 @@ static void digs_of_different_depths_are_matched_together(void **state)
     dig_deep(b, 5, 0, 0.9, 0.9);
     dig_deep(b, 5, 0, 1.15, 1.15);
     dig_deep(b, 5, 0, 1.0, 1.0);
-    assert_true(b->fit.known.valid);
+    assert_true(b->fit.track.valid);
     assert_int_equal(b->fit.pool.digs, 3); // none was a stranger to what the others let expect
-    assert_int_equal(b->fit.known.match.digs, 3);
-    assert_int_equal(b->fit.known.match.nearest, 5);
-    assert_true(b->fit.known.match.distance < 0.02);
-    assert_int_equal(b->fit.known.differed, 0);
+    assert_int_equal(b->fit.track.match.digs, 3);
+    assert_int_equal(b->fit.track.match.nearest, 5);
+    assert_true(b->fit.track.match.distance < 0.02);
+    assert_int_equal(b->fit.track.differed, 0);
 
     // The same digs taken for plain ones contradict each other.
-    b->fit.known = (struct dig_gravel_track){ .any = false };
+    b->fit.track = (struct dig_gravel_track){ .any = false };
     dig_deep(b, 5, 0, 0.8, 1.0);
     dig_deep(b, 5, 0, 1.2, 1.0);
-    assert_true(b->fit.pool.digs < 2 || b->fit.known.match.distance > 0.1);
+    assert_true(b->fit.pool.digs < 2 || b->fit.track.match.distance > 0.1);
     bench_destroy(b);
 }
 
@@ -81,14 +81,14 @@ static void a_deep_dig_is_no_sign_of_other_ground(void **state)
     (void)state;
     struct bench *const b = bench_create();
     dig_deep(b, 2, 0, 1.0, 1.0);
-    assert_true(b->fit.known.valid);
+    assert_true(b->fit.track.valid);
     for (int i = 0; i < 3; i++) {
         dig_deep(b, 2, 1, 1.2, 1.2);
-        assert_true(b->fit.known.valid);
-        assert_true(b->fit.known.drift < 1.0);
+        assert_true(b->fit.track.valid);
+        assert_true(b->fit.track.drift < 1.0);
     }
     dig_deep(b, 2, 1, 1.2, 1.0); // taken for a plain one it is
-    assert_true(b->fit.known.drift > 1.5);
+    assert_true(b->fit.track.drift > 1.5);
     bench_destroy(b);
 }
 
@@ -106,9 +106,9 @@ static void how_it_was_made_is_known_with_the_gravel(void **state)
     dig_deep(b, 5, 0, 0.9, 0.9);
     dig_deep(b, 5, 0, 1.15, 1.15);
     dig_fit_restore(&again->fit);
-    assert_true(again->fit.known.restored);
+    assert_true(again->fit.track.restored);
     for (int i = 0; i < 2; i++) {
-        const struct dig_gravel_track *const k = &(i == 0 ? b : again)->fit.known;
+        const struct dig_gravel_track *const k = &(i == 0 ? b : again)->fit.track;
         assert_close(k->made.depth, 1.15, 1e-9);
         assert_close(k->made.attack_rad, 0.02, 1e-9);
         assert_close(k->matched.depth, 1.15, 1e-9);

@@ -12,32 +12,32 @@ static void ground_that_changed_is_no_longer_known(void **state)
     (void)state;
     struct bench *const b = bench_of_two_digs();
     bench_dig(b, 3, 0, 1.0);
-    assert_true(b->fit.known.valid);
+    assert_true(b->fit.track.valid);
     for (int i = 0; i < 5; i++) {
         bench_dig(b, 3, 1, 1.0);
-        assert_true(b->fit.known.valid);
-        assert_true(b->fit.known.drift < 1.0);
+        assert_true(b->fit.track.valid);
+        assert_true(b->fit.track.drift < 1.0);
     }
     const double factor[] = { 1.5, 1.0, 1.5, 1.5 };
     for (int i = 0; i < 4; i++) {
         bench_dig(b, 3, 1, factor[i]);
-        assert_true((b->fit.known.drift > 3.0) == (factor[i] > 1.0));
-        assert_true(b->fit.known.valid == (i < 3));
+        assert_true((b->fit.track.drift > 3.0) == (factor[i] > 1.0));
+        assert_true(b->fit.track.valid == (i < 3));
     }
-    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-    assert_non_null(offer);
-    assert_false(offer->known);
-    assert_true(offer->expires_ns > 0);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    assert_non_null(basis);
+    assert_false(basis->known);
+    assert_true(basis->expires_ns > 0);
     struct dig_fit_result result;
     while (dig_ring_pop(&b->wires.results, &result)) {
     }
-    assert_false(result.known.valid);
-    assert_string_equal(result.known.wanted, "the ground has changed: dig a simple dig");
+    assert_false(result.track.valid);
+    assert_string_equal(result.track.wanted, "the ground has changed: dig a simple dig");
 
     // A simple dig, and it is known again.
     bench_dig(b, 5, 0, 1.0);
-    assert_true(b->fit.known.valid);
-    assert_int_equal(b->fit.known.match.nearest, 5);
+    assert_true(b->fit.track.valid);
+    assert_int_equal(b->fit.track.match.nearest, 5);
     free(b);
 }
 
@@ -49,11 +49,11 @@ static double friction_width(const struct dig_match *const m)
 // How far factor times a gravel is from what is predicted of it, in floors.
 static double drift_of(struct bench *const b, const int gravel, const double factor)
 {
-    const struct dig_gravel_track before = b->fit.known;
+    const struct dig_gravel_track before = b->fit.track;
     bench_dig(b, gravel, 1, factor);
-    const double          drift = b->fit.known.drift;
+    const double          drift = b->fit.track.drift;
     struct dig_fit_result result;
-    b->fit.known = before;
+    b->fit.track = before;
     while (dig_ring_pop(&b->wires.results, &result)) {
     }
     return drift;
@@ -66,15 +66,15 @@ static void simple_digs_of_one_ground_are_matched_together(void **state)
     double              before = INFINITY;
     for (int i = 1; i <= 10; i++) {
         bench_dig(b, 5, 0, i % 2 == 0 ? 1.01 : 0.99);
-        const struct dig_match *const m    = &b->fit.known.match;
+        const struct dig_match *const m    = &b->fit.track.match;
         const size_t                  digs = i < DIG_POOL_MAX ? (size_t)i : DIG_POOL_MAX;
         assert_int_equal(m->digs, digs);
         assert_int_equal(m->nearest, 5);
         assert_true(i > 4 || friction_width(m) < before);
-        assert_true(isnan(b->fit.known.drift) == (i == 1));
+        assert_true(isnan(b->fit.track.drift) == (i == 1));
         before = friction_width(m);
     }
-    assert_int_equal(atomic_load(&b->fit.matches), 10);
+    assert_int_equal(atomic_load(&b->fit.count.matches), 10);
     free(b);
 }
 
@@ -95,20 +95,20 @@ static void a_simple_dig_that_differs_is_doubted_first(void **state)
     bench_dig(b, 5, 0, factor);
     while (dig_ring_pop(&b->wires.results, &result)) {
     }
-    assert_true(result.known.valid);
-    assert_int_equal(result.known.match.digs, 3);
-    assert_true(result.known.drift > 3.0);
-    assert_string_equal(result.known.wanted,
+    assert_true(result.track.valid);
+    assert_int_equal(result.track.match.digs, 3);
+    assert_true(result.track.drift > 3.0);
+    assert_string_equal(result.track.wanted,
                         "a simple dig differed from those before: dig another");
     bench_dig(b, 5, 0, 1.0);
-    assert_int_equal(b->fit.known.match.digs, 4);
-    assert_string_equal(b->fit.known.wanted, "");
+    assert_int_equal(b->fit.track.match.digs, 4);
+    assert_string_equal(b->fit.track.wanted, "");
 
     bench_dig(b, 5, 0, factor);
-    assert_int_equal(b->fit.known.match.digs, 4);
+    assert_int_equal(b->fit.track.match.digs, 4);
     bench_dig(b, 5, 0, factor);
-    assert_int_equal(b->fit.known.match.digs, 1);
-    assert_true(isnan(b->fit.known.drift));
+    assert_int_equal(b->fit.track.match.digs, 1);
+    assert_true(isnan(b->fit.track.drift));
     assert_int_equal(b->fit.pool.digs, 1);
     assert_close(b->fit.pool.dig[0].moment_Nm[100], factor * bench_moment_Nm(5, 100), 1e-12);
 
@@ -116,9 +116,9 @@ static void a_simple_dig_that_differs_is_doubted_first(void **state)
     bench_dig(b, 5, 0, 1.0);
     bench_dig(b, 5, 0, 1.0);
     bench_dig(b, 5, 0, 1.0);
-    assert_true(b->fit.known.match.digs >= 2);
+    assert_true(b->fit.track.match.digs >= 2);
     bench_dig(b, 0, 0, 0.5);
-    assert_int_equal(b->fit.known.match.digs, 1);
+    assert_int_equal(b->fit.track.match.digs, 1);
     free(b);
 }
 
@@ -130,10 +130,10 @@ static void a_ground_given_up_is_not_matched_with_the_next(void **state)
     bench_dig(b, 5, 0, 1.0);
     bench_dig(b, 5, 1, 2.0);
     bench_dig(b, 5, 1, 2.0);
-    assert_false(b->fit.known.valid);
+    assert_false(b->fit.track.valid);
     bench_dig(b, 5, 0, 1.0);
-    assert_true(b->fit.known.valid);
-    assert_int_equal(b->fit.known.match.digs, 1);
+    assert_true(b->fit.track.valid);
+    assert_int_equal(b->fit.track.match.digs, 1);
     free(b);
 }
 
@@ -141,18 +141,18 @@ static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
 {
     (void)state;
     struct bench *const b           = bench_create();
-    b->fit.known_settings.expires_s = 0.05;
+    b->fit.track_settings.expires_s = 0.05;
     bench_dig(b, 3, 0, 1.0);
     assert_false(dig_fit_once(&b->fit));
-    assert_true(b->fit.known.valid);
-    (void)dig_latest_look(&b->wires.offer);
+    assert_true(b->fit.track.valid);
+    (void)dig_latest_look(&b->wires.basis);
     const struct timespec pause = { .tv_nsec = 60000000L };
     (void)nanosleep(&pause, NULL);
     assert_false(dig_fit_once(&b->fit));
-    assert_false(b->fit.known.valid);
-    const struct dig_offer *const offer = dig_latest_look(&b->wires.offer);
-    assert_non_null(offer);
-    assert_false(offer->known);
+    assert_false(b->fit.track.valid);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    assert_non_null(basis);
+    assert_false(basis->known);
     free(b);
 }
 

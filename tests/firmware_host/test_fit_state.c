@@ -2,6 +2,7 @@
 // its file.
 
 #include "files/identity_json.h"
+#include "firmware_host/matching/gravel_state.h"
 #include "tests/firmware_host/fit_bench.h"
 #include "tests/scratch.h"
 
@@ -18,12 +19,12 @@ static void what_is_known_survives_in_its_file(void **state)
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("match.json"));
     bench_dig(b, 6, 0, 1.0);
-    const struct dig_gravel_track before = b->fit.known;
+    const struct dig_gravel_track before = b->fit.track;
 
     struct bench *const again = bench_create();
     again->config.match_state = b->config.match_state;
     dig_fit_restore(&again->fit);
-    const struct dig_gravel_track *const k = &again->fit.known;
+    const struct dig_gravel_track *const k = &again->fit.track;
     assert_true(k->valid && k->restored);
     assert_int_equal(k->match.nearest, 6);
     assert_int_equal(before.match.weighted, 6);
@@ -35,9 +36,9 @@ static void what_is_known_survives_in_its_file(void **state)
         assert_close(k->match.gravel.value[a], before.match.gravel.value[a],
                      1e-8 * before.match.gravel.value[a]);
     }
-    const struct dig_offer *const offer = dig_latest_look(&again->wires.offer);
-    assert_non_null(offer);
-    assert_true(offer->known && offer->forecast.along[0].valid);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&again->wires.basis);
+    assert_non_null(basis);
+    assert_true(basis->known && basis->forecast.expected[0].valid);
 
     static const struct {
         const char *what, *expected;
@@ -60,10 +61,10 @@ static void what_is_known_survives_in_its_file(void **state)
             (void)scratch_write("match.json", "{\"scene_hash\": 3}\n");
         }
         dig_fit_restore(&other->fit);
-        struct dig_note note = { "" };
-        assert_false(other->fit.known.any);
-        assert_null(dig_latest_look(&other->wires.offer));
-        assert_true(dig_latest_take(&other->wires.notes, &note));
+        struct dig_log_line note = { "" };
+        assert_false(other->fit.track.any);
+        assert_null(dig_latest_look(&other->wires.basis));
+        assert_true(dig_latest_take(&other->wires.log, &note));
         assert_non_null(strstr(note.text, bad[i].expected));
         free(other);
     }
@@ -80,7 +81,7 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
     (void)snprintf(again->config.match_state.text, sizeof again->config.match_state.text, "%s",
                    scratch_path("family.json"));
     bench_dig(b, 5, 0, 1.0);
-    struct dig_gravel_track family = b->fit.known;
+    struct dig_gravel_track family = b->fit.track;
 
     const double *const axis                   = b->cube.set.axis[DIG_AXIS_ROLLING];
     family.match.low.value[DIG_AXIS_ROLLING]   = axis[0] + 0.2 * (axis[1] - axis[0]);
@@ -88,22 +89,22 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
     family.match.low.value[DIG_AXIS_FRICTION]  = family.match.gravel.value[DIG_AXIS_FRICTION];
     family.match.high.value[DIG_AXIS_FRICTION] = family.match.gravel.value[DIG_AXIS_FRICTION];
 
-    assert_int_equal(dig_gravel_track_write(scratch_path("family.json"), &family, &b->cube.set,
+    assert_int_equal(dig_gravel_state_write(scratch_path("family.json"), &family, &b->cube.set,
                                             &b->fit.pool, NULL),
                      DIG_OK);
     dig_fit_restore(&again->fit);
-    assert_true(again->fit.known.restored);
-    assert_true(again->fit.known.match.untold[DIG_AXIS_ROLLING]);
-    assert_false(again->fit.known.match.untold[DIG_AXIS_FRICTION]);
+    assert_true(again->fit.track.restored);
+    assert_true(again->fit.track.match.untold[DIG_AXIS_ROLLING]);
+    assert_false(again->fit.track.match.untold[DIG_AXIS_FRICTION]);
 
     // A file from before there was a noise-weighted entry tells none.
     family.match.weighted = -1;
-    assert_int_equal(dig_gravel_track_write(scratch_path("family.json"), &family, &b->cube.set,
+    assert_int_equal(dig_gravel_state_write(scratch_path("family.json"), &family, &b->cube.set,
                                             &b->fit.pool, NULL),
                      DIG_OK);
     dig_fit_restore(&again->fit);
-    assert_int_equal(again->fit.known.match.weighted, -1);
-    assert_true(isnan(again->fit.known.match.weighted_distance));
+    assert_int_equal(again->fit.track.match.weighted, -1);
+    assert_true(isnan(again->fit.track.match.weighted_distance));
     free(b);
     free(again);
 }
@@ -130,7 +131,7 @@ static void the_digs_of_a_ground_survive_too(void **state)
             (void)fclose(file);
         }
         dig_fit_restore(&again->fit);
-        assert_true(again->fit.known.restored && again->fit.known.match.digs == DIG_POOL_MAX);
+        assert_true(again->fit.track.restored && again->fit.track.match.digs == DIG_POOL_MAX);
         assert_int_equal(again->fit.pool.digs, bare == 1 ? 0 : DIG_POOL_MAX);
         if (bare == 0) {
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -139,8 +140,8 @@ static void the_digs_of_a_ground_survive_too(void **state)
             }
         }
         bench_dig(again, 5, 0, 1.0);
-        assert_int_equal(again->fit.known.match.digs, bare == 1 ? 1 : DIG_POOL_MAX);
-        assert_false(again->fit.known.restored);
+        assert_int_equal(again->fit.track.match.digs, bare == 1 ? 1 : DIG_POOL_MAX);
+        assert_false(again->fit.track.restored);
         free(again);
     }
     free(b);
@@ -190,9 +191,9 @@ static void the_forces_of_a_ground_survive_too(void **state)
     for (int i = 0; i < 8; i++) {
         dig_with_forces_in(b, 5, 1.0 + 0.001 * i);
     }
-    assert_true(b->fit.known.match.forces);
+    assert_true(b->fit.track.match.forces);
     dig_fit_restore(&again->fit);
-    assert_true(again->fit.known.restored && again->fit.known.match.forces);
+    assert_true(again->fit.track.restored && again->fit.track.match.forces);
     assert_int_equal(again->fit.pool.digs, 8);
     for (int d = 0; d < 8; d++) {
         const struct dig_observation *const was = &b->fit.pool.dig[d],
@@ -208,17 +209,17 @@ static void the_forces_of_a_ground_survive_too(void **state)
     }
     dig_with_forces_in(b, 5, 1.0);
     dig_with_forces_in(again, 5, 1.0);
-    assert_true(again->fit.known.match.forces && again->fit.known.match.digs == 8);
+    assert_true(again->fit.track.match.forces && again->fit.track.match.digs == 8);
     for (int a = 0; a < DIG_AXES; a++) {
-        assert_close(again->fit.known.match.low.value[a], b->fit.known.match.low.value[a],
-                     1e-5 * b->fit.known.match.low.value[a]);
-        assert_close(again->fit.known.match.high.value[a], b->fit.known.match.high.value[a],
-                     1e-5 * b->fit.known.match.high.value[a]);
+        assert_close(again->fit.track.match.low.value[a], b->fit.track.match.low.value[a],
+                     1e-5 * b->fit.track.match.low.value[a]);
+        assert_close(again->fit.track.match.high.value[a], b->fit.track.match.high.value[a],
+                     1e-5 * b->fit.track.match.high.value[a]);
     }
 
     // A dig that lacks them leaves the moment to the pool.
     bench_dig(again, 5, 0, 1.0);
-    assert_false(again->fit.known.match.forces);
+    assert_false(again->fit.track.match.forces);
     free(b);
     free(again);
 }
@@ -229,9 +230,9 @@ static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **st
     struct bench *const b = bench_create();
     (void)strcpy(b->config.match_state.text, "/dev/full");
     bench_dig(b, 6, 0, 1.0);
-    struct dig_note note = { "" };
-    assert_true(b->fit.known.valid);
-    assert_true(dig_latest_take(&b->wires.notes, &note));
+    struct dig_log_line note = { "" };
+    assert_true(b->fit.track.valid);
+    assert_true(dig_latest_take(&b->wires.log, &note));
     assert_non_null(strstr(note.text, "/dev/full"));
     free(b);
 }

@@ -12,16 +12,17 @@ static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
     double               J_per_kg   = -1.0;
     const double         energy_J[] = { 900.0, 500.0 }, carried_kg[] = { 2.0, 1.5 };
     for (int t = 0; t < TRAJECTORIES; t++) {
-        f->along[t].valid                                                    = true;
-        f->along[t].energy_J                                                 = energy_J[t];
-        f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = (float)carried_kg[t];
+        f->expected[t].valid    = true;
+        f->expected[t].energy_J = energy_J[t];
+        f->expected[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] =
+            (float)carried_kg[t];
     }
     assert_int_equal(dig_gravel_track_hint(&b->cube.set, f, 10.0, &J_per_kg), 1);
     assert_close(J_per_kg, 500.0 / 1500.0, 1e-9);
-    f->along[1].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = 0.9F;
+    f->expected[1].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = 0.9F;
     assert_int_equal(dig_gravel_track_hint(&b->cube.set, f, 10.0, &J_per_kg), 0);
     for (int t = 0; t < TRAJECTORIES; t++) {
-        f->along[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = NAN;
+        f->expected[t].curve.mean[DIG_CHANNEL_CARRIED_kg][DIG_CURVE_POINTS - 1] = NAN;
     }
     assert_int_equal(dig_gravel_track_hint(&b->cube.set, f, 10.0, &J_per_kg), -1);
     free(f);

@@ -132,9 +132,9 @@ struct client {
     struct dig_signal_map map;
     struct dig_input      input;
     struct dig_ring       readings;
-    struct dig_latest     notes;
+    struct dig_latest     log;
     struct dig_reading    reading_memory[256];
-    struct dig_note       note_memory[3];
+    struct dig_log_line   log_memory[3];
     atomic_bool           stop;
     pthread_t             thread;
 };
@@ -155,9 +155,9 @@ static void client_start_with(struct client *const c, const int port, const char
     assert_int_equal(dig_signal_map_read(map, NULL, &c->map, NULL), DIG_OK);
     assert_int_equal(dig_input_modbus_create(&c->input, &address, &c->map), DIG_OK);
     dig_ring_init(&c->readings, sizeof c->reading_memory[0], 256, c->reading_memory);
-    dig_latest_init(&c->notes, sizeof c->note_memory[0], c->note_memory);
+    dig_latest_init(&c->log, sizeof c->log_memory[0], c->log_memory);
     c->input.readings = &c->readings;
-    c->input.notes    = &c->notes;
+    c->input.log      = &c->log;
     c->input.stop     = &c->stop;
     assert_int_equal(pthread_create(&c->thread, NULL, client_main, c), 0);
 }
@@ -200,10 +200,10 @@ static bool fresh_reading(struct client *const c, struct dig_reading *const read
     return next_reading(c, reading);
 }
 
-static bool next_note(struct client *const c, struct dig_note *const note)
+static bool next_note(struct client *const c, struct dig_log_line *const note)
 {
     for (int i = 0; i < 10000; i++) {
-        if (dig_latest_take(&c->notes, note)) {
+        if (dig_latest_take(&c->log, note)) {
             return true;
         }
         pause_ms();
@@ -242,7 +242,7 @@ static void a_server_that_comes_late_is_found_and_said(void **state)
     s.listener      = listen_on(0, &s.port); // bound, not listening: refused
     static struct client c;
     client_start(&c, s.port);
-    struct dig_note note;
+    struct dig_log_line note;
     assert_true(next_note(&c, &note));
     assert_non_null(strstr(note.text, "Connection refused"));
     assert_false(atomic_load(&c.input.connected));
@@ -365,8 +365,8 @@ static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void 
     assert_int_equal(came[2], 0);
     assert_int_equal(atomic_load(&s.connections), 1);
 
-    struct dig_note note;
-    (void)dig_latest_take(&c.notes, &note);
+    struct dig_log_line note;
+    (void)dig_latest_take(&c.log, &note);
     atomic_store(&s.refused, 1009); // the pressures
     assert_true(next_note(&c, &note));
     assert_non_null(
@@ -432,12 +432,12 @@ static void a_silent_block_is_asked_less_and_less_while_others_answer(void **sta
     static struct client c;
     atomic_store(&s.muted, 1011); // the temperature, due twice a second
     client_start_with(&c, s.port, scratch_write("far.yaml", far_map), 0.02);
-    int             came[3] = { 0 };
-    struct dig_note note    = { "" };
-    bool            said    = false;
+    int                 came[3] = { 0 };
+    struct dig_log_line note    = { "" };
+    bool                said    = false;
     while (!said) {
         count_blocks(&c, 0, came[0] + 1, came);
-        said = dig_latest_take(&c.notes, &note) && strstr(note.text, "silent") != NULL;
+        said = dig_latest_take(&c.log, &note) && strstr(note.text, "silent") != NULL;
     }
     assert_contains(note.text, "registers 1011 … 1011: silent while others answer");
     assert_true(atomic_load(&c.input.timeouts) >= 3);

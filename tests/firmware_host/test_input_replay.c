@@ -30,14 +30,14 @@ static void every_line_is_played_once_at_its_time(void **state)
 {
     (void)state;
     static struct dig_reading    memory[64];
-    static struct dig_note       notes_memory[3];
+    static struct dig_log_line   notes_memory[3];
     struct dig_ring              ring;
-    struct dig_latest            notes;
+    struct dig_latest            log;
     atomic_bool                  stop  = false;
     struct dig_machine_recording r     = recording();
-    struct dig_input             input = { .readings = &ring, .notes = &notes, .stop = &stop };
+    struct dig_input             input = { .readings = &ring, .log = &log, .stop = &stop };
     dig_ring_init(&ring, sizeof memory[0], 64, memory);
-    dig_latest_init(&notes, sizeof notes_memory[0], notes_memory);
+    dig_latest_init(&log, sizeof notes_memory[0], notes_memory);
     assert_int_equal(dig_input_replay_create(&input, &r, "r.csv", 10.0), DIG_OK);
     assert_null(r.row); // taken over
 
@@ -66,15 +66,15 @@ static void every_line_is_played_once_at_its_time(void **state)
 static void a_replay_can_be_stopped(void **state)
 {
     (void)state;
-    static struct dig_note       notes_memory[3];
+    static struct dig_log_line   notes_memory[3];
     static struct dig_reading    memory[64];
     struct dig_ring              ring;
-    struct dig_latest            notes;
+    struct dig_latest            log;
     atomic_bool                  stop  = true;
     struct dig_machine_recording r     = recording();
-    struct dig_input             input = { .readings = &ring, .notes = &notes, .stop = &stop };
+    struct dig_input             input = { .readings = &ring, .log = &log, .stop = &stop };
     dig_ring_init(&ring, sizeof memory[0], 64, memory);
-    dig_latest_init(&notes, sizeof notes_memory[0], notes_memory);
+    dig_latest_init(&log, sizeof notes_memory[0], notes_memory);
     assert_int_equal(dig_input_replay_create(&input, &r, "r.csv", 1.0), DIG_OK);
     dig_input_run(&input);
     assert_int_equal(atomic_load(&input.frames), 0);

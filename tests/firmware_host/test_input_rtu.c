@@ -29,9 +29,9 @@ struct line {
     struct dig_signal_map map;
     struct dig_input      input;
     struct dig_ring       readings;
-    struct dig_latest     notes;
+    struct dig_latest     log;
     struct dig_reading    reading_memory[256];
-    struct dig_note       note_memory[3];
+    struct dig_log_line   log_memory[3];
     atomic_bool           stop;
     pthread_t             thread;
 };
@@ -67,9 +67,9 @@ static void line_open(struct line *const l)
                      DIG_OK);
     assert_int_equal(dig_input_modbus_create(&l->input, &address, &l->map), DIG_OK);
     dig_ring_init(&l->readings, sizeof l->reading_memory[0], 256, l->reading_memory);
-    dig_latest_init(&l->notes, sizeof l->note_memory[0], l->note_memory);
+    dig_latest_init(&l->log, sizeof l->log_memory[0], l->log_memory);
     l->input.readings = &l->readings;
-    l->input.notes    = &l->notes;
+    l->input.log      = &l->log;
     l->input.stop     = &l->stop;
 }
 

@@ -15,14 +15,14 @@ static void a_burst_is_said_and_then_a_line_a_second(void **state)
     const int64_t        at   = 5000 * SECOND_ns;
     int                  said = 0;
     for (int i = 0; i < 1000; i++) {
-        said += dig_log_limit_may(&talk, at) ? 1 : 0;
+        said += dig_log_limit_allows(&talk, at) ? 1 : 0;
     }
     assert_int_equal(said, 20);
     assert_int_equal(dig_log_limit_held(&talk), 980);
     assert_int_equal(dig_log_limit_held(&talk), 0);
-    assert_false(dig_log_limit_may(&talk, at + SECOND_ns - 1));
-    assert_true(dig_log_limit_may(&talk, at + SECOND_ns));
-    assert_false(dig_log_limit_may(&talk, at + SECOND_ns));
+    assert_false(dig_log_limit_allows(&talk, at + SECOND_ns - 1));
+    assert_true(dig_log_limit_allows(&talk, at + SECOND_ns));
+    assert_false(dig_log_limit_allows(&talk, at + SECOND_ns));
     assert_int_equal(dig_log_limit_held(&talk), 2);
 }
 
@@ -41,7 +41,7 @@ static void no_span_of_time_has_more_lines_than_that(void **state)
     for (int i = 0; i < LINES; i++) {
         const int64_t often_ns = i / 500 % 2 == 0 ? SECOND_ns / 50 : 3 * SECOND_ns;
         now_ns += rand() % often_ns;
-        if (dig_log_limit_may(&talk, now_ns)) {
+        if (dig_log_limit_allows(&talk, now_ns)) {
             said_ns[said++] = now_ns;
         }
         held += i % 7 == 0 ? dig_log_limit_held(&talk) : 0;
@@ -61,13 +61,13 @@ static void what_was_held_back_is_spoken_of_when_the_flood_is_over(void **state)
     (void)state;
     struct dig_log_limit talk = { .held = 0 };
     for (int i = 0; i < 25; i++) {
-        (void)dig_log_limit_may(&talk, 100 * SECOND_ns);
+        (void)dig_log_limit_allows(&talk, 100 * SECOND_ns);
     }
     assert_int_equal(dig_log_limit_held_before(&talk, 105 * SECOND_ns, false), 0);
     assert_int_equal(dig_log_limit_held_before(&talk, 105 * SECOND_ns + 1, false), 5);
     assert_int_equal(dig_log_limit_held_before(&talk, 200 * SECOND_ns, false), 0);
     for (int i = 0; i < 25; i++) {
-        (void)dig_log_limit_may(&talk, 200 * SECOND_ns);
+        (void)dig_log_limit_allows(&talk, 200 * SECOND_ns);
     }
     assert_int_equal(dig_log_limit_held_before(&talk, 200 * SECOND_ns, true), 5);
 }

@@ -25,10 +25,10 @@ static void a_whole_sample_becomes_an_estimate(void **state)
     assert_true(record.estimate.time_ns == 1000 * MS);
     assert_close(record.sample.value[DIG_SIGNAL_BOOM_HEAD_Pa], 8.4e6, 0.0);
     assert_false(dig_ring_pop(&b->wires.records, &record));
-    const struct dig_pulse pulse = bench_pulse(b);
-    assert_true(pulse.fresh);
-    assert_int_equal(pulse.ticks, 1);
-    assert_int_equal(pulse.missing, 0);
+    const struct dig_tick_status tick_status = bench_tick_status(b);
+    assert_true(tick_status.fresh);
+    assert_int_equal(tick_status.ticks, 1);
+    assert_int_equal(tick_status.missing, 0);
     bench_destroy(b);
 }
 
@@ -53,7 +53,7 @@ static void each_estimate_is_shared_and_none_waited_for(void **state)
         }
     }
     assert_false(dig_ring_pop(&b->wires.estimates, &estimate));
-    assert_int_equal(bench_pulse(b).lost, 0);
+    assert_int_equal(bench_tick_status(b).lost, 0);
     bench_destroy(b);
 }
 
@@ -69,10 +69,10 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
     dig_loop_tick(&b->loop, 1001 * MS);
     assert_true(dig_ring_pop(&b->wires.records, &record));
     assert_false(record.has_estimate);
-    const struct dig_pulse pulse = bench_pulse(b);
-    assert_false(pulse.fresh);
-    assert_int_equal(pulse.missing, 1);
-    assert_int_equal(pulse.drops.not_available, 1);
+    const struct dig_tick_status tick_status = bench_tick_status(b);
+    assert_false(tick_status.fresh);
+    assert_int_equal(tick_status.missing, 1);
+    assert_int_equal(tick_status.drops.not_available, 1);
     bench_destroy(b);
 }
 
@@ -91,7 +91,7 @@ static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void 
     assert_true(record.estimate.wrench.sigma_My_Nm > 0.0);
     assert_false(record.estimate.wrench.force_valid);
     assert_false(record.sample.valid[DIG_SIGNAL_ARM_HEAD_Pa]);
-    assert_true(bench_pulse(b).fresh);
+    assert_true(bench_tick_status(b).fresh);
     bench_destroy(b);
 }
 
@@ -100,14 +100,14 @@ static void silence_is_missing_after_the_stale_time_only(void **state)
     (void)state;
     struct bench *const b = bench_create();
     dig_loop_tick(&b->loop, 995 * MS);
-    assert_int_equal(bench_pulse(b).missing, 1);
+    assert_int_equal(bench_tick_status(b).missing, 1);
     const struct dig_reading r = bench_still(1000 * MS);
     assert_true(dig_ring_push(&b->wires.readings, &r));
     for (int64_t now = 1000; now <= 1200; now += 5) {
         dig_loop_tick(&b->loop, now * MS);
-        assert_true(bench_pulse(b).fresh == (now <= 1100));
+        assert_true(bench_tick_status(b).fresh == (now <= 1100));
     }
-    assert_int_equal(b->loop.pulse.missing, 1 + 20);
+    assert_int_equal(b->loop.tick_status.missing, 1 + 20);
     bench_destroy(b);
 }
 
@@ -120,7 +120,7 @@ static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **s
         assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
     }
-    assert_int_equal(bench_pulse(b).lost, 1100 - 1024);
+    assert_int_equal(bench_tick_status(b).lost, 1100 - 1024);
     bench_destroy(b);
 }
 
@@ -151,22 +151,22 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
 static int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
                                bool seen[DIG_TRAJECTORY_MAX])
 {
-    int                outlooks = 0;
-    struct dig_outlook outlook;
+    int                          outlooks = 0;
+    struct dig_prediction_record predictions;
     for (int64_t i = 0; i < 400; i++) {
         const struct dig_reading r = bench_still((from_ms + i * 5) * MS);
         assert_true(dig_ring_push(&b->wires.readings, &r));
         dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
-        if (dig_latest_take(&b->wires.outlook, &outlook)) {
+        if (dig_latest_take(&b->wires.predictions, &predictions)) {
             outlooks++;
-            assert_true(outlook.prediction.valid);
-            assert_int_equal(outlook.why_not, DIG_WHY_NOT_VALID);
-            assert_close(outlook.prediction.from_progress, 0.0, 0.0);
-            assert_close(outlook.prediction.to_progress, 1.0, 0.0);
-            assert_true(outlook.time_ns == (from_ms + i * 5) * MS);
-            assert_true(outlook.expires_ns > outlook.time_ns);
-            assert_int_equal(outlook.dig_count, 7);
-            seen[outlook.prediction.trajectory] = true;
+            assert_true(predictions.prediction.valid);
+            assert_int_equal(predictions.state, DIG_PREDICTION_VALID);
+            assert_close(predictions.prediction.from_progress, 0.0, 0.0);
+            assert_close(predictions.prediction.to_progress, 1.0, 0.0);
+            assert_true(predictions.time_ns == (from_ms + i * 5) * MS);
+            assert_true(predictions.expires_ns > predictions.time_ns);
+            assert_int_equal(predictions.dig_count, 7);
+            seen[predictions.prediction.trajectory] = true;
         }
     }
     return outlooks;
@@ -178,7 +178,7 @@ static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
-    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     for (size_t t = 0; t < b->cube.set.trajectories; t++) {
         assert_true(seen[t]);
@@ -191,7 +191,7 @@ static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    bench_offer(b, &b->wires.offer, 3, 1, 2000 * MS);
+    bench_set_basis(b, &b->wires.basis, 3, 1, 2000 * MS);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
     assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
     bench_destroy(b);
@@ -205,7 +205,7 @@ static double peak_told_of(const struct bench *const b, const int gravel)
                                          .gravel  = b->cube.gravel[gravel],
                                          .nearest = gravel };
     dig_forecast_make(&b->cube.set, 10.0, &match, &forecast);
-    return forecast.along[b->loop.outlook.prediction.trajectory].peak_Nm;
+    return forecast.expected[b->loop.published.prediction.trajectory].peak_Nm;
 }
 
 // Another table: what belongs to the one before is not used with it, and the other way round.
@@ -214,17 +214,17 @@ static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **sta
     (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 1);
-    bench_offer(b, &b->wires.table, 5, 2, INT64_MAX);
+    bench_set_basis(b, &b->wires.table, 5, 2, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 2);
-    assert_int_equal(bench_pulse(b).generation, 2);
-    assert_close(b->loop.outlook.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
-    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX); // late: of the table before
+    assert_int_equal(bench_tick_status(b).generation, 2);
+    assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
+    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX); // late: of the table before
     assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
-    assert_close(b->loop.outlook.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
+    assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
     assert_true(fabs(peak_told_of(b, 3) / peak_told_of(b, 5) - 1.0) > 0.1);
     bench_destroy(b);
 }
@@ -239,7 +239,7 @@ static double moment_of_Nm(const struct bench *const b, const struct dig_correct
     assert_non_null(e);
     assert_int_equal(dig_estimator_init(e, &b->machine, &b->cube.set, &b->estimator_settings),
                      DIG_OK);
-    assert_int_equal(dig_estimator_correct(e, by), DIG_OK);
+    assert_int_equal(dig_estimator_set_correction(e, by), DIG_OK);
     for (int64_t i = 0; i < samples; i++) {
         const struct dig_reading r      = bench_still((1000 + i * 5) * MS);
         struct dig_sample        sample = { .time_ns = r.time_ns };
@@ -271,11 +271,11 @@ static double moment_after_Nm(struct bench *const b, int64_t *const at_ms, const
 static void offer_machine(struct bench *const b, const struct dig_correction *const by,
                           const int64_t generation)
 {
-    struct dig_offer *const made = calloc(1, sizeof *made);
+    struct dig_prediction_basis *const made = calloc(1, sizeof *made);
     assert_non_null(made);
     made->set        = &b->cube.set;
     made->generation = generation;
-    assert_int_equal(dig_correction_take(&b->machine, by, &made->machine), DIG_OK);
+    assert_int_equal(dig_correction_apply(&b->machine, by, &made->machine), DIG_OK);
     dig_latest_put(&b->wires.table, made);
     free(made);
 }
@@ -293,21 +293,21 @@ static void a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_star
     assert_int_not_equal(b->loop.estimate.phase, DIG_PHASE_AIR);
     offer_machine(b, &heavy, 2);
     assert_close(moment_after_Nm(b, &at_ms, 100, 15e6), digging_Nm, 1e-9);
-    assert_int_equal(b->loop.pulse.generation, 1);
+    assert_int_equal(b->loop.tick_status.generation, 1);
 
     // In the air the new one is used, as by an estimator that has had it from the start.
     int waited = 0;
-    while (b->loop.pulse.generation == 1 && waited++ < 1000) {
+    while (b->loop.tick_status.generation == 1 && waited++ < 1000) {
         (void)moment_after_Nm(b, &at_ms, 1, 0.0);
     }
-    assert_int_equal(b->loop.pulse.generation, 2);
+    assert_int_equal(b->loop.tick_status.generation, 2);
     assert_true(fabs(moment_of_Nm(b, &heavy, 100) - moment_of_Nm(b, NULL, 100)) > 100.0);
     assert_close(moment_after_Nm(b, &at_ms, 99, 0.0), moment_of_Nm(b, &heavy, 100), 1e-6);
 
     // The same again is nothing new: what free air taught stays learnt.
     offer_machine(b, &heavy, 3);
     assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, &heavy, 200), 1e-6);
-    assert_int_equal(b->loop.pulse.generation, 3);
+    assert_int_equal(b->loop.tick_status.generation, 3);
 
     // And taken off again.
     offer_machine(b, NULL, 4);
@@ -320,7 +320,7 @@ static void a_tick_allocates_nothing(void **state)
     (void)state;
     skip_unless_allocations_count();
     struct bench *const b = bench_create();
-    bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
     unsigned long in_ticks = 0;
     int           digs     = 0;
     for (int64_t i = 0; i < 2000; i++) {
@@ -330,7 +330,7 @@ static void a_tick_allocates_nothing(void **state)
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
         (void)dig_ring_push(&b->wires.readings, &r);
         if (i % 100 == 0) {
-            bench_offer(b, &b->wires.offer, 3, 1, INT64_MAX);
+            bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
         }
         const unsigned long before = allocations;
         dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
@@ -343,9 +343,9 @@ static void a_tick_allocates_nothing(void **state)
         }
     }
     assert_true(in_ticks == 0);
-    assert_true(b->loop.pulse.digs > 1);
-    assert_int_equal(digs, b->loop.pulse.digs);
-    assert_int_equal(b->loop.pulse.lost_digs, 0);
+    assert_true(b->loop.tick_status.digs > 1);
+    assert_int_equal(digs, b->loop.tick_status.digs);
+    assert_int_equal(b->loop.tick_status.lost_digs, 0);
     bench_destroy(b);
 }
 
@@ -369,9 +369,9 @@ static void the_loop_runs_beside_its_neighbours(void **state)
     struct run run = { .bench = bench_create() };
     pthread_t  thread;
     assert_int_equal(pthread_create(&thread, NULL, run_main, &run), 0);
-    struct timespec  t;
-    struct dig_pulse pulse     = { 0 };
-    int              estimates = 0;
+    struct timespec        t;
+    struct dig_tick_status tick_status = { 0 };
+    int                    estimates   = 0;
     for (int i = 0; i < 100; i++) {
         (void)clock_gettime(CLOCK_MONOTONIC, &t);
         const struct dig_reading r = bench_still((int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
@@ -382,13 +382,13 @@ static void the_loop_runs_beside_its_neighbours(void **state)
         while (dig_ring_pop(&run.bench->wires.records, &record)) {
             estimates += record.has_estimate;
         }
-        (void)dig_latest_take(&run.bench->wires.pulse, &pulse);
+        (void)dig_latest_take(&run.bench->wires.tick_status, &tick_status);
     }
     atomic_store(&run.stop, true);
     assert_int_equal(pthread_join(thread, NULL), 0);
     assert_in_range(estimates, 90, 100);
-    assert_in_range(pulse.ticks, 10, 1000);
-    assert_true(pulse.worst_tick_us > 0.0);
+    assert_in_range(tick_status.ticks, 10, 1000);
+    assert_true(tick_status.worst_tick_us > 0.0);
     bench_destroy(run.bench);
 }
 

@@ -203,10 +203,10 @@ static void the_running_loop_takes_no_memory_no_lock_and_says_nothing(void **sta
             (void)nanosleep(&pause, NULL);
         }
         if (i % 100 == 0) {
-            bench_offer(b, &b->wires.offer, 3, atomic_load(&b->loop.generation), INT64_MAX);
+            bench_set_basis(b, &b->wires.basis, 3, atomic_load(&b->loop.generation), INT64_MAX);
         }
         if (i % 700 == 0) {
-            bench_offer(b, &b->wires.table, 5, atomic_load(&b->loop.generation) + 1, INT64_MAX);
+            bench_set_basis(b, &b->wires.table, 5, atomic_load(&b->loop.generation) + 1, INT64_MAX);
         }
         struct dig_recorded_dig *raw = NULL;
         if (dig_ring_pop(&b->wires.digs, &raw)) {
@@ -235,8 +235,8 @@ static void the_running_loop_takes_no_memory_no_lock_and_says_nothing(void **sta
         print_message("SKIP: system calls cannot be trapped here, only the C library is counted\n");
     }
     assert_true(digs > 1);
-    assert_true(b->loop.pulse.ticks > 50);
-    assert_true(b->loop.pulse.generation > 2);
+    assert_true(b->loop.tick_status.ticks > 50);
+    assert_true(b->loop.tick_status.generation > 2);
     bench_destroy(b);
 }
 

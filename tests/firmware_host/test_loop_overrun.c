@@ -85,8 +85,8 @@ static void ticks_that_come_in_time_keep_the_beat(void **state)
     (void)state;
     set_up();
     run();
-    assert_int_equal(bench->loop.pulse.ticks, BEATS);
-    assert_int_equal(bench->loop.pulse.overruns, 0);
+    assert_int_equal(bench->loop.tick_status.ticks, BEATS);
+    assert_int_equal(bench->loop.tick_status.overruns, 0);
     for (int i = 0; i < BEATS; i++) {
         assert_int_equal(fake.deadline_ns[i], 1000 * MS + (i + 1) * PERIOD);
     }
@@ -100,7 +100,7 @@ a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other(void
     set_up();
     fake.late_ns[10] = PERIOD - 1;
     run();
-    assert_int_equal(bench->loop.pulse.overruns, 0);
+    assert_int_equal(bench->loop.tick_status.overruns, 0);
     for (int i = 0; i < BEATS; i++) {
         assert_int_equal(fake.deadline_ns[i], 1000 * MS + (i + 1) * PERIOD);
     }
@@ -114,8 +114,8 @@ static void a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped(void 
     fake.late_ns[10] = PERIOD;
     fake.late_ns[20] = 7 * PERIOD + PERIOD / 2;
     run();
-    assert_int_equal(bench->loop.pulse.overruns, 2);
-    assert_int_equal(bench->loop.pulse.ticks, BEATS);
+    assert_int_equal(bench->loop.tick_status.overruns, 2);
+    assert_int_equal(bench->loop.tick_status.ticks, BEATS);
 
     // One tick for all that were missed, and a whole period after it the next.
     assert_int_equal(fake.deadline_ns[10], fake.start_ns[10] + PERIOD);
@@ -132,8 +132,8 @@ static void a_tick_that_takes_too_long_makes_the_next_an_overrun_and_is_told(voi
     set_up();
     fake.takes_ns[10] = 2 * PERIOD + MS;
     run();
-    assert_int_equal(bench->loop.pulse.overruns, 1);
-    assert_close(bench->loop.pulse.worst_tick_us, 11000.0, 1e-9);
+    assert_int_equal(bench->loop.tick_status.overruns, 1);
+    assert_close(bench->loop.tick_status.worst_tick_us, 11000.0, 1e-9);
     assert_int_equal(fake.start_ns[11], fake.start_ns[10] + 2 * PERIOD + MS);
     assert_int_equal(fake.deadline_ns[11], fake.start_ns[11] + PERIOD);
     bench_destroy(bench);
@@ -161,8 +161,8 @@ static void readings_wait_for_a_late_tick_and_keep_their_own_time(void **state)
         assert_int_equal(record.sample.time_ns, fake.start_ns[20] - (10 - i) * PERIOD);
     }
     assert_false(dig_ring_pop(&bench->wires.records, &record));
-    assert_int_equal(bench->loop.pulse.overruns, 1);
-    assert_int_equal(bench->loop.pulse.lost, 0);
+    assert_int_equal(bench->loop.tick_status.overruns, 1);
+    assert_int_equal(bench->loop.tick_status.lost, 0);
     bench_destroy(bench);
 }
 

@@ -24,7 +24,7 @@ static void with_and_without_a_summary_a_dig_is_of_the_same_gravel(void **state)
     struct dig_curve_set *const set     = made_table(&options);
     struct dig_matcher          matcher = { .outline = NULL };
     const struct dig_match      without = match_by(&matcher, set);
-    dig_matcher_take_up(&matcher, set);
+    dig_matcher_set_table(&matcher, set);
     assert_non_null(matcher.outline);
     const struct dig_match with = match_by(&matcher, set);
     assert_int_equal(with.nearest, without.nearest);
@@ -42,12 +42,12 @@ static void another_table_taken_up_is_the_one_that_is_matched(void **state)
     (void)state;
     struct dig_curve_set *const set     = made_table(&options);
     struct dig_matcher          matcher = { .outline = NULL };
-    dig_matcher_take_up(&matcher, set);
+    dig_matcher_set_table(&matcher, set);
     const int before = match_by(&matcher, set).nearest;
 
     struct dig_curve_set *const other                                   = made_table(&options);
     other->packings[(size_t)before * MADE_TRAJECTORIES + MADE_SIMPLE_A] = 0;
-    dig_matcher_take_up(&matcher, other);
+    dig_matcher_set_table(&matcher, other);
     made_table_destroy(set);
     assert_int_not_equal(match_by(&matcher, other).nearest, before);
 

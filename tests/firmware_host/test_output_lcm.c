@@ -198,22 +198,22 @@ static void a_match_names_gravel_interval_and_table(void **state)
     (void)state;
     struct dig_output *const    output = begin("match.lcm");
     const struct dig_fit_result result = {
-        .known.any        = true,
-        .known.valid      = true,
-        .known.expires_ns = 77,
-        .known.drift      = 1.5,
-        .known.restored   = true,
-        .known.trajectory = "simpleA",
-        .known.table      = "abc123",
-        .known.wanted     = "a simple dig",
-        .known.ending     = DIG_ENDING_ABORTED,
-        .known.made       = { 1.25, 0.02 },
-        .known.matched    = { 1.2, 0.01 },
-        .known.nearest    = { { 0.6, 0.2, 2500 } },
-        .known.weighted   = { { 0.7, 0.3, 2600 } },
+        .track.any        = true,
+        .track.valid      = true,
+        .track.expires_ns = 77,
+        .track.drift      = 1.5,
+        .track.restored   = true,
+        .track.trajectory = "simpleA",
+        .track.table      = "abc123",
+        .track.wanted     = "a simple dig",
+        .track.ending     = DIG_ENDING_ABORTED,
+        .track.made       = { 1.25, 0.02 },
+        .track.matched    = { 1.2, 0.01 },
+        .track.nearest    = { { 0.6, 0.2, 2500 } },
+        .track.weighted   = { { 0.7, 0.3, 2600 } },
         .hint_trajectory  = "actual",
         .hint_J_per_kg    = 12.5,
-        .known.match      = { .valid            = true,
+        .track.match      = { .valid            = true,
                               .dig_count        = 3,
                               .nearest          = 1,
                               .nearest_distance = 0.2,
@@ -275,7 +275,7 @@ static void a_depth_that_was_not_told_is_not_a_number(void **state)
 {
     (void)state;
     struct dig_output *const    output = begin("plain.lcm");
-    const struct dig_fit_result result = { .known.any = true };
+    const struct dig_fit_result result = { .track.any = true };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
     dig_output_destroy(output);
     const struct seen seen = read_back("plain.lcm");
@@ -289,26 +289,28 @@ static void a_depth_that_was_not_told_is_not_a_number(void **state)
 static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state)
 {
     (void)state;
-    struct dig_output *const  output  = begin("outlook.lcm");
-    static struct dig_outlook outlook = { .time_ns = 5, .expires_ns = 9, .dig_count = 3 };
-    outlook.prediction.valid          = true;
-    outlook.prediction.trajectory     = 1;
-    outlook.prediction.from_progress  = 0.25;
-    outlook.prediction.to_progress    = 1.0;
-    outlook.prediction.peak_Nm        = 64.0;
-    outlook.prediction.peak_sigma_Nm  = 6.5;
-    outlook.prediction.energy_J       = 32.0;
-    outlook.prediction.energy_sigma_J = 3.25;
-    outlook.prediction.approach       = (struct dig_approach){ 1.15, -0.03 };
+    struct dig_output *const            output      = begin("predictions.lcm");
+    static struct dig_prediction_record predictions = { .time_ns    = 5,
+                                                        .expires_ns = 9,
+                                                        .dig_count  = 3 };
+    predictions.prediction.valid                    = true;
+    predictions.prediction.trajectory               = 1;
+    predictions.prediction.from_progress            = 0.25;
+    predictions.prediction.to_progress              = 1.0;
+    predictions.prediction.peak_Nm                  = 64.0;
+    predictions.prediction.peak_sigma_Nm            = 6.5;
+    predictions.prediction.energy_J                 = 32.0;
+    predictions.prediction.energy_sigma_J           = 3.25;
+    predictions.prediction.approach                 = (struct dig_approach){ 1.15, -0.03 };
     for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
-        outlook.prediction.moment_Nm[i]  = i;
-        outlook.prediction.sigma_Nm[i]   = -i;
-        outlook.prediction.sigma_Fx_N[i] = 100.0 + i;
-        outlook.prediction.sigma_Fz_N[i] = 200.0 + i;
+        predictions.prediction.moment_Nm[i]  = i;
+        predictions.prediction.sigma_Nm[i]   = -i;
+        predictions.prediction.sigma_Fx_N[i] = 100.0 + i;
+        predictions.prediction.sigma_Fz_N[i] = 200.0 + i;
     }
-    assert_int_equal(dig_output_outlook(output, set(), &outlook), DIG_OK);
+    assert_int_equal(dig_output_prediction(output, set(), &predictions), DIG_OK);
     dig_output_destroy(output);
-    struct seen seen = read_back("outlook.lcm");
+    struct seen seen = read_back("predictions.lcm");
     assert_int_equal(seen.prediction.valid, 1);
     assert_string_equal(seen.trajectory[2], "actual");
     assert_int_equal(seen.prediction.points, DIG_PREDICTION_POINTS);
@@ -325,13 +327,13 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     assert_close(seen.prediction.depth, 1.15, 0.0);
     assert_close(seen.prediction.attack_rad, -0.03, 0.0);
 
-    struct dig_output *const again = begin("outlook.lcm");
-    outlook.prediction.valid       = false;
-    outlook.why_not                = DIG_WHY_NOT_ON_TABLE;
-    outlook.outside                = true;
-    assert_int_equal(dig_output_outlook(again, set(), &outlook), DIG_OK);
+    struct dig_output *const again = begin("predictions.lcm");
+    predictions.prediction.valid   = false;
+    predictions.state              = DIG_PREDICTION_OFF_TABLE;
+    predictions.outside            = true;
+    assert_int_equal(dig_output_prediction(again, set(), &predictions), DIG_OK);
     dig_output_destroy(again);
-    seen = read_back("outlook.lcm");
+    seen = read_back("predictions.lcm");
     assert_int_equal(seen.prediction.valid, 0);
     assert_int_equal(seen.prediction.points, 0);
     assert_true(isnan(seen.prediction.depth) && isnan(seen.prediction.attack_rad));
@@ -350,7 +352,7 @@ static void health_carries_every_counter(void **state)
          .note            = "trouble",
          .rt              = { .realtime = true },
          .tick_s          = 0.005,
-         .pulse           = { .ticks             = 1,
+         .tick_status     = { .ticks             = 1,
                               .overruns          = 2,
                               .missing           = 3,
                               .worst_tick_us     = 4.5,

@@ -269,7 +269,7 @@ static void a_rig_with_a_force_sensor_can_be_mapped(void **state)
         "  - {name: sensor_My_Nm, register: 5, type: int16, scale: 1e-3, min: -10, max: 10}\n";
     const struct dig_signal_map map = modbus_map(scratch_write("sensor.yaml", text));
     assert_int_equal(dig_signal_map_sensing(&map), DIG_SENSING_SENSOR);
-    assert_true(map.group[0].needed && !map.group[0].spared);
+    assert_true(map.group[0].needed && !map.group[0].dispensable);
     const uint16_t     registers[] = { 0xCE14, 833, 1719, 125, 0xFFDB, 27 };
     struct dig_reading r;
     dig_signal_map_registers(&map, 0, registers, 7, &r);
@@ -387,7 +387,7 @@ static void a_block_of_force_alone_is_spared(void **state)
     assert_int_equal(map.groups, 4);
     for (size_t g = 0; g < 4; g++) {
         assert_int_equal(map.group[g].needed, g < 3);
-        assert_int_equal(map.group[g].spared, g == 1); // the arm's come with the bucket's
+        assert_int_equal(map.group[g].dispensable, g == 1); // the arm's come with the bucket's
     }
 }
 
@@ -437,7 +437,8 @@ static void registers_far_apart_come_in_blocks(void **state)
     assert_close(named.group[1].poll_s, 0.0, 0.0);
     assert_true(named.group[1].needed && named.group[2].needed);
     assert_false(named.group[0].needed || named.group[3].needed);
-    assert_false(named.group[1].spared || named.group[2].spared || named.group[3].spared);
+    assert_false(named.group[1].dispensable || named.group[2].dispensable ||
+                 named.group[3].dispensable);
 
     uint16_t           block[10] = { [3] = 1, [4] = 2, [6] = 1 };
     struct dig_reading r;

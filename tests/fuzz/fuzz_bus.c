@@ -136,9 +136,9 @@ static void fuzz_can(const time_t end)
                                                    .has_alive  = map.has_alive,
                                                    .groups     = (unsigned)map.groups };
         for (size_t g = 0; g < map.groups; g++) {
-            settings.needed[g] = map.group[g].needed;
-            settings.spared[g] = map.group[g].spared;
-            settings.frame[g]  = map.group[g].frame;
+            settings.needed[g]      = map.group[g].needed;
+            settings.dispensable[g] = map.group[g].dispensable;
+            settings.frame[g]       = map.group[g].frame;
         }
         for (size_t i = 0; i < DIG_SIGNALS; i++) {
             settings.max_rate[i] = map.entry[i].max_rate;
@@ -206,7 +206,7 @@ static void fuzz_modbus(const time_t end)
     }
     static struct dig_signal_map    map;
     static struct dig_reading       memory[64];
-    static struct dig_note          notes[3];
+    static struct dig_log_line      notes[3];
     struct dig_ring                 readings;
     struct dig_latest               latest;
     struct dig_input                input = { 0 };

@@ -183,7 +183,7 @@ static enum dig_status read_samples(const char *const                   path,
     dig_machine_recording_finish(&recording);
     const double lambda = machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; status == DIG_OK && i < digs->digs; i++) {
-        dig_inertia_error_forces(&machine->machine, lambda, &digs->dig[i]);
+        dig_inertia_error_add(&machine->machine, lambda, &digs->dig[i]);
     }
     return status;
 }

@@ -12,7 +12,7 @@ static void tell_whole(const struct dig_trajectory *const t, const double tooth_
                        const struct dig_observation *const dig, struct digloop_wrong *const wrong)
 {
     struct dig_channels weight;
-    dig_peak_energy_energy_weights(t, tooth_m, &weight);
+    dig_peak_energy_weights(t, tooth_m, &weight);
     double peak_Nm  = -INFINITY;
     double energy_J = dig->forces ? 0.0 : (double)NAN;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {

@@ -1,0 +1,58 @@
+// The wrench of a sample, by the machine as it is corrected or by a rig's force sensor.
+
+#include "estimator/estimator_state.h"
+#include "estimator/wrench/cylinder.h"
+#include "estimator/wrench/sensed.h"
+#include "estimator/wrench/wrench.h"
+
+#include <assert.h>
+#include <math.h>
+
+// The wrench by a rig's force sensor, inertia subtracted. The first solution checks the sample: a
+// number that is not finite must not enter the filter.
+static enum dig_status solve_sensed(struct dig_estimator *const    e,
+                                    const struct dig_sample *const sample,
+                                    struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    const struct dig_sensed_motion still = { .turn_radps = 0.0 };
+    const enum dig_status status = dig_sensed_solve(e->machine, sample, &still, wrench, front);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_sensed_motion motion = dig_sensed_move(&e->rates, e->machine, sample);
+    return dig_sensed_solve(e->machine, sample, &motion, wrench, front);
+}
+
+enum dig_status dig_estimator_solve(struct dig_estimator *const    e,
+                                    const struct dig_sample *const sample,
+                                    struct dig_wrench *const wrench, struct dig_front *const front)
+{
+    if (e->machine->sensor.fitted) {
+        return solve_sensed(e, sample, wrench, front);
+    }
+    if (!e->corrected.corrects) {
+        return dig_wrench_solve(e->machine, sample, wrench, front);
+    }
+    if (!dig_sample_has_moment(sample)) {
+        return DIG_ESTALE;
+    }
+    struct dig_sample   at = *sample;
+    struct dig_rates    rates;
+    const double *const now_rad = &sample->value[DIG_SIGNAL_BOOM_rad];
+    if (!isfinite(now_rad[0]) || !isfinite(now_rad[1]) || !isfinite(now_rad[2])) {
+        return DIG_EINVAL;
+    }
+    rates =
+        dig_rates_step(&e->rates, sample->time_ns, now_rad,
+                       dig_reading_sigma(e->machine->angle_step_rad, e->machine->angle_sigma_rad));
+    // A delay: the parabola through the last angles, evaluated at the time of the pressures.
+    const double delay_s = e->corrected.correction.delay_s;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        const double back_rad =
+            delay_s * (rates.velocity_radps[j] - 0.5 * delay_s * rates.acceleration_radps2[j]);
+        at.value[DIG_SIGNAL_BOOM_rad + j] -= back_rad;
+        rates.velocity_radps[j] -= delay_s * rates.acceleration_radps2[j];
+    }
+    return dig_wrench_correct(&e->corrected.machine, &e->corrected.correction, &at, &rates, wrench,
+                              front);
+}

@@ -1,0 +1,235 @@
+// The CAN side of the signal map: entries found in a DBC, and what the map says of messages.
+
+#include "core/units.h"
+#include "files/yaml.h"
+#include "firmware_host/bus/signal_map.h"
+#include "firmware_host/config/config_map_parts.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+struct dig_config_map_key dig_config_map_key_of(const char *const parent, const char *const name)
+{
+    assert(parent != NULL && name != NULL);
+    struct dig_config_map_key key;
+    (void)snprintf(key.text, sizeof key.text, "%.40s.%.40s", parent, name);
+    return key;
+}
+
+// A DBC unit: its quantity and its SI value.
+struct unit {
+    const char *name;
+    char        kind; // p pressure, a angle, t temperature, l length, f force, m moment
+    double      scale;
+};
+
+// A scale farther off its unit is a slip, not a calibration.
+static const double most_calibration = 0.1;
+
+static const struct unit units[] = {
+    { "Pa", 'p', 1.0 },          { "kPa", 'p', 1e3 },
+    { "MPa", 'p', 1e6 },         { "bar", 'p', 1e5 },
+    { "psi", 'p', 6894.757293 }, { "rad", 'a', 1.0 },
+    { "mrad", 'a', 1e-3 },       { "deg", 'a', DIG_RAD_PER_DEG },
+    { "degC", 't', 1.0 },        { "m", 'l', 1.0 },
+    { "mm", 'l', 1e-3 },         { "N", 'f', 1.0 },
+    { "Nm", 'm', 1.0 },
+};
+
+static char kind_of(const size_t signal)
+{
+    switch ((enum dig_signal)signal) {
+    case DIG_SIGNAL_BOOM_rad:
+    case DIG_SIGNAL_ARM_rad:
+    case DIG_SIGNAL_BUCKET_rad:
+    case DIG_SIGNAL_PITCH_rad: return 'a';
+    case DIG_SIGNAL_TEMPERATURE_degC: return 't';
+    case DIG_SIGNAL_PIN_X_m:
+    case DIG_SIGNAL_PIN_Z_m: return 'l';
+    case DIG_SIGNAL_SENSOR_FX_N:
+    case DIG_SIGNAL_SENSOR_FZ_N: return 'f';
+    case DIG_SIGNAL_SENSOR_MY_Nm: return 'm';
+    case DIG_SIGNAL_BOOM_HEAD_Pa:
+    case DIG_SIGNAL_BOOM_ROD_Pa:
+    case DIG_SIGNAL_ARM_HEAD_Pa:
+    case DIG_SIGNAL_ARM_ROD_Pa:
+    case DIG_SIGNAL_BUCKET_HEAD_Pa:
+    case DIG_SIGNAL_BUCKET_ROD_Pa:
+    case DIG_SIGNALS: break;
+    }
+    return 'p';
+}
+
+enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *const work,
+                                          const char *const at, const size_t signal,
+                                          struct dig_map_entry *const entry, const bool scale_given)
+{
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        const struct unit *const unit = &units[i];
+        if (strcmp(unit->name, entry->can.unit) != 0) {
+            continue;
+        }
+        if (unit->kind != kind_of(signal)) {
+            const struct dig_config_map_key key = dig_config_map_key_of(at, "signal");
+            return dig_yaml_refuse(work->path, key.text, work->error,
+                                   "%s is in %s, expected a signal that can be %s", entry->can.name,
+                                   unit->name, dig_signal_name((enum dig_signal)signal));
+        }
+        if (!scale_given) {
+            entry->scale = unit->scale;
+        }
+        if (!(fabs(entry->scale - unit->scale) <= most_calibration * unit->scale)) {
+            const struct dig_config_map_key key = dig_config_map_key_of(at, "scale");
+            return dig_yaml_refuse(work->path, key.text, work->error,
+                                   "%g, expected %g (the DBC gives %s in %s)", entry->scale,
+                                   unit->scale, entry->can.name, unit->name);
+        }
+    }
+    return DIG_OK;
+}
+
+// The group of a message, added when it is new.
+static enum dig_status group_of(const struct dig_config_map_work *const work, const char *const at,
+                                const struct dig_dbc_message *const message, unsigned *const group)
+{
+    struct dig_signal_map *const map   = work->map;
+    const int                    known = dig_signal_map_group(map, message->id, message->extended);
+    if (known >= 0) {
+        *group = (unsigned)known;
+        return DIG_OK;
+    }
+    if (map->groups == DIG_GROUPS_MAX) {
+        const struct dig_config_map_key key = dig_config_map_key_of(at, "message");
+        return dig_yaml_refuse(work->path, key.text, work->error, "expected at most %d messages",
+                               DIG_GROUPS_MAX);
+    }
+    struct dig_map_group *const added = &map->group[map->groups];
+    *added                            = (struct dig_map_group){ .id       = message->id,
+                                                                .extended = message->extended,
+                                                                .bytes    = message->bytes,
+                                                                .frame    = { .cycle_s = message->cycle_s } };
+    memcpy(added->name, message->name, sizeof added->name);
+    *group = (unsigned)map->groups++;
+    return DIG_OK;
+}
+
+enum dig_status dig_config_map_find_can(const struct dig_config_map_work *const work,
+                                        const char *const at, const char *const message_name,
+                                        const char *const           signal_name,
+                                        struct dig_map_entry *const entry)
+{
+    const struct dig_config_map_key message_key = dig_config_map_key_of(at, "message");
+    const struct dig_config_map_key signal_key  = dig_config_map_key_of(at, "signal");
+    if (message_name == NULL || signal_name == NULL) {
+        const struct dig_config_map_key *const key =
+            message_name == NULL ? &message_key : &signal_key;
+        return dig_yaml_refuse(work->path, key->text, work->error,
+                               "missing, expected a name of the DBC");
+    }
+    const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, message_name);
+    if (message == NULL) {
+        return dig_yaml_refuse(work->path, message_key.text, work->error,
+                               "\"%s\", expected a message of the DBC", message_name);
+    }
+    const struct dig_dbc_signal *const signal =
+        dig_dbc_find_signal(work->dbc, message, signal_name);
+    if (signal == NULL) {
+        return dig_yaml_refuse(work->path, signal_key.text, work->error,
+                               "\"%s\", expected a signal of %s", signal_name, message_name);
+    }
+    if (signal->multiplexed || signal->is_float) {
+        return dig_yaml_refuse(work->path, signal_key.text, work->error,
+                               "\"%s\" is %s, expected a plain integer signal", signal_name,
+                               signal->multiplexed ? "multiplexed" : "floating-point");
+    }
+    entry->can = *signal;
+    return group_of(work, at, message, &entry->group);
+}
+
+// A signal about the frame itself: its counter, its checksum.
+static enum dig_status find_frame_signal(const struct dig_config_map_work *const work,
+                                         const char *const at, const char *const key_name,
+                                         const char *const message, const char *const signal,
+                                         struct dig_dbc_signal *const found)
+{
+    struct dig_map_entry            entry = { .used = true };
+    const struct dig_config_map_key key   = dig_config_map_key_of(at, key_name);
+    const enum dig_status status = dig_config_map_find_can(work, at, message, signal, &entry);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (entry.can.bits > 32) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               "\"%s\" has %u bits, expected at most 32", signal, entry.can.bits);
+    }
+    *found = entry.can;
+    return DIG_OK;
+}
+
+static enum dig_status read_checksum(const struct dig_config_map_work *const work,
+                                     const char *const                       at,
+                                     const struct dig_message_text *const    text,
+                                     struct dig_map_group *const             group)
+{
+    const struct dig_config_map_key key    = dig_config_map_key_of(at, "checksum");
+    const enum dig_status           status = find_frame_signal(work, at, "checksum", text->message,
+                                                               text->checksum->signal, &group->checksum_at);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const bool     tsc1 = text->checksum->kind == DIG_CHECKSUM_J1939_TSC1;
+    const unsigned bits = group->checksum_at.bits;
+    const unsigned from = group->checksum_at.start_bit % 8;
+    if (tsc1 ? bits > 4 || text->counter == NULL
+             : bits != 8 || from != (group->checksum_at.intel ? 0U : 7U)) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               tsc1 ? "expected up to 4 bits, and a counter beside it"
+                                    : "expected a signal of one whole byte");
+    }
+    group->checksum = text->checksum->kind;
+    return DIG_OK;
+}
+
+enum dig_status dig_config_map_read_message(const struct dig_config_map_work *const work,
+                                            const size_t                            index,
+                                            const struct dig_message_text *const    text)
+{
+    struct dig_config_map_key at;
+    (void)snprintf(at.text, sizeof at.text, "messages[%zu]", index);
+    const struct dig_config_map_key     key     = dig_config_map_key_of(at.text, "message");
+    const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, text->message);
+    const int                           known =
+        message != NULL ? dig_signal_map_group(work->map, message->id, message->extended) : -1;
+    if (known < 0) {
+        return dig_yaml_refuse(work->path, key.text, work->error,
+                               "\"%s\", expected a message that carries one of the signals",
+                               text->message);
+    }
+    struct dig_map_group *const group = &work->map->group[known];
+    if (!(text->delay_ms >= 0.0 && text->delay_ms <= 1000.0)) {
+        const struct dig_config_map_key delay = dig_config_map_key_of(at.text, "delay_ms");
+        return dig_yaml_refuse(work->path, delay.text, work->error, "%g, expected 0 … 1000",
+                               text->delay_ms);
+    }
+    if (!(text->cycle_ms >= 0.0 && text->cycle_ms <= 60e3)) {
+        const struct dig_config_map_key cycle = dig_config_map_key_of(at.text, "cycle_ms");
+        return dig_yaml_refuse(work->path, cycle.text, work->error, "%g, expected 0 … 60000",
+                               text->cycle_ms);
+    }
+    group->frame.delay_s = text->delay_ms * 1e-3;
+    group->frame.cycle_s = text->cycle_ms > 0.0 ? text->cycle_ms * 1e-3 : group->frame.cycle_s;
+
+    enum dig_status status = DIG_OK;
+    if (text->counter != NULL) {
+        status = find_frame_signal(work, at.text, "counter", text->message, text->counter,
+                                   &group->counter);
+        group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32
+                                       ? 1U << group->counter.bits
+                                       : UINT32_MAX;
+    }
+    return status == DIG_OK && text->checksum != NULL ? read_checksum(work, at.text, text, group)
+                                                      : status;
+}

@@ -1,0 +1,198 @@
+#include "firmware_host/matching/gravel_state.h"
+
+#include "estimator/approach/approach_slots.h"
+#include "estimator/match/match.h"
+#include "files/identity_json.h"
+#include "files/whole.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#define NS_PER_S 1000000000LL
+
+// A file this much younger than now is of a clock that was set back: its age is not known.
+static const double clock_back_s = 3600.0;
+
+static int64_t ns(const double seconds)
+{
+    return (int64_t)llround(fmin(seconds, 3e9) * (double)NS_PER_S);
+}
+
+static void put_pool(const struct dig_curve_set *const set, const struct dig_pool *const pool,
+                     struct dig_identity *const identity)
+{
+    identity->recorded = pool->digs;
+    for (size_t i = 0; i < pool->digs; i++) {
+        const struct dig_observation *const dig = &pool->dig[i];
+        struct dig_identity_dig *const      to  = &identity->recording[i];
+        memcpy(to->trajectory, set->trajectory[dig->trajectory].name, sizeof to->trajectory);
+        memcpy(to->moment_Nm, dig->moment_Nm, sizeof to->moment_Nm);
+        memcpy(to->sigma_Nm, dig->sigma_Nm, sizeof to->sigma_Nm);
+        to->approach = dig->approach;
+        to->first    = dig->first;
+        to->last     = dig->last;
+        to->forces   = dig->forces;
+        if (dig->forces) {
+            memcpy(to->force_N, dig->force_N, sizeof to->force_N);
+            memcpy(to->force_sigma_N, dig->force_sigma_N, sizeof to->force_sigma_N);
+        }
+    }
+}
+
+enum dig_status dig_gravel_state_write(const char *const                    path,
+                                       const struct dig_gravel_track *const track,
+                                       const struct dig_curve_set *const    set,
+                                       const struct dig_pool *const         pool,
+                                       struct dig_error *const              error)
+{
+    assert(path != NULL && track != NULL && set != NULL && pool != NULL &&
+           track->match.samples <= DIG_IDENTITY_SAMPLES_MAX);
+    _Static_assert(DIG_POOL_MAX <= DIG_IDENTITY_DIGS_MAX, "a pool must fit");
+    const struct dig_match *const m        = &track->match;
+    struct dig_identity           identity = {
+                  .digs             = m->digs,
+                  .forces           = m->forces,
+                  .gravel           = m->gravel,
+                  .mean             = m->mean,
+                  .low              = m->low,
+                  .high             = m->high,
+                  .nearest          = track->nearest,
+                  .distance         = m->distance,
+                  .nearest_distance = m->nearest_distance,
+                  .weighted         = m->weighted >= 0,
+                  .weighted_nearest = track->weighted,
+
+                  .weighted_distance = m->weighted_distance,
+                  .noise_floor       = m->noise_floor,
+                  .outside           = m->outside,
+                  .family            = dig_match_is_family(m),
+                  .samples           = m->samples,
+                  .made              = track->made,
+                  .matched           = track->matched,
+    };
+    memcpy(identity.scene_hash, track->table, sizeof identity.scene_hash);
+    memcpy(identity.trajectory, track->trajectory, sizeof identity.trajectory);
+    memcpy(identity.sample, m->sample, m->samples * sizeof m->sample[0]);
+    put_pool(set, pool, &identity);
+
+    struct dig_out        out    = { 0 };
+    const enum dig_status status = dig_out_open(&out, path, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    dig_identity_write(out.file, &identity);
+    return dig_out_commit(&out, error);
+}
+
+static enum dig_status check_age(const char *const path, const double most_s, double *const age_s,
+                                 struct dig_error *const error)
+{
+    struct stat     file;
+    struct timespec wall;
+    if (stat(path, &file) != 0) {
+        // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    (void)clock_gettime(CLOCK_REALTIME, &wall);
+    *age_s = difftime(wall.tv_sec, file.st_mtim.tv_sec);
+    if (!(*age_s <= most_s && *age_s >= -clock_back_s)) {
+        return dig_error_set(error, DIG_ESTALE,
+                             "%s: %.1f h old, expected at most %.1f h: a simple dig is wanted",
+                             path, *age_s / 3600.0, most_s / 3600.0);
+    }
+    *age_s = fmax(*age_s, 0.0);
+    return DIG_OK;
+}
+
+// Fills the pool with the file's digs. Empty when one is of a trajectory the table lacks, or of a
+// depth or attack the table was not dug at.
+static void take_pool(const struct dig_curve_set *const set,
+                      const struct dig_identity *const identity, struct dig_pool *const pool)
+{
+    pool->digs = 0;
+    for (size_t i = 0; i < identity->recorded && i < DIG_POOL_MAX; i++) {
+        const struct dig_identity_dig *const from = &identity->recording[i];
+        struct dig_observation               dig  = { .trajectory = -1 };
+        for (size_t t = 0; t < set->trajectories; t++) {
+            if (strcmp(set->trajectory[t].name, from->trajectory) == 0) {
+                dig.trajectory = (int)t;
+            }
+        }
+        memcpy(dig.moment_Nm, from->moment_Nm, sizeof dig.moment_Nm);
+        memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
+        memcpy(dig.force_N, from->force_N, sizeof dig.force_N);
+        memcpy(dig.force_sigma_N, from->force_sigma_N, sizeof dig.force_sigma_N);
+        dig.approach    = from->approach;
+        dig.first       = from->first;
+        dig.last        = from->last;
+        dig.forces      = from->forces;
+        const bool held = dig_observation_check(set, &dig) == DIG_OK &&
+                          (dig_approach_is_plain(&dig.approach) ||
+                           dig_approach_varies(set, (size_t)dig.trajectory));
+        if (!held) {
+            pool->digs = 0;
+            return;
+        }
+        dig_pool_add(pool, &dig);
+    }
+}
+
+enum dig_status dig_gravel_state_read(const char *const path, const struct dig_curve_set *const set,
+                                      const int64_t                                 now_ns,
+                                      const struct dig_gravel_track_settings *const settings,
+                                      struct dig_gravel_track *const                track,
+                                      struct dig_pool *const pool, struct dig_error *const error)
+{
+    assert(path != NULL && set != NULL && settings != NULL && track != NULL && pool != NULL);
+    double              age_s  = 0.0;
+    enum dig_status     status = check_age(path, settings->expires_s, &age_s, error);
+    struct dig_identity i;
+    status = status == DIG_OK ? dig_identity_read(path, &i, error) : status;
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_gravel_track read = {
+        .any        = true,
+        .valid      = true,
+        .restored   = true,
+        .time_ns    = now_ns - ns(age_s),
+        .expires_ns = now_ns + ns(settings->expires_s - age_s),
+        .drift      = (double)NAN,
+
+        .path_measured = (double)NAN,
+        .made          = i.made,
+        .matched       = i.matched,
+    };
+    struct dig_match *const m = &read.match;
+    m->digs                   = i.digs;
+    m->forces                 = i.forces;
+    m->valid                  = true;
+    m->gravel                 = i.gravel;
+    m->mean                   = i.mean;
+    m->low                    = i.low;
+    m->high                   = i.high;
+    m->distance               = i.distance;
+    m->nearest_distance       = i.nearest_distance;
+    m->weighted               = i.weighted ? 0 : -1; // the entry is found below
+    m->weighted_distance      = i.weighted ? i.weighted_distance : (double)NAN;
+    read.weighted             = i.weighted_nearest;
+    m->noise_floor            = i.noise_floor;
+    m->outside                = i.outside;
+    m->samples                = i.samples < DIG_MATCH_SAMPLES ? i.samples : DIG_MATCH_SAMPLES;
+    memcpy(m->sample, i.sample, m->samples * sizeof m->sample[0]);
+    memcpy(read.trajectory, i.trajectory, sizeof read.trajectory);
+    memcpy(read.table, i.scene_hash, sizeof read.table);
+    if (!dig_gravel_track_set_table(&read, set)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: scene_hash: %.12s, or a gravel out of range; expected one of the "
+                             "table's, scene %.12s",
+                             path, read.table, set->scene_hash);
+    }
+    *track = read;
+    take_pool(set, &i, pool);
+    return DIG_OK;
+}

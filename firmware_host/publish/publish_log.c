@@ -1,0 +1,157 @@
+#include "firmware_host/publish/publish_log.h"
+
+#include "core/units.h"
+#include "estimator/match/match.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#define NS_PER_S 1000000000LL
+
+__attribute__((format(printf, 2, 0))) static void put_line(const struct dig_publisher *const p,
+                                                           const char *const format, va_list args)
+{
+    char line[512];
+    (void)vsnprintf(line, sizeof line, format, args);
+    p->console.say(line);
+}
+
+__attribute__((format(printf, 2, 3))) void dig_publisher_log(const struct dig_publisher *const p,
+                                                             const char *const format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
+    put_line(p, format, args);
+    va_end(args);
+}
+
+void dig_publisher_log_held(const struct dig_publisher *const p, const int64_t held)
+{
+    if (held > 0) {
+        dig_publisher_log(p, "lines held back, as too many came at once: %" PRId64, held);
+    }
+}
+
+__attribute__((format(printf, 2, 3))) void dig_publisher_log_limited(struct dig_publisher *const p,
+                                                                     const char *const format, ...)
+{
+    if (!dig_log_limit_allows(&p->log_limit, dig_input_now_ns())) {
+        return;
+    }
+    dig_publisher_log_held(p, dig_log_limit_held(&p->log_limit));
+    va_list args;
+    va_start(args, format);
+    // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
+    put_line(p, format, args);
+    va_end(args);
+}
+
+// Depth and attack of the dig; those it was matched at, where they differ. "" where not measured.
+static void approach_text(const struct dig_gravel_track *const k, const size_t size, char text[])
+{
+    static const double       shown   = 0.005; // half of a depth's last digit
+    const struct dig_approach matched = dig_approach_told(&k->matched);
+    const struct dig_approach made    = k->made;
+    text[0]                           = '\0';
+    if (!(made.depth > 0.0)) {
+        return;
+    }
+    const int length = snprintf(text, size, ", depth %.2f, attack %.1f deg", made.depth,
+                                made.attack_rad / DIG_RAD_PER_DEG);
+    if (fabs(matched.depth - made.depth) > shown ||
+        fabs(matched.attack_rad - made.attack_rad) > shown) {
+        (void)snprintf(text + length, size - (size_t)length, ", matched at %.2f and %.1f deg",
+                       matched.depth, matched.attack_rad / DIG_RAD_PER_DEG);
+    }
+}
+
+void dig_publisher_log_match(const struct dig_publisher *const p)
+{
+    const struct dig_gravel_track *const k = &p->result.track;
+    const struct dig_match *const        m = &k->match;
+    if (!k->valid) {
+        dig_publisher_log(p, "no gravel known: %s", k->wanted);
+        return;
+    }
+    char        how[96];
+    char        untold[DIG_UNTOLD_SIZE];
+    char        digs[48]     = "";
+    char        weighted[96] = "";
+    const char *forces       = m->forces ? ", by moment and forces" : ", by the moment alone";
+    if (m->digs > 1) {
+        (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
+    }
+    if (m->weighted >= 0) {
+        (void)snprintf(weighted, sizeof weighted,
+                       ", noise-weighted entry %.2f / %.2f / %.0f at %.2f",
+                       k->weighted.value[DIG_AXIS_FRICTION], k->weighted.value[DIG_AXIS_ROLLING],
+                       k->weighted.value[DIG_AXIS_DENSITY_kgpm3], m->weighted_distance);
+    }
+    approach_text(k, sizeof how, how);
+    dig_match_untold(m, untold);
+    dig_publisher_log(
+        p,
+        "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
+        "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s%s%s%s",
+        k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory, how,
+        m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
+        m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
+        m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
+        m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
+        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, weighted, forces, digs,
+        m->outside ? "; OUTSIDE the table: none of its gravels" : "",
+        untold[0] != '\0' ? "; a FAMILY of gravels, not told: " : "", untold);
+}
+
+void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns)
+{
+    const struct dig_drops *const d   = &p->health.tick_status.drops;
+    const int64_t                 all = d->nan + d->not_available + d->out_of_range + d->frozen +
+                        p->health.malformed + p->health.lost;
+    if (all > p->logged_drops && now_ns >= p->next_drops_ns) {
+        p->logged_drops  = all;
+        p->next_drops_ns = now_ns + 10 * NS_PER_S;
+        dig_publisher_log(p,
+                          "dropped so far: %" PRId64 " not available, %" PRId64
+                          " out of range, %" PRId64 " frozen, %" PRId64 " NaN, %" PRId64
+                          " malformed, %" PRId64 " wrong checksums, %" PRId64 " repeated, %" PRId64
+                          " jumps, %" PRId64 " stuck, %" PRId64 " missed, %" PRId64
+                          " timeouts, %" PRId64 " lost",
+                          d->not_available, d->out_of_range, d->frozen, d->nan, p->health.malformed,
+                          p->health.checksum, d->repeated, d->jump, d->stuck, d->missed,
+                          p->health.timeouts, p->health.lost);
+    }
+}
+
+void dig_publisher_show(struct dig_publisher *const p, const int64_t now_ns)
+{
+    static const char *const phases[]  = { "air", "contact", "dig", "exit" };
+    static const char *const motions[] = { "", ", penetration", ", drag", ", curl", ", lift" };
+    if (p->console.show == NULL || now_ns < p->next_show_ns) {
+        return;
+    }
+    p->next_show_ns                     = now_ns + NS_PER_S / 2;
+    const struct dig_estimate *const e  = &p->estimate;
+    const bool                       on = e->trajectory >= 0 && p->record_count > 0;
+    char                             gravel[96];
+    char                             line[256];
+    (void)snprintf(gravel, sizeof gravel, "gravel not known");
+    if (p->any_result) {
+        const struct dig_match *const  m = &p->result.track.match;
+        const struct dig_gravel *const g = &m->gravel;
+        (void)snprintf(gravel, sizeof gravel, "gravel %s%.2f / %.2f / %.0f kg/m3 by %s%s",
+                       dig_match_is_family(m) ? "like " : "", g->value[DIG_AXIS_FRICTION],
+                       g->value[DIG_AXIS_ROLLING], g->value[DIG_AXIS_DENSITY_kgpm3],
+                       m->forces ? "moment and forces" : "moment",
+                       p->result.track.valid ? "" : " (no longer)");
+    }
+    (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
+                   p->state, phases[e->phase], motions[e->motion], on ? " " : "",
+                   on ? p->set->trajectory[e->trajectory].name : "", 1e-3 * e->wrench.My_Nm, gravel,
+                   p->health.frames);
+    p->console.show(line);
+}
