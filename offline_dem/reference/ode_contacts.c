@@ -3,7 +3,7 @@
 #include "offline_dem/law/law_general.h"
 #include "offline_dem/reference/ode_plates.h"
 
-// Numbers of walls and rocks in contact memory, beyond any grain's.
+// Numbers of walls and rocks in the contact history, beyond any grain's.
 #define WALL_NUMBER 0xFFFF0000U
 #define ROCK_NUMBER 0xFFFF4000U
 
@@ -34,15 +34,7 @@ static void set_velocity(dBodyID i, dBodyID j, struct dig_kinematics *const t)
     }
 }
 
-static struct dig_contact_force law_of(const struct dig_law *const law, const double dt_s,
-                                       const struct dig_kinematics       kinematics,
-                                       struct dig_contact_history *const history)
-{
-    return law->general ? dig_law_general(*law, dt_s, kinematics, history)
-                        : dig_law_step(*law, dt_s, kinematics, history);
-}
-
-// Loads on i, scaled for a kick that is not a whole one.
+// Loads on i, scaled by the fraction of a kick.
 static void add_load_to_i(const struct dig_ode_bed *const bed, dBodyID i,
                           const struct dig_contact_force *const p)
 {
@@ -73,7 +65,7 @@ static bool comes_second(const struct dig_ode_bed *const bed, const size_t a, co
     return bed->type_of[a] > bed->type_of[b] || (bed->type_of[a] == bed->type_of[b] && a > b);
 }
 
-// Two grains whose boxes overlap. The law's i is the one of the lower kind, as in the kernel.
+// Two grains whose boxes overlap. The law's i is the one of the lower type, as in the kernel.
 void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
 {
     struct dig_ode_bed *const bed = data;
@@ -99,7 +91,7 @@ void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
     struct dig_kinematics kinematics = { 0 };
     set_distance(&kinematics, &contact, law->reach_m);
     set_velocity(bed->body[na], bed->body[nb], &kinematics);
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[na], &force);
     add_load_to_j(bed, bed->body[nb], &force);
 }
@@ -125,11 +117,11 @@ void dig_ode_contacts_wall(void *const data, dGeomID a, dGeomID b)
     struct dig_kinematics kinematics = { 0 };
     set_distance(&kinematics, &contact, law->reach_m);
     set_velocity(bed->body[i], NULL, &kinematics);
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
 }
 
-// What a push does to the body that gets the other end of it, about the point the arm starts from.
+// Adds the reaction of a contact force to the other body, about the point the arm starts from.
 static void add_reaction(const struct dig_contact_force *const p, const double arm_m[3],
                          double f_N[3], double t_Nm[3])
 {
@@ -178,12 +170,12 @@ void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
     kinematics.jx_radps                  = w[0];
     kinematics.jy_radps                  = w[1];
     kinematics.jz_radps                  = w[2];
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
     add_reaction(&force, arm_m, rock->f_N, rock->t_Nm);
 }
 
-// One contact of a grain with the tool: point and memory are given.
+// One contact of a grain with the tool, at a given point with its history.
 static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
                            struct dig_ode_plate_contact *const at)
 {
@@ -199,7 +191,7 @@ static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const 
     kinematics.vx_mps -= tool->vx_mps - tool->w_radps * arm[2];
     kinematics.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
     const struct dig_contact_force p =
-        law_of(&bed->tool_law[bed->type_of[i]], bed->dt_s, kinematics, &at->history);
+        dig_law_apply(&bed->tool_law[bed->type_of[i]], bed->dt_s, &kinematics, &at->history);
     add_load_to_i(bed, bed->body[i], &p);
     add_reaction(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
 }

@@ -80,8 +80,7 @@ static void every_variant_gives_the_same_bits(void **state)
         dem_run(&other, 600);
         assert_memory_equal(first.grains.motion, other.grains.motion,
                             GRAINS * sizeof *first.grains.motion);
-        assert_memory_equal(first.grains.id, other.grains.id,
-                            GRAINS * sizeof *first.grains.id);
+        assert_memory_equal(first.grains.id, other.grains.id, GRAINS * sizeof *first.grains.id);
         dig_world_finish(&other);
     }
     dig_world_finish(&first);

@@ -197,10 +197,10 @@ static void a_contact_goes_on_across_an_edge(void **state)
 
 // A device whose grains never ask for new lists: steps on, and then says that one got away.
 static enum dig_status (*real_poll)(struct dig_device *device,
-                                      uint32_t           margin_flag[DIG_MARGIN_FLAGS]);
+                                    uint32_t           margin_flag[DIG_MARGIN_FLAGS]);
 
 static enum dig_status poll_late(struct dig_device *const device,
-                                   uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
+                                 uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
 {
     const enum dig_status status        = real_poll(device, margin_flag);
     margin_flag[DIG_MARGIN_NEARLY_LEFT] = 0;
@@ -214,7 +214,7 @@ static void a_grain_that_got_away_is_refused(void **state)
     struct dig_world         world     = dem_world(2, x_m, dem_material(0.5, 0.5));
     struct dig_device *const host      = dem_host_device_create();
     assert_non_null(host);
-    real_poll           = host->poll_margins;
+    real_poll             = host->poll_margins;
     host->poll_margins    = poll_late;
     world.gravity_mps2[2] = -GRAVITY;
     assert_int_equal(dig_offload(&world, host), DIG_OK);
