@@ -25,6 +25,17 @@ pkg_cflags  = $(shell $(PKG_CONFIG) --cflags $(1))
 pkg_libs    = $(shell $(PKG_CONFIG) --libs $(1))
 LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml) -lyaml -lpthread -lm
 
+# Goals that compile nothing, or install what is missing first. Before any other, a missing library is named.
+compile_nothing := setup demo test help clean format format-check layers uninstall arm64 spy
+ifneq ($(filter-out $(compile_nothing),$(or $(MAKECMDGOALS),all)),)
+missing := $(if $(shell command -v $(LCM_GEN)),,liblcm-bin) \
+           $(shell PKG_CONFIG='$(PKG_CONFIG)' scripts/missing_packages.sh build \
+                   $(if $(filter check% coverage,$(MAKECMDGOALS)),test))
+ifneq ($(strip $(missing)),)
+$(error These Debian packages are missing: $(strip $(missing)). `scripts/setup.sh build test` installs them)
+endif
+endif
+
 Q   := $(if $(filter 1,$(V)),,@)
 say  = @printf '  %-6s %s\n' $(1) $(2)
 
@@ -65,7 +76,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers \
+.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -93,6 +104,12 @@ evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
 
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
 	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh
+
+picture: all floors ## The README's picture, a predicted dig against the measured one, and those of the floors
+	$(Q)BIN=$(BUILD)/bin scripts/picture.sh docs/pictures/predicted.svg
+
+floors: ## The pictures of docs/architecture.md, drawn from scripts/check_layers.sh and the tree
+	$(Q)scripts/floors.sh docs/pictures
 
 setup: ## Install everything any target needs
 	$(Q)scripts/setup.sh build demo test lint spy valgrind
@@ -203,6 +220,32 @@ fuzz: ## Damaged files, frames and replies against every reader, under sanitizer
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
 
+# What does not end when something is taken away or goes wrong, seconds or hours long: TORTURE_S for each script.
+TORTURE_S    ?= 30
+torture_made := $(patsubst tests/torture/%.c,$(BUILD)/tests/torture/%.so,$(wildcard tests/torture/fail_*.c)) \
+                $(patsubst tests/torture/%.c,$(BUILD)/tests/torture/%,$(filter-out tests/torture/fail_%,$(wildcard tests/torture/*.c)))
+torture: all $(helpers) $(torture_made) ## kill -9, full disks, no memory, lying buses, floods, TORTURE_S seconds each; counts at the end
+	$(Q)BIN=$(BUILD)/bin TORTURE_S=$(TORTURE_S) scripts/torture.sh $(or $(TORTURE_ONLY),$(sort $(wildcard tests/torture/*.sh)))
+
+$(BUILD)/tests/torture/%.so: tests/torture/%.c
+	$(call say,CC,$<)
+	$(Q)mkdir -p $(@D) && $(CC) -std=gnu11 -O2 -fPIC -shared $< -o $@ -ldl
+$(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
+# libFuzzer is clang's. FUZZ_TARGETS: some of the files of tests/fuzz/coverage.
+FUZZ_SECONDS ?= 60
+FUZZ_TARGETS ?= $(patsubst tests/fuzz/coverage/%.c,%,$(wildcard tests/fuzz/coverage/*.c))
+FUZZ_FLAGS   := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+fuzz-coverage: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS each
+	$(Q)scripts/setup.sh fuzz
+	$(Q)$(MAKE) --no-print-directory $(FUZZ_TARGETS:%=$(BUILD)/libfuzzer/tests/fuzz/coverage/%) \
+	    BUILD=$(BUILD)/libfuzzer CC=clang WARN=-w CFLAGS="$(FUZZ_FLAGS)"
+	$(Q)FUZZERS=$(BUILD)/libfuzzer/tests/fuzz/coverage CORPORA=$(BUILD)/fuzz-corpora \
+	    scripts/fuzz_coverage.sh $(FUZZ_SECONDS) $(FUZZ_TARGETS)
+$(BUILD)/tests/fuzz/coverage/%: LDFLAGS += -fsanitize=fuzzer
+
 $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
@@ -252,8 +295,8 @@ coverage: ## Line and branch coverage per source file
 	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
 
 # The analyzer reads what ships; tests are run under sanitizers instead.
-lint: lint-compiler lint-tidy ## Layering, the compiler's analyzer, clang-tidy
-lint-compiler: layers $(BUILD)/messages/.made
+lint: lint-compiler lint-tidy ## Layering, documents, the compiler's analyzer, clang-tidy
+lint-compiler: layers docs-check $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(filter-out tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
 	$(Q)printf '%s\n' $(filter tests/%,$(all_src)) | xargs -P $(JOBS) -I{} \
@@ -268,6 +311,9 @@ lint-tidy-upper lint-tidy-lower: $(BUILD)/messages/.made
 
 layers: all ## Fail on an include or a circle of calls that points the wrong way
 	$(Q)./scripts/check_layers.sh $(BUILD)
+
+docs-check: ## Fail where a document names a file, heading, test or target that is not there
+	$(Q)./scripts/check_docs.sh
 
 format: ## Rewrite the sources with clang-format
 	$(Q)clang-format -i $$(git ls-files '*.[ch]')

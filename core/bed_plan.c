@@ -1,5 +1,7 @@
 #include "core/bed_plan.h"
 
+#include "core/name.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -102,7 +104,12 @@ static enum dig_status check_materials(const struct dig_bed_plan *const bed,
         if (status != DIG_OK) {
             return status;
         }
-        bool known = m->name[0] == '\0';
+        if (!dig_name_ok(m->name)) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "bed.materials[%zu].name: \"%s\", expected " DIG_NAME_RULE, i,
+                                 m->name);
+        }
+        bool known = false;
         for (size_t k = 0; k <= DIG_MATERIAL_WALLS; k++) {
             known = known || (k != i + 1 && strcmp(dig_material_name(bed, k), m->name) == 0);
         }

@@ -1,5 +1,7 @@
 #include "core/error.h"
 
+#include "core/text.h"
+
 #include <assert.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,6 +16,7 @@ enum dig_status dig_error_set(struct dig_error *const error, const enum dig_stat
         va_start(args, format);
         (void)vsnprintf(error->text, sizeof error->text, format, args);
         va_end(args);
+        dig_text_clean(error->text); // it quotes what files hold
     }
     return status;
 }

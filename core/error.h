@@ -12,7 +12,7 @@ struct dig_error {
 
 /// Fills *error (NULL is allowed and ignored) and returns status, so that a refusal is one line:
 /// `return dig_error_set(error, DIG_EINVAL, "%s:%d: young_Pa: %g, expected > 0", …)`.
-/// Text that does not fit is cut.
+/// Text that does not fit is cut; a byte that is no printable character becomes '?'.
 __attribute__((format(printf, 3, 4))) enum dig_status
 dig_error_set(struct dig_error *error, enum dig_status status, const char *format, ...);
 

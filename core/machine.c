@@ -1,5 +1,6 @@
 #include "core/machine.h"
 
+#include "core/name.h"
 #include "core/units.h"
 
 #include <assert.h>
@@ -241,6 +242,10 @@ enum dig_status dig_machine_check(const struct dig_machine *const machine,
 {
     assert(machine != NULL);
 
+    if (!dig_label_ok(machine->name)) {
+        return dig_error_set(error, DIG_EINVAL, "name: \"%s\", expected " DIG_LABEL_RULE,
+                             machine->name);
+    }
     enum dig_status status = DIG_OK;
     if (machine->sensor.fitted) {
         status = check_link(&machine->link[DIG_JOINT_BUCKET], "bucket", error);

@@ -2,6 +2,7 @@
 
 #include "core/bed_plan.h"
 #include "core/canonical.h"
+#include "core/name.h"
 
 #include <assert.h>
 #include <math.h>
@@ -74,9 +75,10 @@ static enum dig_status check_bucket(const struct dig_bucket *const bucket,
 static enum dig_status check_trajectory(const struct dig_trajectory *const t, const size_t at,
                                         struct dig_error *const error)
 {
-    if (t->name[0] == '\0') {
-        return dig_error_set(error, DIG_EINVAL, "trajectories[%zu].name: empty, expected a name",
-                             at);
+    if (!dig_name_ok(t->name)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "trajectories[%zu].name: \"%s\", expected " DIG_NAME_RULE, at,
+                             t->name);
     }
     if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m)) {
         return dig_error_set(error, DIG_EINVAL,
@@ -89,6 +91,12 @@ static enum dig_status check_trajectory(const struct dig_trajectory *const t, co
     }
     for (size_t i = 0; i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
+        if (!dig_name_ok(p->name)) {
+            return dig_error_set(
+                error, DIG_EINVAL,
+                "trajectories[%zu].phases[%zu].name: \"%s\", expected " DIG_NAME_RULE, at, i,
+                p->name);
+        }
         if (!(p->duration_s > 0.0 && p->duration_s <= 600.0)) {
             return dig_error_set(error, DIG_EINVAL,
                                  "trajectories[%zu].phases[%zu].duration_s: %g, expected > 0 and "
@@ -127,8 +135,9 @@ static enum dig_status check_trajectories(const struct dig_scene *const scene,
 enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_error *const error)
 {
     assert(scene != NULL);
-    if (scene->name[0] == '\0') {
-        return dig_error_set(error, DIG_EINVAL, "name: empty, expected a name");
+    if (!dig_name_ok(scene->name)) {
+        return dig_error_set(error, DIG_EINVAL, "name: \"%s\", expected " DIG_NAME_RULE,
+                             scene->name);
     }
 
     const struct range range[] = {

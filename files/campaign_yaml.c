@@ -1,5 +1,6 @@
 #include "files/campaign_yaml.h"
 
+#include "core/name.h"
 #include "files/yaml.h"
 
 #include <assert.h>
@@ -56,12 +57,15 @@ static const cyaml_schema_field_t fields[] = {
 static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
                                                                  struct campaign_text, fields) };
 
-// Puts the folder before a relative path. False when the result is too long.
+// Puts the folder before a relative path. False when the result is too long, or the name is none.
 static bool resolve(const char *const folder, const char *const name, char path[DIG_CAMPAIGN_PATH])
 {
     if (name[0] == '\0') {
         path[0] = '\0';
         return true;
+    }
+    if (!dig_path_ok(name)) {
+        return false;
     }
     const bool absolute = name[0] == '/';
     const int  length   = snprintf(path, DIG_CAMPAIGN_PATH, "%s%s%s", absolute ? "" : folder,
@@ -69,26 +73,58 @@ static bool resolve(const char *const folder, const char *const name, char path[
     return length > 0 && length < DIG_CAMPAIGN_PATH;
 }
 
+static enum dig_status refuse_path(const char *const yaml, const char *const key,
+                                   const char *const name, struct dig_error *const error)
+{
+    return dig_yaml_refuse(yaml, key, error, "\"%s\", expected " DIG_PATH_RULE " and shorter",
+                           name);
+}
+
+// A recording comes with its campaign: a folder from elsewhere shall reach no other by "..", and a
+// pipe or a device in it would never end.
+static enum dig_status check_recording(const char *const yaml, const char *const key,
+                                       const char *const name, const char *const path,
+                                       struct dig_error *const error)
+{
+    if (!dig_path_stays(name)) {
+        return dig_yaml_refuse(yaml, key, error,
+                               "\"%s\" leaves the campaign's folder, expected a file in it, or an "
+                               "absolute path",
+                               name);
+    }
+    struct stat found;
+    return stat(path, &found) != 0 || S_ISREG(found.st_mode)
+               ? DIG_OK
+               : dig_yaml_refuse(yaml, key, error, "\"%s\" is no regular file, expected one", name);
+}
+
 static enum dig_status convert(const char *const yaml, const char *const folder,
                                const struct campaign_text *const text,
                                struct dig_campaign *const campaign, struct dig_error *const error)
 {
     if (!resolve(folder, text->scene, campaign->scene)) {
-        return dig_yaml_refuse(yaml, "scene", error, "\"%s\", expected a shorter path",
-                               text->scene);
+        return refuse_path(yaml, "scene", text->scene, error);
     }
     if (!resolve(folder, text->machine, campaign->machine)) {
-        return dig_yaml_refuse(yaml, "machine", error, "\"%s\", expected a shorter path",
-                               text->machine);
+        return refuse_path(yaml, "machine", text->machine, error);
     }
     campaign->recordings = text->recordings_count;
     for (size_t i = 0; i < campaign->recordings; i++) {
         const struct recording_text *const   from = &text->recordings[i];
         struct dig_campaign_recording *const to   = &campaign->recording[i];
+        char                                 key[64];
+        (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
         if (!resolve(folder, from->file, to->file)) {
-            char key[64];
-            (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
-            return dig_yaml_refuse(yaml, key, error, "\"%s\", expected a shorter path", from->file);
+            return refuse_path(yaml, key, from->file, error);
+        }
+        const enum dig_status status = check_recording(yaml, key, from->file, to->file, error);
+        if (status != DIG_OK) {
+            return status;
+        }
+        if (!dig_name_ok(from->trajectory)) {
+            (void)snprintf(key, sizeof key, "recordings[%zu].trajectory", i);
+            return dig_yaml_refuse(yaml, key, error, "\"%s\", expected " DIG_NAME_RULE,
+                                   from->trajectory);
         }
         memcpy(to->trajectory, from->trajectory, sizeof to->trajectory);
         to->role = from->role;

@@ -1,5 +1,6 @@
 #include "files/curve_map_yaml.h"
 
+#include "core/name.h"
 #include "files/yaml.h"
 
 #include <assert.h>
@@ -111,6 +112,12 @@ static enum dig_status check(const char *const path, const struct dig_curve_map 
     if (strlen(map->engine) > NAME_MAX_LENGTH || strlen(map->version) > NAME_MAX_LENGTH) {
         return dig_yaml_refuse(path, strlen(map->engine) > NAME_MAX_LENGTH ? "engine" : "version",
                                error, "expected at most %d characters", NAME_MAX_LENGTH);
+    }
+    if (!dig_label_ok(map->engine) || !dig_label_ok(map->version)) {
+        const bool engine = !dig_label_ok(map->engine);
+        return dig_yaml_refuse(path, engine ? "engine" : "version", error,
+                               "\"%s\", expected " DIG_LABEL_RULE,
+                               engine ? map->engine : map->version);
     }
     enum dig_status status = DIG_OK;
     for (int f = 0; status == DIG_OK && f < DIG_MAP_FIELDS; f++) {

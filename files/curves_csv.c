@@ -1,5 +1,6 @@
 #include "files/curves_csv.h"
 
+#include "core/name.h"
 #include "core/units.h"
 #include "files/whole.h"
 
@@ -146,8 +147,8 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
     }
     const char *const name    = text_of(r, field, DIG_MAP_TRAJECTORY);
     const double      packing = number[DIG_MAP_PACKING];
-    if (name[0] == '\0' || strlen(name) >= DIG_NAME_SIZE) {
-        return refuse_field(r, DIG_MAP_TRAJECTORY, name, "a name of at most 31 characters");
+    if (!dig_name_ok(name) || strlen(name) >= DIG_NAME_SIZE) {
+        return refuse_field(r, DIG_MAP_TRAJECTORY, name, DIG_NAME_RULE ", at most 31 characters");
     }
     if (!(packing >= 0.0 && packing <= 1e6) || packing > floor(packing)) {
         return refuse_field(r, DIG_MAP_PACKING, text_of(r, field, DIG_MAP_PACKING),

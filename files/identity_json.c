@@ -1,5 +1,6 @@
 #include "files/identity_json.h"
 
+#include "core/name.h"
 #include "core/units.h"
 #include "files/yaml.h"
 
@@ -154,8 +155,8 @@ static bool is_approach(const struct dig_approach *const approach)
 
 static bool is_dig(const struct dig_identity_dig *const dig)
 {
-    return is_approach(&dig->approach) && dig->first >= 0.0 && dig->last > dig->first &&
-           dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
+    return dig_name_ok(dig->trajectory) && is_approach(&dig->approach) && dig->first >= 0.0 &&
+           dig->last > dig->first && dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
            is_curve(dig->force_N[0], dig->force_sigma_N[0]) &&
            is_curve(dig->force_N[1], dig->force_sigma_N[1]);
 }
@@ -253,14 +254,18 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
                                      i + 1);
         }
     }
+    if (status == DIG_OK && !dig_name_ok(read.trajectory)) {
+        status = dig_yaml_refuse(path, "trajectory", error, "\"%s\", expected " DIG_NAME_RULE,
+                                 read.trajectory);
+    }
     for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
         take_dig(&text->recorded[i], &read.recording[i]);
         if (!is_dig(&read.recording[i])) {
-            status =
-                dig_yaml_refuse(path, "recorded", error,
-                                "the %zu-th is no dig, expected 0 <= first < last <= 1, finite "
-                                "moments and forces, sigmas >= 0",
-                                i + 1);
+            status = dig_yaml_refuse(
+                path, "recorded", error,
+                "the %zu-th is no dig, expected a name, 0 <= first < last <= 1, finite "
+                "moments and forces, sigmas >= 0",
+                i + 1);
         }
     }
     if (status == DIG_OK && !is_gravel(&read.gravel)) {

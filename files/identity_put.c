@@ -1,5 +1,6 @@
 // An identity out: the half of files/identity_json.h that writes.
 
+#include "core/text.h"
 #include "core/units.h"
 #include "files/identity_json.h"
 
@@ -57,8 +58,9 @@ static void put_approach(FILE *const to, const char *const prefix,
 
 static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
 {
-    (void)fprintf(to, "{\"trajectory\": \"%s\", \"first\": %.9g, \"last\": %.9g,", dig->trajectory,
-                  dig->first, dig->last);
+    (void)fputs("{\"trajectory\": ", to);
+    dig_text_put_json(to, dig->trajectory);
+    (void)fprintf(to, ", \"first\": %.9g, \"last\": %.9g,", dig->first, dig->last);
     if (!dig_approach_is_plain(&dig->approach)) {
         (void)fputs(" ", to);
         put_approach(to, "", &dig->approach);
@@ -93,10 +95,10 @@ static void put_made(FILE *const to, const struct dig_identity *const identity)
 void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
 {
     assert(to != NULL && identity != NULL);
-    (void)fprintf(
-        to, "{\"scene_hash\": \"%s\",\n \"trajectory\": \"%s\", \"digs\": %zu, \"forces\": %s,\n ",
-        identity->scene_hash, identity->trajectory, identity->digs,
-        identity->forces ? "true" : "false");
+    (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": ", identity->scene_hash);
+    dig_text_put_json(to, identity->trajectory);
+    (void)fprintf(to, ", \"digs\": %zu, \"forces\": %s,\n ", identity->digs,
+                  identity->forces ? "true" : "false");
     put_made(to, identity);
     put_named(to, "gravel", &identity->gravel);
     put_named(to, "mean", &identity->mean);

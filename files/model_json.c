@@ -1,5 +1,7 @@
 #include "files/model_json.h"
 
+#include "core/name.h"
+#include "core/text.h"
 #include "files/whole.h"
 #include "files/yaml.h"
 
@@ -16,17 +18,18 @@ static double finite(const double value)
     return isfinite(value) ? value : 0.0;
 }
 
+// A reader refuses control characters: they become '?' here.
 static void put_text(FILE *const to, const char *const key, const char *const text)
 {
-    (void)fprintf(to, "\"%s\": \"", key);
-    for (const char *c = text; *c != '\0'; c++) {
-        const unsigned char byte = (unsigned char)*c;
-        if (byte == '"' || byte == '\\') {
-            (void)fputc('\\', to);
-        }
-        (void)fputc(byte < 0x20 ? ' ' : byte, to);
+    char clean[DIG_MODEL_PATH_SIZE];
+    (void)snprintf(clean, sizeof clean, "%s", text);
+    dig_text_clean(clean);
+    for (char *c = clean; *c != '\0'; c++) {
+        *c = *c == '\n' || *c == '\t' ? '?' : *c;
     }
-    (void)fputs("\",\n ", to);
+    (void)fprintf(to, "\"%s\": ", key);
+    dig_text_put_json(to, clean);
+    (void)fputs(",\n ", to);
 }
 
 static void put_gravel(FILE *const to, const char *const key, const struct dig_gravel *const g)
@@ -52,10 +55,10 @@ static void put_effect(FILE *const to, const struct dig_model_effect *const effe
                   dig_effect_name(effect->effect), finite(effect->probability));
     for (size_t p = 0; p < effect->parameters; p++) {
         const struct dig_model_parameter *const parameter = &effect->parameter[p];
-        (void)fprintf(to,
-                      "%s\n   {\"name\": \"%s\", \"value\": %.9g, \"low\": %.9g, \"high\": %.9g}",
-                      p == 0 ? "" : ",", parameter->name, finite(parameter->value),
-                      finite(parameter->low), finite(parameter->high));
+        (void)fprintf(to, "%s\n   {\"name\": ", p == 0 ? "" : ",");
+        dig_text_put_json(to, parameter->name);
+        (void)fprintf(to, ", \"value\": %.9g, \"low\": %.9g, \"high\": %.9g}",
+                      finite(parameter->value), finite(parameter->low), finite(parameter->high));
     }
     (void)fputs("]}", to);
 }
@@ -290,6 +293,10 @@ static enum dig_status take_effect(const char *const path, const struct effect_t
     };
     for (size_t p = 0; p < out->parameters; p++) {
         const struct parameter_text *const from = &text->parameters[p];
+        if (!dig_name_ok(from->name)) {
+            return dig_yaml_refuse(path, "effects.parameters", error,
+                                   "\"%s\" of %s, expected " DIG_NAME_RULE, from->name, text->name);
+        }
         if (!(isfinite(from->value) && isfinite(from->low) && isfinite(from->high))) {
             return dig_yaml_refuse(path, "effects.parameters", error,
                                    "%s of %s is not finite, expected three numbers", from->name,

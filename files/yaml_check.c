@@ -2,6 +2,8 @@
 
 #include "files/yaml_tree.h"
 
+#include "core/text.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -155,6 +157,18 @@ static enum dig_status check_length(const struct check *const check, const yaml_
                                     const cyaml_schema_value_t *const schema,
                                     const struct key *const           key)
 {
+    // libyaml lets through what an escape such as "\\x1b" puts into a text.
+    const bool  in_one_line = schema->string.max != CYAML_UNLIMITED;
+    const char *c           = dig_yaml_text_of(node);
+    for (size_t n;
+         (n = dig_text_character(c)) > 0 && !(in_one_line && (*c == '\n' || *c == '\t'));) {
+        c += n;
+    }
+    if (*c != '\0') {
+        return refuse(check, dig_yaml_line_of(node), key,
+                      "\"%.60s\" with a control character or a line break, expected none",
+                      dig_yaml_text_of(node));
+    }
     const size_t length = strlen(dig_yaml_text_of(node));
     if (length < schema->string.min) {
         return refuse(check, dig_yaml_line_of(node), key,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # How much do digs scatter from packing to packing with more grains across the bucket, and how wide,
 # deep and long must a bed be before the bucket stops feeling its box? Varies config/scenes/rig.yaml one
-# thing at a time and prints a line for every variant (docs/numerics/dem.md has them): grains, beds, mean of
+# thing at a time and prints a line for every variant (docs/numerics/dem.md, "Bed size"): grains, beds, mean of
 # the moment in time with its standard error, scatter of one dig's mean, and of its moment after
 # +-0.16 s (relative L2 against the beds' mean, 1 sigma), user seconds a dig, of actual the mean while it turns up. What lies in OUT
 # is not dug again, so it may be stopped and started, also with more BEDS.

@@ -1,122 +1,92 @@
-#!/bin/bash
+#!/bin/sh
 # scripts/check_layers.sh [BUILD]: fails where a source includes a header it must not, where headers
 # include each other in a circle, or sources call each other in one (told by the objects in BUILD).
 # The picture of this is docs/architecture.md.
-set -euo pipefail
+set -eu
 
 # Each folder may include its own headers and those of the folders named here, and nothing else.
-may_include() {
-    case $1 in
-    core)          echo "core" ;;
-    files)         echo "core files build messages" ;;
-    estimator)     echo "core estimator" ;;
-    tables)        echo "core tables" ;;
-    offline_dem)   echo "core tables offline_dem" ;;
-    closed_loop)   echo "core tables estimator closed_loop" ;;
-    firmware_host) echo "core files tables estimator firmware_host messages" ;;
-    tools/rig)     echo "core files tools/rig" ;;
-    tools)         echo "core files tables estimator offline_dem closed_loop firmware_host tools" ;;
-    esac
-}
+may_include='
+core          core
+files         core files build messages
+estimator     core estimator
+tables        core tables
+offline_dem   core tables offline_dem
+closed_loop   core tables estimator closed_loop
+firmware_host core files tables estimator firmware_host messages
+tools/rig     core files tools/rig
+tools         core files tables estimator offline_dem closed_loop firmware_host tools
+'
 
 # The rooms of a folder, from the ground up: a room may include those before it. What stands in the
 # folder itself is its roof.
-rooms_of() {
-    case $1 in
-    estimator)     echo "wrench track approach effects match predict" ;;
-    offline_dem)   echo "law shapes kernel world dig sweep device reference cuda" ;;
-    closed_loop)   echo "numeric recordings model machine search accuracy verdict design report" ;;
-    firmware_host) echo "threads bus config tick matching publish" ;;
-    esac
-}
+rooms='
+estimator     wrench track approach effects match predict
+offline_dem   law shapes kernel world dig sweep device reference cuda
+closed_loop   numeric recordings model machine search accuracy verdict design report
+firmware_host threads bus config tick matching publish
+'
 
-# A foreign library is included only where it is wrapped: one file, or one folder.
-owner_of() {
-    case $1 in
-    nlopt.h)      echo "estimator/match/fit_nlopt.c" ;;
-    modbus*.h | modbus/*) echo "firmware_host/bus/input_modbus.c tools/rig/*" ;;
-    linux/can*)   echo "firmware_host/bus/input_can.c firmware_host/bus/can_message.* tools/rig/*" ;;
-    lcm/*)        echo "firmware_host/publish/output_lcm.c files/lcm_log.c" ;;
-    cyaml/* | yaml.h) echo "files/* firmware_host/config/*" ;;
-    sqlite3.h)    echo "tables/*" ;;
-    ode/*)        echo "offline_dem/*" ;;
-    *)            echo "*" ;;
-    esac
-}
+# A foreign library is included only where it is wrapped: one file, or one folder (by its prefix).
+owners='
+nlopt.h      estimator/match/fit_nlopt.c
+modbus       firmware_host/bus/input_modbus.c tools/rig/
+linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
+lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c
+cyaml/       files/ firmware_host/config/
+yaml.h       files/ firmware_host/config/
+sqlite3.h    tables/
+ode/         offline_dem/
+'
 
-folder_of() {
-    case $1 in
-    tools/rig/*) echo "tools/rig" ;;
-    *)           echo "${1%%/*}" ;;
-    esac
-}
-
-room_of() { # PATH: the room's number from 1; 99: the roof
-    local folder=${1%%/*} rest=${1#*/} n=1 room
-    for room in $(rooms_of "$folder"); do
-        [ "${rest%%/*}" = "$room" ] && { echo $n; return; }
-        n=$((n + 1))
-    done
-    echo 99
-}
-
-is_owner() { # FILE PATTERN…
-    local file=$1 pattern
-    shift
-    for pattern in "$@"; do
-        # shellcheck disable=SC2254 # the pattern is meant as one
-        case $file in $pattern) return 0 ;; esac
-    done
-    return 1
-}
-
-bad=0
-say() {
-    echo "$*"
-    bad=1
-}
-
-set -f
+folders="core files estimator tables offline_dem closed_loop firmware_host tools"
 edges=$(mktemp)
 trap 'rm -f "$edges"' EXIT
-while read -r file kind header; do
-    if [ "$kind" = library ]; then
-        owners=$(owner_of "$header")
-        # shellcheck disable=SC2086 # a list of patterns
-        [ "$owners" = "*" ] || is_owner "$file" $owners || say "$file: <$header> belongs in $owners only"
-        continue
-    fi
-    case $file:$header in
-    # The rig has levers of its own, by virtual work: the estimator is judged by it.
-    tools/rig/*:core/linkage.h) say "$file: must not include \"$header\"" ;;
-    esac
-    case " $(may_include "$(folder_of "$file")") " in
-    *" $(folder_of "$header") "*) ;;
-    *) say "$file: must not include \"$header\"" ;;
-    esac
-    if [ "${file%%/*}" = "${header%%/*}" ] && [ "$(room_of "$header")" -gt "$(room_of "$file")" ]; then
-        say "$file: \"$header\" stands above it"
-    fi
-    case $file in
-    *.h) echo "$file $header" >>"$edges" ;;
-    esac
-done < <(find core files estimator tables offline_dem closed_loop firmware_host tools -name '*.[ch]' -print0 | sort -z |
-    xargs -0 awk '/^#include "/ { split($0, a, "\""); print FILENAME, "ours", a[2] }
-                  /^#include </ { split($0, a, "[<>]"); print FILENAME, "library", a[2] }')
+bad=0
 
 in_a_circle() { # WHAT: says each circle of the pairs in $edges
-    local circle
-    circle=$({ tsort "$edges" 2>&1 >/dev/null || true; } | sed -n '/^tsort: [^ ]*$/s/^tsort: //p')
-    [ -z "$circle" ] || say "$1 in a circle:" $circle
+    circle=$({ tsort "$edges" 2>&1 >/dev/null || true; } | sed -n '/^tsort: [^ ]*$/s/^tsort: //p' | tr '\n' ' ')
+    [ -z "$circle" ] || { echo "$1 in a circle: $circle"; bad=1; }
 }
+
+# shellcheck disable=SC2086 # a list of folders
+find $folders -name '*.[ch]' | sort | xargs awk -v may="$may_include" -v rooms="$rooms" -v owners="$owners" -v edges="$edges" '
+    function folder_of(path) { return path ~ /^tools\/rig\// ? "tools/rig" : substr(path, 1, index(path "/", "/") - 1) }
+    function room_of(path, a, n) { n = split(path, a, "/"); return n > 2 && (a[1] "/" a[2]) in room ? room[a[1] "/" a[2]] : 99 }
+    function say(text) { print FILENAME ": " text; bad = 1 }
+    BEGIN {
+        n = split(may, line, "\n")
+        for (i = 1; i <= n; i++) { m = split(line[i], a, " "); for (k = 2; k <= m; k++) allowed[a[1] " " a[k]] = 1 }
+        n = split(rooms, line, "\n")
+        for (i = 1; i <= n; i++) { m = split(line[i], a, " "); for (k = 2; k <= m; k++) room[a[1] "/" a[k]] = k }
+        foreign = split(owners, owner, "\n")
+    }
+    /^#include "/ {
+        split($0, quoted, "\"")
+        header = quoted[2]
+        # The rig has levers of its own, by virtual work: the estimator is judged by it.
+        if (!((folder_of(FILENAME) " " folder_of(header)) in allowed) || (FILENAME ~ /^tools\/rig\// && header == "core/linkage.h"))
+            say("must not include \"" header "\"")
+        if (folder_of(header) == folder_of(FILENAME) && room_of(header) > room_of(FILENAME))
+            say("\"" header "\" stands above it")
+        if (FILENAME ~ /\.h$/) print FILENAME, header > edges
+    }
+    /^#include </ {
+        split($0, quoted, /[<>]/)
+        for (i = 1; i <= foreign; i++) {
+            m = split(owner[i], a, " ")
+            if (m == 0 || index(quoted[2], a[1]) != 1) continue
+            mine = 0
+            for (k = 2; k <= m; k++) mine = mine || index(FILENAME, a[k]) == 1
+            if (!mine) say("<" quoted[2] "> belongs in" substr(owner[i], length(a[1]) + 1) " only")
+        }
+    }
+    END { exit bad }' || bad=1
 in_a_circle "headers include each other"
 
 if [ -n "${1:-}" ]; then
-    objects=$(find core files estimator tables offline_dem closed_loop firmware_host tools -name '*.c' | sed "s#^#$1/#; s#c\$#o#")
-    present=()
-    for object in $objects; do [ ! -e "$object" ] || present+=("$object"); done
-    # nm -A: FILE:ADDRESS KIND NAME, FILE: U NAME
-    nm -A "${present[@]}" | awk -v build="$1/" '
+    # shellcheck disable=SC2086 # a list of folders
+    # nm -A: FILE:ADDRESS KIND NAME, or FILE: U NAME
+    find $folders -name '*.c' | sed "s#^#$1/#; s#c\$#o#" | xargs ls 2>/dev/null | xargs nm -A | awk -v build="$1/" '
         $NF == "main" { next }
         { file = $1; sub(/:.*/, "", file); sub(build, "", file); sub(/o$/, "c", file) }
         $(NF - 1) ~ /^[TDBRVW]$/ { home[$NF] = file }

@@ -82,6 +82,10 @@ svg() { # NAME: gnuplot's commands from stdin
             set xlabel 't [s]'; set ylabel 'My [N m]'; set key top left; set grid"
       cat; } | (cd "$out" && gnuplot)
 }
+curves() ( # HOW BEGIN: every BEGIN*actual.dat as gnuplot's plot wants it
+    cd "$out" || exit 1
+    for f in "$2"*actual.dat; do echo "'$f' $1, \\"; done
+)
 svg peaks <<'P'
 set title 'a: the actual dig without and with rolling friction (LIGGGHTS, friction .5)'
 plot 'mu0.5_mur0.0_rho2500__actual.dat' w l lw 2 t 'none', 'basic_mu0.6_seed1__actual.dat' w l lw 2 t 'basic model (ours, 1e8 Pa, .6)', 'mu0.5_mur0.5_rho2500__actual.dat' w l lw 2 t '.5', \
@@ -90,8 +94,8 @@ P
 svg sizes <<P
 set title 'b: equal spheres and mixed sizes (LIGGGHTS, .5/.5)'
 set y2tics; set y2label 'My [N m]'
-plot for [f in system("ls mu0.5_mur0.5_rho2500*actual.dat")] f w l lc 'gray' notitle, \\
-     for [f in system("ls poly_*actual.dat")] f w l lw 2 t 'mixed', \\
+plot $(curves "w l lc 'gray' notitle" mu0.5_mur0.5_rho2500)
+     $(curves "w l lw 2 t 'mixed'" poly_)
      'table_0.5_0.5_2500.dat' w l lw 2 lc 'black' t 'equal, ours, mean of ten beds', \\
      'steel.dat' axes x1y2 w l dt 2 lc 'blue' t 'steel balls, ours (right axis)'
 P

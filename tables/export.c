@@ -1,5 +1,6 @@
 #include "tables/export.h"
 
+#include "core/text.h"
 #include "core/units.h"
 #include "tables/listed.h"
 
@@ -181,22 +182,6 @@ void dig_export_list(const struct dig_curve_set *const  set,
     }
 }
 
-static void put_json_text(const char *text, FILE *const file)
-{
-    (void)fputc('"', file);
-    for (; *text != '\0'; text++) {
-        const unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\') {
-            (void)fprintf(file, "\\%c", c);
-        } else if (c < 0x20) {
-            (void)fprintf(file, "\\u%04x", c);
-        } else {
-            (void)fputc(c, file);
-        }
-    }
-    (void)fputc('"', file);
-}
-
 static void put_json_gravel(const struct dig_gravel *const gravel, FILE *const file)
 {
     for (int a = 0; a < DIG_AXES; a++) {
@@ -214,7 +199,7 @@ static void put_json_approach(const struct dig_approach *const approach, FILE *c
 static void put_json_scene(const struct dig_curve_set *const set, FILE *const file)
 {
     (void)fputs("\"scene\": {\"name\": ", file);
-    put_json_text(set->scene_name, file);
+    dig_text_put_json(file, set->scene_name);
     (void)fprintf(file,
                   ", \"hash\": \"%s\", \"tooth_m\": %.9g, \"bucket_width_m\": %.9g, "
                   "\"young_Pa\": %.9g, \"smooth_half_s\": %.9g}",
@@ -228,7 +213,7 @@ static void put_json_packings(const struct dig_curve_set *const set, const int p
     (void)fputs(", \"packings\": {", file);
     for (size_t t = 0; t < set->trajectories; t++) {
         (void)fputs(t == 0 ? "" : ", ", file);
-        put_json_text(set->trajectory[t].name, file);
+        dig_text_put_json(file, set->trajectory[t].name);
         (void)fprintf(file, ": %d", packings[t]);
     }
     (void)fputs("}}", file);
@@ -242,7 +227,7 @@ void dig_export_list_json(const struct dig_curve_set *const  set,
     (void)fputs(",\n \"trajectories\": [", file);
     for (size_t t = 0; t < set->trajectories; t++) {
         (void)fputs(t == 0 ? "" : ", ", file);
-        put_json_text(set->trajectory[t].name, file);
+        dig_text_put_json(file, set->trajectory[t].name);
     }
     (void)fputs("],\n \"entries\": [", file);
     for (size_t e = 0; e < dig_listed_count(set); e++) {
@@ -298,7 +283,7 @@ void dig_export_curve_json(const struct dig_curve_set *const set, const size_t e
     put_json_gravel(&one.gravel, file);
     put_json_approach(&one.approach, file);
     (void)fputs(", \"trajectory\": ", file);
-    put_json_text(one.trajectory.name, file);
+    dig_text_put_json(file, one.trajectory.name);
     (void)fprintf(file, ", \"packings\": %d,\n \"progress\": [", one.packings);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", progress_of(k));

@@ -1,6 +1,7 @@
 // Whether a file is a table of ours, whole and of this version, and what it says of itself.
 
 #include "core/approach.h"
+#include "core/name.h"
 #include "core/sha256.h"
 #include "tables/scene.h"
 #include "tables/schema.h"
@@ -84,11 +85,11 @@ static enum dig_status check_integrity(sqlite3 *const db, const char *const path
     return status;
 }
 
-// Copies a text column into a name; false when it is missing or too long.
+// Copies a text column into a name; false when it is missing, too long, or no name.
 static bool column_name(sqlite3_stmt *const s, const int column, char name[const DIG_NAME_SIZE])
 {
     const char *const text = (const char *)sqlite3_column_text(s, column);
-    if (text == NULL || strlen(text) >= DIG_NAME_SIZE) {
+    if (text == NULL || strlen(text) >= DIG_NAME_SIZE || !dig_name_ok(text)) {
         return false;
     }
     memcpy(name, text, strlen(text) + 1);
@@ -131,7 +132,7 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
         dig_sha256_hex(text, strlen(text), actual);
     }
     if (!column_name(s, 0, head->scene_name)) {
-        status = damaged(path, "scene.name: expected at most 31 characters", error);
+        status = damaged(path, "scene.name: expected at most 31 characters: " DIG_NAME_RULE, error);
     } else if (hash == NULL || text == NULL || strcmp(hash, actual) != 0) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",

@@ -225,7 +225,9 @@ static enum dig_status put_in_transaction(struct dig_store *const            sto
     if (status == DIG_OK) {
         status = dig_entry_refresh(store, ground, origin->trajectory, error);
     }
-    return status == DIG_OK ? dig_sql_run(store->db, store->path, "COMMIT", error) : status;
+    return status == DIG_OK ? dig_sql_run(store->db, store->path,
+                                          store->gathers ? "RELEASE run" : "COMMIT", error)
+                            : status;
 }
 
 // The first run added to a table from before digs had an approach makes it one of today's.
@@ -238,6 +240,25 @@ static enum dig_status bring_up(struct dig_store *const store, struct dig_error 
     if (status == DIG_OK) {
         store->head.version = DIG_TABLE_VERSION;
     }
+    return status;
+}
+
+enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error *const error)
+{
+    assert(store != NULL && store->lock_fd >= 0 && !store->gathers);
+    enum dig_status status = bring_up(store, error);
+    if (status == DIG_OK) {
+        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+    }
+    store->gathers = status == DIG_OK;
+    return status;
+}
+
+enum dig_status dig_store_commit(struct dig_store *const store, struct dig_error *const error)
+{
+    assert(store != NULL && store->gathers);
+    const enum dig_status status = dig_sql_run(store->db, store->path, "COMMIT", error);
+    store->gathers               = status != DIG_OK;
     return status;
 }
 
@@ -269,12 +290,15 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     }
     status = bring_up(store, error);
     if (status == DIG_OK) {
-        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+        status = dig_sql_run(store->db, store->path,
+                             store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE", error);
     }
     if (status == DIG_OK) {
         status = put_in_transaction(store, origin, recording, step_s, bytes, error);
         if (status != DIG_OK) {
-            (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+            (void)sqlite3_exec(store->db,
+                               store->gathers ? "ROLLBACK TO run; RELEASE run" : "ROLLBACK", NULL,
+                               NULL, NULL);
         }
     }
     free(bytes);

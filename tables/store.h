@@ -76,6 +76,11 @@ DIG_MUST_CHECK enum dig_status dig_store_put(struct dig_store            *store,
                                              const struct dig_recording  *recording,
                                              struct dig_error            *error);
 
+/// What is put from here on is stored by dig_store_commit(), all or nothing: dig_store_close()
+/// without it, or a crash, takes it back. Once, not within another.
+DIG_MUST_CHECK enum dig_status dig_store_begin(struct dig_store *store, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_store_commit(struct dig_store *store, struct dig_error *error);
+
 /// Writes true to *there when the run with the key of *origin is stored.
 DIG_MUST_CHECK enum dig_status dig_store_has(struct dig_store            *store,
                                              const struct dig_run_origin *origin, bool *there,

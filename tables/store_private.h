@@ -15,6 +15,7 @@
 struct dig_store {
     sqlite3              *db;
     int                   lock_fd; // -1: opened to read
+    bool                  gathers; // between dig_store_begin() and dig_store_commit()
     struct dig_table_head head;
     char                  path[PATH_MAX];
 };

@@ -10,55 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char help_text[] =
-    "digtable computes how gravel resists bucket digs, and keeps the curves in a table.\n"
-    "\n"
-    "usage:\n"
-    "  digtable dig SCENE.yaml --trajectory NAME --friction F --rolling R --density KGPM3\n"
-    "               [--depth F] [--attack-deg A] [--young PA] [--seed 1]\n"
-    "               [--engine kernel|ode|cuda] [--bed BED.csv] [--save-bed BED.csv]\n"
-    "               [--vtk DIR] -o CURVE.csv\n"
-    "      one dig; the curve is a force recording. --depth: factor on how far the tooth goes "
-    "down\n"
-    "      in the first phase; --attack-deg: the bucket turned about its tooth, positive curls\n"
-    "  digtable generate SCENE.yaml GRID.yaml -o TABLE.sqlite\n"
-    "               [-j N] [--packings N] [--time-limit S] [--shard I/N]\n"
-    "               [--engine kernel|ode|cuda]\n"
-    "      every dig of the grid, on all cores; what the table holds already is not computed "
-    "again,\n"
-    "      and Ctrl-C keeps all that is finished\n"
-    "      --engine cuda: on a graphics card, with the library of `make cuda`\n"
-    "  digtable list TABLE.sqlite [--json]\n"
-    "      the entries and how many packings each has\n"
-    "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
-    "               [--depth F] [--attack-deg A] [--trajectory NAME] [--channel My|Fx|Fz|carried]\n"
-    "               [--csv|--json]\n"
-    "      one curve of the table\n"
-    "  digtable import CURVES.csv --map MAP.yaml -o TABLE.sqlite\n"
-    "      digs that something else measured or computed; the map says which column holds what\n"
-    "  digtable merge OUT.sqlite IN.sqlite...\n"
-    "      the runs of all tables, each once, in a new one, whose bytes do not depend on their "
-    "order\n"
-    "  digtable export TABLE.sqlite [--effects|--runs] [-o FILE.csv]\n"
-    "      all curves; those dug with an effect; or all runs behind them\n"
-    "  digtable check TABLE.sqlite [--complete] [--json]\n"
-    "      version, integrity, and every curve against the runs it was made of; with --complete,\n"
-    "      holes and missing packings fail too\n"
-    "  digtable --help | --version\n"
-    "\n"
-    "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
-    "\n"
-    "examples:\n"
-    "  digtable dig config/scenes/rig.yaml --trajectory simpleA --friction .5 --rolling .5 \\\n"
-    "           --density 2500 -o dig.csv\n"
-    "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o rig.sqlite "
-    "--time-limit 3600\n"
-    "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o part3.sqlite --shard "
-    "3/16\n"
-    "  digtable merge rig.sqlite part*.sqlite\n"
-    "  digtable show rig.sqlite --friction .5 --rolling .5 --density 2500 --trajectory actual\n"
-    "  digtable export rig.sqlite --runs -o runs.csv\n";
-
 static const struct dig_command commands[] = {
     { "dig", dig_cli_dig, 1, 1, "SCENE.yaml",
       " trajectory friction rolling density depth attack-deg young seed engine bed save-bed vtk "
@@ -96,7 +47,7 @@ int main(const int argc, char **const argv)
         return dig_cli_bad_usage("%s", "expected a command");
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-        (void)fputs(help_text, stdout);
+        dig_cli_help("");
         return EXIT_DONE;
     }
     if (strcmp(argv[1], "--version") == 0) {
@@ -109,7 +60,7 @@ int main(const int argc, char **const argv)
         }
         for (int k = 2; k < argc; k++) {
             if (strcmp(argv[k], "--help") == 0) {
-                (void)fputs(help_text, stdout);
+                dig_cli_help(commands[i].name);
                 return EXIT_DONE;
             }
         }

@@ -1,39 +1,18 @@
 #include "closed_loop/report/html.h"
 
+#include "core/text.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-// The bytes of the UTF-8 character at text, 0 where there is none; U+0080 to U+009F are controls.
-static size_t utf8_length(const char *const text)
-{
-    const unsigned char *const c = (const unsigned char *)text;
-    const size_t               n = c[0] < 0x80    ? 1
-                                   : c[0] < 0xc2  ? 0
-                                   : c[0] < 0xe0  ? 2
-                                   : c[0] < 0xf0  ? 3
-                                   : c[0] <= 0xf4 ? 4
-                                                  : 0;
-    for (size_t i = 1; i < n; i++) {
-        if ((c[i] & 0xc0) != 0x80) {
-            return 0;
-        }
-    }
-    const bool overlong  = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90);
-    const bool surrogate = c[0] == 0xed && c[1] >= 0xa0;
-    const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
-    const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
-                         (c[0] == 0xc2 && c[1] < 0xa0);
-    return overlong || surrogate || too_large || control ? 0 : n;
-}
-
 void dig_html_text(FILE *const to, const char *const text)
 {
     assert(to != NULL && text != NULL);
     for (const char *c = text; *c != '\0';) {
-        const size_t n = utf8_length(c);
+        const size_t n = dig_text_character(c);
         switch (*c) {
         case '<': (void)fputs("&lt;", to); break;
         case '>': (void)fputs("&gt;", to); break;

@@ -1,5 +1,7 @@
 #include "closed_loop/report/json.h"
 
+#include "core/text.h"
+
 #include <math.h>
 
 void dig_json_number(FILE *const to, const double value)
@@ -20,15 +22,5 @@ void dig_json_member(FILE *const to, const char *const before, const char *const
 
 void dig_json_string(FILE *const to, const char *const text)
 {
-    (void)fputc('"', to);
-    for (const char *c = text; *c != '\0'; c++) {
-        if (*c == '"' || *c == '\\') {
-            (void)fprintf(to, "\\%c", *c);
-        } else if ((unsigned char)*c < 0x20U) {
-            (void)fprintf(to, "\\u%04x", (unsigned)*c);
-        } else {
-            (void)fputc(*c, to);
-        }
-    }
-    (void)fputc('"', to);
+    dig_text_put_json(to, text);
 }

@@ -2,6 +2,7 @@
 
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
+#include "core/text.h"
 
 #include <assert.h>
 #include <math.h>
@@ -23,7 +24,11 @@ void dig_report_text(const struct dig_report *const report, FILE *const to)
     assert(report != NULL && to != NULL);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fprintf(to, "\n  %s: %s\n", run->name, run->dig);
+        (void)fputs("\n  ", to);
+        dig_text_put(to, run->name);
+        (void)fputs(": ", to);
+        dig_text_put(to, run->dig);
+        (void)fputs("\n", to);
         (void)fprintf(to, "  %-18s %9s %11s   %s\n", "", "true", "identified", "90 % interval");
         for (int a = 0; a < DIG_AXES; a++) {
             const int d = decimals(a);
@@ -67,7 +72,9 @@ void dig_report_json(const struct dig_report *const report, FILE *const to)
                   report->lambda);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fprintf(to, "%s{\"name\":\"%s\",", r == 0 ? "" : ",", run->name);
+        (void)fprintf(to, "%s{\"name\":", r == 0 ? "" : ",");
+        dig_text_put_json(to, run->name);
+        (void)fprintf(to, ",");
         put_json_gravel(to, "truth", &run->truth, run->truth_known);
         (void)fprintf(to, ",");
         put_json_gravel(to, "identified", &run->gravel, true);

@@ -115,6 +115,7 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
         { "friction: 0.9", "friction: -0.9", "bed.materials[0].friction: -0.9" },
         { "restitution: 0.3}", "restitution: 0}", "bed.materials[0].restitution: 0" },
         { "name: ore", "name: walls", "bed.materials[0].name: \"walls\"" },
+        { "name: ore", "name: o|re", "bed.materials[0].name: \"o|re\", expected a name" },
         { "[ore, bucket]", "[ore, coal]", "bed.pairs[0].between" },
         { "[ore, bucket]", "[walls, bucket]", "bed.pairs[0].between" },
         { "material: ore", "material: coal", "bed.layers[0].material: expected" },

@@ -57,6 +57,20 @@ static void what_a_campaign_cannot_be_is_refused_with_file_line_and_key(void **s
           "a_name_that_is_far_longer_than_any_name_may_be, role: fit}\n",
           "trajectory" },
         { "scene: \"s\n", "campaign.yaml" },
+        { "scene: \"s\\n.yaml\"\n" ONE, "campaign.yaml:1: scene: \"s" },
+        { "scene: \"\\x1b]0;owned\\x07\"\n" ONE, "scene: \"?]0;owned?\"" },
+        { "scene: s\nrecordings:\n  - {file: \"a\\nb\", trajectory: t, role: fit}\n",
+          "campaign.yaml:3: recordings[0].file: " },
+        { "scene: s\nrecordings:\n  - {file: \"a\\x85\", trajectory: t, role: fit}\n", "file: " },
+        { "scene: s\nrecordings:\n  - {file: ../a.csv, trajectory: t, role: fit}\n",
+          "campaign.yaml:3: recordings[0].file: \"../a.csv\" leaves the campaign's folder" },
+        { "scene: s\nrecordings:\n  - {file: a/../../b, trajectory: t, role: fit}\n", "leaves" },
+        { "scene: s\nrecordings:\n  - {file: /dev/zero, trajectory: t, role: fit}\n",
+          "no regular file" },
+        { "scene: s\nrecordings:\n  - {file: a, trajectory: ../t, role: fit}\n",
+          "campaign.yaml:3: recordings[0].trajectory: \"../t\", expected a name" },
+        { "scene: s\nrecordings:\n  - {file: a, trajectory: \"`touch OWNED`\", role: fit}\n",
+          "recordings[0].trajectory: " },
     };
     static struct dig_campaign campaign;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

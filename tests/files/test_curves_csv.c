@@ -155,6 +155,8 @@ static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
           ":2: column rho: \"\", expected a finite number" },
         { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,1,1,1,.5\n",
           ":2: column rep: \".5\", expected a whole number from 0" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\n$(pull),.3,2.5,0,1,1,1,0\n",
+          ":2: column dig: \"$(pull)\", expected a name of letters" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n,.3,2.5,0,1,1,1,0\n",
           ":2: column dig: \"\", expected a name" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n", ":1: no samples, expected at least one dig" },

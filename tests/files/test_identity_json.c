@@ -171,6 +171,7 @@ static void defects_are_refused_by_name(void **state)
     } defect[] = {
         { "\"outside\": true", "\"outside\": 7e", "outside" },
         { "\"digs\": 3", "\"digs\": -3", "digs" },
+        { "\"trajectory\": \"simpleA\"", "\"trajectory\": \"../A\"", "trajectory: \"../A\"" },
         { "\"distance\": 0.11,", "", "distance" },
         { "\"friction\": 0.55,", "\"friction\": -0.55,", "samples" },
         { "\"rolling\": 0.6,", "\"rolling\": -0.6,", "weighted_nearest" },

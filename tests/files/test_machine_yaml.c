@@ -116,6 +116,8 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
 {
     (void)state;
     static const char *const bad[][3] = {
+        { "name: example 20 t", "name: </script>", "name: \"</script>\", expected letters" },
+        { "name: example 20 t", "name: \"a\\nb\"", "with a control character or a line break" },
         { "bore_m: 0.12\n", "bore_m: 0\n", "bad.yaml:29: cylinders.boom.bore_m: 0" },
         { "rod_m: 0.08\n", "rod_m: 0.2\n", "bad.yaml:52: cylinders.bucket.rod_m: 0.2" },
         { "max_deg: -30", "max_deg: -170", "arm.max_deg: -170" },

@@ -125,6 +125,8 @@ static void defects_are_refused_by_key_and_write_nothing(void **state)
     } cases[] = {
         { "\"version\": 1", "\"version\": 2", "version" },
         { "cylinder_friction", "cylinder_fiction", "cylinder_fiction" },
+        { "coulomb_N", "coulomb'N", "\"coulomb'N\" of cylinder_friction, expected a name" },
+        { "coulomb_N", "coulomb\\u001bN", "effects[0].parameters[0].name: \"coulomb?N\"" },
         { "\"probability\": 0.98", "\"probability\": 1.2", "probability" },
         { "\"value\": 812", "\"value\": .nan", "parameters[0].value" },
         { "\"friction\": 0.52", "\"friction\": -1", "gravel" },

@@ -113,6 +113,11 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
         { "    - [-0.12, -0.2]\n    - [-0.12, -0.05]\n", "",
           "bad.yaml:6: bucket.profile_m: 2 values" },
         { "name: scrape", "name: ''", "bad.yaml:30: trajectories[0].name: nothing" },
+        { "name: tub", "name: ../tub", "bad.yaml:1: name: \"../tub\", expected a name of letters" },
+        { "name: tub", "name: a`touch OWNED`", "bad.yaml:1: name: \"a`touch OWNED`\"" },
+        { "name: tub", "name: \"t\\x1b[2J\"", "bad.yaml:1: name: \"t?[2J\" with a control" },
+        { "name: scrape", "name: -rf", "bad.yaml:30: trajectories[0].name: \"-rf\", expected" },
+        { "name: pull", "name: a b", "bad.yaml:35: trajectories[0].phases[1].name: \"a b\"" },
     };
     yaml_refuses_each("tests/data/formats/scene.yaml", sizeof bad / sizeof bad[0], bad,
                       yaml_scene_refused);

@@ -133,8 +133,22 @@ static void help_names_every_option_and_shows_examples(void **state)
         "--fault",        "--json",     "examples:",    "exit status:"
     };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-        assert_non_null(strstr(dig_rig_options_help(), words[i]));
+        assert_non_null(strstr(dig_rig_options_help(DIG_RIG_COMMAND_HELP), words[i]));
     }
+}
+
+static void help_of_a_command_is_its_own(void **state)
+{
+    (void)state;
+    const enum dig_rig_command record = good("digrig record --help").help_of;
+    const enum dig_rig_command serve  = good("digrig serve -h").help_of;
+    assert_int_equal(record, DIG_RIG_COMMAND_RECORD);
+    assert_int_equal(serve, DIG_RIG_COMMAND_SERVE);
+    assert_int_equal(good("digrig --help").help_of, DIG_RIG_COMMAND_HELP);
+    assert_non_null(strstr(dig_rig_options_help(record), "--truth"));
+    assert_null(strstr(dig_rig_options_help(record), "--can"));
+    assert_non_null(strstr(dig_rig_options_help(serve), "--fault"));
+    assert_null(strstr(dig_rig_options_help(serve), "--truth"));
 }
 
 int main(void)
@@ -144,6 +158,7 @@ int main(void)
         cmocka_unit_test(defaults_are_a_noisy_quantised_machine_in_real_time),
         cmocka_unit_test(bad_lines_are_refused_with_a_word_and_write_nothing),
         cmocka_unit_test(help_names_every_option_and_shows_examples),
+        cmocka_unit_test(help_of_a_command_is_its_own),
     };
     return cmocka_run_group_tests_name("rig options", tests, NULL, NULL);
 }

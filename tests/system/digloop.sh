@@ -195,6 +195,24 @@ for tool in digloop digreport digtable digrig digsightd; do
     check "$tool has --help with examples" eval '"$BIN/'$tool'" --help | grep -qi example'
     check "$tool has --version" eval '"$BIN/'$tool'" --version | grep -q "0\.1\.0"'
 done
+helps() { # TOOL COMMAND…: each command's help is of itself, with an example; other commands' are not in it
+    local tool=$1 command other
+    shift
+    for command in "$@"; do
+        "$BIN/$tool" "$command" --help >"$work/help" 2>"$work/err" && grep -q '^examples:' "$work/help" || return 1
+        for other in "$@"; do
+            if grep -qE "^  $tool $other( |$)" "$work/help"; then
+                [ "$other" = "$command" ] || return 1
+            elif [ "$other" = "$command" ]; then
+                return 1
+            fi
+        done
+    done
+}
+check "digloop COMMAND --help is that command's" helps digloop identify predict trace design
+check "so is digtable's" helps digtable dig generate list show import merge export check
+check "so is digrig's" helps digrig record serve
+check "an unknown command has none" refuses frobnicate -- "$BIN/digloop" frobnicate --help
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

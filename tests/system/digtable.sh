@@ -122,6 +122,12 @@ digtable export "$work/imported.sqlite" --runs
 check "with the samples of the CSV" cmp <(cut -d, -f1-5,11-14 "$work/whole_runs.csv") <(cut -d, -f1-5,11-14 "$work/out")
 digtable import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$work/imported.sqlite"
 check "a dig is imported once" eval 'is $code 2 && grep -q "curves.csv:2: .* is there already" $work/err'
+cp "$work/whole.sqlite" "$work/kept.sqlite"
+{ head -n 1 "$work/curves.csv"; sed -n '2,$s/^0.3,/0.4,/p' "$work/curves.csv"; grep '^0.3,' "$work/curves.csv"; } >"$work/half.csv"
+digtable import "$work/half.csv" --map tests/data/formats/curve_map.yaml -o "$work/kept.sqlite"
+check "a CSV whose last digs are refused adds none" eval 'is $code 2 && grep -q "is there already" $work/err'
+digtable export "$work/kept.sqlite" --runs
+check "and the table is as it was" cmp "$work/whole_runs.csv" "$work/out"
 
 # The reference engine, on a bed of its own and a dig of a few steps.
 sed -E "s/duration_s: [0-9.]+/duration_s: 0.011/" $scene >"$work/short.yaml"

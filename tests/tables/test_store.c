@@ -112,6 +112,36 @@ static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
     assert_int_equal(fixture_ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
 }
 
+static void runs_put_together_are_stored_together_or_not_at_all(void **state)
+{
+    (void)state;
+    struct dig_store           *store     = fixture_create("together.sqlite");
+    const struct dig_run_origin before    = fixture_origin(.3, .5, 2500.0, 0, 0);
+    const struct dig_run_origin first     = fixture_origin(.3, .5, 2500.0, 1, 0);
+    const struct dig_run_origin second    = fixture_origin(.9, .5, 2500.0, 1, 0);
+    const struct dig_recording  recording = fixture_recording(400, 1.0);
+    assert_int_equal(dig_store_put(store, &before, &recording, NULL), DIG_OK);
+
+    // Closed without a commit, as a crash would.
+    assert_int_equal(dig_store_begin(store, NULL), DIG_OK);
+    assert_int_equal(dig_store_put(store, &first, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_store_put(store, &first, &recording, NULL), DIG_EINVAL);
+    assert_int_equal(dig_store_put(store, &second, &recording, NULL), DIG_OK);
+    assert_true(has(store, second));
+    dig_store_close(store);
+    assert_int_equal(fixture_ask("together.sqlite", "SELECT count(*) FROM run"), 1);
+    assert_int_equal(fixture_ask("together.sqlite", "SELECT count(*) FROM ground"), 1);
+
+    store = fixture_create("together.sqlite");
+    assert_int_equal(dig_store_begin(store, NULL), DIG_OK);
+    assert_int_equal(dig_store_put(store, &first, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_store_put(store, &first, &recording, NULL), DIG_EINVAL);
+    assert_int_equal(dig_store_put(store, &second, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_store_commit(store, NULL), DIG_OK);
+    dig_store_close(store);
+    assert_int_equal(fixture_ask("together.sqlite", "SELECT count(*) FROM run"), 3);
+}
+
 static void another_scene_is_refused_and_both_are_named(void **state)
 {
     (void)state;
@@ -302,6 +332,7 @@ int main(void)
         cmocka_unit_test(a_new_table_says_what_it_is),
         cmocka_unit_test(a_run_comes_back_with_where_it_came_from),
         cmocka_unit_test(a_run_is_stored_once_and_a_bad_one_not_at_all),
+        cmocka_unit_test(runs_put_together_are_stored_together_or_not_at_all),
         cmocka_unit_test(another_scene_is_refused_and_both_are_named),
         cmocka_unit_test(what_cannot_become_a_table_is_left_as_it_was),
         cmocka_unit_test(a_file_not_yet_filled_becomes_a_table),

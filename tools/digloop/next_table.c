@@ -1,6 +1,7 @@
 #include "tools/digloop/next_table.h"
 
 #include "core/sha256.h"
+#include "core/shell.h"
 #include "files/campaign_yaml.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/variant.h"
@@ -32,20 +33,12 @@ __attribute__((format(printf, 2, 3))) static void add(struct dig_trace *const tr
     va_end(arguments);
 }
 
-// For a shell: as it stands, or between quotes.
+// A path as a word of a shell, and never an option.
 static void add_path(struct dig_trace *const trace, const char *const path)
 {
-    static const char plain[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-";
-    if (path[0] != '\0' && path[strspn(path, plain)] == '\0') {
-        add(trace, "%s", path);
-        return;
-    }
-    add(trace, "'");
-    for (const char *c = path; *c != '\0'; c++) {
-        add(trace, *c == '\'' ? "'\\''" : "%c", *c);
-    }
-    add(trace, "'");
+    add(trace, "%s", path[0] == '-' ? "./" : "");
+    const size_t used = strlen(trace->command);
+    (void)dig_shell_word(path, sizeof trace->command - used, trace->command + used);
 }
 
 // Three digits: what is behind them no fit knows.
@@ -167,6 +160,11 @@ enum dig_status digloop_next_table(const struct digloop_options *const options,
         add(trace, " effects_grid.yaml -o ");
         add_path(trace, effects);
         add(trace, "\n");
+
+        // Of a line that was cut a shell would make something else.
+        if (strlen(trace->command) + 1 == sizeof trace->command) {
+            trace->command[0] = '\0';
+        }
     }
     free(w);
     return status;

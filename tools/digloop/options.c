@@ -7,56 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] =
-    "digloop finds the gravel of a table that resists like recorded digs, predicts other digs, and "
-    "traces what a model lacks.\n"
-    "\n"
-    "usage:\n"
-    "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--model MODEL.json]\n"
-    "                   [--trajectory NAME] [--moment-alone] [--json]\n"
-    "      which gravel: all digs of the recordings matched together, by moment and forces where\n"
-    "      every dig has them, else by the moment alone, as --moment-alone does in any case. A\n"
-    "      recording is a force recording, or with --machine a machine recording or an LCM log of\n"
-    "      the daemon, which may hold several digs. They are to be along one trajectory, or along\n"
-    "      such as begin with \"simple\"; --trajectory takes those along one\n"
-    "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
-    "                  [--depth F] [--attack-deg A] [-o CURVE.csv]\n"
-    "                  [--measured RECORDING [--machine MACHINE.yaml]] [--model MODEL.json] "
-    "[--json]\n"
-    "      what that gravel will resist along another trajectory, at the table's scale, dug "
-    "deeper\n"
-    "      or with the bucket turned where the table was; with digs measured, how wrong that was,\n"
-    "      each as it was dug: relative Euclidean norm of the moment, +-0.16 s\n"
-    "      --model, here and above: table and machine with the effects that a trace has added\n"
-    "  digloop trace TABLE.sqlite CAMPAIGN/ [--effects EFFECTS.sqlite]\n"
-    "                [--json OUT.json] [--html OUT.html] [--add MODEL.json]\n"
-    "      what the table lacks: the residual of a campaign's digs, the effect it traces to, the\n"
-    "      error on the holdout digs before and after that effect is added. Effects of the soil "
-    "are\n"
-    "      compared with beds that hold them, by default those of TABLE_effects.sqlite. OUT or "
-    "MODEL\n"
-    "      \"-\": standard output. What people are told goes there without --json and --add, else "
-    "to\n"
-    "      standard error\n"
-    "  digloop design TABLE.sqlite [--effects EFFECTS.sqlite] [--json]\n"
-    "      which simple dig of the table tells most about the gravel and tells effects apart, and\n"
-    "      whether digs simulated with the table's own scatter bear that out\n"
-    "  digloop --help | --version\n"
-    "\n"
-    "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
-    "\n"
-    "examples:\n"
-    "  digloop identify tables/rig.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
-    "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-    "          --measured actual_1.csv\n"
-    "  digloop identify tables/rig.sqlite run.csv --machine config/machines/zx200_trench.yaml\n"
-    "  digloop identify tables/rig.sqlite day.lcm --machine config/machines/zx200_trench.yaml \\\n"
-    "          --trajectory simpleA --json >id.json\n"
-    "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-    "          --measured day.lcm --machine config/machines/zx200_trench.yaml\n"
-    "  digloop trace tables/rig.sqlite campaign/ --json trace.json --html trace.html --add "
-    "model.json\n";
-
 static bool has_trace_options(const struct digloop_options *const o)
 {
     return o->effects != NULL || o->html != NULL || o->add != NULL;
@@ -179,8 +129,13 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         { "version", no_argument, NULL, VERSION },
         { NULL, 0, NULL, 0 },
     };
-    struct digloop_options o = { .approach = dig_approach_plain() };
-    opterr                   = 0;
+    struct digloop_options o       = { .approach = dig_approach_plain() };
+    const char *const      command = argc > 1 ? argv[1] : "";
+    if (command[0] != '\0' && command[0] != '-' && !digloop_is_command(command)) {
+        return dig_error_set(error, DIG_EINVAL, "%s: expected identify, predict, trace or design",
+                             command);
+    }
+    opterr = 0;
     for (int c; (c = getopt_long(argc, argv, "o:", known, NULL)) != -1;) {
         switch (c) {
         case IDENTIFIED: o.identified = optarg; break;
@@ -210,7 +165,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
             break;
         case HTML: o.html = optarg; break;
         case ADD: o.add = optarg; break;
-        case HELP: (void)fputs(help, stdout); exit(EXIT_SUCCESS);
+        case HELP: digloop_help(command); exit(EXIT_SUCCESS);
         case VERSION: (void)puts("digloop " DIG_VERSION); exit(EXIT_SUCCESS);
         default:
             return dig_error_set(error, DIG_EINVAL, "unknown option or missing value: %s",

@@ -1,3 +1,4 @@
+#include "core/text.h"
 #include "core/units.h"
 #include "estimator/match/match.h"
 #include "estimator/predict/peak_energy.h"
@@ -119,10 +120,11 @@ static void print(const struct digloop_options *const options, const struct pred
         tell(options, p, how);
         return;
     }
-    (void)printf("{\"trajectory\": \"%s\", \"peak_Nm\": %.6g, \"peak_sigma_Nm\": %.6g, "
+    (void)fputs("{\"trajectory\": ", stdout);
+    dig_text_put_json(stdout, p->trajectory.name);
+    (void)printf(", \"peak_Nm\": %.6g, \"peak_sigma_Nm\": %.6g, "
                  "\"energy_J\": %.6g, \"energy_sigma_J\": %.6g",
-                 p->trajectory.name, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
-                 whole->energy_sigma_J);
+                 whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J, whole->energy_sigma_J);
     if (how[0] != '\0') {
         (void)printf(", \"depth\": %.6g, \"attack_deg\": %.6g", options->approach.depth,
                      options->approach.attack_rad / DIG_RAD_PER_DEG);

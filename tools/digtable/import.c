@@ -87,7 +87,13 @@ int dig_cli_import(const struct dig_arguments *const a)
         return dig_cli_work_failed(status, &error);
     }
     const struct dig_foreign_visitor visitor = { store_dig, &import };
-    status = dig_curves_read(a->positional[0], &map, &visitor, &error);
+    status                                   = dig_store_begin(import.store, &error);
+    if (status == DIG_OK) {
+        status = dig_curves_read(a->positional[0], &map, &visitor, &error);
+    }
+    if (status == DIG_OK) {
+        status = dig_store_commit(import.store, &error);
+    }
     dig_store_close(import.store);
     if (status != DIG_OK) {
         if (is_new) {

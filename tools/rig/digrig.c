@@ -177,7 +177,7 @@ int main(const int argc, char *argv[])
         return EXIT_USAGE;
     }
     if (options.command == DIG_RIG_COMMAND_HELP) {
-        return fputs(dig_rig_options_help(), stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
+        return fputs(dig_rig_options_help(options.help_of), stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
     }
     if (options.command == DIG_RIG_COMMAND_VERSION) {
         return printf("digrig %s\n", DIG_VERSION) < 0 ? EXIT_FAILED : EXIT_DONE;

@@ -5,61 +5,80 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help_text[] =
-    "usage: digrig record RECORDING.csv...|CAMPAIGN/ --machine M.yaml -o OUT.csv [options]\n"
-    "       digrig serve  RECORDING.csv...|CAMPAIGN/ --machine M.yaml BUS... [options]\n"
-    "\n"
-    "Turns recorded digs into the joint angles and cylinder pressures of a machine, or what a "
-    "force\n"
-    "sensor that carries the bucket reads (not on CAN), and writes them to a file or serves them\n"
-    "on real buses. Several recordings are dug one after the other.\n"
-    "\n"
-    "  --machine M.yaml          the machine (config/machines)\n"
-    "  --tooth-m L               pin to tooth of the recordings' bucket (default 0.09, the rig)\n"
-    "  --scene SCENE.yaml        take that from a scene instead (a campaign names its own)\n"
-    "  --pin-start X,Z           bucket pin at the first contact, from the boom foot (default: "
-    "the\n"
-    "                            place that leaves the machine most room)\n"
-    "  --seed N                  of the sensors' noise (default 1)\n"
-    "  --no-noise                sensors without noise (--noise 0 too)\n"
-    "  --quasi-static            leave the inertia of the links out\n"
-    "  --no-blend                keep the velocity jumps of the recording\n"
-    "  --no-air                  the dig alone, without motion before and after\n"
-    "record:\n"
-    "  -o OUT.csv                machine recording to write\n"
-    "  --rate HZ                 samples per second, a divisor of 1000 from 50 up (default 200)\n"
-    "  --truth TRUTH.csv         also write the true pose and wrench of the bucket pin\n"
-    "  --no-quantisation         numbers as they are, not in steps of the machine's bus\n"
-    "  --exact                   --no-noise --no-quantisation\n"
-    "serve, one or more buses:\n"
-    "  --can IFACE               CAN frames in the ZX200 layout\n"
-    "  --modbus-tcp HOST:PORT    Modbus TCP server (port 0: any free one, told on stderr)\n"
-    "  --can-sealed              pressures and angles carry a counter and a checksum\n"
-    "  --modbus-rtu DEV[:BAUD]   Modbus RTU slave 1 (default 115200 baud, 8N1)\n"
-    "  --speed F                 times real time (default 1)\n"
-    "  --start-delay S           stand still so many seconds first, with the bus alive\n"
-    "  --loop                    start again at the end, until SIGTERM\n"
-    "  --fault KIND[=N]@T[:DURATION]  what goes wrong at T seconds of machine time (may be given\n"
-    "                            again): not-available, nan, frozen, missing, out-of-range,\n"
-    "                            stuck-pressures, stuck-angles, far, far-silent; drop,\n"
-    "                            duplicate, reorder, corrupt, exception for a share N; delay,\n"
-    "                            slow by N seconds\n"
-    "  --json                    what was sent and asked for, as JSON on stdout at the end\n"
-    "\n"
-    "examples:\n"
-    "  digrig record simpleA.csv actual.csv --machine config/machines/zx200_trench.yaml -o "
-    "run.csv\n"
-    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"
-    "         --modbus-tcp 127.0.0.1:1502 --speed 2\n"
-    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml --can vcan0 \\\n"
-    "         --fault frozen@5:2\n"
-    "\n"
-    "exit status: 0 done, 1 the work failed, 2 bad usage, bad input or a dig the machine cannot "
-    "do\n";
+#define USAGE_RECORD                                                                               \
+    "  digrig record RECORDING.csv...|CAMPAIGN/ --machine M.yaml -o OUT.csv [options]\n"
+#define USAGE_SERVE "  digrig serve RECORDING.csv...|CAMPAIGN/ --machine M.yaml BUS... [options]\n"
 
-const char *dig_rig_options_help(void)
+#define INTRO                                                                                      \
+    "\n"                                                                                           \
+    "Turns recorded digs into the joint angles and cylinder pressures of a machine, or what a\n"   \
+    "force sensor that carries the bucket reads (not on CAN), and writes them to a file or\n"      \
+    "serves them on real buses. Several recordings are dug one after the other.\n"                 \
+    "\n"
+
+#define OPTIONS                                                                                    \
+    "  --machine M.yaml          the machine (config/machines)\n"                                  \
+    "  --tooth-m L               pin to tooth of the recordings' bucket (default 0.09, the rig)\n" \
+    "  --scene SCENE.yaml        take that from a scene instead (a campaign names its own)\n"      \
+    "  --pin-start X,Z           bucket pin at the first contact, from the boom foot (default:\n"  \
+    "                            the place that leaves the machine most room)\n"                   \
+    "  --seed N                  of the sensors' noise (default 1)\n"                              \
+    "  --no-noise                sensors without noise (--noise 0 too)\n"                          \
+    "  --quasi-static            leave the inertia of the links out\n"                             \
+    "  --no-blend                keep the velocity jumps of the recording\n"                       \
+    "  --no-air                  the dig alone, without motion before and after\n"
+
+#define OPTIONS_RECORD                                                                             \
+    "record:\n"                                                                                    \
+    "  -o OUT.csv                machine recording to write\n"                                     \
+    "  --rate HZ                 samples per second, a divisor of 1000 from 50 up (default 200)\n" \
+    "  --truth TRUTH.csv         also write the true pose and wrench of the bucket pin\n"          \
+    "  --no-quantisation         numbers as they are, not in steps of the machine's bus\n"         \
+    "  --exact                   --no-noise --no-quantisation\n"
+
+#define OPTIONS_SERVE                                                                              \
+    "serve, one or more buses:\n"                                                                  \
+    "  --can IFACE               CAN frames in the ZX200 layout\n"                                 \
+    "  --modbus-tcp HOST:PORT    Modbus TCP server (port 0: any free one, told on stderr)\n"       \
+    "  --can-sealed              pressures and angles carry a counter and a checksum\n"            \
+    "  --modbus-rtu DEV[:BAUD]   Modbus RTU slave 1 (default 115200 baud, 8N1)\n"                  \
+    "  --speed F                 times real time (default 1)\n"                                    \
+    "  --start-delay S           stand still so many seconds first, with the bus alive\n"          \
+    "  --loop                    start again at the end, until SIGTERM\n"                          \
+    "  --fault KIND[=N]@T[:DURATION]  what goes wrong at T seconds of machine time (may be\n"      \
+    "                            given again): not-available, nan, frozen, missing,\n"             \
+    "                            out-of-range, stuck-pressures, stuck-angles, far, far-silent;\n"  \
+    "                            drop, duplicate, reorder, corrupt, exception for a share N;\n"    \
+    "                            delay, slow by N seconds\n"                                       \
+    "  --json                    what was sent and asked for, as JSON on stdout at the end\n"
+
+#define EXAMPLES_RECORD                                                                            \
+    "  digrig record simpleA.csv actual.csv --machine config/machines/zx200_trench.yaml \\\n"      \
+    "         -o run.csv\n"
+#define EXAMPLES_SERVE                                                                             \
+    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"                  \
+    "         --modbus-tcp 127.0.0.1:1502 --speed 2\n"                                             \
+    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml --can vcan0 \\\n"      \
+    "         --fault frozen@5:2\n"
+
+#define EXIT_STATUS                                                                                \
+    "\nexit status: 0 done, 1 the work failed, 2 bad usage, bad input or a dig the machine\n"      \
+    "cannot do\n"
+
+const char *dig_rig_options_help(const enum dig_rig_command command)
 {
-    return help_text;
+    switch (command) {
+    case DIG_RIG_COMMAND_RECORD:
+        return "usage:\n" USAGE_RECORD "\n" OPTIONS OPTIONS_RECORD
+               "\nexamples:\n" EXAMPLES_RECORD      EXIT_STATUS;
+    case DIG_RIG_COMMAND_SERVE:
+        return "usage:\n" USAGE_SERVE "\n" OPTIONS OPTIONS_SERVE
+               "\nexamples:\n" EXAMPLES_SERVE      EXIT_STATUS;
+    case DIG_RIG_COMMAND_HELP:
+    case DIG_RIG_COMMAND_VERSION: break;
+    }
+    return "usage:\n" USAGE_RECORD USAGE_SERVE INTRO OPTIONS OPTIONS_RECORD OPTIONS_SERVE
+           "\nexamples:\n" EXAMPLES_RECORD EXAMPLES_SERVE                   EXIT_STATUS;
 }
 
 enum {
@@ -167,7 +186,10 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
 {
     double flag = 0.0;
     switch (option) {
-    case 'h': options->command = DIG_RIG_COMMAND_HELP; break;
+    case 'h':
+        options->help_of = options->command;
+        options->command = DIG_RIG_COMMAND_HELP;
+        break;
     case OPT_VERSION: options->command = DIG_RIG_COMMAND_VERSION; break;
     case 'o': options->out = optarg; break;
     case OPT_MACHINE: options->machine = optarg; break;

@@ -23,6 +23,7 @@ enum dig_rig_command {
 /// Strings point into argv.
 struct dig_rig_options {
     enum dig_rig_command         command;
+    enum dig_rig_command         help_of; // HELP: the command it was asked for, or HELP for all
     size_t                       inputs;
     const char                  *input[DIG_RIG_INPUTS_MAX]; // recordings, or one campaign folder
     const char                  *machine;
@@ -48,8 +49,8 @@ struct dig_rig_options {
     struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
 };
 
-/// The text of --help.
-const char *dig_rig_options_help(void);
+/// The text of --help: of RECORD or SERVE alone, else of both.
+const char *dig_rig_options_help(enum dig_rig_command command);
 
 /// DIG_EINVAL says which option and what was expected.
 DIG_MUST_CHECK enum dig_status dig_rig_options_parse(int argc, char *argv[],

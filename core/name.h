@@ -1,0 +1,31 @@
+// What may be called what. Names stand in tables, messages, pages, paths and shell lines: they are
+// of few characters, so that they mean the same everywhere. Every reader of a file or a message
+// checks with these, and says where the name stands.
+
+#ifndef DIG_CORE_NAME_H
+#define DIG_CORE_NAME_H
+
+#include <stdbool.h>
+
+/// For "expected …" where one of these is false.
+#define DIG_NAME_RULE "a name of letters, digits, '_', '.' and '-' that begins with none of . -"
+#define DIG_LABEL_RULE                                                                             \
+    "letters, digits, blanks and any of _ . - + : / ( ), beginning with a letter or digit"
+#define DIG_PATH_RULE "a file's name without control characters"
+
+/// Of a scene, trajectory, phase, material or signal: ASCII letters, digits, `_ . -`, not empty,
+/// the first neither '.' nor '-', so that it is never `..` or an option. Its reader knows how long
+/// it may be.
+bool dig_name_ok(const char *name);
+
+/// Of a machine, an engine, a version or a date, which are for people: a name's characters, blanks
+/// within, and `+ : / ( )`.
+bool dig_label_ok(const char *label);
+
+/// Of a file: printable UTF-8 in one line, not empty.
+bool dig_path_ok(const char *path);
+
+/// True when a path that is not absolute has no `..` in it: it stays in the folder it is of.
+bool dig_path_stays(const char *path);
+
+#endif // DIG_CORE_NAME_H

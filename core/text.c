@@ -1,0 +1,75 @@
+#include "core/text.h"
+
+#include <assert.h>
+#include <stdbool.h>
+
+size_t dig_text_character(const char *const text)
+{
+    assert(text != NULL);
+    const unsigned char *const c = (const unsigned char *)text;
+    const size_t               n = c[0] < 0x80    ? 1
+                                   : c[0] < 0xc2  ? 0
+                                   : c[0] < 0xe0  ? 2
+                                   : c[0] < 0xf0  ? 3
+                                   : c[0] <= 0xf4 ? 4
+                                                  : 0;
+    for (size_t i = 1; i < n; i++) {
+        if ((c[i] & 0xc0) != 0x80) {
+            return 0;
+        }
+    }
+    const bool overlong  = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90);
+    const bool surrogate = c[0] == 0xed && c[1] >= 0xa0;
+    const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
+    const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
+                         (c[0] == 0xc2 && c[1] < 0xa0);
+    return overlong || surrogate || too_large || control ? 0 : n;
+}
+
+void dig_text_clean(char text[])
+{
+    assert(text != NULL);
+    for (char *c = text; *c != '\0';) {
+        const size_t n = dig_text_character(c);
+        if (n == 0) {
+            *c = '?';
+        }
+        c += n == 0 ? 1 : n;
+    }
+}
+
+void dig_text_put(FILE *const to, const char *const text)
+{
+    assert(to != NULL && text != NULL);
+    for (const char *c = text; *c != '\0';) {
+        const size_t n = *c == '\n' || *c == '\t' ? 0 : dig_text_character(c);
+        if (n == 0) {
+            (void)fputc('?', to);
+        } else {
+            (void)fwrite(c, 1, n, to);
+        }
+        c += n == 0 ? 1 : n;
+    }
+}
+
+void dig_text_put_json(FILE *const to, const char *const text)
+{
+    assert(to != NULL && text != NULL);
+    (void)fputc('"', to);
+    for (const char *c = text; *c != '\0';) {
+        const unsigned char *const byte = (const unsigned char *)c;
+        const size_t               n    = dig_text_character(c);
+        const bool c1 = byte[0] == 0xc2 && (byte[1] & 0xe0) == 0x80; // U+0080 to U+009F
+        if (*c == '"' || *c == '\\') {
+            (void)fprintf(to, "\\%c", *c);
+        } else if (byte[0] < 0x20 || byte[0] == 0x7f || c1) {
+            (void)fprintf(to, "\\u%04x", c1 ? byte[1] : byte[0]);
+        } else if (n == 0) {
+            (void)fputs("\xef\xbf\xbd", to);
+        } else {
+            (void)fwrite(c, 1, n, to);
+        }
+        c += c1 ? 2 : n == 0 ? 1 : n;
+    }
+    (void)fputc('"', to);
+}

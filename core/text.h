@@ -1,0 +1,25 @@
+// Text from elsewhere: which of it is a character, and what of it a terminal may be shown.
+
+#ifndef DIG_CORE_TEXT_H
+#define DIG_CORE_TEXT_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/// The bytes of the printable UTF-8 character at text, 1 to 4; 0 where none begins: at a byte that
+/// is not UTF-8, and at a control character, those from U+0080 to U+009F among them. A line break
+/// and a tab count as printable.
+size_t dig_text_character(const char *text);
+
+/// Puts '?' in place of each byte that is none of a printable character, so that no escape sequence
+/// reaches a terminal or a log.
+void dig_text_clean(char text[]);
+
+/// text as dig_text_clean() makes it, and in one line: a line break or a tab becomes '?', too.
+void dig_text_put(FILE *to, const char *text);
+
+/// text as a JSON string, with its quotes: valid JSON and UTF-8 whatever the bytes. Control
+/// characters are escaped and come back; a byte that is no UTF-8 becomes U+FFFD.
+void dig_text_put_json(FILE *to, const char *text);
+
+#endif // DIG_CORE_TEXT_H

@@ -1,0 +1,126 @@
+// Tests for core/name.c
+
+#include "core/name.h"
+
+#include "tests/testlib.h"
+
+#include <string.h>
+
+// What no reader takes for a name, whatever it is the name of.
+static const char *const hostile[] = {
+    "",
+    ".",
+    "..",
+    "../up",
+    ".hidden",
+    "-rf",
+    "--help",
+    "a\nb",
+    "a\tb",
+    "a\x1b[31m",
+    "a\x7f",
+    "a\xc2\x9b",
+    "a\xff",
+    "\xc3\xa9",
+    "a`touch OWNED`",
+    "$(touch OWNED)",
+    "a;b",
+    "a'b",
+    "a\"b",
+    "a\\b",
+    "a,b",
+    "</script>",
+    "a&b",
+    "%n%s",
+    "{a}",
+    "[a]",
+    "#a",
+    "a*",
+    "a|b",
+    "a=b",
+    "@a",
+    "~",
+    "!",
+    " a",
+    "a ",
+};
+
+static void names_of_scenes_and_trajectories_pass(void **state)
+{
+    (void)state;
+    static const char *const good[] = {
+        "a", "simpleA", "rig", "tub-of-everything", "zx200_trench", "v1.2", "0.5_x", "_a", "7",
+    };
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        assert_true(dig_name_ok(good[i]));
+    }
+}
+
+static void nothing_hostile_is_a_name_or_a_label(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        if (dig_name_ok(hostile[i]) || dig_label_ok(hostile[i])) {
+            fail_msg("taken: %s", hostile[i]);
+        }
+    }
+    assert_false(dig_name_ok("a b"));
+    assert_false(dig_name_ok("a/b"));
+}
+
+static void every_byte_but_those_told_is_refused_within_a_name(void **state)
+{
+    (void)state;
+    size_t taken = 0;
+    for (int c = 1; c < 256; c++) {
+        const char name[] = { 'a', (char)c, 'b', '\0' };
+        taken += dig_name_ok(name) ? 1 : 0;
+    }
+    assert_int_equal(taken, 26 + 26 + 10 + 3);
+}
+
+static void labels_for_people_may_have_blanks(void **state)
+{
+    (void)state;
+    static const char *const good[] = {
+        "example 20 t", "0.1.0+6d34da11e608", "2026-11-22T20:34:33Z", "LIGGGHTS 3.8 (MPI)", "a/b",
+    };
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        assert_true(dig_label_ok(good[i]));
+    }
+}
+
+static void files_are_named_in_one_printable_line(void **state)
+{
+    (void)state;
+    assert_true(dig_path_ok("a b/it's (1) $x \xc3\xa9.csv"));
+    static const char *const bad[] = { "", "a\nb", "a\tb", "a\x1b", "\xff", "\xc2\x85", "a\r" };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_false(dig_path_ok(bad[i]));
+    }
+}
+
+static void a_relative_path_with_dots_leaves_its_folder(void **state)
+{
+    (void)state;
+    static const char *const stay[]  = { "a.csv", "a/b.csv", "./a", "a..b", "..a/b", "a/..b/..." };
+    static const char *const leave[] = { "..", "../a", "a/../b", "a/..", "./../a", "a//../../b" };
+    for (size_t i = 0; i < sizeof stay / sizeof stay[0]; i++) {
+        assert_true(dig_path_stays(stay[i]));
+        assert_false(dig_path_stays(leave[i]));
+    }
+    assert_true(dig_path_stays("/srv/a/../b.csv"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_of_scenes_and_trajectories_pass),
+        cmocka_unit_test(nothing_hostile_is_a_name_or_a_label),
+        cmocka_unit_test(every_byte_but_those_told_is_refused_within_a_name),
+        cmocka_unit_test(labels_for_people_may_have_blanks),
+        cmocka_unit_test(files_are_named_in_one_printable_line),
+        cmocka_unit_test(a_relative_path_with_dots_leaves_its_folder),
+    };
+    return cmocka_run_group_tests_name("name", tests, NULL, NULL);
+}

@@ -1,0 +1,106 @@
+// Tests for core/text.c and core/error.c: what a terminal may be shown.
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include "tests/testlib.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void characters_are_told_from_bytes_that_are_none(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        size_t      bytes;
+    } all[] = {
+        { "a", 1 },
+        { "\n", 1 },
+        { "\t", 1 },
+        { "\xc3\xa9", 2 },         // é
+        { "\xe2\x82\xac", 3 },     // €
+        { "\xf0\x9f\x98\x80", 4 }, // an emoji
+        { "\x1b[31m", 0 },         // ESC
+        { "\r", 0 },
+        { "\x07", 0 },
+        { "\x7f", 0 },
+        { "\xc2\x9b", 0 }, // CSI as one character
+        { "\xff", 0 },
+        { "\xc0\xaf", 0 },         // '/' in two bytes
+        { "\xe0\x80\xaf", 0 },     // and in three
+        { "\xed\xa0\x80", 0 },     // half a surrogate pair
+        { "\xf4\x90\x80\x80", 0 }, // beyond U+10FFFF
+        { "\xe2\x82", 0 },         // cut off
+    };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        assert_int_equal(dig_text_character(all[i].text), all[i].bytes);
+    }
+}
+
+static void cleaned_text_keeps_its_length_and_its_characters(void **state)
+{
+    (void)state;
+    char text[] = "a\x1b[2J\xc3\xa9\xff\n\xc2\x9b z\xe2\x82";
+    dig_text_clean(text);
+    assert_string_equal(text, "a?[2J\xc3\xa9?\n?? z??");
+}
+
+static void an_error_holds_no_escape_sequence_and_no_half_character(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    assert_int_equal(
+        dig_error_set(&error, DIG_EINVAL, "\"%s\", expected a name", "\x1b]0;owned\x07\x9b"),
+        DIG_EINVAL);
+    assert_string_equal(error.text, "\"?]0;owned??\", expected a name");
+
+    char wide[2 * sizeof error.text];
+    memset(wide, 'x', sizeof wide);
+    wide[sizeof wide - 1] = '\0';
+    memcpy(wide + sizeof error.text - 2, "\xc3\xa9", 2); // falls over the end
+    (void)dig_error_set(&error, DIG_EIO, "%s", wide);
+    assert_int_equal(error.text[sizeof error.text - 2], '?');
+}
+
+static void assert_json(const char *const text, const char *const expected)
+{
+    char  said[256] = "";
+    FILE *to        = fmemopen(said, sizeof said, "w");
+    assert_non_null(to);
+    dig_text_put_json(to, text);
+    assert_int_equal(fclose(to), 0);
+    assert_string_equal(said, expected);
+}
+
+static void json_strings_end_where_they_should_and_are_utf8(void **state)
+{
+    (void)state;
+    assert_json("plain \xc3\xa9", "\"plain \xc3\xa9\"");
+    assert_json("a\"b\\c\nd\t", "\"a\\\"b\\\\c\\u000ad\\u0009\"");
+    assert_json("\x1b\x7f\xc2\x9b", "\"\\u001b\\u007f\\u009b\"");
+    assert_json("\xff\xc3", "\"\xef\xbf\xbd\xef\xbf\xbd\"");
+}
+
+static void a_text_put_is_one_line_of_characters(void **state)
+{
+    (void)state;
+    char  said[64] = "";
+    FILE *to       = fmemopen(said, sizeof said, "w");
+    assert_non_null(to);
+    dig_text_put(to, "a\nb\tc\x1b[0m\xff \xe2\x82\xac");
+    assert_int_equal(fclose(to), 0);
+    assert_string_equal(said, "a?b?c?[0m? \xe2\x82\xac");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(characters_are_told_from_bytes_that_are_none),
+        cmocka_unit_test(cleaned_text_keeps_its_length_and_its_characters),
+        cmocka_unit_test(json_strings_end_where_they_should_and_are_utf8),
+        cmocka_unit_test(a_text_put_is_one_line_of_characters),
+        cmocka_unit_test(an_error_holds_no_escape_sequence_and_no_half_character),
+    };
+    return cmocka_run_group_tests_name("text", tests, NULL, NULL);
+}

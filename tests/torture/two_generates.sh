@@ -1,0 +1,44 @@
+#!/bin/bash
+# Two generates on one table at once, one or both of them killed now and then: one writes, the other is refused or
+# waits its turn; the table is as ever.
+. tests/system/digtable_lib.bash
+. tests/torture/torture.bash
+
+grid=tests/data/formats/grid.yaml # 12 digs
+"$BIN/digtable" generate $scene $grid -o "$work/whole.sqlite" 2>/dev/null
+"$BIN/digtable" export "$work/whole.sqlite" --runs -o "$work/whole.csv"
+table=$work/table.sqlite rounds=0 pairs=0 refused=0 kills=0
+one() { # WORDS
+    "$BIN/digtable" generate $scene $grid -o "$table" -j 1 >/dev/null 2>"$1" </dev/null &
+}
+while going; do
+    one "$work/a.err"
+    a=$!
+    share_of 300000
+    sleep "$share"
+    one "$work/b.err"
+    b=$!
+    pairs=$((pairs + 1))
+    if [ $((RANDOM % 2)) = 0 ]; then
+        share_of 1500000
+        sleep "$share"
+        kill -KILL $a 2>/dev/null && kills=$((kills + 1))
+    fi
+    wait $a 2>/dev/null
+    code_a=$?
+    wait $b 2>/dev/null
+    code_b=$?
+    for code in $code_a $code_b; do
+        case $code in 0 | 1 | 137) ;; *) cat "$work/a.err" "$work/b.err" >"$work/err"; fault "exit status $code" ;; esac
+    done
+    cat "$work/a.err" "$work/b.err" >"$work/err"
+    refused=$((refused + $(grep -c "another process is adding" "$work/err")))
+    "$BIN/digtable" check "$table" >/dev/null 2>"$work/err" || grep -q "no rows" "$work/err" || fault "the table is not sound"
+    [ "$(sqlite3 "$table" 'SELECT count(*) FROM run' 2>/dev/null)" = 12 ] || continue
+    "$BIN/digtable" export "$table" --runs | cmp -s - "$work/whole.csv" || fault "other bytes than one generate's"
+    rounds=$((rounds + 1))
+    rm -f "$table"
+done
+told $pairs "two generates on one table ($refused refused, $kills killed, $rounds tables finished)"
+check "two generates on one table make the table that one makes" [ $wrong = 0 ]
+finish
