@@ -60,6 +60,27 @@ static void set_distance(struct dig_kinematics *const t, const dContactGeom *con
     t->dz_m          = d_m * c->normal[2];
 }
 
+// The contact of grain a with b, whose body is j (NULL: it does not move as ODE's body) and whose
+// number in the history is other. NULL: there is none, or memory is short.
+static struct dig_contact_history *begin_contact(struct dig_ode_bed *const bed, dGeomID a,
+                                                 dGeomID b, dBodyID j, const uint32_t other,
+                                                 const struct dig_law *const  law,
+                                                 struct dig_kinematics *const kinematics)
+{
+    dContactGeom contact;
+    if (dCollide(a, b, 1, &contact, sizeof contact) == 0) {
+        return NULL;
+    }
+    const size_t                      i = index_of(a);
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)i, other);
+    bed->out_of_memory = bed->out_of_memory || history == NULL;
+    *kinematics        = (struct dig_kinematics){ 0 };
+    set_distance(kinematics, &contact, law->reach_m);
+    set_velocity(bed->body[i], j, kinematics);
+    return history;
+}
+
 static bool comes_second(const struct dig_ode_bed *const bed, const size_t a, const size_t b)
 {
     return bed->type_of[a] > bed->type_of[b] || (bed->type_of[a] == bed->type_of[b] && a > b);
@@ -74,23 +95,16 @@ void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
         b             = a;
         a             = first;
     }
-    const size_t na = index_of(a);
-    const size_t nb = index_of(b);
-    dContactGeom contact;
-    if (dCollide(a, b, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
+    const size_t                na = index_of(a);
+    const size_t                nb = index_of(b);
     const struct dig_law *const law =
         &bed->pair_law[bed->type_of[na] * DIG_GRAIN_TYPES_MAX + bed->type_of[nb]];
+    struct dig_kinematics             kinematics;
     struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)na, (uint32_t)nb);
+        begin_contact(bed, a, b, bed->body[nb], (uint32_t)nb, law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[na], bed->body[nb], &kinematics);
     const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[na], &force);
     add_load_to_j(bed, bed->body[nb], &force);
@@ -98,25 +112,18 @@ void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
 
 void dig_ode_contacts_wall(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed        = data;
-    const bool                swap       = dGeomGetClass(a) == dPlaneClass;
-    dGeomID                   grain_geom = swap ? b : a;
-    dGeomID                   wall       = swap ? a : b;
-    dContactGeom              contact;
-    if (dCollide(grain_geom, wall, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
-    const size_t                      i   = index_of(grain_geom);
-    const struct dig_law *const       law = &bed->wall_law[bed->type_of[i]];
-    struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)i, WALL_NUMBER + (uint32_t)index_of(wall));
+    struct dig_ode_bed *const         bed        = data;
+    const bool                        swap       = dGeomGetClass(a) == dPlaneClass;
+    dGeomID                           grain_geom = swap ? b : a;
+    dGeomID                           wall       = swap ? a : b;
+    const size_t                      i          = index_of(grain_geom);
+    const struct dig_law *const       law        = &bed->wall_law[bed->type_of[i]];
+    struct dig_kinematics             kinematics;
+    struct dig_contact_history *const history = begin_contact(
+        bed, grain_geom, wall, NULL, WALL_NUMBER + (uint32_t)index_of(wall), law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[i], NULL, &kinematics);
     const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
 }
@@ -138,26 +145,20 @@ static void add_reaction(const struct dig_contact_force *const p, const double a
 // A grain and a rock whose boxes overlap.
 void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed        = data;
-    const bool                swap       = dGeomGetSpace(a) == bed->rocks_space;
-    dGeomID                   grain_geom = swap ? b : a;
-    dGeomID                   rock_geom  = swap ? a : b;
-    dContactGeom              contact;
-    if (dCollide(grain_geom, rock_geom, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
-    const size_t                      i    = index_of(grain_geom);
-    struct dig_rock *const            rock = &bed->rock[index_of(rock_geom)];
-    const struct dig_law *const       law  = &bed->wall_law[bed->type_of[i]];
+    struct dig_ode_bed *const         bed        = data;
+    const bool                        swap       = dGeomGetSpace(a) == bed->rocks_space;
+    dGeomID                           grain_geom = swap ? b : a;
+    dGeomID                           rock_geom  = swap ? a : b;
+    const size_t                      i          = index_of(grain_geom);
+    struct dig_rock *const            rock       = &bed->rock[index_of(rock_geom)];
+    const struct dig_law *const       law        = &bed->wall_law[bed->type_of[i]];
+    struct dig_kinematics             kinematics;
     struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)i, ROCK_NUMBER + (uint32_t)index_of(rock_geom));
+        begin_contact(bed, grain_geom, rock_geom, NULL, ROCK_NUMBER + (uint32_t)index_of(rock_geom),
+                      law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[i], NULL, &kinematics);
     const dReal *const  x        = dBodyGetPosition(bed->body[i]);
     const double *const w        = rock->body.w_radps;
     const double *const v        = rock->body.v_mps;

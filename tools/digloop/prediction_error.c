@@ -93,15 +93,15 @@ static void put_list(const char *const name, const size_t n, const double value[
     (void)printf("]");
 }
 
-void digloop_prediction_error_put(const struct digloop_prediction_error *const w)
+void digloop_prediction_error_put(const struct digloop_prediction_error *const errors)
 {
-    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&w->score),
-                 dig_score_noise_floor(&w->score));
+    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&errors->score),
+                 dig_score_noise_floor(&errors->score));
     double inside[DIG_FORCE_CHANNELS];
     for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        inside[c] = dig_coverage_share(&w->coverage, (enum dig_channel)c);
+        inside[c] = dig_coverage_share(&errors->coverage, (enum dig_channel)c);
     }
     put_list("inside_90", DIG_FORCE_CHANNELS, inside);
-    put_list("measured_peak_Nm", w->digs, w->peak_Nm);
-    put_list("measured_energy_J", w->digs, w->energy_J);
+    put_list("measured_peak_Nm", errors->digs, errors->peak_Nm);
+    put_list("measured_energy_J", errors->digs, errors->energy_J);
 }
