@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 static const char *const axis_names[DIG_AXES] = {
     [DIG_AXIS_FRICTION]      = "friction",
@@ -141,4 +142,14 @@ void dig_curve_smooth(const size_t n, const double t_s[], const double y[], cons
                                      (to_s - from_s)
                                : y[k];
     }
+}
+
+int dig_curve_set_find(const struct dig_curve_set *const set, const char *const name)
+{
+    for (size_t t = 0; t < set->trajectories; t++) {
+        if (strcmp(set->trajectory[t].name, name) == 0) {
+            return (int)t;
+        }
+    }
+    return -1;
 }

@@ -130,4 +130,7 @@ struct dig_curve_set {
     struct dig_approach_set *approaches;
 };
 
+/// The index of the trajectory of this name, -1 where the set has none.
+int dig_curve_set_find(const struct dig_curve_set *set, const char *name);
+
 #endif // DIG_CORE_CURVE_H

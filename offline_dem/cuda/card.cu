@@ -1,7 +1,7 @@
-// The device interface (offline_dem/world/device.h) on a graphics card. A step is two kernels: a thread a
-// pair and a thread a grain for what is outside, then a thread a grain that moves it; with clumps a
-// third between them. No sum is shared between threads, so the same steps give the same bits, and
-// with -fmad=false those of tests/offline_dem/host_device.c, but for clumps.
+// The device interface (offline_dem/world/device.h) on a graphics card. A step is two kernels: a
+// thread a pair, and a thread a grain for its surfaces; then a thread a grain that moves it. With
+// clumps a third stands between them. No sum is shared between threads, so the same steps give the
+// same bits, and with -fmad=false those of tests/offline_dem/host_device.c, but for clumps.
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
@@ -10,12 +10,12 @@
 #include <cstdlib>
 #include <cstring>
 
-#define THREADS 64 // a block
+#define THREADS 64 // a block of the grid
 
 namespace
 {
 
-// An array on the card, and the one of the view it is a copy of.
+// An array on the card.
 struct array {
     void  *here;
     size_t room;
@@ -60,7 +60,7 @@ __host__ __device__ uint32_t blocks(const uint32_t things)
     return (things + THREADS - 1) / THREADS;
 }
 
-// Pairs, and in the blocks behind theirs what is outside: neither waits for the other.
+// Pairs, and in the blocks behind them surfaces: neither waits for the other.
 __global__ void __launch_bounds__(THREADS)
     add_loads(const dig_device_view view, const __grid_constant__ dig_device_step step)
 {
@@ -108,7 +108,7 @@ card *card_of(dig_device *const device)
     return static_cast<card *>(device->own);
 }
 
-// Room for an array on the card, with what stands in `from`; NULL: whatever is there.
+// Allocates an array on the card and copies `from` to it; NULL: uninitialised.
 template <typename T>
 cudaError_t place(card *const c, const int which, const size_t count, const T *const from,
                   T **const to)

@@ -1,6 +1,6 @@
 // A graphics card as a device. Its side (offline_dem/cuda/card.cu) is a library of its own, made by
-// `make cuda` where there is an nvcc, and looked for when it is wanted: under DIG_CUDA_LIBRARY,
-// else as libdig_cuda.so where the dynamic loader looks. Nothing else of Digsight knows of CUDA.
+// `make cuda` with nvcc and loaded on demand: from DIG_CUDA_LIBRARY, else as libdig_cuda.so where
+// the dynamic loader looks. Nothing else of Digsight depends on CUDA.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_DEVICE_CUDA_H
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_CUDA_H

@@ -1,5 +1,4 @@
-// What a device's thread does with one grain or one clump in one step, after its pairs and what is
-// outside have been done: the sum of the pushes, and its motion.
+// One grain or one clump in one step of a device: the sum of its loads, and its motion.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_DEVICE_GRAIN_H
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_GRAIN_H
@@ -17,10 +16,10 @@ DIG_BOTH static inline void dig_device_add_load(const struct dig_load *const fro
     }
 }
 
-/// Of the margin: the rest is for grains that are pushed meanwhile.
+/// Share of the margin; the rest is for grains that speed up meanwhile.
 #define DIG_DEVICE_SOON 0.8
 
-/// Kick and drift, and whether the grain asks for attention.
+/// Kick and drift, and the margin flags.
 DIG_BOTH static inline void dig_device_advance(const struct dig_device_view *const view,
                                                const struct dig_device_step *const step,
                                                const uint32_t i, const struct dig_load *const load)

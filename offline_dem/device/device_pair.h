@@ -1,4 +1,4 @@
-// What a device's thread does with one pair of grains in one step.
+// One pair of grains in one step of a device.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_DEVICE_PAIR_H
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_PAIR_H
@@ -6,16 +6,6 @@
 #include "offline_dem/law/law_general.h"
 #include "offline_dem/law/period.h"
 #include "offline_dem/world/device.h"
-
-/// The law of whichever sort; bodies that do not touch are not passed.
-DIG_BOTH static inline struct dig_contact_force
-dig_law_apply(const struct dig_law *const law, const double dt_s,
-              const struct dig_kinematics *const kinematics,
-              struct dig_contact_history *const  history)
-{
-    return law->general ? dig_law_general(*law, dt_s, *kinematics, history)
-                        : dig_law_step(*law, dt_s, *kinematics, history);
-}
 
 DIG_BOTH static inline bool dig_device_touches(const struct dig_law *const        law,
                                                const struct dig_kinematics *const t)

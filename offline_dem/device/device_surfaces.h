@@ -1,5 +1,5 @@
-// What a device's thread does with walls, tool and rocks at one grain in one step. What touches the
-// tool where is as in surfaces.h.
+// Walls, tool and rocks at one grain in one step of a device. Rules of contact with the tool:
+// surfaces.h.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_DEVICE_SURFACES_H
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_SURFACES_H
@@ -9,10 +9,10 @@
 
 #include <math.h>
 
-/// Farther away than this it does not touch, however the law rounds.
+/// No contact beyond this factor of the reach, however the law rounds.
 #define DIG_DEVICE_FAR 1.001
 
-/// One grain under way.
+/// A grain and its surface contacts during the step.
 struct dig_device_contacts {
     const struct dig_device_view *view;
     const struct dig_device_step *step;
@@ -22,18 +22,12 @@ struct dig_device_contacts {
     uint64_t                      surface_mask;
 };
 
-/// The plates near a grain, those it touches marked.
+/// The plates near a grain; those in contact are marked.
 struct dig_device_plates {
     double   closest_m[DIG_PLATES_MAX][3]; // body frame
     double   distance_m[DIG_PLATES_MAX];
     uint32_t contact_mask; // bit p: plate p is touched
 };
-
-DIG_BOTH static inline double dig_device_distance(const double a[3], const double b[3])
-{
-    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
 
 DIG_BOTH static inline struct dig_contact_history *
 dig_device_surface_history(const struct dig_device_contacts *const grain, const uint32_t surface)
@@ -62,7 +56,7 @@ DIG_BOTH static inline void dig_device_add_force(const struct dig_contact_force 
     load->t_Nm[2] += p->iz_Nm;
 }
 
-/// What a surface does to the grain, which touches it: d to the grain's centre, v of the surface.
+/// Contact force of a surface on the grain: d to the grain's centre, v of the surface.
 DIG_BOTH static inline struct dig_contact_force
 dig_device_add_surface(struct dig_device_contacts *const grain, const struct dig_law *const law,
                        const uint32_t surface, const double d[3], const double v[3])
@@ -101,7 +95,7 @@ DIG_BOTH static inline void dig_device_add_walls(struct dig_device_contacts *con
             dig_device_clear_history(grain, w);
             continue;
         }
-        // A grain pressed through a wall still stands on the right side of it.
+        // A grain pressed through a wall stays on its inner side.
         const double                least_m    = 1e-3 * law->reach_m;
         const double                safe_m     = h > least_m ? h : least_m;
         const double                d[3]       = { safe_m * n[0], safe_m * n[1], safe_m * n[2] };
@@ -123,7 +117,7 @@ DIG_BOTH static inline bool dig_device_has_history(const struct dig_device_conta
            fabs(m->mx_Nm) > 0.0 || fabs(m->my_Nm) > 0.0 || fabs(m->mz_Nm) > 0.0;
 }
 
-/// What is remembered of one plate goes to another, unless that knows something itself.
+/// Moves the history of one plate to another, unless that has one.
 DIG_BOTH static inline void dig_device_move_history(struct dig_device_contacts *const grain,
                                                     const uint32_t from, const uint32_t to)
 {
@@ -135,7 +129,7 @@ DIG_BOTH static inline void dig_device_move_history(struct dig_device_contacts *
     }
 }
 
-/// Leaves the true minima of the distance to the whole tool.
+/// Leaves the local minima of the distance to the whole tool.
 DIG_BOTH static inline void dig_device_resolve_edges(struct dig_device_contacts *const grain,
                                                      struct dig_device_plates *const   near,
                                                      const double                      radius_m)
@@ -152,10 +146,10 @@ DIG_BOTH static inline void dig_device_resolve_edges(struct dig_device_contacts 
             // Does p's closest point lie on q as well?
             double on_q[3];
             dig_bucket_closest(bucket, q, near->closest_m[p], on_q);
-            if (dig_device_distance(on_q, near->closest_m[p]) > same_m) {
+            if (dig_bucket_distance(on_q, near->closest_m[p]) > same_m) {
                 continue;
             }
-            // On a tie the contact stays with the plate that had it; then with the first.
+            // On a tie the contact stays with the plate that had it; else with the first.
             const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
             if (tie && (dig_device_has_history(grain, p) ||
                         (!dig_device_has_history(grain, q) && p < q))) {
@@ -168,7 +162,7 @@ DIG_BOTH static inline void dig_device_resolve_edges(struct dig_device_contacts 
     }
 }
 
-/// One plate the grain touches; the opposite acts on the tool, about the pin.
+/// Adds one plate in contact; its reaction acts on the tool, about the pin.
 DIG_BOTH static inline void dig_device_add_plate(struct dig_device_contacts *const grain,
                                                  const uint32_t plate, const double body_m[3],
                                                  const double closest_m[3])
@@ -206,14 +200,14 @@ DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *cons
     struct dig_device_plates near;
     near.contact_mask = 0;
     for (uint32_t p = 0; p < tool->plates && !is_far; p++) {
-        // A side is as far away as its plane, at least.
+        // The distance to a side is at least that to its plane.
         const double half_m =
             p + 1 == tool->bucket.points ? -0.5 * tool->bucket.width_m : 0.5 * tool->bucket.width_m;
         if (p + 1 >= tool->bucket.points && fabs(body_m[1] - half_m) > DIG_DEVICE_FAR * radius_m) {
             continue;
         }
         dig_bucket_closest(&tool->bucket, p, body_m, near.closest_m[p]);
-        near.distance_m[p] = dig_device_distance(body_m, near.closest_m[p]);
+        near.distance_m[p] = dig_bucket_distance(body_m, near.closest_m[p]);
         near.contact_mask |= (near.distance_m[p] < radius_m ? 1U : 0U) << p;
     }
     if ((near.contact_mask & (near.contact_mask - 1)) != 0) {
@@ -235,7 +229,7 @@ DIG_BOTH static inline void dig_device_clear_tool(struct dig_device_contacts *co
     }
 }
 
-/// Rocks that stand still, in their image along y that is nearest.
+/// Fixed rocks, in their nearest image along y.
 DIG_BOTH static inline void dig_device_add_rocks(struct dig_device_contacts *const grain)
 {
     const struct dig_device_step *const step = grain->step;

@@ -3,15 +3,21 @@
 #include "offline_dem/device/device_cuda.h"
 #include "offline_dem/dig/checked_pour.h"
 
-static enum dig_status check(const struct dig_scene *const scene, struct dig_error *const error)
+// A card for this scene. NULL: *status and *error say why.
+static struct dig_device *open_card(const struct dig_scene *const scene,
+                                    enum dig_status *const status, struct dig_error *const error)
 {
     for (size_t i = 0; i < scene->bed.obstacles; i++) {
         if (scene->bed.obstacle[i].movable) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "obstacles[%zu].movable: expected false with the cuda engine", i);
+            *status =
+                dig_error_set(error, DIG_EINVAL,
+                              "obstacles[%zu].movable: expected false with the cuda engine", i);
+            return NULL;
         }
     }
-    return DIG_OK;
+    struct dig_device *const card = dig_device_cuda_create(error);
+    *status                       = card != NULL ? DIG_OK : DIG_EIO;
+    return card;
 }
 
 static enum dig_status pour(const struct dig_scene *const  scene,
@@ -19,13 +25,10 @@ static enum dig_status pour(const struct dig_scene *const  scene,
                             const struct dig_progress *const progress, struct dig_bed *const bed,
                             struct dig_error *const error)
 {
-    enum dig_status status = check(scene, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_device *const card = dig_device_cuda_create(error);
+    enum dig_status          status = DIG_OK;
+    struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {
-        return DIG_EIO;
+        return status;
     }
     status = dig_bed_pour_checked(card, scene, gravel, seed, progress, bed, error);
     card->destroy(card);
@@ -38,13 +41,10 @@ static enum dig_status dig(const struct dig_scene *const  scene,
                            const struct dig_progress *const progress,
                            struct dig_recording *const recording, struct dig_error *const error)
 {
-    enum dig_status status = check(scene, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_device *const card = dig_device_cuda_create(error);
+    enum dig_status          status = DIG_OK;
+    struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {
-        return DIG_EIO;
+        return status;
     }
     status = dig_dig_run(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
     card->destroy(card);

@@ -6,10 +6,10 @@
 
 #include <assert.h>
 
-#define CHECK_s      0.1 // what was poured at this step has been shaken by it already
-#define CHECK_FILE_s 0.3 // what may have been poured at a shorter one begins at rest
+#define CHECK_s      0.1 // a bed poured at this step has drifted already
+#define CHECK_FILE_s 0.3 // a bed poured at a shorter one begins at rest
 
-// The step that would be derived, were none asked for.
+// The step derived for these grains, whatever the scene asks for.
 static double derived_s(const struct dig_scene *const scene, const struct dig_gravel *const gravel,
                         const struct dig_grain_types *const types)
 {

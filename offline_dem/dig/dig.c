@@ -1,6 +1,5 @@
 #include "offline_dem/dig/dig.h"
 
-#include "core/units.h"
 #include "offline_dem/dig/input_checks.h"
 #include "offline_dem/dig/level.h"
 #include "offline_dem/dig/setup.h"
@@ -11,10 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Windows of a curve between two pictures, and between two calls of the progress function.
+// Rows of a curve between two pictures, and between two progress reports.
 #define PICTURE_WINDOWS  20
 #define PROGRESS_WINDOWS 8
-// … and in a dig that is not recorded.
+// Steps between two progress reports of a dig that is not recorded.
 #define PROGRESS_STEPS 640
 
 // One dig under way.
@@ -28,19 +27,7 @@ struct run {
     struct dig_tool              tool;
 };
 
-// Puts ODE's bucket where the trajectory has it, and reads the tool from there. The rates are those
-// of the phase that ends at or after time_s.
-static void place_tool(struct run *const d, const double time_s)
-{
-    const double                  middle_s = time_s - 0.5 * d->world.dt_s;
-    const struct dig_pose         pose     = dig_trajectory_pose(d->trajectory, time_s);
-    const struct dig_phase *const phase =
-        &d->trajectory->phase[dig_trajectory_phase(d->trajectory, middle_s)];
-    dig_ode_scene_move(d->ode, pose, phase->vx_mps, phase->vz_mps, phase->omega_radps);
-    dig_ode_scene_read(d->ode, &d->tool);
-}
-
-// Mass of the grains in the bucket, whose motions are here.
+// Mass of the grains in the bucket. Motions must be synchronised.
 static double carried_kg(const struct run *const d)
 {
     const struct dig_grains *const grains = &d->world.grains;
@@ -61,29 +48,18 @@ static enum dig_status record_window(struct run *const d, const size_t first, co
     struct dig_wrench sum    = { 0 };
     enum dig_status   status = dig_world_take_wrench(&d->world, &sum);
     for (size_t s = 1; s <= window && status == DIG_OK; s++) {
-        place_tool(d, (double)(first + s) * dt_s);
+        dig_setup_place_tool(d->trajectory, (double)(first + s) * dt_s, dt_s, d->ode, &d->tool);
         status = dig_world_step(&d->world);
     }
     status = status == DIG_OK ? dig_world_take_wrench(&d->world, &sum) : status;
     if (status != DIG_OK) {
         return status;
     }
-    const double          per_step = 1.0 / (double)window;
-    const double          t_s      = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
-    const struct dig_pose pose     = dig_trajectory_pose(d->trajectory, t_s);
-    *row                           = (struct dig_force_row){
-                                  .t_s        = t_s,
-                                  .pin_x_m    = pose.x_m,
-                                  .pin_z_m    = pose.z_m,
-                                  .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
-                                  .Fx_N       = per_step * sum.f_N[0],
-                                  .Fy_N       = per_step * sum.f_N[1],
-                                  .Fz_N       = per_step * sum.f_N[2],
-                                  .Mx_Nm      = per_step * sum.t_Nm[0],
-                                  .My_Nm      = per_step * sum.t_Nm[1],
-                                  .Mz_Nm      = per_step * sum.t_Nm[2],
-                                  .carried_kg = carried_kg(d),
-    };
+    for (int k = 0; k < 3; k++) {
+        sum.f_N[k] *= 1.0 / (double)window;
+        sum.t_Nm[k] *= 1.0 / (double)window;
+    }
+    *row = dig_setup_force_row(d->trajectory, first, window, dt_s, &sum, carried_kg(d));
     return DIG_OK;
 }
 
@@ -97,8 +73,8 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
     if (recording->row == NULL) {
         return DIG_ENOMEM;
     }
-    // The forces before the first step belong to no window: they give the half kick.
-    place_tool(d, 0.0);
+    // The forces before the first step belong to no row: they give the half kick.
+    dig_setup_place_tool(d->trajectory, 0.0, d->world.dt_s, d->ode, &d->tool);
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
@@ -124,7 +100,7 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
     return status;
 }
 
-// Steps without a tool, until what the bucket let fall and what was raked lies.
+// Steps without a tool until the grains that fell or were raked are at rest.
 static enum dig_status settle(struct run *const d)
 {
     d->world.tool = NULL;
@@ -145,7 +121,8 @@ static enum dig_status run_unrecorded(struct run *const d)
     dig_world_mark_stale(&d->world);
     enum dig_status status = DIG_OK;
     for (size_t s = 0; s <= steps && status == DIG_OK; s++) {
-        place_tool(d, (double)s * d->world.dt_s);
+        dig_setup_place_tool(d->trajectory, (double)s * d->world.dt_s, d->world.dt_s, d->ode,
+                             &d->tool);
         status = dig_world_step(&d->world);
         if (status == DIG_OK && d->progress != NULL && s % PROGRESS_STEPS == 0 &&
             !d->progress->report(d->progress->context, 0.0, duration_s)) {
@@ -155,8 +132,8 @@ static enum dig_status run_unrecorded(struct run *const d)
     return status;
 }
 
-// The digs made in this bed before. The bucket is taken away where it ends, and what it carries
-// falls; then the ground is raked level as after the paper's digs, unless it is to stay as dug.
+// The earlier digs in this bed. The bucket is removed where it ends, and its load falls. Then the
+// ground is raked level, unless the scene leaves it as dug.
 static enum dig_status run_earlier_digs(struct run *const d)
 {
     const struct dig_bed_plan *const   bed    = &d->scene->bed;
@@ -202,11 +179,8 @@ enum dig_status dig_dig_run(struct dig_device *const device, const struct dig_sc
     if (status != DIG_OK) {
         return status;
     }
-    if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
-                             trajectory->phases, DIG_PHASES_MAX);
-    }
-    status = dig_input_checks_path(scene, trajectory, error);
+    status = dig_setup_check_phases(trajectory, error);
+    status = status == DIG_OK ? dig_input_checks_path(scene, trajectory, error) : status;
     if (status != DIG_OK) {
         return status;
     }
@@ -226,7 +200,7 @@ enum dig_status dig_dig_run(struct dig_device *const device, const struct dig_sc
     struct dig_recording   made = { 0 };
     status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &d.world, error);
     if (status == DIG_OK) {
-        place_tool(&d, 0.0);
+        dig_setup_place_tool(trajectory, 0.0, d.world.dt_s, ode, &d.tool);
         status = dig_input_checks_outside(&d.world, error);
         status = status == DIG_OK ? dig_input_checks_overlap(&d.world, error) : status;
         status = status == DIG_OK ? dig_input_checks_start(&d.world, &d.tool, error) : status;

@@ -15,29 +15,30 @@
 
 struct dig_device;
 
-/// Called now and then from the computing thread: done of total seconds of simulated time (packing
-/// counted in). Return false to stop; the call then returns DIG_ESTALE and writes nothing.
+/// Called from the computing thread every few hundred steps with the simulated time done and in
+/// total, packing included. Return false to stop; the call then returns DIG_ESTALE and writes
+/// nothing.
 struct dig_progress {
     int (*report)(void *context, double done_s, double total_s);
     void *context;
 };
 
 /// Pours and levels a bed of this gravel. A device (offline_dem/world/device.h) steps the grains,
-/// which no scene with a movable rock allows; NULL: the kernel does, in 4 s of one core with
-/// AVX-512 for 7000 grains, half a minute without. *bed and *error (which may be NULL) as
-/// everywhere: the bed is written on success only. DIG_EINVAL when the scene or the gravel cannot
-/// be computed or the scene's time step is too long for it, DIG_EUNREACHABLE when the grains do not
-/// fit, DIG_ESTALE when stopped, DIG_ENOMEM.
+/// but no movable rocks; NULL: the kernel does. The kernel takes 4 s of one core with AVX-512 for
+/// 7000 grains, half a minute without. *bed is written on success only; error may be NULL.
+/// DIG_EINVAL when the scene or the gravel cannot be computed or the scene's time step is too long
+/// for it, DIG_EUNREACHABLE when the grains do not fit, DIG_ESTALE when stopped, DIG_EIO when the
+/// device fails, DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_bed_pour(struct dig_device       *device,
                                             const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
                                             struct dig_bed *bed, struct dig_error *error);
 
-/// Drives the bucket through the trajectory in a copy of the bed. 12 s of one core with AVX-512 for
-/// 3 s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging
-/// (offline_dem/dig/vtk.h); NULL: none. Refusals as above, a bed that cannot be and a trajectory
-/// without phases among them, and DIG_EIO when a picture cannot be written.
+/// Moves the bucket along the trajectory in a copy of the bed. 12 s of one core with AVX-512 for 3
+/// s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging
+/// (offline_dem/dig/vtk.h); NULL: none. Fails as dig_bed_pour(), for an impossible bed or
+/// trajectory, and with DIG_EIO when a picture cannot be written.
 DIG_MUST_CHECK enum dig_status dig_dig_run(
     struct dig_device *device, const struct dig_scene *scene, const struct dig_gravel *gravel,
     const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-#define SAMPLE_STEPS 5    // odd: what flips from step to step is not always caught on one side
-#define REST_ENERGY  1e-3 // kinetic energy of a resting grain, at most, in m g r
+#define SAMPLE_STEPS 5    // odd: samples both phases of a flip-flop
+#define REST_ENERGY  1e-3 // largest kinetic energy of a grain at rest, m g r (docs/numerics/dem.md)
 
 // Weight times radius, over all grains.
 static double scale_J(const struct dig_world *const world)

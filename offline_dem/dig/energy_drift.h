@@ -1,6 +1,6 @@
-// Does the time step heat the bed? An explicit step longer than the contacts' damping bears makes
-// grains that should lie still tremble for ever, without any sign but a bed that is too soft: at
-// 1.6 times the derived step the resistance of a dig fell by a fifth.
+// Energy drift of a bed at rest. An explicit step too long for the contacts' damping keeps grains
+// moving, and the bed is too soft: at 1.6 times the derived step the resistance of a dig is a fifth
+// lower.
 
 #ifndef DIG_OFFLINE_DEM_DIG_ENERGY_DRIFT_H
 #define DIG_OFFLINE_DEM_DIG_ENERGY_DRIFT_H
@@ -11,12 +11,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// Steps a world whose grains should lie still, and tells whether they are kept moving: over the
-/// last third of the steps the mean kinetic energy of a grain is more than a thousandth of m g r.
-/// The first two thirds are for what still comes to rest. In a bed of 7.5 mm grains at 5 MPa 62.5
-/// us leave a hundredth of that, 80 us three times as much (docs/numerics/dem.md). A world without
-/// gravity never heats. DIG_ENOMEM, DIG_EINVAL as dig_world_step(); *heats is written on success
-/// only.
+/// Steps a world whose grains should be at rest. *drifts: over the last third of the steps the mean
+/// kinetic energy of a grain exceeds a thousandth of m g r; the first two thirds let the bed
+/// settle. In a bed of 7.5 mm grains at 5 MPa the energy is 2e-4 m g r at 62.5 us and 8e-3 at 80 us
+/// (docs/numerics/dem.md). A world without gravity never drifts. DIG_ENOMEM, DIG_EINVAL as
+/// dig_world_step(); *drifts is written on success only.
 DIG_MUST_CHECK enum dig_status dig_energy_drift_detect(struct dig_world *world, size_t steps,
                                                        bool *drifts);
 

@@ -6,12 +6,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PATH_STEPS     500 // along a trajectory
-#define OVERLAP_MOST   0.3 // of the smaller radius: ten times what a resting bed of soft grains has
-#define CUT_MOST       0.5 // radii a plate may be in a grain at the start: levelled beds rise a little
-#define OVERLAP_MARGIN 0.01 // of a radius: margin of the list that overlaps are looked for in
+#define PATH_STEPS     500 // poses along a trajectory
+#define OVERLAP_MOST   0.3 // of the smaller radius: ten times that of a bed of soft grains at rest
+#define CUT_MOST       0.5 // radii a plate may cut into a grain at the start: levelled beds rise a little
+#define OVERLAP_MARGIN 0.01 // of a radius: margin of the neighbour list of this check
 
-// How far outside the box the bucket is in this pose; the coordinate in which, and how much.
+// Largest distance of the bucket beyond the box in this pose, and its coordinate.
 static double outside_m(const struct dig_scene *const scene, const struct dig_pose pose,
                         const char **const axis)
 {

@@ -10,16 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PLATE_mps   0.05 // slow beside what a bed of grains answers with
-#define DEEPEST     0.5  // radii a plate may be in a grain
-#define CHECK_STEPS 4    // between two looks at the plate's load
+#define PLATE_mps   0.05 // m/s, quasi-static: slow beside the bed's own waves
+#define DEEPEST     0.5  // radii the plate may cut into a grain
+#define CHECK_STEPS 4    // steps between two checks of the plate's load
 
 static double radius(const struct dig_world *const world, const size_t i)
 {
     return world->grains.type[world->grains.type_of[i]].radius_m;
 }
 
-// Which grains stand out, alone or with a sphere of their clump. NULL when memory is short.
+// Grains above the ground, alone or with a sphere of their clump. NULL when memory is short.
 static unsigned char *find_above_ground(const struct dig_scene *const scene,
                                         const struct dig_world *const world)
 {
@@ -61,7 +61,7 @@ enum dig_status dig_level_cut(const struct dig_scene *const scene, struct dig_wo
     return status;
 }
 
-// How high the bed lies, in cells as wide as its largest grain.
+// Height of the bed in cells as wide as its largest grain.
 struct height_map {
     double  low_m[2], edge_m;
     size_t  count[2];
@@ -87,7 +87,7 @@ static void centre_of(const struct height_map *const height_map, const size_t ce
     x_m[1]              = height_map->low_m[1] + ((double)row + 0.5) * height_map->edge_m;
 }
 
-// Highest of the cell and the eight around it: what is set down there overlaps nothing.
+// Highest of the cell and the eight around it: a grain deposited there overlaps none.
 static double top_around(const struct height_map *const height_map, const size_t cell)
 {
     const ptrdiff_t cx    = (ptrdiff_t)(cell % height_map->count[0]);
@@ -115,7 +115,7 @@ static enum dig_status make_height_map(const struct dig_scene *const scene,
     *height_map = (struct height_map){ .low_m = { box->x_min_m, box->y_min_m }, .edge_m = edge_m };
     for (int a = 0; a < 2; a++) {
         height_map->count[a] = (size_t)fmax(1.0, floor(span[a] / edge_m));
-        // Cells end at the walls: what is left over is shared out.
+        // Cells end at the walls: the remainder is split between both sides.
         height_map->low_m[a] += 0.5 * (span[a] - (double)height_map->count[a] * edge_m);
     }
     height_map->top_m =
@@ -136,7 +136,7 @@ static enum dig_status make_height_map(const struct dig_scene *const scene,
     return DIG_OK;
 }
 
-// Sets down grain i, or the clump it is part of, on the cell that lies lowest under the ground.
+// Deposits grain i, or its clump, on the cell that lies lowest under the ground.
 static void deposit(const struct dig_scene *const scene, struct height_map *const height_map,
                     const size_t n, const uint32_t member[], struct dig_world *const world)
 {
@@ -223,8 +223,8 @@ enum dig_status dig_level_rake(const struct dig_scene *const scene, struct dig_w
     return status;
 }
 
-// What the grains push up a level plate with, at rest, and how deep the plate is in the one it is
-// deepest in, in its radii.
+// Force of the grains on a level plate at rest, and the deepest cut of the plate into a grain, in
+// its radii.
 static double plate_load_N(const struct dig_world *const world, const double plate_m,
                            double *const deepest)
 {
@@ -237,8 +237,7 @@ static double plate_load_N(const struct dig_world *const world, const double pla
             const struct dig_kinematics kinematics = { .dz_m = -fmax(gap_m, 1e-3 * law.reach_m) };
             struct dig_contact_history  history    = { 0 };
             const struct dig_contact_force force =
-                law.general ? dig_law_general(law, world->dt_s, kinematics, &history)
-                            : dig_law_step(law, world->dt_s, kinematics, &history);
+                dig_law_apply(&law, world->dt_s, &kinematics, &history);
             sum_N -= force.fz_N;
             *deepest = fmax(*deepest, 1.0 - gap_m / law.reach_m);
         }
@@ -275,7 +274,7 @@ enum dig_status dig_level_press(const struct dig_scene *const scene, struct dig_
         }
         plate_m -= PLATE_mps * world->dt_s;
         world->wall[plate] = (struct dig_wall){ { 0.0, 0.0, -1.0 }, -plate_m };
-        // The plate must not leave the margin within which its contacts were picked.
+        // The plate must stay within the margin of its contacts.
         if (s % CHECK_STEPS == 0) {
             dig_world_mark_stale(world);
         }

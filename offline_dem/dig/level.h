@@ -1,4 +1,4 @@
-// What is done to the ground of a bed that lies: pressed, cut level, raked level.
+// Levelling of a settled bed: pressed, cut, raked.
 
 #ifndef DIG_OFFLINE_DEM_DIG_LEVEL_H
 #define DIG_OFFLINE_DEM_DIG_LEVEL_H
@@ -6,18 +6,18 @@
 #include "core/scene.h"
 #include "offline_dem/world/world.h"
 
-/// Takes out every grain, and every whole clump, that stands out of the ground.
+/// Removes every grain, and every whole clump, above the ground.
 DIG_MUST_CHECK enum dig_status dig_level_cut(const struct dig_scene *scene,
                                              struct dig_world       *world);
 
-/// Lifts every grain and clump that stands out of the ground and sets it down, at rest, where the
-/// bed lies lowest under it. They fall a little when time goes on.
+/// Deposits every grain and clump above the ground, at rest, where the bed lies lowest under it.
+/// They still fall a little.
 DIG_MUST_CHECK enum dig_status dig_level_rake(const struct dig_scene *scene,
                                               struct dig_world       *world);
 
 /// Lowers a level plate onto the bed until the grains bear the scene's preload_Pa on the box's
-/// area, and takes it away. DIG_EINVAL, with the key in *error, when that flattens the grains; else
-/// as dig_world_step().
+/// area, and removes it. DIG_EINVAL, with the key in *error, when that flattens the grains; else as
+/// dig_world_step().
 DIG_MUST_CHECK enum dig_status dig_level_press(const struct dig_scene *scene,
                                                struct dig_world *world, struct dig_error *error);
 

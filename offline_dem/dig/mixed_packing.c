@@ -2,6 +2,7 @@
 
 #include "core/ground.h"
 #include "core/units.h"
+#include "offline_dem/dig/packing.h"
 #include "offline_dem/law/random.h"
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/world/obstacles.h"
@@ -10,12 +11,9 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define ATTEMPTS  100000 // for one body, before the column is called full
-#define GROWTH    1.1    // what a full column grows by
-#define TALLEST   2.0    // times the height the solid fraction asks for
 #define NO_SPHERE UINT32_MAX
 
-// Spheres in cells as wide as the largest of them: looking one cell around finds every overlap.
+// Spheres in cells as wide as the largest of them: overlaps are within one cell around.
 struct cells {
     double    low_m[3], edge_m;
     ptrdiff_t count[3];
@@ -72,7 +70,7 @@ static void plan_size_classes(struct pouring *const p)
     p->high_m[1] = box->y_max_m;
     p->high_m[2] =
         box->z_min_m + height_m * scene->packing.fill_factor / scene->packing.solid_fraction;
-    p->tallest_m = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * TALLEST;
+    p->tallest_m = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * DIG_PACKING_TALLEST;
     p->period_m  = dig_scene_period_m(scene);
 }
 
@@ -179,7 +177,7 @@ static bool is_free(const struct pouring *const p, const struct dig_bed *const b
     return true;
 }
 
-// A rotation at random, all equally likely (Shoemake, Graphics Gems III).
+// A uniform random rotation (Shoemake, Graphics Gems III).
 static void random_rotation(struct dig_random *const random, double q[4])
 {
     const double u = dig_random_between(random, 0.0, 1.0);
@@ -191,7 +189,7 @@ static void random_rotation(struct dig_random *const random, double q[4])
     q[3]           = sqrt(u) * cos(b);
 }
 
-// One trial of a body of this diameter: where its spheres would be. False when it overlaps.
+// One attempt to insert a body of this diameter: positions of its spheres. False when it overlaps.
 static bool try_body(const struct pouring *const p, const struct dig_bed *const bed,
                      const double diameter_m, struct dig_random *const random, double at_m[][3])
 {
@@ -249,12 +247,12 @@ static enum dig_status insert(struct pouring *const p, const uint64_t seed,
         for (size_t i = 0; i < p->size_class[c].bodies;) {
             double at_m[DIG_CLUMP_MAX][3];
             int    attempt = 0;
-            while (attempt < ATTEMPTS &&
+            while (attempt < DIG_PACKING_ATTEMPTS &&
                    !try_body(p, bed, p->size_class[c].diameter_m, &random, at_m)) {
                 attempt++;
             }
-            if (attempt == ATTEMPTS) {
-                p->high_m[2] = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * GROWTH;
+            if (attempt == DIG_PACKING_ATTEMPTS) {
+                p->high_m[2] = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * DIG_PACKING_GROWTH;
                 if (p->high_m[2] > p->tallest_m) {
                     return DIG_EUNREACHABLE;
                 }

@@ -1,4 +1,4 @@
-// Pouring of beds of several sizes, of clumps, or around obstacles: random sequential insertion,
+// Packing of beds of several sizes, of clumps, or around obstacles: random sequential insertion,
 // the largest first.
 
 #ifndef DIG_OFFLINE_DEM_DIG_MIXED_PACKING_H
@@ -11,10 +11,9 @@
 
 #include <stdint.h>
 
-/// Spheres or clumps at random places, clumps turned at random, none overlapping another or an
-/// obstacle, in a column over the box that holds them at the scene's solid fraction: as
-/// dig_packing_insert() otherwise. DIG_EUNREACHABLE when they do not fit, DIG_ENOMEM; *bed is
-/// written on success only.
+/// Spheres or randomly oriented clumps at random positions without overlap, clear of obstacles, in
+/// a column over the box at the scene's solid fraction: as dig_packing_insert() otherwise.
+/// DIG_EUNREACHABLE when they do not fit, DIG_ENOMEM; *bed is written on success only.
 DIG_MUST_CHECK enum dig_status dig_mixed_packing_insert(const struct dig_scene       *scene,
                                                         const struct dig_clump_shape *shape,
                                                         uint64_t seed, struct dig_bed *bed);

@@ -9,11 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ATTEMPTS 100000 // for one grain, before the column is called full
-#define GROWTH   1.1    // what a full column grows by
-#define TALLEST  2.0    // times the height the solid fraction asks for
-
-// Cells so small that no two grains share one: looking two cells around finds every overlap.
+// Cells that hold one grain at most: overlaps are within two cells around.
 struct cells {
     double    low_m[3], edge_m;
     ptrdiff_t count[3];
@@ -61,11 +57,11 @@ static bool is_free(const struct cells *const cells, const ptrdiff_t at[3], cons
 static enum dig_status insert(struct cells *const cells, double high_m[3], const double d_m,
                               const uint64_t seed, const size_t n, double *const position[3])
 {
-    const double      tallest_m = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * TALLEST;
-    struct dig_random random    = { .state = seed };
+    const double tallest_m = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * DIG_PACKING_TALLEST;
+    struct dig_random random = { .state = seed };
     for (size_t i = 0; i < n; i++) {
         int attempt = 0;
-        for (; attempt < ATTEMPTS; attempt++) {
+        for (; attempt < DIG_PACKING_ATTEMPTS; attempt++) {
             double    p[3];
             ptrdiff_t at[3];
             for (int a = 0; a < 3; a++) {
@@ -81,8 +77,8 @@ static enum dig_status insert(struct cells *const cells, double high_m[3], const
                 break;
             }
         }
-        if (attempt == ATTEMPTS) {
-            high_m[2] = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * GROWTH;
+        if (attempt == DIG_PACKING_ATTEMPTS) {
+            high_m[2] = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * DIG_PACKING_GROWTH;
             if (high_m[2] > tallest_m) {
                 return DIG_EUNREACHABLE;
             }
@@ -110,7 +106,7 @@ enum dig_status dig_packing_insert(const struct dig_scene *const scene, const ui
         if (!(high_m[a] > cells.low_m[a])) {
             return DIG_EUNREACHABLE;
         }
-        const double span_m = (high_m[a] - cells.low_m[a]) * (a == 2 ? TALLEST : 1.0);
+        const double span_m = (high_m[a] - cells.low_m[a]) * (a == 2 ? DIG_PACKING_TALLEST : 1.0);
         cells.count[a]      = (ptrdiff_t)(span_m / cells.edge_m) + 1;
         total *= (size_t)cells.count[a];
     }

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Steps between two calls of the progress function.
+// Steps between two progress reports.
 #define PROGRESS_STEPS 400
 
 static enum dig_status step_for(struct dig_world *const world, const double duration_s,
@@ -30,7 +30,7 @@ static enum dig_status step_for(struct dig_world *const world, const double dura
     return DIG_OK;
 }
 
-// One kind of spheres on an empty floor: the packing every table of plain gravel is made of.
+// Equal spheres on an empty floor: the packing of every table of plain gravel.
 static enum dig_status insert_plain(const struct dig_scene *const scene, const uint64_t seed,
                                     struct dig_bed *const bed)
 {
@@ -63,7 +63,7 @@ static enum dig_status insert(const struct dig_scene *const scene, const uint64_
     return status == DIG_OK ? dig_mixed_packing_insert(scene, &shape, seed, bed) : status;
 }
 
-// What the grains are made of, by the height at which they, or the middles of their clumps, lie.
+// Assigns materials by the height of the grains, or of the middles of their clumps.
 static void assign_layers(const struct dig_scene *const scene, struct dig_bed *const bed)
 {
     const size_t spheres = scene->bed.clump.spheres > 0 ? scene->bed.clump.spheres : 1;
@@ -95,7 +95,7 @@ struct pour {
     struct dig_world         world;
 };
 
-// The world of a bed, stepped by whom it is to be.
+// The world of a bed, stepped by the kernel or by the device.
 static enum dig_status make_world(struct pour *const p, const struct dig_bed *const bed,
                                   const double fall_mps, struct dig_error *const error)
 {
@@ -119,7 +119,7 @@ static enum dig_status copy_bed(struct pour *const p, const size_t material[],
     return status;
 }
 
-// Makes the world anew with the layers' materials. The contacts begin again, as they do in a dig.
+// Makes the world again with the layers' materials. Contact histories begin at zero, as in a dig.
 static enum dig_status apply_layers(struct pour *const p, struct dig_error *const error)
 {
     struct dig_bed        bed    = { 0 };

@@ -1,9 +1,10 @@
-// From a scene and a gravel to a world that can be stepped: what pouring and digging share.
+// Parts that pouring and digging share: from a scene and a gravel to a world.
 
 #ifndef DIG_OFFLINE_DEM_DIG_SETUP_H
 #define DIG_OFFLINE_DEM_DIG_SETUP_H
 
 #include "core/error.h"
+#include "core/recording.h"
 #include "core/scene.h"
 #include "offline_dem/kernel/bed.h"
 #include "offline_dem/world/grain_types.h"
@@ -15,20 +16,33 @@ DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
                                                struct dig_error        *error);
 
-/// A world of this bed with the walls of the ODE scene, without a tool, all of it falling at
-/// fall_mps. *kinds says what its grains are made of. DIG_EINVAL for a bed that cannot be (*error
-/// says which grain), DIG_ENOMEM; then *world is untouched. The ODE scene moves the rocks and must
-/// outlive the world.
+/// Refuses a trajectory without phases, or with too many.
+DIG_MUST_CHECK enum dig_status dig_setup_check_phases(const struct dig_trajectory *trajectory,
+                                                      struct dig_error            *error);
+
+/// A world of this bed with the walls of the ODE scene, without a tool, falling at fall_mps. *types
+/// are its grain types. DIG_EINVAL for an impossible bed (*error says which grain), DIG_ENOMEM;
+/// then *world is untouched. The ODE scene moves the rocks and must outlive the world.
 DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
                                                struct dig_ode_scene *ode, const struct dig_bed *bed,
                                                double fall_mps, struct dig_grain_types *types,
                                                struct dig_world *world, struct dig_error *error);
 
-/// The world and its bodies.
+/// Frees the world and its bodies.
 void dig_setup_finish(struct dig_world *world);
 
-/// Words for a failure of packing or stepping; returns status.
+/// Moves ODE's bucket along the trajectory to time_s, and reads the tool from there. The velocity
+/// is that of the phase that ends at or after time_s.
+void dig_setup_place_tool(const struct dig_trajectory *trajectory, double time_s, double dt_s,
+                          struct dig_ode_scene *ode, struct dig_tool *tool);
+
+/// The row of a curve over the steps first + 1 … first + window, with their mean wrench.
+struct dig_force_row dig_setup_force_row(const struct dig_trajectory *trajectory, size_t first,
+                                         size_t window, double dt_s, const struct dig_wrench *mean,
+                                         double carried_kg);
+
+/// Message for a failure of packing or stepping; returns status.
 enum dig_status dig_setup_explain(enum dig_status status, struct dig_error *error);
 
 #endif // DIG_OFFLINE_DEM_DIG_SETUP_H

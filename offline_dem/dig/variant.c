@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#define PATH_STEPS 1000 // along a trajectory, to find the tooth's way
+#define PATH_STEPS 1000 // points of the tooth's path
 
-// How an effect changes a scene in which it is absent.
+// How an effect changes a scene without it.
 struct effect_change {
     enum dig_effect_id effect;
     const char        *unit;
@@ -19,7 +19,7 @@ struct effect_change {
 static void set_cohesion(const double magnitude, struct dig_scene *const scene)
 {
     scene->laws.cohesion_Jpm3 = magnitude;
-    scene->laws.adhesion_Jpm3 = magnitude; // what sticks to itself sticks to steel
+    scene->laws.adhesion_Jpm3 = magnitude; // cohesive grains adhere to steel as well
 }
 
 static void set_adhesion(const double magnitude, struct dig_scene *const scene)
@@ -73,7 +73,7 @@ static void set_slope(const double magnitude, struct dig_scene *const scene)
         find_tooth(scene, &scene->trajectory[i], 0.0, &x_m, &z_m);
         base_m = fmin(base_m, fmin(z_m, box->z_max_m) - rise * x_m);
     }
-    // The floor shows where the plane would come within two grains of it.
+    // The floor is bare where the plane comes within two grains of it.
     const double         least_m  = box->z_min_m + 2.0 * scene->material.diameter_m;
     const double         end_m[2] = { base_m + rise * box->x_min_m, base_m + rise * box->x_max_m };
     const double         bend_x_m = (least_m - base_m) / rise;
@@ -102,7 +102,7 @@ static void set_layer(const double magnitude, struct dig_scene *const scene)
         (struct dig_layer){ 1, scene->box.z_min_m, scene->box.z_min_m + fabs(magnitude) };
 }
 
-// In the middle of what the tooth does below the ground.
+// At the middle of the tooth's path below the ground.
 static void set_obstacle(const double magnitude, struct dig_scene *const scene)
 {
     const struct dig_trajectory *const t          = &scene->trajectory[0];
@@ -163,7 +163,7 @@ const char *dig_variant_unit(const enum dig_effect_id effect)
     return c == NULL ? NULL : c->unit;
 }
 
-// A magnitude in the range at which the effect is not absent, and which a bed can hold.
+// A magnitude within range at which the effect is present and fits the bed.
 static bool is_in_range(const struct effect_change *const c, const double magnitude,
                         const struct dig_scene *const scene)
 {

@@ -32,7 +32,7 @@ static enum dig_status end(FILE *const file)
     return fclose(file) != 0 || failed ? DIG_EIO : DIG_OK;
 }
 
-// What the grains that touch it do to a grain now, the springs as they stand.
+// Force of its neighbours on a grain, with the springs at present.
 struct grain_force {
     double f_N[3];
     double load_N;
@@ -64,9 +64,7 @@ static void add_contact_forces(const struct dig_world *const world, const struct
         struct dig_contact_history     history = { list->history[0][c], list->history[1][c],
                                                    list->history[2][c], list->history[3][c],
                                                    list->history[4][c], list->history[5][c] };
-        const struct dig_contact_force force   = law.general
-                                                     ? dig_law_general(law, 0.0, kinematics, &history)
-                                                     : dig_law_step(law, 0.0, kinematics, &history);
+        const struct dig_contact_force force   = dig_law_apply(&law, 0.0, &kinematics, &history);
         const double                   f_N[3]  = { force.fx_N, force.fy_N, force.fz_N };
         const double half_N = 0.5 * sqrt(f_N[0] * f_N[0] + f_N[1] * f_N[1] + f_N[2] * f_N[2]);
         for (int k = 0; k < 3; k++) {
@@ -163,7 +161,7 @@ static void write_bucket(FILE *const file, const struct dig_tool *const tool)
     }
 }
 
-// A rock as the faces of a cube, those of a sphere blown up and cut into FACETS x FACETS.
+// A rock as the faces of a cube, projected onto the sphere if it is one, in FACETS x FACETS tiles.
 static void write_rock_points(FILE *const file, const struct dig_rock *const rock)
 {
     for (int face = 0; face < 6; face++) {

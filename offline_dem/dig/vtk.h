@@ -1,5 +1,5 @@
-// Pictures of a dig for ParaView: legacy VTK files, a set a frame, and an index of each kind of
-// file over time (*.vtk.series, which ParaView opens; its PVD index takes XML files only).
+// Pictures of a dig for ParaView: legacy VTK files, a set a frame, and an index of each over time
+// (*.vtk.series, which ParaView opens; its PVD index takes XML files only).
 
 #ifndef DIG_OFFLINE_DEM_DIG_VTK_H
 #define DIG_OFFLINE_DEM_DIG_VTK_H
@@ -8,10 +8,10 @@
 #include "offline_dem/shapes/tool.h"
 #include "offline_dem/world/world.h"
 
-/// Writes DIR/grains_NNNN.vtk (points with radius, name, clump, velocity, the force of the grains
-/// they touch, and load_N, half of what those press with; draw them as spheres of that radius),
-/// DIR/bucket_NNNN.vtk and, where there are any, DIR/rocks_NNNN.vtk (polygons). DIR must exist.
-/// DIG_EIO: errno says why; DIG_ENOMEM.
+/// Writes DIR/grains_NNNN.vtk (points with radius, name, clump, velocity, contact force, and
+/// load_N, half the sum of contact forces; draw them as spheres of that radius),
+/// DIR/bucket_NNNN.vtk and, with rocks, DIR/rocks_NNNN.vtk (polygons). DIR must exist. DIG_EIO:
+/// errno says why; DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_vtk_write(const char *dir, size_t frame,
                                              const struct dig_world *world,
                                              const struct dig_tool  *tool);

@@ -1,5 +1,5 @@
-// A settled bed: what a pouring leaves and a dig starts from, one grain (or one sphere of a clump)
-// an index.
+// A settled bed: the result of pouring and the start of a dig. One index a grain, or a sphere of a
+// clump.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_BED_H
 #define DIG_OFFLINE_DEM_KERNEL_BED_H
@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Where a movable rock has come to lie: body to world, real part first.
+/// Settled pose of a movable rock: body to world, real part first.
 struct dig_rock_pose {
     double x_m[3], q[4];
 };
@@ -31,8 +31,8 @@ struct dig_bed {
 DIG_MUST_CHECK enum dig_status dig_bed_create(size_t grains, bool materials, bool clumps,
                                               struct dig_bed *bed);
 
-/// Where the grains lie now; material[kind] is what each kind is made of, NULL: all gravel. Clumps
-/// keep the order they were given in. DIG_ENOMEM leaves *bed as it was.
+/// Copies the grains' positions; material[type] is the material of each type, NULL: all gravel.
+/// Spheres of a clump keep their order. DIG_ENOMEM leaves *bed as it was.
 DIG_MUST_CHECK enum dig_status dig_bed_from_grains(const struct dig_grains *grains,
                                                    const size_t material[], struct dig_bed *bed);
 

@@ -1,4 +1,4 @@
-// A clump of the bed and its step. Inlined into bodies.c and into what steps grains on a device
+// A clump of the bed and its step. Inlined into bodies.c and into the device's step
 // (offline_dem/world/device.h).
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_CLUMP_BODY_H
@@ -9,7 +9,7 @@
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/clump.h"
 
-/// A clump of the bed and where in memory its spheres are.
+/// A clump of the bed and the indices of its spheres.
 struct dig_clump_body {
     struct dig_rigid body;
     double           unit_m; // diameter of the sphere of equal volume
@@ -17,7 +17,7 @@ struct dig_clump_body {
     bool             gone; // dropped with all its spheres
 };
 
-/// From the centre of mass to the spheres.
+/// Lever arms from the centre of mass to the spheres.
 DIG_BOTH static inline void dig_clump_arms(const struct dig_clump_shape *const shape,
                                            const struct dig_clump_body *const  clump,
                                            double                              arm_m[][3])
@@ -30,8 +30,8 @@ DIG_BOTH static inline void dig_clump_arms(const struct dig_clump_shape *const s
     }
 }
 
-/// One step under the loads of its spheres, in their order; sets their velocities so that a step of
-/// dt_s moves them to where the clump has gone.
+/// One step under the loads of its spheres, in their order. Sets their velocities so that a step of
+/// dt_s moves them with the clump.
 DIG_BOTH static inline void dig_clump_step(const struct dig_clump_shape *const shape,
                                            const struct dig_load               load[],
                                            const double gravity_mps2[3], const double kick_s,

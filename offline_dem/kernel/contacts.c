@@ -41,6 +41,27 @@ enum dig_status dig_contacts_grow(struct dig_contacts *const list)
     return DIG_OK;
 }
 
+void dig_contacts_renumber(struct dig_contacts *const list, const bool pairs,
+                           const uint32_t new_index[])
+{
+    size_t kept = 0;
+    for (size_t c = 0; c < list->n; c++) {
+        const uint32_t i = new_index[list->i[c]];
+        const uint32_t j = pairs ? new_index[list->j[c]] : list->j[c];
+        if (i == UINT32_MAX || j == UINT32_MAX) {
+            continue;
+        }
+        list->i[kept]    = i;
+        list->j[kept]    = j;
+        list->slot[kept] = DIG_NO_SLOT;
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][kept] = list->history[m][c];
+        }
+        kept++;
+    }
+    list->n = kept;
+}
+
 void dig_contacts_finish(struct dig_contacts *const list)
 {
     if (list == NULL) {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Cache lines, so that one grain's position and velocity never straddle more than they must.
+// Cache lines: no grain's position or velocity straddles two.
 #define ALIGNMENT 64
 
 static void *allocate(const size_t n, const size_t size)

@@ -10,7 +10,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define VARIANT_AVX2 __attribute__((target("avx2")))
-// GCC takes half vectors by itself where full ones might slow the clock; clang has no such word.
+// GCC prefers half vectors where full ones might lower the clock; clang has no such option.
 #ifdef __clang__
 #define VARIANT_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
 #else
@@ -44,9 +44,9 @@ INLINED void fold(const double period_m, const size_t count, double y_m[DIG_BLOC
     }
 }
 
-// Where a block of contacts finds its memories.
-INLINED void open_memories(struct dig_contacts *const list, const size_t first,
-                           double *histories[DIG_HISTORY_VALUES])
+// Where the histories of a block of contacts stand.
+INLINED void find_histories(struct dig_contacts *const list, const size_t first,
+                            double *histories[DIG_HISTORY_VALUES])
 {
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
         histories[m] = list->history[m] + first;
@@ -60,8 +60,8 @@ INLINED void pairs_body(const bool wide, const bool general, const struct dig_la
     if (list->n == 0) {
         return;
     }
-    // Cleared once a list: the analyzer does not see that every stage fills what the next one
-    // reads.
+    // Cleared once a list: the analyzer does not see that every stage fills the operands of the
+    // next.
     struct dig_block block;
     memset(&block, 0, sizeof block);
     double *histories[DIG_HISTORY_VALUES] = { NULL };
@@ -72,7 +72,7 @@ INLINED void pairs_body(const bool wide, const bool general, const struct dig_la
         if (period_m > 0.0) {
             fold(period_m, count, block.in[1]);
         }
-        open_memories(list, first, histories);
+        find_histories(list, first, histories);
         block_body(general, law, dt_s, count, histories, &block);
         scatter(wide, list, &block, first, count, grains->load);
     }
@@ -85,8 +85,8 @@ INLINED void walls_body(const bool general, const struct dig_law law, const doub
     if (list->n == 0) {
         return;
     }
-    // Cleared once a list: the analyzer does not see that every stage fills what the next one
-    // reads.
+    // Cleared once a list: the analyzer does not see that every stage fills the operands of the
+    // next.
     struct dig_block block;
     memset(&block, 0, sizeof block);
     double *histories[DIG_HISTORY_VALUES] = { NULL };
@@ -94,9 +94,9 @@ INLINED void walls_body(const bool general, const struct dig_law law, const doub
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
         const size_t left  = list->n - first;
         const size_t count = left < DIG_BLOCK ? left : DIG_BLOCK;
-        // The law reaches as far as the grain's radius.
+        // The law's reach is the grain's radius.
         gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
-        open_memories(list, first, histories);
+        find_histories(list, first, histories);
         block_body(general, law, dt_s, count, histories, &block);
         scatter_walls(list, &block, first, count, grains->load, &sum_N);
     }
@@ -105,15 +105,15 @@ INLINED void walls_body(const bool general, const struct dig_law law, const doub
     }
 }
 
-// How a kind's velocities answer: gravity, and what a load is multiplied with. Zeros where a body
-// drives the grains.
+// Response of a type's velocities: gravity and the inverse inertia. Zeros where a body drives the
+// grains.
 struct inertia {
     four   g_mps2;
     double inverse_kg, inverse_kgm2;
 };
 
-// One grain over one step; returns its displacement since the lists were made, and in the fourth
-// lane its margin with the sign turned.
+// One grain over one step. Returns its displacement since the lists were made, and in the fourth
+// lane its negated margin.
 INLINED four advance_one(const struct inertia *const inertia, const double kick_s,
                          const double dt_s, const double reference_m[4],
                          struct dig_motion *const motion, struct dig_load *const load)
@@ -132,7 +132,7 @@ INLINED four advance_one(const struct inertia *const inertia, const double kick_
     return x - load_four(reference_m);
 }
 
-// Whether any of four grains has moved beyond its margin.
+// Whether any of four grains has left its margin.
 INLINED four_index left_margin(const four d[4])
 {
     four c[4];
@@ -219,19 +219,28 @@ VARIANTS(, false, base)
 VARIANTS(VARIANT_AVX2, false, avx2)
 VARIANTS(VARIANT_AVX512, true, avx512)
 
-// The variant of a function for this processor.
+// The variant of a function for an instruction set.
 #define CALL(isa, name, ...)                                                                       \
     ((isa) == DIG_ISA_AVX512 ? name##_avx512(__VA_ARGS__)                                          \
      : (isa) == DIG_ISA_AVX2 ? name##_avx2(__VA_ARGS__)                                            \
                              : name##_base(__VA_ARGS__))
 
+// Works on a copy of the histories: the law clears the lanes that pad a block, and in the list
+// these are other contacts.
 void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const size_t count, double history[DIG_HISTORY_VALUES][DIG_BLOCK],
+                      struct dig_contacts *const list, const size_t first, const size_t count,
                       struct dig_block *const block)
 {
-    double *const histories[DIG_HISTORY_VALUES] = { history[0], history[1], history[2],
-                                                    history[3], history[4], history[5] };
+    double  copy[DIG_HISTORY_VALUES][DIG_BLOCK] = { { 0.0 } };
+    double *histories[DIG_HISTORY_VALUES];
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        histories[m] = copy[m];
+        memcpy(copy[m], list->history[m] + first, count * sizeof(double));
+    }
     CALL(isa, block, law, dt_s, count, histories, block);
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        memcpy(list->history[m] + first, copy[m], count * sizeof(double));
+    }
 }
 
 void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,

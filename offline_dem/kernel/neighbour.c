@@ -137,7 +137,7 @@ static enum dig_status make_room(struct dig_neighbours *const list, const size_t
     return DIG_OK;
 }
 
-// What the search reads of a grain, in the order in which it comes by: cell by cell.
+// A grain as the search reads it, stored cell by cell.
 struct cell_grain {
     double   x_m[3], radius_m, margin_m;
     uint32_t grain, clump;
@@ -156,8 +156,7 @@ static struct cell_grain make_cell_grain(const struct dig_grains *const grains,
     };
 }
 
-// What is looked for around one grain, or around its image beyond a side that is one with the
-// other.
+// The search around one grain, or around its image beyond a periodic side.
 struct query {
     const struct cell_grain *all; // in the order of the grid's members
     double                   radius_max_m;
@@ -166,8 +165,8 @@ struct query {
     double                   x_m[3]; // of the grain, or of its image
 };
 
-// Whether a grain that is close is listed under the query's. The grain with the larger margin
-// searches far enough to see the pair.
+// Whether a near grain is listed under the query's. The grain with the larger margin searches far
+// enough to find the pair.
 static bool is_listed(const struct query *const q, const struct cell_grain *const other,
                       const double dy_m)
 {
@@ -218,7 +217,7 @@ static enum dig_status search(const struct query *const q, const struct grid *co
     return DIG_OK;
 }
 
-// Around the grain, and where y repeats around its images.
+// Searches around the grain, and around its images where y is periodic.
 static enum dig_status search_images(struct query *const q, const struct grid *const g,
                                      const double period_m, struct dig_neighbours *const list,
                                      size_t *const used)

@@ -1,9 +1,9 @@
-// Which grains may touch before the next rebuild: a Verlet half list made with a grid of cells.
+// Pairs that may touch before the next rebuild: a Verlet half list made with a grid of cells.
 //
 // Every grain has its own margin: skin + speed x time. A pair is listed when the gap between its
-// surfaces is below the sum of both margins, so the list holds as long as no grain has moved
-// farther than its margin, and one grain flying off the bucket does not force rebuilds on the
-// thousands that lie still.
+// surfaces is below the sum of both margins. The list is valid as long as no grain has moved
+// farther than its margin, so one grain flying off the bucket does not force rebuilds on thousands
+// at rest.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_NEIGHBOUR_H
 #define DIG_OFFLINE_DEM_KERNEL_NEIGHBOUR_H
@@ -22,15 +22,15 @@ struct dig_neighbours {
     double (*reference_m)[4]; // [n] position when the list was made, and the margin
 };
 
-/// Order of the grains along the cells of a grid of edge cell_m, rows of cells along x: order[k] is
-/// the grain that should stand at place k. Stable. DIG_ENOMEM.
+/// Sorts the grains along the cells of a grid of edge cell_m, rows of cells along the shortest
+/// axis: grain order[k] belongs at index k. Stable. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_neighbours_sort(const struct dig_grains *grains, double cell_m,
                                                    uint32_t order[]);
 
-/// Lists every pair once, but not those of one clump, under the grain with the larger margin (on a
-/// tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this
-/// function; its memory is used again. DIG_ENOMEM leaves an empty list. O(n) for beds of like
-/// grains.
+/// Lists every pair once, but not those within a clump, under the grain with the larger margin (on
+/// a tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this
+/// function, which reuses its memory. DIG_ENOMEM leaves an empty list. O(n) for grains of similar
+/// size.
 DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *grains,
                                                     double period_y_m, const double margin_m[],
                                                     struct dig_neighbours *list);

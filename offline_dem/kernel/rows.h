@@ -1,6 +1,6 @@
-// Rows of a grain become columns of contacts, and back: four contacts at a time, or eight where the
-// processor moves eight doubles together (`wide`). Plain C with vectors; the compiler makes parts
-// where the processor has no more. For kernel.c, whose variants inline it.
+// Transposes grains (rows) into contacts (columns), and back: four contacts at a time, or eight
+// where the processor has vectors of eight doubles (`wide`). Plain C with vector types, which the
+// compiler splits where the processor has shorter ones. Inlined into the variants of kernel.c.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_ROWS_H
 #define DIG_OFFLINE_DEM_KERNEL_ROWS_H
@@ -17,7 +17,7 @@
 
 #define INLINED __attribute__((always_inline)) static inline
 
-// Every function below that passes vectors is inlined: how such arguments travel does not matter.
+// Every function below that passes vectors is inlined: the calling convention does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef double  four __attribute__((vector_size(32)));
@@ -155,7 +155,7 @@ INLINED void gather_eight(const uint32_t *const i, const uint32_t *const j,
         const struct dig_motion *const b  = &motion[j[l]];
         const four                     wi = load_four(a->w_radps);
         const four                     wj = load_four(b->w_radps);
-        // Velocities stand behind positions.
+        // Velocities follow positions.
         dv[l] = load_eight((const double *)a) - load_eight((const double *)b);
         w[l]  = __builtin_shufflevector(wi, wj, 0, 1, 2, 3, 4, 5, 6, 7);
     }
@@ -163,7 +163,7 @@ INLINED void gather_eight(const uint32_t *const i, const uint32_t *const j,
     put_eight(w, block->in + 6, c);
 }
 
-// Beyond the last contact stands padding, which names grains that exist.
+// Padding beyond the last contact names grains that exist.
 INLINED void gather(const bool wide, const struct dig_contacts *const list,
                     const struct dig_motion *const motion, const size_t first, const size_t count,
                     struct dig_block *const block)
@@ -223,7 +223,7 @@ INLINED void scatter_four(const uint32_t *const i, const uint32_t *const     j,
     }
 }
 
-// Torques stand behind forces.
+// Torques follow forces.
 INLINED void scatter_eight(const uint32_t *const i, const uint32_t *const     j,
                            const double (*const out)[DIG_BLOCK], const size_t c,
                            struct dig_load *const load)

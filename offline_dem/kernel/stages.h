@@ -1,14 +1,14 @@
 // The law on a block of contacts. The plain law goes through its stages (law.h) with all contacts
-// of the block at one stage before the next begins. Columns of the block, as the stages leave them:
+// of the block at one stage before the next begins. Columns of the block after each stage:
 //
 //              0..2   3..5   6         7      8      9       10       11       d_m    may_cap
-//   filled     d      v      w_i ...          ...    w_j ...          ...
-//   lines      n      .      .         .      .      .       .        .        |d|
-//   strains    n      slip   F_n       |xi|^2 |M|^2  1       1        1        |d|    0, 1
+//   gathered   d      v      w_i ...          ...    w_j ...          ...
+//   normals    n      .      .         .      .      .       .        .        |d|
+//   trials     n      slip   F_n       |xi|^2 |M|^2  1       1        1        |d|    0, 1
 //   caps       n      slip   F_n       .      .      spring  damping  torque   |d|
-//   pushes     f_i    t_i    t_j: 6..8
+//   forces     f_i    t_i    t_j: 6..8
 //
-// For kernel.c, whose variants inline it.
+// Inlined into the variants of kernel.c.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_STAGES_H
 #define DIG_OFFLINE_DEM_KERNEL_STAGES_H
@@ -17,7 +17,7 @@
 #include "offline_dem/kernel/rows.h"
 #include "offline_dem/law/law_general.h"
 
-// Lanes beyond the last contact: bodies far apart, which the law answers with zeros.
+// Padding lanes are bodies far apart, for which the law gives zeros.
 INLINED size_t pad(const size_t count, struct dig_block *const block)
 {
     const size_t padded = (count + DIG_LANES - 1) / DIG_LANES * DIG_LANES;
@@ -103,8 +103,8 @@ INLINED void find_trials(const struct dig_law law, const double dt_s, const size
     }
 }
 
-// Roots and quotients only for the contacts that may need them, one in six of a bed at rest: these
-// are brought side by side.
+// Square roots and quotients only for the contacts that may need them, one in six of a bed at rest:
+// these are packed together.
 INLINED void find_caps(const struct dig_law law, const size_t        padded,
                        double (*const col)[DIG_BLOCK], const int64_t may_cap[])
 {
@@ -185,7 +185,7 @@ INLINED void block_general(const struct dig_law law, const double dt_s, const si
     }
 }
 
-// `general` is a constant where this is inlined: the plain law pays nothing for the others.
+// `general` is a compile-time constant here: the plain law pays nothing for the others.
 INLINED void block_body(const bool general, const struct dig_law law, const double dt_s,
                         const size_t count, double *const histories[DIG_HISTORY_VALUES],
                         struct dig_block *const block)

@@ -1,5 +1,5 @@
 // As rows.h, for contacts of grains with flat walls: a wall's row is its normal and its offset.
-// For kernel.c, whose variants inline it.
+// Inlined into the variants of kernel.c.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_WALL_ROWS_H
 #define DIG_OFFLINE_DEM_KERNEL_WALL_ROWS_H
@@ -7,8 +7,8 @@
 #include "offline_dem/kernel/rows.h"
 #include "offline_dem/law/wall.h"
 
-// The distance of grains at x from walls, and d: along the normal, as long as that. A grain pressed
-// through a wall still stands on the right side of it.
+// d of grains at x from walls: the distance along the normal. A grain pressed through a wall stays
+// on its inner side.
 INLINED void put_walls(const four wall[4], const four x[4], const double least_m,
                        double (*const in)[DIG_BLOCK], const size_t c)
 {
@@ -27,7 +27,7 @@ INLINED void put_walls(const four wall[4], const four x[4], const double least_m
     }
 }
 
-// Beyond the last contact stands padding, which names a grain and a wall that exist.
+// Padding beyond the last contact names a grain and a wall that exist.
 INLINED void gather_walls(const struct dig_contacts *const list, const struct dig_wall wall[],
                           const double radius_m, const struct dig_motion *const motion,
                           const size_t first, const size_t count, struct dig_block *const block)
@@ -56,7 +56,7 @@ INLINED void gather_walls(const struct dig_contacts *const list, const struct di
     }
 }
 
-// The walls' own load is the opposite, summed in the order of the contacts.
+// The walls' reaction is summed in the order of the contacts.
 INLINED void scatter_walls(const struct dig_contacts *const list,
                            const struct dig_block *const block, const size_t first,
                            const size_t count, struct dig_load *const load, four *const on_walls_N)

@@ -1,4 +1,4 @@
-// What a function is that the processor runs and a device may run as well.
+// DIG_BOTH marks a function that runs on the processor and on a CUDA device.
 
 #ifndef DIG_OFFLINE_DEM_LAW_BOTH_H
 #define DIG_OFFLINE_DEM_LAW_BOTH_H

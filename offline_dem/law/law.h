@@ -30,26 +30,26 @@
 #include <math.h>
 #include <stdbool.h>
 
-/// What a contact remembers while it lasts; zero when it begins.
+/// History of a contact while it lasts; zero when the contact begins.
 struct dig_contact_history {
     double sx_m, sy_m, sz_m;    // tangential displacement xi
     double mx_Nm, my_Nm, mz_Nm; // rolling torque M on j (and -M on i)
 };
 
-/// Constants of the contacts between two kinds of grain, or of one kind with walls and plates.
+/// Constants of the contacts between two grain types, or of one type with walls and plates.
 struct dig_law {
-    double reach_m;         // they touch below this distance
-    double lever_i_m;       // from the centre to the contact at no overlap
+    double reach_m;         // contact below this distance
+    double lever_i_m;       // centre to contact point at zero overlap
     double lever_j_m;       // 0 for a wall
     double normal_Npm;      // k_n = k_t
     double damping_Nspm;    // gamma_n = gamma_t
     double rolling_Nmprad;  // k_r
     double friction;        // mu
     double rolling_lever_m; // mu_r R*
-    bool   general;         // law_general.h computes it, not dig_law_step()
+    bool   general;         // computed by dig_law_general(), not dig_law_step()
 
-    // Read by law_general.h only. With Hertz's law the three springs above and below are those at
-    // an overlap of 1 m and grow with its root, the two dampings with its fourth root.
+    // Read by law_general.h only. With Hertz's law the three springs are those at an overlap of 1 m
+    // and scale with its square root, the two dampings with its fourth root.
     bool   hertz;
     double tangential_Npm;          // k_t
     double tangential_damping_Nspm; // gamma_t
@@ -57,8 +57,8 @@ struct dig_law {
     double cohesion_Jpm3;           // pull per contact area
 };
 
-/// What makes a contact, but for the grains' sizes: constants of the two materials that meet and
-/// the laws that hold between them. Zero laws: Hooke, EPSD2, no cohesion.
+/// Constants of two materials in contact, and the laws between them, without the grains' sizes.
+/// Zero laws: Hooke, EPSD2, no cohesion.
 struct dig_law_material {
     double young_Pa, poisson; // of both bodies
     double restitution, characteristic_velocity_mps;
@@ -69,8 +69,8 @@ struct dig_law_material {
     double               cohesion_Jpm3;
 };
 
-/// The relative state of two touching bodies: d = x_i - x_j, velocities of the centres (for a wall
-/// or plate: of its contact point) and rotations.
+/// Relative state of two bodies in contact: d = x_i - x_j, velocities of the centres (of a wall or
+/// plate: of its contact point) and rotations.
 struct dig_kinematics {
     double dx_m, dy_m, dz_m;
     double vx_mps, vy_mps, vz_mps; // v_i - v_j
@@ -78,7 +78,7 @@ struct dig_kinematics {
     double jx_radps, jy_radps, jz_radps;
 };
 
-/// What the contact does to i; j gets the opposite force and its own torque.
+/// Force and torque of the contact on i; j gets the opposite force and its own torque.
 struct dig_contact_force {
     double fx_N, fy_N, fz_N;
     double ix_Nm, iy_Nm, iz_Nm;
@@ -107,7 +107,7 @@ static inline void dig_law_make_hertz(const struct dig_law_material *const mater
     law->rolling_Nmprad          = law->tangential_Npm * radius_m * radius_m;
 }
 
-/// Constants for an effective radius and mass; reach and levers are left to the caller.
+/// Constants for an effective radius and mass; the caller sets reach and levers.
 static inline struct dig_law dig_law_make(const struct dig_law_material *const material,
                                           const double radius_m, const double mass_kg)
 {
@@ -151,7 +151,7 @@ static inline struct dig_law dig_law_pair(const struct dig_law_material *const m
     return law;
 }
 
-/// A grain and something that does not give way: R* = r, m* = m.
+/// A grain and a rigid surface: R* = r, m* = m.
 static inline struct dig_law dig_law_wall(const struct dig_law_material *const material,
                                           const double r_m, const double m_kg)
 {
@@ -162,12 +162,12 @@ static inline struct dig_law dig_law_wall(const struct dig_law_material *const m
     return law;
 }
 
-/// The line of centres: the unit vector n from j to i, and their distance.
+/// Contact normal: the unit vector n from j to i, and the distance of the centres.
 struct dig_contact_normal {
     double nx, ny, nz, d_m;
 };
 
-/// What the step makes of a contact before its springs are capped.
+/// Trial state: springs advanced over the step, before friction caps them.
 struct dig_trial {
     double normal_N;
     double vx_mps, vy_mps, vz_mps; // slip of the contact point
@@ -175,26 +175,26 @@ struct dig_trial {
     double torque2_Nm2;            // |M|^2
 };
 
-/// What friction leaves of the springs and of the damping: 1 where it bears them.
+/// Factors by which friction caps springs and damping; 1 where the contact does not slip or roll.
 struct dig_caps {
     double spring, damping, torque;
 };
 
-// One contact over one step in four stages, each without branches, so that a loop over it becomes
-// vector code. They stand apart because every stage waits for the one before: with many contacts at
-// the same stage the processor works on the others meanwhile.
+// One contact over one step in four stages without branches, so that a loop over contacts
+// vectorises. Each stage waits for the one before; with many contacts at one stage the processor
+// fills that wait.
 #define DIG_LAW_STAGE DIG_BOTH __attribute__((always_inline)) static inline
 
 DIG_LAW_STAGE struct dig_contact_normal dig_law_normal(const double dx_m, const double dy_m,
                                                        const double dz_m)
 {
-    // The floor keeps a lane of padding from dividing by zero.
+    // The constant keeps a lane of padding from dividing by zero.
     const double d_m = sqrt(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m + 1e-300);
     const double inv = 1.0 / d_m;
     return (struct dig_contact_normal){ dx_m * inv, dy_m * inv, dz_m * inv, d_m };
 }
 
-/// The memory grows with the slip and the turning. Of the touch only velocities are read.
+/// Advances the history by slip and rolling. Reads only the velocities of t.
 DIG_LAW_STAGE struct dig_trial dig_law_trial(const struct dig_law law, const double dt_s,
                                              const struct dig_contact_normal   n,
                                              const struct dig_kinematics       t,
@@ -244,10 +244,11 @@ DIG_LAW_STAGE struct dig_trial dig_law_trial(const struct dig_law law, const dou
     };
 }
 
-/// Whether dig_law_caps() may give less than 1, told without a root: never false when it does.
+/// True where dig_law_caps() may return less than 1, decided without a square root. Never false
+/// where it does.
 DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_trial trial)
 {
-    const double more     = 1.0 + 1e-12; // than all roundings on either side
+    const double more     = 1.0 + 1e-12; // above the rounding of either side
     const double load_N   = fabs(trial.normal_N);
     const double grip_N   = law.friction * load_N;
     const double limit_Nm = law.rolling_lever_m * load_N;
@@ -255,7 +256,7 @@ DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_tr
            (more * trial.torque2_Nm2 >= limit_Nm * limit_Nm);
 }
 
-/// Of the strain the normal force and the two squares are read.
+/// Reads the normal force and the two squares of the trial.
 DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struct dig_trial trial)
 {
     const double load_N    = fabs(trial.normal_N);
@@ -271,8 +272,8 @@ DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struc
     };
 }
 
-/// Of the strain the normal force and the slip are read. Bodies that do not touch get zeros, and
-/// *memory is cleared.
+/// Reads the normal force and the slip of the trial. Bodies apart get zeros, and *history is
+/// cleared.
 DIG_LAW_STAGE struct dig_contact_force dig_law_force(const struct dig_law              law,
                                                      const struct dig_contact_normal   n,
                                                      const struct dig_trial            trial,
@@ -316,8 +317,7 @@ DIG_LAW_STAGE struct dig_contact_force dig_law_force(const struct dig_law       
     };
 }
 
-/// One contact over one step: all stages. Bodies that do not touch get zeros, and *memory is
-/// cleared.
+/// One contact over one step: all stages. Bodies apart get zeros, and *history is cleared.
 DIG_LAW_STAGE struct dig_contact_force dig_law_step(const struct dig_law law, const double dt_s,
                                                     const struct dig_kinematics       t,
                                                     struct dig_contact_history *const history)

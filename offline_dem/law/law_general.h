@@ -23,10 +23,10 @@
 
 #include "offline_dem/law/law.h"
 
-/// The pull of cohesion at the distance d_m.
+/// Pull of cohesion at the distance d_m.
 DIG_LAW_STAGE double dig_law_pull_N(const struct dig_law law, const double d_m)
 {
-    // How far the plane of the circle is from the centre of i.
+    // Distance of the circle's plane from the centre of i.
     const double ri2_m2  = law.lever_i_m * law.lever_i_m;
     const double rj2_m2  = law.lever_j_m * law.lever_j_m;
     const double plane_m = law.lever_j_m > 0.0 ? 0.5 * (d_m * d_m + ri2_m2 - rj2_m2) / d_m : d_m;
@@ -38,7 +38,8 @@ DIG_LAW_STAGE struct dig_contact_force dig_law_general(const struct dig_law law,
                                                        const struct dig_kinematics       t,
                                                        struct dig_contact_history *const history)
 {
-    // The floors keep a lane of padding, and a grain that does not turn, from dividing by zero.
+    // The constants keep a lane of padding, and a grain that does not rotate, from dividing by
+    // zero.
     const double d2_m2    = t.dx_m * t.dx_m + t.dy_m * t.dy_m + t.dz_m * t.dz_m + 1e-300;
     const double d_m      = sqrt(d2_m2);
     const bool   touching = d_m < law.reach_m;
@@ -47,7 +48,7 @@ DIG_LAW_STAGE struct dig_contact_force dig_law_general(const struct dig_law law,
     const double ny       = t.dy_m * inv;
     const double nz       = t.dz_m * inv;
 
-    // Choices as factors: the loop over lanes stays free of branches.
+    // Choices are factors: the loop over lanes has no branches.
     const double hertz = law.hertz ? 1.0 : 0.0;
     const double epsd2 = law.epsd2 ? 1.0 : 0.0;
     const double cdt   = law.cdt ? 1.0 : 0.0;
@@ -97,7 +98,7 @@ DIG_LAW_STAGE struct dig_contact_force dig_law_general(const struct dig_law law,
     const double ty = -kt_Npm * sy - damping * vy;
     const double tz = -kt_Npm * sz - damping * vz;
 
-    // Rolling: a capped spring, or a torque of constant size against the turning
+    // Rolling: a capped spring, or a torque of constant size against the rotation
     const double ox       = t.ix_radps - t.jx_radps;
     const double oy       = t.iy_radps - t.jy_radps;
     const double oz       = t.iz_radps - t.jz_radps;
@@ -138,6 +139,16 @@ DIG_LAW_STAGE struct dig_contact_force dig_law_general(const struct dig_law law,
         .jy_Nm = touching ? -cj_m * ay + ry : 0.0,
         .jz_Nm = touching ? -cj_m * az + rz : 0.0,
     };
+}
+
+/// The plain law or a general one, as law->general says.
+DIG_BOTH static inline struct dig_contact_force
+dig_law_apply(const struct dig_law *const law, const double dt_s,
+              const struct dig_kinematics *const kinematics,
+              struct dig_contact_history *const  history)
+{
+    return law->general ? dig_law_general(*law, dt_s, *kinematics, history)
+                        : dig_law_step(*law, dt_s, *kinematics, history);
 }
 
 #endif // DIG_OFFLINE_DEM_LAW_LAW_GENERAL_H

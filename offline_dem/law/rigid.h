@@ -1,7 +1,6 @@
-// A rigid body that loads push and turn, stepped like the grains: velocities stand half a step
-// behind positions. Momentum and angular momentum change by what acts on the body and by nothing
-// else; the rotation over a step is that about the angular velocity in its middle, found by half a
-// step forward with the angular momentum held.
+// A rigid body under loads, stepped like the grains: velocities stand half a step behind positions.
+// Momentum and angular momentum change by the loads only. The rotation over a step uses the angular
+// velocity in its middle, found by half a step forward at constant angular momentum.
 
 #ifndef DIG_OFFLINE_DEM_LAW_RIGID_H
 #define DIG_OFFLINE_DEM_LAW_RIGID_H
@@ -71,7 +70,7 @@ DIG_BOTH static inline void dig_rigid_quaternion(const double r[3][3], double q[
     }
 }
 
-/// The angular velocity that belongs to the angular momentum in this orientation.
+/// Angular velocity of the angular momentum at this orientation.
 DIG_BOTH static inline void dig_rigid_angular_velocity(const struct dig_rigid *const body,
                                                        const double q[4], double w_radps[3])
 {
@@ -85,14 +84,14 @@ DIG_BOTH static inline void dig_rigid_angular_velocity(const struct dig_rigid *c
     dig_rigid_rotate(q, w, w_radps);
 }
 
-/// q turned by w over dt.
+/// q rotated by w over dt.
 DIG_BOTH static inline void dig_rigid_integrate(const double q[4], const double w_radps[3],
                                                 const double dt_s, double turned[4])
 {
     const double speed =
         sqrt(w_radps[0] * w_radps[0] + w_radps[1] * w_radps[1] + w_radps[2] * w_radps[2]);
     const double half = 0.5 * dt_s * speed;
-    // sin(half) / speed, which is half a step where nothing turns.
+    // sin(half) / speed; its limit without rotation is half a step.
     const double s    = half > 1e-8 ? sin(half) / speed : 0.5 * dt_s;
     const double p[4] = { cos(half), s * w_radps[0], s * w_radps[1], s * w_radps[2] };
     const double r[4] = { p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],

@@ -7,7 +7,7 @@
 #define RAYLEIGH_SHARE    0.14
 #define STEPS_PER_CONTACT 20.0
 
-// As many contacts as a grain of a dense bed has at most, nearly.
+// Contacts of a grain in a dense bed, nearly the most.
 #define DAMPING_CONTACTS 8.0
 
 // Half a period of a contact of two like grains, and the largest tangential damping in it.
@@ -48,8 +48,8 @@ double dig_time_step_limit_s(const struct dig_law_material *const material, cons
     const struct contact contact =
         law.hertz ? hertz_contact(&law, 0.5 * mass_kg, material->characteristic_velocity_mps)
                   : hooke_contact(&law, 0.5 * mass_kg);
-    // Tangential damping takes spin off a grain with 8 contacts at a rate of 8 x 2/3 x gamma r^2 /
-    // I; a neighbour that turns the same way doubles it. Beyond 2 / rate the spin flips at every
+    // Tangential damping reduces the spin of a grain with 8 contacts at a rate of 8 x 2/3 x gamma
+    // r^2 / I; a neighbour of the same spin doubles it. Beyond 2 / rate the spin flips at every
     // step.
     const double damping_s =
         2.0 * 0.4 * mass_kg / (DAMPING_CONTACTS * 2.0 / 3.0 * 2.0 * contact.damping_Nspm);

@@ -1,4 +1,4 @@
-// A flat wall that does not give way.
+// A rigid flat wall.
 
 #ifndef DIG_OFFLINE_DEM_LAW_WALL_H
 #define DIG_OFFLINE_DEM_LAW_WALL_H

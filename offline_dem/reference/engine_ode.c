@@ -1,6 +1,5 @@
 #include "offline_dem/reference/engine_ode.h"
 
-#include "core/units.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/reference/ode_bed.h"
 #include "offline_dem/world/ode_scene.h"
@@ -38,17 +37,11 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
     return vtk_dir != NULL ? reject(error, "pictures") : DIG_OK;
 }
 
-// A step with the bucket where the trajectory has it; the rates are those of the phase that ends at
-// or after time_s.
+// One step with the bucket on the trajectory at time_s.
 static enum dig_status step(struct run *const d, const double time_s,
                             struct dig_wrench *const on_tool)
 {
-    const struct dig_pose         pose     = dig_trajectory_pose(d->trajectory, time_s);
-    const double                  middle_s = time_s - 0.5 * d->world->dt_s;
-    const struct dig_phase *const phase =
-        &d->trajectory->phase[dig_trajectory_phase(d->trajectory, middle_s)];
-    dig_ode_scene_move(d->ode, pose, phase->vx_mps, phase->vz_mps, phase->omega_radps);
-    dig_ode_scene_read(d->ode, &d->tool);
+    dig_setup_place_tool(d->trajectory, time_s, d->world->dt_s, d->ode, &d->tool);
     return dig_ode_bed_step(d->bed, &d->tool, on_tool);
 }
 
@@ -82,21 +75,7 @@ static enum dig_status record_window(struct run *const d, const size_t first, co
             sum.t_Nm[k] += on_tool.t_Nm[k] / (double)window;
         }
     }
-    const double          t_s  = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
-    const struct dig_pose pose = dig_trajectory_pose(d->trajectory, t_s);
-    *row                       = (struct dig_force_row){
-                              .t_s        = t_s,
-                              .pin_x_m    = pose.x_m,
-                              .pin_z_m    = pose.z_m,
-                              .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
-                              .Fx_N       = sum.f_N[0],
-                              .Fy_N       = sum.f_N[1],
-                              .Fz_N       = sum.f_N[2],
-                              .Mx_Nm      = sum.t_Nm[0],
-                              .My_Nm      = sum.t_Nm[1],
-                              .Mz_Nm      = sum.t_Nm[2],
-                              .carried_kg = carried_kg(d),
-    };
+    *row = dig_setup_force_row(d->trajectory, first, window, dt_s, &sum, carried_kg(d));
     return DIG_OK;
 }
 
@@ -112,7 +91,7 @@ static enum dig_status record(struct run *const d, const double output_s,
     if (recording->row == NULL) {
         return DIG_ENOMEM;
     }
-    // The forces before the first step belong to no window: they give the half kick.
+    // The forces before the first step belong to no row: they give the half kick.
     struct dig_wrench on_tool;
     enum dig_status   status = step(d, 0.0, &on_tool);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
@@ -134,12 +113,9 @@ static enum dig_status dig(const struct dig_scene *const  scene,
 {
     enum dig_status status = dig_setup_check(scene, gravel, error);
     status                 = status == DIG_OK ? check(scene, vtk_dir, error) : status;
+    status                 = status == DIG_OK ? dig_setup_check_phases(trajectory, error) : status;
     if (status != DIG_OK) {
         return status;
-    }
-    if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
-                             trajectory->phases, DIG_PHASES_MAX);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
     if (ode == NULL) {

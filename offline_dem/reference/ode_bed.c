@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The box that holds the tool, grown by nothing: grains' own boxes overlap it when they touch.
+// The box around the tool: grains whose boxes overlap it may touch the tool.
 static void place_box(const struct dig_ode_bed *const bed)
 {
     const struct dig_tool *const tool    = bed->tool;
@@ -27,7 +27,7 @@ static void place_box(const struct dig_ode_bed *const bed)
                      tool->pose.z_m + 0.5 * (low[2] + high[2]));
 }
 
-// Where the rocks are by now, and nothing pushing them yet.
+// Poses of the rocks at present, without loads.
 static void place_rocks(struct dig_ode_bed *const bed)
 {
     for (size_t r = 0; r < bed->rocks; r++) {
@@ -105,8 +105,8 @@ static void add_grain(struct dig_ode_bed *const bed, const struct dig_grain_type
     dGeomSetData(bed->grain_geom[i], (void *)(uintptr_t)i); // NOLINT(performance-no-int-to-ptr)
 }
 
-// Cells as large as the smallest grain to as large as the largest: the default levels are made for
-// metres, and ten times too slow here.
+// Cells from the smallest to the largest grain: the default levels are for metres, and ten times
+// slower here.
 static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *const grains)
 {
     double least_m = INFINITY;

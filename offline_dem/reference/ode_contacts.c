@@ -3,7 +3,7 @@
 #include "offline_dem/law/law_general.h"
 #include "offline_dem/reference/ode_plates.h"
 
-// Numbers of walls and rocks in contact memory, beyond any grain's.
+// Numbers of walls and rocks in the contact history, beyond any grain's.
 #define WALL_NUMBER 0xFFFF0000U
 #define ROCK_NUMBER 0xFFFF4000U
 
@@ -34,15 +34,7 @@ static void set_velocity(dBodyID i, dBodyID j, struct dig_kinematics *const t)
     }
 }
 
-static struct dig_contact_force law_of(const struct dig_law *const law, const double dt_s,
-                                       const struct dig_kinematics       kinematics,
-                                       struct dig_contact_history *const history)
-{
-    return law->general ? dig_law_general(*law, dt_s, kinematics, history)
-                        : dig_law_step(*law, dt_s, kinematics, history);
-}
-
-// Loads on i, scaled for a kick that is not a whole one.
+// Loads on i, scaled by the fraction of a kick.
 static void add_load_to_i(const struct dig_ode_bed *const bed, dBodyID i,
                           const struct dig_contact_force *const p)
 {
@@ -68,12 +60,33 @@ static void set_distance(struct dig_kinematics *const t, const dContactGeom *con
     t->dz_m          = d_m * c->normal[2];
 }
 
+// The contact of grain a with b, whose body is j (NULL: it does not move as ODE's body) and whose
+// number in the history is other. NULL: there is none, or memory is short.
+static struct dig_contact_history *begin_contact(struct dig_ode_bed *const bed, dGeomID a,
+                                                 dGeomID b, dBodyID j, const uint32_t other,
+                                                 const struct dig_law *const  law,
+                                                 struct dig_kinematics *const kinematics)
+{
+    dContactGeom contact;
+    if (dCollide(a, b, 1, &contact, sizeof contact) == 0) {
+        return NULL;
+    }
+    const size_t                      i = index_of(a);
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)i, other);
+    bed->out_of_memory = bed->out_of_memory || history == NULL;
+    *kinematics        = (struct dig_kinematics){ 0 };
+    set_distance(kinematics, &contact, law->reach_m);
+    set_velocity(bed->body[i], j, kinematics);
+    return history;
+}
+
 static bool comes_second(const struct dig_ode_bed *const bed, const size_t a, const size_t b)
 {
     return bed->type_of[a] > bed->type_of[b] || (bed->type_of[a] == bed->type_of[b] && a > b);
 }
 
-// Two grains whose boxes overlap. The law's i is the one of the lower kind, as in the kernel.
+// Two grains whose boxes overlap. The law's i is the one of the lower type, as in the kernel.
 void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
 {
     struct dig_ode_bed *const bed = data;
@@ -82,54 +95,40 @@ void dig_ode_contacts_grain(void *const data, dGeomID a, dGeomID b)
         b             = a;
         a             = first;
     }
-    const size_t na = index_of(a);
-    const size_t nb = index_of(b);
-    dContactGeom contact;
-    if (dCollide(a, b, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
+    const size_t                na = index_of(a);
+    const size_t                nb = index_of(b);
     const struct dig_law *const law =
         &bed->pair_law[bed->type_of[na] * DIG_GRAIN_TYPES_MAX + bed->type_of[nb]];
+    struct dig_kinematics             kinematics;
     struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)na, (uint32_t)nb);
+        begin_contact(bed, a, b, bed->body[nb], (uint32_t)nb, law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[na], bed->body[nb], &kinematics);
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[na], &force);
     add_load_to_j(bed, bed->body[nb], &force);
 }
 
 void dig_ode_contacts_wall(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed        = data;
-    const bool                swap       = dGeomGetClass(a) == dPlaneClass;
-    dGeomID                   grain_geom = swap ? b : a;
-    dGeomID                   wall       = swap ? a : b;
-    dContactGeom              contact;
-    if (dCollide(grain_geom, wall, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
-    const size_t                      i   = index_of(grain_geom);
-    const struct dig_law *const       law = &bed->wall_law[bed->type_of[i]];
-    struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)i, WALL_NUMBER + (uint32_t)index_of(wall));
+    struct dig_ode_bed *const         bed        = data;
+    const bool                        swap       = dGeomGetClass(a) == dPlaneClass;
+    dGeomID                           grain_geom = swap ? b : a;
+    dGeomID                           wall       = swap ? a : b;
+    const size_t                      i          = index_of(grain_geom);
+    const struct dig_law *const       law        = &bed->wall_law[bed->type_of[i]];
+    struct dig_kinematics             kinematics;
+    struct dig_contact_history *const history = begin_contact(
+        bed, grain_geom, wall, NULL, WALL_NUMBER + (uint32_t)index_of(wall), law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[i], NULL, &kinematics);
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
 }
 
-// What a push does to the body that gets the other end of it, about the point the arm starts from.
+// Adds the reaction of a contact force to the other body, about the point the arm starts from.
 static void add_reaction(const struct dig_contact_force *const p, const double arm_m[3],
                          double f_N[3], double t_Nm[3])
 {
@@ -146,26 +145,20 @@ static void add_reaction(const struct dig_contact_force *const p, const double a
 // A grain and a rock whose boxes overlap.
 void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed        = data;
-    const bool                swap       = dGeomGetSpace(a) == bed->rocks_space;
-    dGeomID                   grain_geom = swap ? b : a;
-    dGeomID                   rock_geom  = swap ? a : b;
-    dContactGeom              contact;
-    if (dCollide(grain_geom, rock_geom, 1, &contact, sizeof contact) == 0) {
-        return;
-    }
-    const size_t                      i    = index_of(grain_geom);
-    struct dig_rock *const            rock = &bed->rock[index_of(rock_geom)];
-    const struct dig_law *const       law  = &bed->wall_law[bed->type_of[i]];
+    struct dig_ode_bed *const         bed        = data;
+    const bool                        swap       = dGeomGetSpace(a) == bed->rocks_space;
+    dGeomID                           grain_geom = swap ? b : a;
+    dGeomID                           rock_geom  = swap ? a : b;
+    const size_t                      i          = index_of(grain_geom);
+    struct dig_rock *const            rock       = &bed->rock[index_of(rock_geom)];
+    const struct dig_law *const       law        = &bed->wall_law[bed->type_of[i]];
+    struct dig_kinematics             kinematics;
     struct dig_contact_history *const history =
-        dig_ode_history_of(&bed->history, (uint32_t)i, ROCK_NUMBER + (uint32_t)index_of(rock_geom));
+        begin_contact(bed, grain_geom, rock_geom, NULL, ROCK_NUMBER + (uint32_t)index_of(rock_geom),
+                      law, &kinematics);
     if (history == NULL) {
-        bed->out_of_memory = true;
         return;
     }
-    struct dig_kinematics kinematics = { 0 };
-    set_distance(&kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[i], NULL, &kinematics);
     const dReal *const  x        = dBodyGetPosition(bed->body[i]);
     const double *const w        = rock->body.w_radps;
     const double *const v        = rock->body.v_mps;
@@ -178,12 +171,12 @@ void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
     kinematics.jx_radps                  = w[0];
     kinematics.jy_radps                  = w[1];
     kinematics.jz_radps                  = w[2];
-    const struct dig_contact_force force = law_of(law, bed->dt_s, kinematics, history);
+    const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
     add_reaction(&force, arm_m, rock->f_N, rock->t_Nm);
 }
 
-// One contact of a grain with the tool: point and memory are given.
+// One contact of a grain with the tool, at a given point with its history.
 static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
                            struct dig_ode_plate_contact *const at)
 {
@@ -199,7 +192,7 @@ static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const 
     kinematics.vx_mps -= tool->vx_mps - tool->w_radps * arm[2];
     kinematics.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
     const struct dig_contact_force p =
-        law_of(&bed->tool_law[bed->type_of[i]], bed->dt_s, kinematics, &at->history);
+        dig_law_apply(&bed->tool_law[bed->type_of[i]], bed->dt_s, &kinematics, &at->history);
     add_load_to_i(bed, bed->body[i], &p);
     add_reaction(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
 }

@@ -1,5 +1,5 @@
-// What happens when ODE finds two geometries near each other: the law, as forces on bodies. Shared
-// by ode_bed.c, which makes the bodies and calls ODE, and ode_contacts.c; for nobody else.
+// Callbacks of ODE's collision detection: the contact law, as forces on bodies. Shared by
+// ode_bed.c, which makes the bodies and calls ODE, and ode_contacts.c.
 
 #ifndef DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
 #define DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H
@@ -19,13 +19,13 @@ struct dig_ode_bed {
     dGeomID *grain_geom; // [n]
     uint8_t *type_of;    // [n]
 
-    // Read from the world this was made from.
+    // Copied from the world this was made from.
     double                dt_s, gravity_mps2[3];
     struct dig_grain_type type[DIG_GRAIN_TYPES_MAX];
     struct dig_law        pair_law[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX],
         wall_law[DIG_GRAIN_TYPES_MAX], tool_law[DIG_GRAIN_TYPES_MAX];
 
-    // Rocks: copies, which this bed moves.
+    // Copies of the rocks, which this bed moves.
     size_t                      rocks;
     struct dig_rock             rock[DIG_OBSTACLES_MAX];
     dGeomID                     rock_geom[DIG_OBSTACLES_MAX];
@@ -43,7 +43,8 @@ struct dig_ode_bed {
 };
 
 /// Callbacks of dSpaceCollide(); data is the bed. Two grains, a grain and a wall, a grain and a
-/// rock, a grain and the box about the tool. Loads are added to the bodies, contacts remembered.
+/// rock, a grain and the box about the tool. They add loads to the bodies and keep contact
+/// histories.
 void dig_ode_contacts_grain(void *data, dGeomID a, dGeomID b);
 void dig_ode_contacts_wall(void *data, dGeomID a, dGeomID b);
 void dig_ode_contacts_rock(void *data, dGeomID a, dGeomID b);

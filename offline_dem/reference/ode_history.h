@@ -1,6 +1,6 @@
-// What contacts remember, by the numbers of the two that touch: the all-ODE engine keeps no lists.
-// Two hash tables: contacts of this step are taken over from the last one's, and what was not
-// touched in a step is forgotten.
+// Contact histories by the numbers of the two bodies: the ODE engine keeps no lists. Two hash
+// tables: contacts of this step take over the histories of the last one, and contacts that ended
+// are dropped.
 
 #ifndef DIG_OFFLINE_DEM_REFERENCE_ODE_HISTORY_H
 #define DIG_OFFLINE_DEM_REFERENCE_ODE_HISTORY_H
@@ -21,15 +21,15 @@ struct dig_ode_history {
     int                  now;
 };
 
-/// The memory of the contact between a and b, zero if it is new. It stays valid until the next
-/// call. NULL when memory is short.
+/// History of the contact between a and b, zero if it is new. Valid until the next call. NULL when
+/// memory is short.
 struct dig_contact_history *dig_ode_history_of(struct dig_ode_history *map, uint32_t a, uint32_t b);
 
-/// What it remembered after the last step, NULL: nothing. Does not keep it for the next.
+/// History after the last step, NULL: none. Does not keep it for the next.
 const struct dig_contact_history *dig_ode_history_previous(const struct dig_ode_history *map,
                                                            uint32_t a, uint32_t b);
 
-/// The step is over.
+/// Ends the step.
 void dig_ode_history_end_step(struct dig_ode_history *map);
 
 /// A zeroed map is allowed; so is one that was finished.

@@ -1,8 +1,10 @@
 #include "offline_dem/reference/ode_plates.h"
 
+#include "offline_dem/shapes/bucket_surface.h"
+
 #include <math.h>
 
-// Numbers of plates in contact memory, beyond any grain's and any wall's.
+// Numbers of plates in the contact history, beyond any grain's and any wall's.
 #define PLATE_NUMBER 0xFFFF8000U
 
 struct candidate {
@@ -11,12 +13,6 @@ struct candidate {
     size_t plate;
 };
 
-static double distance(const double a[3], const double b[3])
-{
-    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
 static size_t find_candidates(const struct dig_tool *const tool, const double body_m[3],
                               const double radius_m, struct candidate found[])
 {
@@ -24,7 +20,7 @@ static size_t find_candidates(const struct dig_tool *const tool, const double bo
     for (size_t plate = 0; plate < tool->plates; plate++) {
         struct candidate *const c = &found[count];
         dig_tool_closest(tool, plate, body_m, c->closest_m);
-        c->distance_m = distance(body_m, c->closest_m);
+        c->distance_m = dig_bucket_distance(body_m, c->closest_m);
         c->plate      = plate;
         count += c->distance_m < radius_m;
     }
@@ -44,7 +40,7 @@ static void take_history(struct dig_ode_plate_contact *const contact, const uint
     }
 }
 
-// The plate on which c's closest point lies while it is itself closer: c is no minimum there.
+// The nearer plate on which c's closest point lies: c is no minimum there.
 static const struct candidate *find_closer(const struct dig_tool *const tool,
                                            const struct candidate found[], const size_t count,
                                            const struct candidate *const c, const double same_m)
@@ -52,7 +48,8 @@ static const struct candidate *find_closer(const struct dig_tool *const tool,
     for (size_t k = 0; k < count; k++) {
         double on[3];
         dig_tool_closest(tool, found[k].plate, c->closest_m, on);
-        if (found[k].distance_m < c->distance_m - same_m && distance(on, c->closest_m) <= same_m) {
+        if (found[k].distance_m < c->distance_m - same_m &&
+            dig_bucket_distance(on, c->closest_m) <= same_m) {
             return &found[k];
         }
     }
@@ -63,7 +60,7 @@ static void add(struct dig_ode_plate_contact contact[], size_t *const contacts,
                 const struct candidate *const c, const double same_m)
 {
     size_t k = 0;
-    while (k < *contacts && distance(contact[k].closest_m, c->closest_m) > same_m) {
+    while (k < *contacts && dig_bucket_distance(contact[k].closest_m, c->closest_m) > same_m) {
         k++;
     }
     if (k == *contacts) {
@@ -91,7 +88,7 @@ size_t dig_ode_plates_find(const struct dig_tool *const tool, const double body_
             add(contact, &contacts, &found[k], same_m);
         }
     }
-    // A touch remembers what its own plates know; then what those know that it came over from.
+    // A contact takes the history of its own plates; else that of the plates it came over from.
     for (size_t t = 0; t < contacts; t++) {
         for (size_t p = 0; p < contact[t].plates; p++) {
             take_history(&contact[t], grain, contact[t].plate[p], map);

@@ -1,5 +1,5 @@
-// The bucket's plates and what is closest on them, in body coordinates. Inlined into tool.c and
-// into what steps grains on a device (offline_dem/world/device.h).
+// Closest points on the bucket's plates, in body coordinates. Inlined into tool.c and into the
+// device's step (offline_dem/world/device.h).
 
 #ifndef DIG_OFFLINE_DEM_SHAPES_BUCKET_SURFACE_H
 #define DIG_OFFLINE_DEM_SHAPES_BUCKET_SURFACE_H
@@ -14,6 +14,12 @@
 DIG_BOTH static inline double dig_clamp(const double x, const double low, const double high)
 {
     return x < low ? low : x > high ? high : x;
+}
+
+DIG_BOTH static inline double dig_bucket_distance(const double a[3], const double b[3])
+{
+    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
 // The closest point of the profile's segment a-b, in the plane.

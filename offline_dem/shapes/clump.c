@@ -180,10 +180,10 @@ static void cross(const double a[3], const double b[3], double c[3])
     }
 }
 
-// The two spheres that, with the first, say which way a shape lies: the farthest from the first,
-// and the farthest from the line through both.
-static void pick_axes(const struct dig_clump_shape *const shape, size_t *const far,
-                      size_t *const aside, double *const off)
+// The two spheres that, with the first, fix a shape's orientation: the farthest from the first, and
+// the farthest from the line through both.
+static void choose_axes(const struct dig_clump_shape *const shape, size_t *const far,
+                        size_t *const aside, double *const off)
 {
     double most = 0.0;
     *far        = 0;
@@ -240,7 +240,7 @@ void dig_clump_orientation(const struct dig_clump_shape *const shape, const doub
     size_t far   = 0;
     size_t aside = 0;
     double off   = 0.0;
-    pick_axes(shape, &far, &aside, &off);
+    choose_axes(shape, &far, &aside, &off);
     if (far == 0) {
         const double same[3][3] = { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } };
         memcpy(rotation, same, sizeof same);

@@ -17,12 +17,12 @@ struct dig_clump_shape {
     double inverse[3][3];
 };
 
-/// DIG_EINVAL for spheres that cannot be. A few milliseconds.
+/// DIG_EINVAL for spheres without volume. A few milliseconds.
 DIG_MUST_CHECK enum dig_status dig_clump_shape_make(const struct dig_clump *clump,
                                                     struct dig_clump_shape *shape);
 
-/// Which way a clump lies whose spheres stand at at_m[spheres][3]: the rotation from the shape's
-/// axes to the world's. A shape that looks the same all round one axis may be turned about it.
+/// Orientation of a clump whose spheres stand at at_m[spheres][3]: the rotation from the shape's
+/// axes to the world's. About an axis of symmetry it is arbitrary.
 void dig_clump_orientation(const struct dig_clump_shape *shape, const double at_m[][3],
                            double rotation[3][3]);
 

@@ -1,5 +1,5 @@
-// A rock's surface as grains meet it. Inlined into obstacles.c and into what steps grains on a
-// device (offline_dem/world/device.h).
+// Closest points on a rock's surface. Inlined into obstacles.c and into the device's step
+// (offline_dem/world/device.h).
 
 #ifndef DIG_OFFLINE_DEM_SHAPES_ROCK_SURFACE_H
 #define DIG_OFFLINE_DEM_SHAPES_ROCK_SURFACE_H
@@ -10,14 +10,14 @@
 
 #include <math.h>
 
-/// Where a rock is, and how large.
+/// A rock's shape, size and pose.
 struct dig_rock_surface {
     enum dig_obstacle_shape shape;
     double                  half_m[3]; // sphere: its radius in half_m[0]; box: half its edges
     double                  x_m[3], q[4];
 };
 
-/// The face of a box that a point inside it is closest to.
+/// The point of a box's faces closest to a point inside it.
 DIG_BOTH static inline double dig_rock_surface_face(const double half_m[3], const double p[3],
                                                     double closest_m[3])
 {
@@ -35,7 +35,7 @@ DIG_BOTH static inline double dig_rock_surface_face(const double half_m[3], cons
     return -least_m;
 }
 
-/// The point of the rock's surface that is closest to p_m, and the distance to it: negative inside.
+/// The point of the rock's surface closest to p_m, and the distance to it: negative inside.
 DIG_BOTH static inline double dig_rock_surface_closest(const struct dig_rock_surface *const rock,
                                                        const double p_m[3], double closest_m[3])
 {
@@ -63,8 +63,8 @@ DIG_BOTH static inline double dig_rock_surface_closest(const struct dig_rock_sur
     return apart;
 }
 
-/// From the rock's surface to a point at p_m, as the law is to see it: a grain pressed into a rock
-/// still stands on the outside of it, by a thousandth of its radius.
+/// Separation of the rock's surface and a point at p_m for the contact law. A grain pressed into a
+/// rock stays outside of it, by a thousandth of its radius.
 DIG_BOTH static inline void dig_rock_surface_separation(const struct dig_rock_surface *const rock,
                                                         const double p_m[3], const double radius_m,
                                                         double closest_m[3], double d_m[3])

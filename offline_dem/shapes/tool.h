@@ -1,8 +1,8 @@
-// The bucket as grains meet it: plates of zero thickness, moved as the trajectory says.
+// The bucket as a surface for contacts: plates of zero thickness on the trajectory.
 //
 // Plates 0 … points - 2 stand on the profile's polyline, across the width; the last two are the
 // sides, the profile's polygon at y = -width/2 and +width/2. Grains touch them from both sides.
-// Body and world frame, signs: core/curve.h; the body's (x, z) is turned by theta about the pin.
+// Body and world frame, signs: core/curve.h; the body's (x, z) is rotated by theta about the pin.
 
 #ifndef DIG_OFFLINE_DEM_SHAPES_TOOL_H
 #define DIG_OFFLINE_DEM_SHAPES_TOOL_H
@@ -33,7 +33,7 @@ struct dig_wrench {
 
 struct dig_tool dig_tool_make(const struct dig_bucket *bucket);
 
-/// Places the tool, and sets its velocity.
+/// Sets the tool's pose and velocity.
 void dig_tool_place(struct dig_tool *tool, struct dig_pose pose, double vx_mps, double vz_mps,
                     double w_radps);
 
@@ -48,7 +48,7 @@ DIG_BOTH static inline void dig_tool_to_body(const struct dig_tool *const tool,
     body_m[2]      = -tool->sine * x + tool->cosine * z;
 }
 
-/// A direction, body to world.
+/// Rotates a direction, body to world.
 DIG_BOTH static inline void dig_tool_rotate(const struct dig_tool *const tool, const double body[3],
                                             double world[3])
 {
@@ -59,15 +59,15 @@ DIG_BOTH static inline void dig_tool_rotate(const struct dig_tool *const tool, c
     world[2]       = z;
 }
 
-/// The point of the plate that is closest to body_m, in body coordinates: on its face, an edge or a
-/// vertex. A point on the very plane of the plate is its own closest point.
+/// The point of the plate closest to body_m, in body coordinates: on its face, an edge or a vertex.
+/// A point in the plate is its own closest point.
 void dig_tool_closest(const struct dig_tool *tool, size_t plate, const double body_m[3],
                       double closest_m[3]);
 
-/// True when a point of the world lies inside the profile's closed polygon and the width: carried.
+/// True where a point of the world lies inside the profile's closed polygon and the width: carried.
 bool dig_tool_contains(const struct dig_tool *tool, const double world_m[3]);
 
-/// Farthest any point of the tool is in `to` from where it was in `from`: an upper bound.
+/// Upper bound of the distance any point of the tool moves between two poses.
 double dig_tool_travel_m(const struct dig_tool *tool, struct dig_pose from, struct dig_pose to);
 
 #endif // DIG_OFFLINE_DEM_SHAPES_TOOL_H

@@ -52,17 +52,17 @@ struct sweep {
     struct dig_store               *store;
     struct dig_sweep_state         *state;
     struct dig_error               *error;
-    enum dig_status                 status; // DIG_OK until something failed
+    enum dig_status                 status; // of the first failure
     struct dig_queue                queue;
-    size_t                          next; // job to be given out
+    size_t                          next; // job to be started next
     struct dig_worker              *worker;
     struct pollfd                  *poll;
     double                          from_s, reported_s;
-    size_t                          done_before; // when the sweep began
+    size_t                          done_before; // at the start of the sweep
     bool                            stopping;
 };
 
-// The first failure is the one that is told; the sweep goes on with the other beds.
+// Reports the first failure; the sweep goes on with the other beds.
 static void record_failure(struct sweep *const s, const struct dig_job *const job,
                            const size_t digs, const char *const why)
 {
@@ -90,7 +90,7 @@ static void update(struct sweep *const s)
         const struct dig_worker *const w = &s->worker[i];
         if (w->pid != 0) {
             st->workers++;
-            // Its fraction counts what is stored, and so counted, already.
+            // The worker's fraction includes digs that are stored and counted.
             const double begun = w->fraction * (double)w->digs;
             st->digs_under_way += fmax(begun - (double)(w->digs - w->job.digs), 0.0);
         }
@@ -111,7 +111,7 @@ static void report_progress(struct sweep *const s, const bool now)
     }
 }
 
-// The digs of a job that are not stored: what a second attempt has to do.
+// Removes a stored dig: a second attempt computes what is left.
 static void remove_dig(struct dig_job *const job, const size_t trajectory)
 {
     size_t kept = 0;
@@ -159,7 +159,7 @@ static void take_message(struct sweep *const s, struct dig_worker *const w,
         struct dig_error      error  = { "" };
         const enum dig_status status = store_curve(s, w, m, rows, &error);
         if (status == DIG_EINVAL) {
-            record_failure(s, &w->job, 1, error.text); // a curve no table takes
+            record_failure(s, &w->job, 1, error.text); // the table refuses the curve
             break;
         }
         if (status != DIG_OK) {
@@ -251,7 +251,7 @@ static void stop_workers(struct sweep *const s)
     }
 }
 
-// Waits for any worker to say something; false when there is none left.
+// Waits for messages of any worker; false when none is running.
 static bool poll_workers(struct sweep *const s)
 {
     nfds_t running = 0;

@@ -19,9 +19,9 @@
 
 #include <signal.h>
 
-/// The engine that computes, as functions: tests put in one that takes no time. version tells two
-/// builds apart that may compute differently. vary puts an effect into a scene (see
-/// offline_dem/dig/variant.h); NULL: the engine knows no effects.
+/// An engine as functions; tests use one that takes no time. version tells two builds apart that
+/// may compute differently. vary applies an effect to a scene (offline_dem/dig/variant.h); NULL:
+/// the engine has no effects.
 struct dig_engine {
     const char *name;
     const char *version;
@@ -41,20 +41,20 @@ struct dig_engine {
 /// of the sources and the compiler settings its numbers depend on.
 struct dig_engine dig_engine_kernel(void);
 
-/// How far a sweep is. Fractions of digs under way are counted in digs_under_way.
+/// Progress of a sweep. digs_under_way counts fractions of running digs.
 struct dig_sweep_state {
-    size_t digs_total, digs_done; // of the whole plan, with what was there before
+    size_t digs_total, digs_done; // of the whole plan, stored ones included
     double digs_under_way;
     size_t workers;
     size_t failed; // digs given up
     double elapsed_s;
-    double left_s; // NaN until something can be said
+    double left_s; // NaN: not yet known
 };
 
 struct dig_sweep_options {
     size_t workers;      // processes at a time, >= 1
     double time_limit_s; // no new dig is begun after it; INFINITY: none
-    // Set to non-zero by a signal handler: workers are stopped and what they finished is kept.
+    // Set to non-zero by a signal handler: workers are stopped and finished digs are kept.
     const volatile sig_atomic_t *stop;
     // Called about every second and after each dig stored; NULL: not at all.
     void (*report)(void *context, const struct dig_sweep_state *state);

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #define REPORT_EVERY_s 0.5
-#define ROWS_MAX       1000000 // of one curve; more is a broken pipe's noise
+#define ROWS_MAX       1000000 // of one curve; more means a corrupt message
 
 double dig_sweep_now_s(void)
 {
@@ -22,16 +22,16 @@ double dig_sweep_now_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// The child's side: what it computes, and how far it has come in simulated seconds.
+// State of the child: its job, and its progress in simulated seconds.
 struct child {
     const struct dig_scene  *scene;
     const struct dig_engine *engine;
     const struct dig_job    *job;
     double                   deadline_s;
     int                      fd;
-    double                   total_s;    // simulated, over the whole job, as far as can be known
-    double                   before_s;   // in what is finished
-    double                   current_s;  // of what is under way
+    double                   total_s;    // simulated, estimate for the whole job
+    double                   before_s;   // of finished parts
+    double                   current_s;  // of the running part
     double                   reported_s; // wall clock
 };
 
@@ -88,13 +88,13 @@ static double job_s(const struct dig_scene *const scene, const struct dig_job *c
     return sum_s;
 }
 
-// All digs of the job in one bed. Returns false when one failed, which was sent.
+// All digs of the job in one bed. False when one failed; the failure was sent.
 static bool dig_all(struct child *const child, const struct dig_progress *const progress,
                     const struct dig_bed *const bed, const double poured_from_s)
 {
     double from_s = poured_from_s;
     for (size_t i = 0; i < child->job->digs; i++) {
-        // The first dig is what the bed was poured for; the limit stops what comes after it.
+        // The bed was poured for the first dig; the limit stops the next ones.
         if (i > 0 && dig_sweep_now_s() >= child->deadline_s) {
             return true;
         }
@@ -131,7 +131,7 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
     return true;
 }
 
-// The scene the job's bed is poured in: the plain one, or *varied, with the job's effect in it.
+// The scene of the job's bed: the plain one, or *varied, with the job's effect in it.
 static enum dig_status apply_effect(struct child *const child, struct dig_scene *const varied,
                                     struct dig_error *const error)
 {
@@ -178,7 +178,7 @@ static void work(struct child *const child)
     child->engine->bed_finish(&bed);
 }
 
-// Runs in the child and never returns. _exit: the parent's buffers and handlers are not ours.
+// Runs in the child and never returns. _exit leaves the parent's buffers and handlers alone.
 _Noreturn static void become_worker(struct child *const child, const pid_t parent)
 {
     // Ctrl-C reaches the whole group; the parent decides what it means.
@@ -188,7 +188,7 @@ _Noreturn static void become_worker(struct child *const child, const pid_t paren
     (void)sigaction(SIGTERM, &normal, NULL);
     (void)sigaction(SIGPIPE, &normal, NULL);
 
-    // Nobody would read what an orphan computes.
+    // Nobody would read the results of an orphan.
     (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) {
         _exit(1);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A clump at rest where its spheres lie, but for its fall; those that are on the other side of a
-// period are taken back to the first.
+// A clump at the positions of its spheres, falling without rotation. Spheres beyond a periodic side
+// are moved to the image nearest to the first.
 static void place_clump(const double period_m, const struct dig_clump_shape *const shape,
                         const struct dig_bed *const bed, const size_t first, const double mass_kg,
                         const double fall_mps, struct dig_clump_body *const clump)
@@ -129,10 +129,8 @@ void dig_bodies_release_rocks(struct dig_bodies *const bodies, struct dig_ode_sc
         if (!rock->movable) {
             continue;
         }
-        const double *const h = rock->half_m;
-        const double        least_m =
-            rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
-        const struct dig_law law = dig_law_wall(material, least_m, rock->body.mass_kg);
+        const struct dig_law law =
+            dig_law_wall(material, dig_rock_least_half_m(rock), rock->body.mass_kg);
         bodies->rock_law[i] =
             (struct dig_rock_contact_law){ law.normal_Npm, law.damping_Nspm, law.friction };
         bodies->ode = ode;

@@ -1,5 +1,5 @@
-// Bodies among the grains: clumps of spheres that move as one, and obstacles. The world calls these
-// once a step, in this order; all of them do nothing for a world without bodies.
+// Bodies among the grains: rigid clumps of spheres, and obstacles. The world calls these functions
+// once a step, in this order. They do nothing for a world without bodies.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_BODIES_H
 #define DIG_OFFLINE_DEM_WORLD_BODIES_H
@@ -23,9 +23,9 @@ struct dig_bodies {
     struct dig_rock_contact_law rock_law[DIG_OBSTACLES_MAX];
 };
 
-/// Bodies for a bed whose grain i stands at place i of the world's grains, each clump falling at
-/// fall_mps; body_kg[grain] is the mass of the clump it belongs to. Numbers the grains of clumps
-/// (grains->clump is allocated). *bodies is NULL where there are none. DIG_ENOMEM.
+/// Bodies of a bed whose grain i has index i in the world, each clump falling at fall_mps;
+/// body_kg[grain] is the mass of its clump. Allocates and fills grains->clump. *bodies is NULL
+/// where there are none. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
                   const struct dig_clump_shape *shape, const double body_kg[], double fall_mps,
@@ -34,23 +34,23 @@ dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
 /// NULL is allowed.
 void dig_bodies_destroy(struct dig_bodies *bodies);
 
-/// After the contact lists were remade: which grains may touch which obstacle. DIG_ENOMEM.
+/// Contact detection between grains and obstacles, after that of pairs and surfaces. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_bodies_detect(struct dig_world *world);
 
-/// After the loads of pairs, walls and tool: adds those of obstacles, gathers the loads of the
-/// members of every clump, steps the clumps and sets the members' velocities so that the kernel
-/// moves them to where the clump has gone.
+/// Adds the loads of obstacles, steps every clump under the loads of its spheres, and sets their
+/// velocities so that the kernel moves them with the clump. After the loads of pairs, walls and
+/// tool.
 void dig_bodies_apply_loads(struct dig_world *world);
 
-/// Rocks that are not fixed are moved by this ODE scene from now on, which must outlive the bodies;
-/// they touch walls, bucket and each other by this material's law.
+/// From now on this ODE scene, which must outlive the bodies, moves the rocks that are not fixed.
+/// Their contacts with walls, bucket and each other follow this material's law.
 void dig_bodies_release_rocks(struct dig_bodies *bodies, struct dig_ode_scene *ode,
                               const struct dig_law_material *material);
 
-/// After the grains have moved: the rocks do.
+/// Steps the rocks, after the grains have moved.
 void dig_bodies_step_rocks(struct dig_world *world);
 
-/// Grains change places: place[old index] is the new one, UINT32_MAX: gone. NULL bodies: nothing.
+/// Maps grains to their new indices: new_index[old], UINT32_MAX: removed. NULL bodies: nothing.
 void dig_bodies_renumber(struct dig_bodies *bodies, const uint32_t new_index[]);
 
 #endif // DIG_OFFLINE_DEM_WORLD_BODIES_H

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The kernel works in fours: beyond the last contact, where grains may stand that are gone by now,
-// it is to find a grain that exists.
+// The kernel reads eight contacts at a time: padding beyond the last one must name grains that
+// exist.
 static void pad_list(struct dig_contacts *const list)
 {
     for (size_t c = list->n; c % 8 != 0; c++) {
@@ -16,7 +16,8 @@ static void pad_list(struct dig_contacts *const list)
     }
 }
 
-// Puts the fresh lists in the place of the old, or gives them up. The others are filled next time.
+// On success replaces the lists by the new ones; else drops these. The arrays that are left are
+// filled next time.
 static void swap_lists(const enum dig_status status, const size_t lists, struct dig_contacts old[],
                        struct dig_contacts fresh[])
 {
@@ -31,7 +32,7 @@ static void swap_lists(const enum dig_status status, const size_t lists, struct 
     }
 }
 
-// Room for so many numbers, all ones.
+// A table of `need` entries, all UINT32_MAX.
 static enum dig_status make_room(uint32_t **const table, size_t *const room, const size_t need)
 {
     if (need <= *room && *table != NULL) {
@@ -49,7 +50,7 @@ static enum dig_status make_room(uint32_t **const table, size_t *const room, con
     return DIG_OK;
 }
 
-// Writes where each contact of a list stands, or all ones again.
+// Writes where each contact of a list stands, or resets these entries.
 static void index_list(const struct dig_contacts *const list, const bool clear, uint32_t old[])
 {
     for (size_t c = 0; c < list->n; c++) {
@@ -66,8 +67,8 @@ static void index_pairs(struct dig_world *const w, const bool clear)
     }
 }
 
-// The pairs of grain i that are close: written whether they are or not, because a branch would be
-// guessed wrong every third time.
+// The near pairs of grain i. Every pair is written and only near ones are counted: a branch would
+// be mispredicted every third time.
 static size_t find_near_pairs(const struct dig_world *const w, const uint32_t i,
                               uint32_t near_pairs[])
 {
@@ -89,7 +90,7 @@ static size_t find_near_pairs(const struct dig_world *const w, const uint32_t i,
     return count;
 }
 
-// One pair to the list it belongs in. Grains of unlike kinds stand in the order of their kinds.
+// Appends a pair to its list. Grains of unlike types stand in the order of their types.
 static enum dig_status add_pair(struct dig_world *const w, const uint32_t i, const uint32_t s)
 {
     const uint8_t *const type_of = w->grains.type_of;
@@ -178,7 +179,7 @@ static void index_surfaces(struct dig_world *const w, const size_t surfaces, con
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         const struct dig_contacts *const list = &w->surface[l];
         for (size_t c = 0; c < list->n; c++) {
-            // Plates are beyond the end when the tool has been taken away.
+            // The list may hold plates of a tool that has been removed.
             if (list->j[c] < surfaces) {
                 w->detection.old_surface[list->i[c] * surfaces + list->j[c]] =
                     clear ? UINT32_MAX : (uint32_t)c;

@@ -1,18 +1,16 @@
-// Picks from all pairs and surfaces those that may touch before the next time: the lists the law
-// runs over. Contacts that were known before keep what they remember.
+// Contact detection: the pairs and surfaces that may touch before the next detection, from the
+// neighbour list. The law runs over these lists. Known contacts keep their history.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_CONTACT_DETECTION_H
 #define DIG_OFFLINE_DEM_WORLD_CONTACT_DETECTION_H
 
 #include "offline_dem/world/world.h"
 
-#define DIG_NO_SLOT UINT32_MAX // the key of a contact whose pair is in no neighbour list
-
-/// From the neighbour list; the keys of known pairs are their places in it. DIG_ENOMEM leaves the
+/// Pairs of grains; the slot of a contact is its place in the neighbour list. DIG_ENOMEM leaves the
 /// lists as they were.
 DIG_MUST_CHECK enum dig_status dig_contact_detection_pairs(struct dig_world *world);
 
-/// From the walls and the tool's plates, likewise.
+/// Grains with walls and plates of the tool, likewise.
 DIG_MUST_CHECK enum dig_status dig_contact_detection_surfaces(struct dig_world *world);
 
 void dig_contact_detection_finish(struct dig_contact_detection *detection);

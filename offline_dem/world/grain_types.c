@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-// What a material of grains has of its own.
+// Constants of one material of grains.
 struct own {
     double friction, rolling, density_kgpm3, restitution;
 };
@@ -67,9 +67,9 @@ static double sphere_m3(const double radius_m)
     return 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
 }
 
-// The kind of a grain, or a new one; DIG_GRAIN_TYPES_MAX when there is no room. Radii from one file
-// or one pouring are equal to the bit, or nearly.
-static size_t find_kind(struct dig_grain_types *const types, const struct dig_grain_type type,
+// The type of a grain, or a new one; DIG_GRAIN_TYPES_MAX when there is no room. Radii from one file
+// or one pouring are equal but for rounding.
+static size_t find_type(struct dig_grain_types *const types, const struct dig_grain_type type,
                         const size_t material, const double contact_kg)
 {
     for (size_t k = 0; k < types->types; k++) {
@@ -89,7 +89,7 @@ static size_t find_kind(struct dig_grain_types *const types, const struct dig_gr
     return k;
 }
 
-// Where in its clump a sphere stands; spheres of a clump follow each other.
+// Index of a sphere within its clump; the spheres of a clump are consecutive.
 static enum dig_status find_member(const struct dig_bed *const         bed,
                                    const struct dig_clump_shape *const shape, const size_t i,
                                    size_t *const member)
@@ -114,7 +114,7 @@ static double spheres_m3(const struct dig_clump_shape *const shape)
     return sum;
 }
 
-static enum dig_status make_kind(const struct dig_scene *const       scene,
+static enum dig_status make_type(const struct dig_scene *const       scene,
                                  const struct dig_gravel *const      gravel,
                                  const struct dig_bed *const         bed,
                                  const struct dig_clump_shape *const shape, const size_t i,
@@ -168,12 +168,12 @@ enum dig_status dig_grain_types_find(const struct dig_scene *const       scene,
         struct dig_grain_type type       = { 0 };
         double                contact_kg = 0.0;
         const enum dig_status status =
-            make_kind(scene, gravel, bed, shape, i, &type, &contact_kg, error);
+            make_type(scene, gravel, bed, shape, i, &type, &contact_kg, error);
         if (status != DIG_OK) {
             return status;
         }
         const size_t material = bed->material == NULL ? 0 : bed->material[i];
-        const size_t k        = find_kind(&made, type, material, contact_kg);
+        const size_t k        = find_type(&made, type, material, contact_kg);
         if (k == DIG_GRAIN_TYPES_MAX) {
             return dig_error_set(error, DIG_EINVAL,
                                  "bed: more than %d sizes and materials, expected fewer",

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The margins trade rebuilds against idle contacts; measured on a bed of 7000 grains being dug.
+// Margins trade rebuilds against idle contacts. Fastest on a bed of 7000 grains being dug
+// (docs/numerics/dem.md).
 static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
 #define CONTACT_MARGIN_RADII 0.008
 #define CONTACT_MARGIN_STEPS 20
@@ -25,34 +26,13 @@ static double contact_margin(const struct dig_world *const w, const size_t i)
            CONTACT_MARGIN_STEPS * w->dt_s * speed(&g->motion[i]);
 }
 
-static void renumber_list(struct dig_contacts *const list, const bool pairs,
-                          const uint32_t new_index[])
-{
-    size_t kept = 0;
-    for (size_t c = 0; c < list->n; c++) {
-        const uint32_t i = new_index[list->i[c]];
-        const uint32_t j = pairs ? new_index[list->j[c]] : list->j[c];
-        if (i == DIG_NO_SLOT || j == DIG_NO_SLOT) {
-            continue;
-        }
-        list->i[kept]    = i;
-        list->j[kept]    = j;
-        list->slot[kept] = DIG_NO_SLOT;
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            list->history[m][kept] = list->history[m][c];
-        }
-        kept++;
-    }
-    list->n = kept;
-}
-
 void dig_lists_renumber(struct dig_world *const w, const uint32_t new_index[])
 {
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        renumber_list(&w->pair[l], true, new_index);
+        dig_contacts_renumber(&w->pair[l], true, new_index);
     }
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
-        renumber_list(&w->surface[l], false, new_index);
+        dig_contacts_renumber(&w->surface[l], false, new_index);
     }
 }
 
@@ -67,7 +47,7 @@ static uint32_t find_slot(const struct dig_neighbours *const near, const uint32_
     return DIG_NO_SLOT;
 }
 
-// Where each contact stands in a new neighbour list. A pair listed the other way round turns over.
+// Slot of each contact in a new neighbour list. A pair listed in the other order is swapped.
 static void find_slots(const struct dig_neighbours *const near, const bool like,
                        struct dig_contacts *const list)
 {
@@ -89,7 +69,7 @@ static void find_slots(const struct dig_neighbours *const near, const bool like,
     }
 }
 
-// Brings back what has left through a side that is one with the other.
+// Moves grains that have left through a periodic side to the other.
 static void wrap(struct dig_world *const w)
 {
     const double inverse_period = dig_period_inverse(w->period_y_m);
@@ -149,8 +129,8 @@ done:
     return status;
 }
 
-// Whether contacts may be picked from the neighbour list: what each grain has moved since, and the
-// margin it is to have now, fit into the margin it had then.
+// Whether the neighbour list covers the contact margins: each grain's displacement since and its
+// margin now fit into its margin then.
 static bool is_covered(const struct dig_world *const w)
 {
     if (w->neighbours.n != w->grains.n || w->neighbours.start == NULL) {

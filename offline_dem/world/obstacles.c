@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A rock's margin: a share of its smallest half edge, and so many steps of its speed.
+// Margin of a rock: a share of its smallest half edge, and so many steps of its speed.
 #define MARGIN_SHARE 0.008
 #define MARGIN_STEPS 20
 
@@ -64,6 +64,12 @@ void dig_obstacles_save_poses(const struct dig_obstacles *const obstacles,
     }
 }
 
+double dig_rock_least_half_m(const struct dig_rock *const rock)
+{
+    const double *const h = rock->half_m;
+    return rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
+}
+
 struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *const rock)
 {
     struct dig_rock_surface new_index = { .shape = rock->shape };
@@ -79,7 +85,7 @@ double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], 
     return dig_rock_surface_closest(&new_index, p_m, closest_m);
 }
 
-// Where a grain is, as the rock sees it: in its image that is nearest along y.
+// Image of a grain nearest to the rock along y.
 static void nearest_image(const struct dig_world *const world, const struct dig_rock *const rock,
                           const double x_m[], double image_m[3])
 {
@@ -96,7 +102,7 @@ static double length(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-// How far from the centre turning moves the surface.
+// Lever by which a rotation moves the surface.
 static double turning_radius_m(const struct dig_rock *const rock)
 {
     return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
@@ -105,11 +111,9 @@ static double turning_radius_m(const struct dig_rock *const rock)
 static void set_margins(struct dig_obstacles *const o, const double dt_s)
 {
     for (size_t r = 0; r < o->rocks; r++) {
-        const struct dig_rock *const rock = &o->rock[r];
-        const double *const          h    = rock->half_m;
-        const double                 least_m =
-            rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
-        const double speed_mps =
+        const struct dig_rock *const rock    = &o->rock[r];
+        const double                 least_m = dig_rock_least_half_m(rock);
+        const double                 speed_mps =
             length(rock->body.v_mps) + turning_radius_m(rock) * length(rock->body.w_radps);
         o->reference[r] = dig_rock_surface_of(rock);
         o->margin_m[r] =
@@ -127,7 +131,7 @@ bool dig_obstacles_left_margin(const struct dig_obstacles *const o)
         const double cosine = body->q[0] * q[0] + body->q[1] * q[1] + body->q[2] * q[2] +
                               body->q[3] * q[3]; // of half the angle it has turned
         const double chord = 2.0 * sqrt(fmax(0.0, 1.0 - cosine * cosine));
-        // Negated, so that a place that is not a number counts as having left.
+        // Negated, so that a position that is not a number counts as having left.
         if (o->rock[r].movable &&
             !(length(d) + chord * turning_radius_m(&o->rock[r]) <= o->margin_m[r])) {
             return true;
@@ -236,20 +240,13 @@ void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *co
             const size_t     count = left < DIG_BLOCK ? left : DIG_BLOCK;
             struct dig_block block;
             double           arm_m[DIG_BLOCK][3];
-            double           history[DIG_HISTORY_VALUES][DIG_BLOCK] = { { 0.0 } };
             for (size_t c = 0; c < count; c++) {
                 fill_block(world, &o->rock[list->j[first + c]],
                            &world->grains.motion[list->i[first + c]], radius_m, c, &block,
                            arm_m[c]);
             }
-            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-                memcpy(history[m], list->history[m] + first, count * sizeof(double));
-            }
-            dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, count, history,
+            dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, list, first, count,
                              &block);
-            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-                memcpy(list->history[m] + first, history[m], count * sizeof(double));
-            }
             apply_block(world, o, list, first, count, &block, (const double(*)[3])arm_m);
         }
     }
@@ -258,21 +255,7 @@ void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *co
 void dig_obstacles_renumber(struct dig_obstacles *const o, const uint32_t new_index[])
 {
     for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        struct dig_contacts *const list = &o->contact[k];
-        size_t                     kept = 0;
-        for (size_t c = 0; c < list->n; c++) {
-            if (new_index[list->i[c]] == UINT32_MAX) {
-                continue;
-            }
-            list->i[kept]    = new_index[list->i[c]];
-            list->j[kept]    = list->j[c];
-            list->slot[kept] = list->slot[c];
-            for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-                list->history[m][kept] = list->history[m][c];
-            }
-            kept++;
-        }
-        list->n = kept;
+        dig_contacts_renumber(&o->contact[k], false, new_index);
     }
 }
 

@@ -1,4 +1,4 @@
-// Rocks in the bed: spheres and boxes the grains push against, with the contact law of a wall.
+// Rocks in the bed: spheres and boxes with the contact law of a wall.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_OBSTACLES_H
 #define DIG_OFFLINE_DEM_WORLD_OBSTACLES_H
@@ -9,7 +9,7 @@
 #include "offline_dem/shapes/rock_surface.h"
 #include "offline_dem/world/world.h"
 
-/// One rock: its shape, where it is, and what the grains did to it in the last step.
+/// A rock: its shape, its pose, and the load of the grains in the last step.
 struct dig_rock {
     enum dig_obstacle_shape shape;
     double                  half_m[3]; // sphere: its radius in half_m[0]; box: half its edges
@@ -21,10 +21,10 @@ struct dig_rock {
 struct dig_obstacles {
     size_t              rocks;
     struct dig_rock     rock[DIG_OBSTACLES_MAX];
-    struct dig_contacts contact[DIG_GRAIN_TYPES_MAX]; // of each kind of grain; j is the rock
+    struct dig_contacts contact[DIG_GRAIN_TYPES_MAX]; // of each grain type; j is the rock
 
-    // Where each rock was when these were picked, and how far its surface may go until they are
-    // picked anew.
+    // Pose of each rock at the last contact detection, and the displacement of its surface that
+    // these contacts cover.
     struct dig_rock_surface reference[DIG_OBSTACLES_MAX];
     double                  margin_m[DIG_OBSTACLES_MAX];
 };
@@ -32,19 +32,22 @@ struct dig_obstacles {
 /// The scene's obstacles where the scene has them. Owns nothing yet.
 struct dig_obstacles dig_obstacles_make(const struct dig_scene *scene);
 
-/// Puts them where the bed has them, and writes into the bed where they are.
+/// Copies the rocks' poses from the bed, and to it.
 void dig_obstacles_load_poses(struct dig_obstacles *obstacles, const struct dig_bed *bed);
 void dig_obstacles_save_poses(const struct dig_obstacles *obstacles, struct dig_bed *bed);
 
+/// Half its smallest edge, or its radius.
+double dig_rock_least_half_m(const struct dig_rock *rock);
+
 struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *rock);
 
-/// The point of the rock's surface that is closest to p_m, and the distance to it: negative inside.
+/// The point of the rock's surface closest to p_m, and the distance to it: negative inside.
 double dig_rock_closest(const struct dig_rock *rock, const double p_m[3], double closest_m[3]);
 
-/// As the calls of offline_dem/world/bodies.h.
+/// As the functions of offline_dem/world/bodies.h.
 DIG_MUST_CHECK enum dig_status dig_obstacles_detect(struct dig_obstacles   *obstacles,
                                                     const struct dig_world *world);
-/// Whether a rock has left its margin: a grain it has come to may not be among the contacts.
+/// Whether a rock has left its margin: contacts with it may be missing.
 bool dig_obstacles_left_margin(const struct dig_obstacles *obstacles);
 void dig_obstacles_add_loads(struct dig_obstacles *obstacles, struct dig_world *world);
 void dig_obstacles_renumber(struct dig_obstacles *obstacles, const uint32_t new_index[]);

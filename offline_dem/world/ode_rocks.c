@@ -7,7 +7,7 @@
 
 #define CONTACTS_MAX 8 // of one pair of geometries
 
-// One step: the contacts found, and what the bucket feels of them.
+// One step: its contacts, and their reaction on the bucket.
 struct rock_step {
     struct dig_ode_scene              *ode;
     const struct dig_rock_contact_law *law;
@@ -55,7 +55,7 @@ void dig_ode_rocks_set(struct dig_ode_scene *const ode, const size_t rocks,
         ode->rock[i]          = rock[i].shape == DIG_OBSTACLE_BOX
                                     ? dCreateBox(ode->rocks, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
                                     : dCreateSphere(ode->rocks, h[0]);
-        // The number of the rock, so that a contact finds it.
+        // Points to the rock's entry, from which a contact finds its number.
         dGeomSetData(ode->rock[i], &ode->rock[i]);
         ode->body[i] = rock[i].movable ? make_body(ode, &rock[i]) : NULL;
         if (ode->body[i] != NULL) {
@@ -74,7 +74,7 @@ static size_t rock_of(const struct dig_ode_scene *const ode, dGeomID geom)
     return (size_t)((const dGeomID *)dGeomGetData(geom) - ode->rock);
 }
 
-// A joint that gives way as the law's spring and damper do, over one step.
+// A contact joint as soft as the law's spring and damper over one step.
 static dJointID add_joint(struct rock_step *const m, const dContactGeom *const at,
                           const size_t rock, dBodyID a, dBodyID b)
 {
@@ -116,7 +116,7 @@ static void add_bucket_joint(struct rock_step *const m, const dContactGeom *cons
     }
 }
 
-// A sphere meets the plates as grains do: at the closest point of the tool.
+// Contact of a sphere with the plates, as of a grain: at the closest point of the tool.
 static void collide_plates(struct rock_step *const m, const struct dig_tool *const tool,
                            const struct dig_rock *const rock, const size_t number)
 {
@@ -152,7 +152,7 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
     add_bucket_joint(m, &at, number);
 }
 
-// A box meets the triangles of the bucket.
+// Contacts of a box with the triangles of the bucket.
 static void collide_bucket(struct rock_step *const m, const size_t rock)
 {
     dContactGeom found[CONTACTS_MAX];

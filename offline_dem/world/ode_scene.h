@@ -1,5 +1,6 @@
-// The scene in the Open Dynamics Engine: the bucket as a kinematic body whose geometry is made from
-// its profile, the walls as planes in a space of their own. What grains meet is read from here.
+// The scene in the Open Dynamics Engine: the bucket as a kinematic body with the triangles of its
+// profile, the walls as planes in a space of their own. Grains do not touch ODE's geometry: why
+// stands in docs/adr/0002-tool-narrow-phase.md.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_ODE_SCENE_H
 #define DIG_OFFLINE_DEM_WORLD_ODE_SCENE_H
@@ -19,7 +20,7 @@ struct dig_ode_scene *dig_ode_scene_create(const struct dig_scene *scene);
 /// NULL is allowed.
 void dig_ode_scene_destroy(struct dig_ode_scene *ode);
 
-/// Puts the bucket's body where a trajectory has it, with the velocity it has there.
+/// Sets pose and velocity of the bucket's body.
 void dig_ode_scene_move(struct dig_ode_scene *ode, struct dig_pose pose, double vx_mps,
                         double vz_mps, double w_radps);
 

@@ -1,4 +1,4 @@
-// What ode_scene.c and ode_rocks.c share: the engine's world and what stands in it.
+// The engine's world and its geometries, shared by ode_scene.c and ode_rocks.c.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_ODE_SCENE_PRIVATE_H
 #define DIG_OFFLINE_DEM_WORLD_ODE_SCENE_PRIVATE_H

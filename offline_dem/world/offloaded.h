@@ -1,6 +1,6 @@
-// A world whose grains a device steps (device.h). Lists are made here, as for the kernel: when a
-// grain is about to leave its margin, motions and contacts come back, the neighbour list is made
-// anew, and everything goes out again. Between that only the tool's pose travels.
+// A world whose grains a device steps (device.h). Lists are made on the host, as for the kernel:
+// when a grain nears its margin, motions and contacts are downloaded, the neighbour list is
+// rebuilt, and all is uploaded again. In between only the tool's pose travels.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_OFFLOADED_H
 #define DIG_OFFLINE_DEM_WORLD_OFFLOADED_H
@@ -9,12 +9,12 @@
 #include "offline_dem/world/world.h"
 
 /// Hands the world's steps to the device, which the world does not own and which serves no other
-/// world meanwhile. The world has no bodies. DIG_ENOMEM leaves it with the kernel.
+/// world meanwhile. No rock of the world is movable. DIG_ENOMEM leaves the world with the kernel.
 DIG_MUST_CHECK enum dig_status dig_offload(struct dig_world *world, struct dig_device *device);
 
-/// What dig_world_step(), dig_world_sync_motion() and dig_world_sync() do in an offloaded world. A
-/// grain that outruns its margin between two looks at it is DIG_EINVAL, as one that moves its
-/// radius in a step is.
+/// dig_world_step(), dig_world_sync_motion() and dig_world_sync() of an offloaded world. DIG_EINVAL
+/// for a grain that leaves its margin between two polls, as for one that moves its radius in a
+/// step.
 DIG_MUST_CHECK enum dig_status dig_offloaded_step(struct dig_world *world);
 DIG_MUST_CHECK enum dig_status dig_offloaded_sync_motion(struct dig_world *world);
 DIG_MUST_CHECK enum dig_status dig_offloaded_sync(struct dig_world *world);

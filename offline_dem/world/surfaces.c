@@ -1,11 +1,13 @@
 #include "offline_dem/world/surfaces.h"
 
+#include "offline_dem/shapes/bucket_surface.h"
+
 #include <math.h>
 #include <string.h>
 
-#define FAR_m 1e9 // stands in for "does not touch"
+#define FAR_m 1e9 // distance that means no contact
 
-// A grain's candidate plates, one beside the other in the list.
+// Candidate plates of a grain, consecutive in the list.
 struct near_plates {
     size_t count;
     size_t contact[DIG_PLATES_MAX];
@@ -14,12 +16,6 @@ struct near_plates {
     double distance_m[DIG_PLATES_MAX];
     bool   is_contact[DIG_PLATES_MAX];
 };
-
-static double distance(const double a[3], const double b[3])
-{
-    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
 
 static bool has_history(const struct dig_contacts *const list, const size_t c)
 {
@@ -31,7 +27,7 @@ static bool has_history(const struct dig_contacts *const list, const size_t c)
     return false;
 }
 
-// What `from` remembers goes to `to`, unless that knows something itself.
+// Moves the history of `from` to `to`, unless that has one.
 static void move_history(struct dig_contacts *const list, const size_t from, const size_t to)
 {
     if (!has_history(list, to)) {
@@ -42,7 +38,7 @@ static void move_history(struct dig_contacts *const list, const size_t from, con
     }
 }
 
-// Leaves the true minima of the distance to the whole tool.
+// Leaves the local minima of the distance to the whole tool.
 static void resolve_edges(const struct dig_tool *const tool, const double radius_m,
                           struct near_plates *const near, struct dig_contacts *const list)
 {
@@ -56,10 +52,10 @@ static void resolve_edges(const struct dig_tool *const tool, const double radius
             // Does p's closest point lie on q as well?
             double on_q[3];
             dig_tool_closest(tool, near->plate[q], near->closest_m[p], on_q);
-            if (distance(on_q, near->closest_m[p]) > same_m) {
+            if (dig_bucket_distance(on_q, near->closest_m[p]) > same_m) {
                 continue;
             }
-            // On a tie the contact stays with the plate that had it; then with the first.
+            // On a tie the contact stays with the plate that had it; else with the first.
             const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
             if (tie && (has_history(list, near->contact[p]) ||
                         (!has_history(list, near->contact[q]) && p < q))) {
@@ -83,7 +79,7 @@ static void fill_contact(struct dig_block *const block, const size_t c,
     }
 }
 
-// One contact of the tool; the arm from the pin to the contact point is kept for the moment.
+// One contact with the tool; keeps the arm from the pin to the contact point for the moment.
 static void fill_plate(const struct dig_tool *const tool, const double body_m[3],
                        const double closest_m[3], const struct dig_motion *const m, const size_t c,
                        struct dig_block *const block, double arm_m[3])
@@ -98,7 +94,7 @@ static void fill_plate(const struct dig_tool *const tool, const double body_m[3]
     fill_contact(block, c, m, d, v);
 }
 
-// The candidates of one grain, contacts c … of the list; returns how many.
+// Candidates of one grain, contacts c … of the list; returns how many.
 static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const list,
                           const double radius_m, const size_t first, const size_t c,
                           const size_t count, struct dig_block *const block,
@@ -118,7 +114,7 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
         dig_tool_closest(w->tool, plate, body_m, near.closest_m[k]);
         near.contact[k]    = first + c + used;
         near.plate[k]      = plate;
-        near.distance_m[k] = distance(body_m, near.closest_m[k]);
+        near.distance_m[k] = dig_bucket_distance(body_m, near.closest_m[k]);
         near.is_contact[k] = near.distance_m[k] < radius_m;
         in_use += near.is_contact[k];
         near.count++;
@@ -163,7 +159,7 @@ static void add_loads(struct dig_world *const w, const struct dig_contacts *cons
     }
 }
 
-// A grain's plates must meet in one block: a block ends before a grain that would not fit.
+// A block ends before a grain whose plates would not all fit.
 static size_t block_length(const struct dig_contacts *const list, const size_t first)
 {
     if (list->n - first <= DIG_BLOCK) {
@@ -176,7 +172,7 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
     return count;
 }
 
-// One list of contacts of grains of one radius with the plates.
+// Contacts of grains of one type with the plates.
 static void step_plates(struct dig_world *const w, const struct dig_law *const law,
                         const double radius_m, struct dig_contacts *const list)
 {
@@ -187,14 +183,7 @@ static void step_plates(struct dig_world *const w, const struct dig_law *const l
         for (size_t c = 0; c < count;) {
             c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
         }
-        double history[DIG_HISTORY_VALUES][DIG_BLOCK] = { { 0.0 } };
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            memcpy(history[m], list->history[m] + first, count * sizeof(double));
-        }
-        dig_kernel_block(w->isa, law, w->dt_s, count, history, &block);
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            memcpy(list->history[m] + first, history[m], count * sizeof(double));
-        }
+        dig_kernel_block(w->isa, law, w->dt_s, list, first, count, &block);
         add_loads(w, list, first, count, &block, (const double(*)[3])arm_m);
         first += count;
     }

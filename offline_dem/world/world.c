@@ -39,7 +39,7 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     dig_bodies_renumber(w->bodies, new_index);
     free(new_index);
     dig_grains_drop(&w->grains, drop);
-    // The neighbour list still counts the grains there were: it is remade before it is used.
+    // The neighbour list holds the removed grains: it is rebuilt before it is read.
     dig_neighbours_finish(&w->neighbours);
     w->stale = true;
     return DIG_OK;

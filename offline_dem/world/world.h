@@ -1,6 +1,6 @@
-// A box of grains, its walls and perhaps a tool, stepped through time: neighbour list, contact
-// lists and kernel put together. Leap-frog: forces at x(t) with v(t - dt/2), which is velocity
-// Verlet with half kicks, the two halves that meet between two steps done as one.
+// A box of grains, its walls and perhaps a tool, stepped through time with neighbour list, contact
+// lists and kernel. Leap-frog: forces at x(t) with v(t - dt/2), which is velocity Verlet whose half
+// kicks between two steps are done as one.
 
 #ifndef DIG_OFFLINE_DEM_WORLD_WORLD_H
 #define DIG_OFFLINE_DEM_WORLD_WORLD_H
@@ -23,11 +23,11 @@ struct dig_offloaded;
 #define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
 #define DIG_SURFACE_LISTS ((size_t)2 * DIG_GRAIN_TYPES_MAX)
 
-/// Memory of contact_detection.c, kept from pick to pick: where each pair and surface stands in the
-/// lists that are being replaced (all ones in between), and the lists to fill.
+/// Work memory of contact_detection.c: the place of each pair and surface in the lists under
+/// replacement (UINT32_MAX in between), and the new lists.
 struct dig_contact_detection {
     uint32_t           *old_pair, *old_surface, *near_pairs;
-    size_t              pair_room, surface_room, near_room; // room
+    size_t              pair_room, surface_room, near_room; // allocated entries
     struct dig_contacts pair[DIG_PAIR_LISTS];
     struct dig_contacts surface[DIG_SURFACE_LISTS];
 };
@@ -36,8 +36,8 @@ struct dig_world {
     // Fixed at start.
     double dt_s;
     double gravity_mps2[3];
-    // Laws of every kind pair [kind_i * DIG_GRAIN_TYPES_MAX + kind_j], kind_i <= kind_j, and of
-    // every kind with the walls and with the tool.
+    // Laws of every pair of types [type_i * DIG_GRAIN_TYPES_MAX + type_j], type_i <= type_j, and of
+    // every type with the walls and with the tool.
     struct dig_law  pair_law[DIG_PAIR_LISTS];
     struct dig_law  wall_law[DIG_GRAIN_TYPES_MAX];
     struct dig_law  tool_law[DIG_GRAIN_TYPES_MAX];
@@ -47,13 +47,13 @@ struct dig_world {
     double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
                        // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
 
-    // May be placed between steps; NULL: no tool.
+    // May be moved between steps; NULL: no tool.
     struct dig_tool *tool;
 
     // Clumps and obstacles, owned by the caller; NULL: none.
     struct dig_bodies *bodies;
 
-    // What steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
+    // Steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
     struct dig_offloaded *offloaded;
 
     // State.
@@ -64,46 +64,46 @@ struct dig_world {
     struct dig_wrench sum_tool; // of the steps since dig_world_take_wrench()
     struct dig_wrench on_walls; // of the last step of the kernel
 
-    // Lists and their validity.
+    // Lists and their margins.
     struct dig_neighbours neighbours;
     struct dig_contacts
-        pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // kind_i * KINDS_MAX + kind_j
-    struct dig_contacts surface[DIG_SURFACE_LISTS];      // kind with wall j; KINDS_MAX + kind with
+        pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // type_i * TYPES_MAX + type_j
+    struct dig_contacts surface[DIG_SURFACE_LISTS];      // type with wall j; TYPES_MAX + type with
                                                          // plate j - walls
     struct dig_contact_detection detection;
-    double (*reference_m)[4]; // [n] where the lists were made
+    double (*reference_m)[4]; // [n] position at the last contact detection, and margin
     size_t          reference_room;
     struct dig_pose tool_reference;
     double          tool_margin_m;
     bool            stale;
-    size_t          list_rebuilds, contact_rebuilds; // how often, for tuning
+    size_t          list_rebuilds, contact_rebuilds; // counts, for tuning
 };
 
-/// Takes over *grains. The caller fills the fixed fields of a zeroed *world, the
-/// laws before the first step.
+/// Takes over *grains. The caller fills the fixed fields of a zeroed *world; the laws before the
+/// first step.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);
 
-/// Tells the world that grains were moved or a tool was given or taken away by hand: the lists are
-/// remade before the next step. Contacts stay with their grains.
+/// Marks the lists stale: after grains were moved, or a tool was given or removed. They are remade
+/// before the next step and keep all contacts.
 void dig_world_mark_stale(struct dig_world *world);
 
-/// Removes grains for which drop[i] is not 0; the contacts between the others remember.
+/// Removes grains for which drop[i] is not 0; contacts between the others keep their history.
 DIG_MUST_CHECK enum dig_status dig_world_drop(struct dig_world *world, const unsigned char drop[]);
 
-/// One step. The tool, if any, stands where it is at the time of the present positions. DIG_ENOMEM,
-/// or DIG_EINVAL when a grain moves farther than its radius in a step or is nowhere any more: the
-/// time step was too long.
+/// One step. The tool, if any, stands at its pose of the present positions. DIG_ENOMEM; DIG_EINVAL
+/// when a grain moves farther than its radius in a step or its position is not finite: the time
+/// step is too long.
 DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 
-/// Sum over the steps since it was asked for last. Status as dig_world_step().
+/// Wrench on the tool, summed over the steps since the last call. Status as dig_world_step().
 DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
                                                      struct dig_wrench *wrench);
 
-/// Before motions are read: brings them here from where they are. Nothing to do, and no failure,
-/// where the kernel steps.
+/// Before motions are read: downloads them from a device. Without one nothing to do, and no
+/// failure.
 DIG_MUST_CHECK enum dig_status dig_world_sync_motion(struct dig_world *world);
 
-/// The same before motions are written, or grains taken out: the contacts come, too.
+/// Before motions are written or grains removed: downloads contacts, too.
 DIG_MUST_CHECK enum dig_status dig_world_sync(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);

@@ -1,5 +1,5 @@
-// The table some digs are matched with, or some prediction is made from: the one that was loaded,
-// or, where it was dug at several depths and attacks, that at those of the digs.
+// The table at the approaches of some digs: the loaded one or, where it holds several depths and
+// attacks, its curves interpolated there.
 
 #ifndef DIG_TOOLS_DIGLOOP_AS_DUG_H
 #define DIG_TOOLS_DIGLOOP_AS_DUG_H

@@ -21,16 +21,6 @@ static const char *last_part(const char *const path)
     return slash != NULL ? slash + 1 : path;
 }
 
-static int find_trajectory(const struct dig_curve_set *const set, const char *const name)
-{
-    for (size_t t = 0; t < set->trajectories; t++) {
-        if (strcmp(set->trajectory[t].name, name) == 0) {
-            return (int)t;
-        }
-    }
-    return -1;
-}
-
 static enum dig_status fill_heads(const struct dig_campaign *const  from,
                                   const struct dig_curve_set *const set,
                                   struct dig_measured measured[], struct dig_error *const error)
@@ -39,7 +29,7 @@ static enum dig_status fill_heads(const struct dig_campaign *const  from,
         const struct dig_campaign_recording *const r = &from->recording[i];
         (void)snprintf(measured[i].name, sizeof measured[i].name, "%.63s", last_part(r->file));
         measured[i].order      = i;
-        measured[i].trajectory = find_trajectory(set, r->trajectory);
+        measured[i].trajectory = dig_curve_set_find(set, r->trajectory);
         measured[i].use        = (enum dig_use)r->role;
         measured[i].pass       = r->pass;
         if (measured[i].trajectory < 0) {

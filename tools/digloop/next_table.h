@@ -1,4 +1,4 @@
-// The command that makes a table which would serve better than what a trace added to its own.
+// The command that computes a table for the effects a trace found.
 
 #ifndef DIG_TOOLS_DIGLOOP_NEXT_TABLE_H
 #define DIG_TOOLS_DIGLOOP_NEXT_TABLE_H

@@ -195,12 +195,11 @@ enum dig_status digloop_find_trajectory(const struct digloop_options *const opti
                                         const struct dig_curve_set *const   set,
                                         int *const trajectory, struct dig_error *const error)
 {
-    for (size_t t = 0; t < set->trajectories; t++) {
-        if (strcmp(set->trajectory[t].name, options->trajectory) == 0) {
-            *trajectory = (int)t;
-            return DIG_OK;
-        }
+    const int found = dig_curve_set_find(set, options->trajectory);
+    if (found < 0) {
+        return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory",
+                             options->trajectory, options->table);
     }
-    return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory",
-                         options->trajectory, options->table);
+    *trajectory = found;
+    return DIG_OK;
 }

@@ -6,8 +6,8 @@
 #include "files/recording_csv.h"
 #include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/prediction_error.h"
 #include "tools/digloop/recording.h"
-#include "tools/digloop/wrong.h"
 
 #include <assert.h>
 #include <math.h>
@@ -82,17 +82,17 @@ static void put_array(FILE *const to, const char *const name, const float curve[
     (void)fputs("]", to);
 }
 
-// What is predicted, and how wrong it was.
+// A prediction, and its error against measured digs.
 struct prediction {
-    struct dig_trajectory  trajectory; // as dug
-    struct dig_curve       curve;
-    struct dig_peak_energy whole;
-    struct digloop_wrong   wrong;
+    struct dig_trajectory           trajectory; // as dug
+    struct dig_curve                curve;
+    struct dig_peak_energy          whole;
+    struct digloop_prediction_error errors;
 };
 
 // For people: the result where none goes to a program.
-static void tell(const struct digloop_options *const options, const struct prediction *const p,
-                 const char *const how)
+static void print_text(const struct digloop_options *const options,
+                       const struct prediction *const p, const char *const how)
 {
     FILE *const to = options->out != NULL ? stderr : stdout;
     (void)fprintf(to,
@@ -104,9 +104,9 @@ static void tell(const struct digloop_options *const options, const struct predi
         (void)fprintf(to,
                       "  error against %s: %.3f (noise floor %.3f), %.0f %% of the moment in "
                       "the 90 %% band\n",
-                      options->measured, dig_score_error(&p->wrong.score),
-                      dig_score_noise_floor(&p->wrong.score),
-                      100.0 * dig_coverage_share(&p->wrong.coverage, DIG_CHANNEL_MY_Nm));
+                      options->measured, dig_score_error(&p->errors.score),
+                      dig_score_noise_floor(&p->errors.score),
+                      100.0 * dig_coverage_share(&p->errors.coverage, DIG_CHANNEL_MY_Nm));
     }
 }
 
@@ -117,7 +117,7 @@ static void print(const struct digloop_options *const options, const struct pred
     char                                how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
-        tell(options, p, how);
+        print_text(options, p, how);
         return;
     }
     (void)fputs("{\"trajectory\": ", stdout);
@@ -130,7 +130,7 @@ static void print(const struct digloop_options *const options, const struct pred
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
     }
     if (options->measured != NULL) {
-        digloop_wrong_put(&p->wrong);
+        digloop_prediction_error_put(&p->errors);
     }
     put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
     put_array(stdout, "sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
@@ -195,13 +195,14 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
         return status;
     }
     const struct dig_match match = match_of(&id);
-    struct prediction      p     = { .wrong = { .digs = 0 } };
+    struct prediction      p     = { .errors = { .digs = 0 } };
     status                       = predict(options, set, t, &match, &p, error);
     if (status == DIG_OK && options->out != NULL) {
         status = write_curve(options->out, set, &p.trajectory, &p.curve, error);
     }
     if (status == DIG_OK && options->measured != NULL) {
-        status = digloop_wrong_measure(options, set, machine, t, &match, &p.wrong, error);
+        status =
+            digloop_prediction_error_measure(options, set, machine, t, &match, &p.errors, error);
     }
     if (status == DIG_OK) {
         print(options, &p);

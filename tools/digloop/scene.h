@@ -1,5 +1,4 @@
-// Whether a table may serve what was dug elsewhere: by the scene a campaign names, by the bucket of
-// a machine.
+// Whether a table is similar to a campaign's scene and to a machine's bucket.
 
 #ifndef DIG_TOOLS_DIGLOOP_SCENE_H
 #define DIG_TOOLS_DIGLOOP_SCENE_H

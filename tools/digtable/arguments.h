@@ -1,4 +1,4 @@
-// What digtable was asked to do, and how it says that it cannot.
+// The command line of digtable, and its error messages.
 
 #ifndef DIG_TOOLS_DIGTABLE_ARGUMENTS_H
 #define DIG_TOOLS_DIGTABLE_ARGUMENTS_H
@@ -14,10 +14,10 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 
 #define DIG_POSITIONALS_MAX 1024 // tables to merge
 
-/// Every option of every command, with its default where it was not given.
-/// Who computes.
+/// Engines of --engine.
 enum dig_engine_choice { DIG_ENGINE_KERNEL, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
 
+/// Every option of every command, with its default where it was not given.
 struct dig_arguments {
     const char            *positional[DIG_POSITIONALS_MAX];
     int                    positionals;

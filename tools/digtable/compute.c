@@ -22,16 +22,16 @@
 #include <string.h>
 #include <sys/stat.h>
 
-struct dig_watch {
+struct dig_progress_report {
     struct dig_progress_line     line;
     double                       from_s;
     const char                  *what;
     const volatile sig_atomic_t *stop;
 };
 
-static int watch_dig(void *const context, const double done_s, const double total_s)
+static int report_dig(void *const context, const double done_s, const double total_s)
 {
-    struct dig_watch *const w = context;
+    struct dig_progress_report *const w = context;
     if (dig_progress_is_due(&w->line)) {
         char         left[32];
         const double elapsed_s = dig_progress_now_s() - w->from_s;
@@ -70,8 +70,9 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
         *bed = read;
         return DIG_OK;
     }
-    struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "bed", a->stop };
-    const struct dig_progress progress = { watch_dig, &watch };
+    struct dig_progress_report watch    = { dig_progress_line(), dig_progress_now_s(), "bed",
+                                            a->stop };
+    const struct dig_progress  progress = { report_dig, &watch };
     const enum dig_status status = engine_of(a).pour(scene, gravel, a->seed, &progress, bed, error);
     if (status == DIG_OK && watch.line.tty) {
         dig_progress_end(&watch.line, true);
@@ -84,10 +85,11 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
               const struct dig_gravel *const gravel, const struct dig_bed *const bed,
               const struct dig_trajectory *const trajectory, struct dig_error *const error)
 {
-    struct dig_watch          watch = { dig_progress_line(), dig_progress_now_s(), "dig", a->stop };
-    const struct dig_progress progress  = { watch_dig, &watch };
-    struct dig_recording      recording = { 0 };
-    enum dig_status           status    = DIG_OK;
+    struct dig_progress_report watch     = { dig_progress_line(), dig_progress_now_s(), "dig",
+                                             a->stop };
+    const struct dig_progress  progress  = { report_dig, &watch };
+    struct dig_recording       recording = { 0 };
+    enum dig_status            status    = DIG_OK;
     if (a->save_bed != NULL) {
         status = dig_cli_bed_write(a->save_bed, bed, error);
     }
@@ -108,7 +110,7 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     return status;
 }
 
-// The trajectory asked for, dug as asked for; refused before the minutes of pouring.
+// The trajectory at the approach asked for, checked before the minutes of pouring.
 static enum dig_status approach(const struct dig_scene *const     scene,
                                 const struct dig_arguments *const a,
                                 struct dig_trajectory *const made, struct dig_error *const error)
@@ -168,7 +170,7 @@ int dig_cli_dig(const struct dig_arguments *const a)
         return dig_cli_bad_input(DIG_EINVAL, &error);
     }
 
-    // Before the minutes of pouring: a folder that cannot be should not cost them.
+    // Before the minutes of pouring: an impossible folder must not cost them.
     if (a->vtk != NULL && mkdir(a->vtk, 0777) != 0 && errno != EEXIST) {
         (void)fprintf(stderr, "digtable: --vtk %s: %s\n", a->vtk, strerror(errno));
         return EXIT_WORK_FAILED;
@@ -185,7 +187,7 @@ int dig_cli_dig(const struct dig_arguments *const a)
     return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
 }
 
-static void tell_sweep(void *const context, const struct dig_sweep_state *const s)
+static void report_sweep(void *const context, const struct dig_sweep_state *const s)
 {
     struct dig_progress_line *const line = context;
     if (dig_progress_is_due(line)) {
@@ -199,8 +201,8 @@ static void tell_sweep(void *const context, const struct dig_sweep_state *const 
     }
 }
 
-static int tell_end(const struct dig_arguments *const a, const struct dig_sweep_state *const s,
-                    const enum dig_status status, const struct dig_error *const error)
+static int report_end(const struct dig_arguments *const a, const struct dig_sweep_state *const s,
+                      const enum dig_status status, const struct dig_error *const error)
 {
     char elapsed[32];
     (void)fprintf(stderr, "%s: %zu of %zu digs, %s", a->output, s->digs_done, s->digs_total,
@@ -240,7 +242,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
         .workers      = a->workers,
         .time_limit_s = a->time_limit_s,
         .stop         = a->stop,
-        .report       = tell_sweep,
+        .report       = report_sweep,
         .context      = &line,
     };
     struct dig_sweep_state state = { .digs_total = 0 };
@@ -249,7 +251,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     if (line.tty) {
         dig_progress_end(&line, true);
     }
-    return tell_end(a, &state, status, &error);
+    return report_end(a, &state, status, &error);
 }
 
 int dig_cli_generate(const struct dig_arguments *const a)

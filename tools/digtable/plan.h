@@ -1,4 +1,4 @@
-// What a grid asks for, point by point.
+// The points of a grid as a plan.
 
 #ifndef DIG_TOOLS_DIGTABLE_PLAN_H
 #define DIG_TOOLS_DIGTABLE_PLAN_H

@@ -8,7 +8,7 @@
 struct dig_progress_line dig_progress_line(void)
 {
     const bool tty = isatty(STDERR_FILENO) == 1;
-    return (struct dig_progress_line){ .tty = tty, .every_s = tty ? 0.2 : 5.0, .told_s = -1e9 };
+    return (struct dig_progress_line){ .tty = tty, .every_s = tty ? 0.2 : 5.0, .printed_s = -1e9 };
 }
 
 double dig_progress_now_s(void)
@@ -21,10 +21,10 @@ double dig_progress_now_s(void)
 bool dig_progress_is_due(struct dig_progress_line *const line)
 {
     const double at_s = dig_progress_now_s();
-    if (at_s - line->told_s < line->every_s) {
+    if (at_s - line->printed_s < line->every_s) {
         return false;
     }
-    line->told_s = at_s;
+    line->printed_s = at_s;
     return true;
 }
 

@@ -1,4 +1,4 @@
-// How far the work is: a line that is redrawn on a terminal, and a line every few seconds in a log.
+// Progress: a line that is redrawn on a terminal, and a line every few seconds in a log.
 
 #ifndef DIG_TOOLS_DIGTABLE_PROGRESS_H
 #define DIG_TOOLS_DIGTABLE_PROGRESS_H
@@ -8,18 +8,18 @@
 
 struct dig_progress_line {
     bool   tty;
-    double every_s, told_s;
+    double every_s, printed_s;
 };
 
 struct dig_progress_line dig_progress_line(void);
 
-/// True when it is time for the next line, which then counts as told. Begin the line with
+/// True when the next line is due; it then counts as printed. Begin the line with
 /// dig_progress_start() and close it with dig_progress_end().
 bool        dig_progress_is_due(struct dig_progress_line *line);
 const char *dig_progress_start(const struct dig_progress_line *line);
 void        dig_progress_end(const struct dig_progress_line *line, bool last);
 
-/// "42 s", "1:02:03", or "?" when it is not known (not finite). Returns text.
+/// "42 s", "1:02:03", or "?" when it is not finite. Returns text.
 const char *dig_progress_span(double seconds, size_t size, char text[]);
 
 /// Seconds on the monotonic clock.

@@ -7,12 +7,12 @@
 #include "core/scene.h"
 #include "offline_dem/kernel/bed.h"
 
-/// DIG_EINVAL where a file cannot hold all of such a bed: one with a rock that may have moved.
+/// DIG_EINVAL for a scene whose beds a file cannot hold: one with movable rocks.
 DIG_MUST_CHECK enum dig_status dig_cli_bed_fits_file(const struct dig_scene *scene,
                                                      struct dig_error       *error);
 
 /// DIG_EINVAL as dig_cli_bed_fits_file() and dig_bed_read() of files/bed_csv.h, and where the scene
-/// has layers and the file does not say what its grains are made of. *bed is written on success
+/// has layers and the file has no materials. *bed is written on success
 /// only.
 DIG_MUST_CHECK enum dig_status dig_cli_bed_read(const char *path, const struct dig_scene *scene,
                                                 struct dig_bed *bed, struct dig_error *error);

@@ -1,5 +1,6 @@
-#include "tools/digloop/wrong.h"
+#include "tools/digloop/prediction_error.h"
 
+#include "closed_loop/report/json.h"
 #include "estimator/predict/peak_energy.h"
 #include "tools/digloop/as_dug.h"
 
@@ -7,9 +8,10 @@
 #include <math.h>
 #include <stdio.h>
 
-// What a dig measured came to. The energy needs the forces.
-static void tell_whole(const struct dig_trajectory *const t, const double tooth_m,
-                       const struct dig_observation *const dig, struct digloop_wrong *const wrong)
+// Peak and energy of a measured dig. The energy needs the forces.
+static void add_peak_energy(const struct dig_trajectory *const t, const double tooth_m,
+                            const struct dig_observation *const    dig,
+                            struct digloop_prediction_error *const errors)
 {
     struct dig_channels weight;
     dig_peak_energy_weights(t, tooth_m, &weight);
@@ -23,18 +25,19 @@ static void tell_whole(const struct dig_trajectory *const t, const double tooth_
                         weight.of[2][k] * dig->force_N[1][k];
         }
     }
-    if (wrong->digs < DIGLOOP_WRONG_DIGS) {
-        wrong->peak_Nm[wrong->digs]  = peak_Nm;
-        wrong->energy_J[wrong->digs] = energy_J;
-        wrong->digs++;
+    if (errors->digs < DIGLOOP_PREDICTION_ERROR_DIGS) {
+        errors->peak_Nm[errors->digs]  = peak_Nm;
+        errors->energy_J[errors->digs] = energy_J;
+        errors->digs++;
     }
 }
 
-// How wrong the prediction is of one dig, made as it was.
-static enum dig_status score_dig(const struct dig_curve_set *const   set,
-                                 const struct dig_match *const       match,
-                                 const struct dig_observation *const dig,
-                                 struct digloop_wrong *const wrong, struct dig_error *const error)
+// Error of the prediction of one dig at its own approach.
+static enum dig_status score_dig(const struct dig_curve_set *const      set,
+                                 const struct dig_match *const          match,
+                                 const struct dig_observation *const    dig,
+                                 struct digloop_prediction_error *const errors,
+                                 struct dig_error *const                error)
 {
     struct digloop_as_dug table = { .set = NULL };
     struct dig_curve      curve;
@@ -53,10 +56,10 @@ static enum dig_status score_dig(const struct dig_curve_set *const   set,
             predicted_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
             sigma_Nm[k]     = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
         }
-        dig_score_add(&wrong->score, t, set->tooth_m, dig->first, dig->last, dig->moment_Nm,
+        dig_score_add(&errors->score, t, set->tooth_m, dig->first, dig->last, dig->moment_Nm,
                       predicted_Nm, sigma_Nm);
-        dig_coverage_add(&wrong->coverage, dig, &curve);
-        tell_whole(t, set->tooth_m, dig, wrong);
+        dig_coverage_add(&errors->coverage, dig, &curve);
+        add_peak_energy(t, set->tooth_m, dig, errors);
     } else {
         (void)dig_error_set(error, status, "%s", dig_status_str(status));
     }
@@ -64,30 +67,20 @@ static enum dig_status score_dig(const struct dig_curve_set *const   set,
     return status;
 }
 
-enum dig_status digloop_wrong_measure(const struct digloop_options *const options,
-                                      const struct dig_curve_set *const   set,
-                                      const struct digloop_machine *const machine, const int t,
-                                      const struct dig_match *const match,
-                                      struct digloop_wrong *const   wrong,
-                                      struct dig_error *const       error)
+enum dig_status digloop_prediction_error_measure(const struct digloop_options *const options,
+                                                 const struct dig_curve_set *const   set,
+                                                 const struct digloop_machine *const machine,
+                                                 const int t, const struct dig_match *const match,
+                                                 struct digloop_prediction_error *const errors,
+                                                 struct dig_error *const                error)
 {
     struct dig_observed_digs seen = { .digs = 0 };
     enum dig_status status = digloop_read_digs(options->measured, machine, set, t, &seen, error);
     for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
-        status = score_dig(set, match, &seen.dig[i], wrong, error);
+        status = score_dig(set, match, &seen.dig[i], errors, error);
     }
     dig_observed_digs_finish(&seen);
     return status;
-}
-
-// A number, or what JSON has where there is none.
-static void put_number(const double value)
-{
-    if (isfinite(value)) {
-        (void)printf("%.6g", value);
-    } else {
-        (void)printf("null");
-    }
 }
 
 static void put_list(const char *const name, const size_t n, const double value[])
@@ -95,20 +88,20 @@ static void put_list(const char *const name, const size_t n, const double value[
     (void)printf(", \"%s\": [", name);
     for (size_t i = 0; i < n; i++) {
         (void)printf("%s", i == 0 ? "" : ", ");
-        put_number(value[i]);
+        dig_json_number(stdout, value[i]);
     }
     (void)printf("]");
 }
 
-void digloop_wrong_put(const struct digloop_wrong *const w)
+void digloop_prediction_error_put(const struct digloop_prediction_error *const errors)
 {
-    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&w->score),
-                 dig_score_noise_floor(&w->score));
+    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&errors->score),
+                 dig_score_noise_floor(&errors->score));
     double inside[DIG_FORCE_CHANNELS];
     for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        inside[c] = dig_coverage_share(&w->coverage, (enum dig_channel)c);
+        inside[c] = dig_coverage_share(&errors->coverage, (enum dig_channel)c);
     }
     put_list("inside_90", DIG_FORCE_CHANNELS, inside);
-    put_list("measured_peak_Nm", w->digs, w->peak_Nm);
-    put_list("measured_energy_J", w->digs, w->energy_J);
+    put_list("measured_peak_Nm", errors->digs, errors->peak_Nm);
+    put_list("measured_energy_J", errors->digs, errors->energy_J);
 }

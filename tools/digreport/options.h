@@ -1,0 +1,26 @@
+// The command line of digreport.
+
+#ifndef DIG_TOOLS_DIGREPORT_OPTIONS_H
+#define DIG_TOOLS_DIGREPORT_OPTIONS_H
+
+#include "closed_loop/report/report.h"
+#include "core/error.h"
+
+#include <stdbool.h>
+
+struct digreport_options {
+    const char       *table, *machine, *title, *html, *json;
+    bool              truth_known;
+    struct dig_gravel truth;
+    size_t            recordings;
+    const char       *recording[8];
+    size_t            logs;
+    char             *log[DIG_REPORT_RUNS_MAX];
+};
+
+/// Reads the command line; prints help or version and exits where asked to. *error says what is
+/// wrong with it.
+DIG_MUST_CHECK enum dig_status
+digreport_parse(int argc, char *argv[], struct digreport_options *options, struct dig_error *error);
+
+#endif // DIG_TOOLS_DIGREPORT_OPTIONS_H

@@ -1,0 +1,244 @@
+#include "tools/digreport/run.h"
+
+#include "closed_loop/accuracy/score.h"
+#include "closed_loop/recordings/observe.h"
+#include "estimator/estimator.h"
+#include "estimator/match/match.h"
+#include "files/lcm_log.h"
+#include "files/recording_csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What the daemon published, as far as the report needs it.
+struct published {
+    bool              matched, forces;
+    struct dig_gravel gravel, low, high, nearest;
+    double            distance;
+    uint32_t          matched_dig;
+    bool              predicted; // for a dig after the match
+    char              trajectory[DIG_NAME_SIZE];
+    double            from, to;
+    double            moment_Nm[DIG_PREDICTION_POINTS];
+    double            sigma_Nm[DIG_PREDICTION_POINTS];
+};
+
+static void take_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
+{
+    (void)time_us;
+    struct published *const published = context;
+    if (!m->valid || m->going_on || published->predicted) {
+        return; // a later match is of a later dig
+    }
+    published->matched     = true;
+    published->forces      = m->forces != 0;
+    published->matched_dig = (uint32_t)m->dig_count;
+    published->gravel      = (struct dig_gravel){ { m->friction, m->rolling, m->density_kgpm3 } };
+    published->low =
+        (struct dig_gravel){ { m->friction_low, m->rolling_low, m->density_low_kgpm3 } };
+    published->high =
+        (struct dig_gravel){ { m->friction_high, m->rolling_high, m->density_high_kgpm3 } };
+    published->nearest  = (struct dig_gravel){ { m->nearest_friction, m->nearest_rolling,
+                                                 m->nearest_density_kgpm3 } };
+    published->distance = m->distance;
+}
+
+// The first prediction of the dig: the one that was made before most of it was dug.
+static void take_prediction(void *const context, const int64_t time_us,
+                            const digsight_prediction_t *const p)
+{
+    (void)time_us;
+    struct published *const published = context;
+    if (!published->matched || published->predicted || !p->valid ||
+        p->points != DIG_PREDICTION_POINTS || strncmp(p->trajectory, "simple", 6) == 0) {
+        return;
+    }
+    published->predicted = true;
+    (void)snprintf(published->trajectory, sizeof published->trajectory, "%s", p->trajectory);
+    published->from = p->from_progress;
+    published->to   = p->to_progress;
+    memcpy(published->moment_Nm, p->moment_Nm, sizeof published->moment_Nm);
+    memcpy(published->sigma_Nm, p->sigma_Nm, sizeof published->sigma_Nm);
+}
+
+// The digs of a log, measured again from its samples: the same estimator, without a bus.
+static enum dig_status measure(const struct dig_machine *const   machine,
+                               const struct dig_curve_set *const set, const char *const log,
+                               const struct published *const published,
+                               struct dig_observation *const simple,
+                               struct dig_observation *const real, struct dig_error *const error)
+{
+    struct dig_machine_recording samples = { 0 };
+    enum dig_status              status  = dig_lcm_log_read(log, &samples, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_estimator_settings settings  = dig_estimator_settings_default();
+    struct dig_estimator *const   estimator = malloc(dig_estimator_size());
+    settings.tick_s                         = 1e-9 *
+                      (double)(samples.row[samples.rows - 1].time_ns - samples.row[0].time_ns) /
+                      (double)(samples.rows - 1);
+    if (estimator == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "out of memory");
+        goto done;
+    }
+    status = dig_estimator_init(estimator, machine, set, &settings);
+    if (status != DIG_OK) {
+        (void)dig_error_set(error, status, "%s: %s", log, dig_status_str(status));
+        goto done;
+    }
+    const int want_real   = dig_curve_set_find(set, published->trajectory);
+    bool      have_simple = false;
+    bool      have_real   = false;
+    for (size_t i = 0; i < samples.rows; i++) {
+        struct dig_estimate    estimate;
+        struct dig_observation dig;
+        if (dig_estimator_step(estimator, &samples.row[i], &estimate) != DIG_OK ||
+            !dig_estimator_take_dig(estimator, &dig)) {
+            continue;
+        }
+        if (dig.dig_count == published->matched_dig) {
+            *simple     = dig;
+            have_simple = true;
+        } else if (have_simple && !have_real && dig.trajectory == want_real) {
+            *real     = dig;
+            have_real = true;
+        }
+    }
+    if (!have_simple || !have_real) {
+        status = dig_error_set(error, DIG_ENOMATCH,
+                               "%s: the samples hold no %s, expected the dig that identified and "
+                               "the one that was predicted",
+                               log, have_simple ? "predicted dig" : "identifying dig");
+    }
+done:
+    free(estimator);
+    dig_machine_recording_finish(&samples);
+    return status;
+}
+
+// A curve of DIG_PREDICTION_POINTS over [from, to], as the daemon published it, on the table's
+// grid.
+static double published_at(const struct published *const published, const double curve[],
+                           const double progress)
+{
+    const double place = (progress - published->from) / (published->to - published->from) *
+                         (DIG_PREDICTION_POINTS - 1);
+    if (!(place >= 0.0)) {
+        return (double)NAN;
+    }
+    const size_t i = (size_t)fmin(floor(place), DIG_PREDICTION_POINTS - 2);
+    const double f = fmin(place - (double)i, 1.0);
+    return (1.0 - f) * curve[i] + f * curve[i + 1];
+}
+
+static enum dig_status add_recordings(const struct digreport_options *const options,
+                                      const struct dig_curve_set *const     set,
+                                      struct dig_report_run *const          run,
+                                      struct dig_error *const               error)
+{
+    struct dig_report_dig *const digs[] = { &run->simple, &run->real };
+    for (size_t d = 0; d < 2; d++) {
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            digs[d]->recording_Nm[k] = (double)NAN;
+        }
+    }
+    for (size_t r = 0; r < options->recordings; r++) {
+        struct dig_recording   recording = { 0 };
+        struct dig_observation fed;
+        enum dig_status status = dig_recording_read(options->recording[r], &recording, error);
+        if (status == DIG_OK) {
+            status = dig_observe_recording(set, &recording, &fed, error);
+        }
+        dig_recording_finish(&recording);
+        if (status != DIG_OK) {
+            return status;
+        }
+        for (size_t d = 0; d < 2; d++) {
+            if (strcmp(digs[d]->trajectory, set->trajectory[fed.trajectory].name) == 0) {
+                memcpy(digs[d]->recording_Nm, fed.moment_Nm, sizeof fed.moment_Nm);
+            }
+        }
+    }
+    return DIG_OK;
+}
+
+static void fill_dig(struct dig_report_dig *const dig, const struct dig_curve_set *const set,
+                     const struct dig_observation *const seen)
+{
+    (void)snprintf(dig->trajectory, sizeof dig->trajectory, "%s",
+                   set->trajectory[seen->trajectory].name);
+    dig->first = seen->first;
+    dig->last  = seen->last;
+    memcpy(dig->measured_Nm, seen->moment_Nm, sizeof dig->measured_Nm);
+}
+
+enum dig_status digreport_run(const struct digreport_options *const options,
+                              const struct dig_machine *const       machine,
+                              const struct dig_curve_set *const set, char *const named_log,
+                              struct dig_report_run *const run, struct dig_error *const error)
+{
+    char *const                     log       = strchr(named_log, '=') + 1;
+    struct published                published = { .matched = false };
+    const struct dig_lcm_log_reader reader    = { .context    = &published,
+                                                  .match      = take_match,
+                                                  .prediction = take_prediction };
+    enum dig_status                 status    = dig_lcm_log_each(log, &reader, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (!published.matched || !published.predicted) {
+        return dig_error_set(error, DIG_ENOMATCH, "%s: the daemon %s", log,
+                             published.matched
+                                 ? "predicted no real dig after identifying the gravel"
+                                 : "identified no gravel");
+    }
+
+    struct dig_observation simple = { .trajectory = 0 };
+    struct dig_observation real   = { .trajectory = 0 };
+    status                        = measure(machine, set, log, &published, &simple, &real, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    (void)snprintf(run->name, sizeof run->name, "%.*s", (int)(log - 1 - named_log), named_log);
+    run->truth_known = options->truth_known;
+    run->truth       = options->truth;
+    run->gravel      = published.gravel;
+    run->low         = published.low;
+    run->high        = published.high;
+    run->nearest     = published.nearest;
+    run->distance    = published.distance;
+    fill_dig(&run->simple, set, &simple);
+    fill_dig(&run->real, set, &real);
+    (void)snprintf(run->dig, sizeof run->dig,
+                   "%s identified the gravel by %s, then %s was predicted", run->simple.trajectory,
+                   published.forces ? "moment and forces" : "moment alone", run->real.trajectory);
+
+    struct dig_curve curve;
+    if (dig_match_interpolate(set, &published.gravel, (size_t)simple.trajectory, &curve) !=
+        DIG_OK) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "%s: the identified gravel lies outside %s, expected the table the "
+                             "daemon ran on",
+                             log, options->table);
+    }
+    const double to_rig = pow(set->tooth_m / machine->link[DIG_JOINT_BUCKET].length_m, 4.0);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress   = (double)k / (DIG_CURVE_POINTS - 1);
+        run->simple.model_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
+        run->simple.sigma_Nm[k] = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
+        run->real.model_Nm[k]   = to_rig * published_at(&published, published.moment_Nm, progress);
+        run->real.sigma_Nm[k]   = to_rig * published_at(&published, published.sigma_Nm, progress);
+    }
+    struct dig_score score = { 0 };
+    const int        t     = dig_curve_set_find(set, run->real.trajectory);
+    // One grid point in from where the prediction begins: the curve is a gap before it.
+    const double from = fmax(real.first, published.from + 1.0 / (DIG_CURVE_POINTS - 1));
+    dig_score_add(&score, &set->trajectory[t], set->tooth_m, from, real.last, run->real.measured_Nm,
+                  run->real.model_Nm, run->real.sigma_Nm);
+    run->error       = dig_score_error(&score);
+    run->noise_floor = dig_score_noise_floor(&score);
+    return add_recordings(options, set, run, error);
+}

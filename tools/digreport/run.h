@@ -1,0 +1,17 @@
+// One run of the daemon in the report: published match and prediction, and the digs measured again.
+
+#ifndef DIG_TOOLS_DIGREPORT_RUN_H
+#define DIG_TOOLS_DIGREPORT_RUN_H
+
+#include "core/machine.h"
+#include "tools/digreport/options.h"
+
+/// Fills the run from NAME=LOG.lcm: the dig that identified the gravel, the one that was predicted,
+/// and the force recordings that were fed to the rig. DIG_ENOMATCH for a log without such digs;
+/// reading fails as dig_lcm_log_each() and dig_recording_read() do.
+DIG_MUST_CHECK enum dig_status digreport_run(const struct digreport_options *options,
+                                             const struct dig_machine       *machine,
+                                             const struct dig_curve_set *set, char *named_log,
+                                             struct dig_report_run *run, struct dig_error *error);
+
+#endif // DIG_TOOLS_DIGREPORT_RUN_H
