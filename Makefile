@@ -41,11 +41,8 @@ test_src  := $(wildcard tests/*/test_*.c)
 testlib   := $(wildcard tests/*.c)
 messages  := $(patsubst messages/%.lcm,%,$(wildcard messages/*.lcm))
 system_tests := $(wildcard tests/system/*.sh)
-# Those that wait for a bus most of the time: one after the other, beside those that compute; CAN in User
-# Mode Linux wants a core of its own and comes last.
-can_tests := $(addprefix tests/system/,daemon_can.sh daemon_can_faults.sh daemon_can_link.sh rig.sh)
-bus_tests := $(filter-out $(can_tests),$(wildcard tests/system/daemon_*.sh)) $(can_tests)
-helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c))
+helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c)) \
+             $(BUILD)/tests/simclock/simclock $(BUILD)/tests/simclock/preload.so
 # Tests whose subject runs threads.
 threaded_tests := $(shell grep -l pthread tests/*/test_*.c)
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
@@ -171,10 +168,17 @@ $(BUILD)/tests/system/%: $(BUILD)/tests/system/%.o $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
 
+# The clock of the programs that system tests run.
+$(BUILD)/tests/simclock/simclock: $(BUILD)/tests/simclock/simclock.o
+	$(call say,LD,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@
+$(BUILD)/tests/simclock/preload.o: CPPFLAGS += -fPIC
+$(BUILD)/tests/simclock/preload.so: $(BUILD)/tests/simclock/preload.o
+	$(call say,LD,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -shared $^ -o $@ -ldl
+
 check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make test` does once all is installed)
-	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
-	$(Q)BIN=$(BUILD)/bin nice -n 15 scripts/run_tests.sh $(filter-out $(bus_tests),$(system_tests)) & files=$$!; \
-	    BIN=$(BUILD)/bin scripts/run_tests.sh $(bus_tests); buses=$$?; wait $$files && exit $$buses
+	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh -j $(JOBS) $(system_tests) $(test_bins)
 
 check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
