@@ -25,10 +25,10 @@
 
 #define TASKS_MAX 256
 #define NS_PER_S  1000000000LL
-#define SLACK_ns  900000LL   // waits that end so close together end together
-#define LOOK_ns   50000L     // of real time, between two looks at who still runs: at first,
-#define SELDOM_ns 2000000L   // and at last
-#define FLIGHT_ns 20000000LL // of real time: bytes a terminal has not given up by then are lost
+#define SLACK_ns  900000LL // waits that end so close together end together
+#define LOOK_ns   50000L   // of real time, between two looks at who still runs: at first,
+#define SELDOM_ns 2000000L // and at last
+#define FLIGHT_ns NS_PER_S // of real time: bytes a terminal has not given up by then are lost
 #define STUCK_ns  (300LL * NS_PER_S) // of real time, without anybody sleeping
 
 // A thread of a program under test. Two files tell whether it slept all the while between two
@@ -386,9 +386,14 @@ int main(const int argc, char *argv[])
         return 0;
     }
     if (strcmp(what, "joined") == 0 && argc == 3) {
+        const int64_t latest_ns = real_ns() + STUCK_ns;
         while (!has_joined(w.sim, pid) && !has_ended(pid)) {
             const struct timespec wait = { .tv_nsec = 1000000 };
             (void)nanosleep(&wait, NULL);
+            if (real_ns() > latest_ns) {
+                (void)fprintf(stderr, "simclock: program %d runs without preload.so\n", pid);
+                return 3;
+            }
         }
         return 0;
     }

@@ -68,12 +68,15 @@ start_series first --modbus-tcp "127.0.0.1:$port" --start-delay 6
 pass "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
 stop "$rig" KILL
 check "a server that went away is said" wait_for 5 grep -q "127.0.0.1:$port: " "$work/gone.log"
+pass 0.1 # what was seen of it is published
 read_log gone
 judge gone
 check "it went away in a dig" eval '[ "$(awk '"'"'$1 == "estimate" { phase = $3 } END { print phase }'"'"' "$work/gone.txt")" = 2 ]'
 check "which is no whole dig" [ "$(last health "$work/gone.txt" $h_matches)" = 0 ]
 log back
-serve_series back --modbus-tcp "127.0.0.1:$port" --start-delay 2
+# It is back where its motion begins: as long away as a machine takes for that, and then found within two seconds.
+pass 4
+serve_series back --modbus-tcp "127.0.0.1:$port" --start-delay 6
 stop "$daemon"
 read_log back
 judge back

@@ -7,7 +7,7 @@ work=$(mktemp -d)
 simclock=$BIN/../tests/simclock/simclock
 preload=$(realpath "$BIN/../tests/simclock/preload.so")
 children=()
-DIG_SIMCLOCK=$(mktemp /dev/shm/digsight.XXXXXXXX)
+DIG_SIMCLOCK=$(mktemp -p "$([ -w /dev/shm ] && echo /dev/shm || echo /tmp)" digsight.XXXXXXXX)
 export DIG_SIMCLOCK
 "$simclock" begin
 # In User Mode Linux, which has one processor; a program may have all of it.
