@@ -6,7 +6,7 @@
 set -u
 jobs=1
 [ "${1-}" = -j ] && { jobs=$2; shift 2; }
-limit_s=${DIG_TEST_LIMIT_S:-600}
+limit_s=${DIG_TEST_LIMIT_S:-1800}
 out=$(mktemp -d) || exit 1
 trap 'rm -rf "$out"' EXIT
 

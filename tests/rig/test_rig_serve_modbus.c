@@ -378,9 +378,34 @@ static void slave_1_on_a_serial_line_serves_reads_and_refuses_writes(void **stat
     assert_int_equal(rig.requests.refused[6], 1);
 }
 
+static void *read_board(void *const board)
+{
+    static uint16_t found[DIG_RIG_REGISTERS];
+    (void)dig_rig_board_read(board, found);
+    return found;
+}
+
+// A client that came before the first values read zeros: the front jumped there, and back.
+static void request_before_the_first_values_is_answered_with_them(void **state)
+{
+    (void)state;
+    struct dig_rig_board board;
+    assert_true(dig_rig_board_init(&board));
+    pthread_t reader;
+    assert_int_equal(pthread_create(&reader, NULL, read_board, &board), 0);
+    const struct timespec moment = { .tv_nsec = 20000000 };
+    (void)nanosleep(&moment, NULL);
+    dig_rig_board_write(&board, registers, false);
+    void *found = NULL;
+    assert_int_equal(pthread_join(reader, &found), 0);
+    assert_memory_equal(found, registers, sizeof registers);
+    dig_rig_board_finish(&board);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(request_before_the_first_values_is_answered_with_them),
         cmocka_unit_test(input_and_holding_registers_read_the_same_board),
         cmocka_unit_test(every_write_is_refused_with_exception_1_and_counted),
         cmocka_unit_test(reads_outside_the_map_are_refused),

@@ -5,7 +5,7 @@
 . tests/system/daemon_lib.bash
 
 table=$PWD/tables/rig.sqlite
-speed=$(slowed 4)
+speed=4
 input="{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}"
 
 campaign() { # NAME MACHINE DIG…: machine recordings of these digs; those along simpleA identify, the others are fitted to
@@ -37,15 +37,15 @@ $more"
     start "$work/$name.log" "$BIN/digsightd" -c "$work/$name.yaml"
     daemon=$started
     start "$work/$name.rig.err" "$BIN/digrig" serve "$@" --machine "$as" --modbus-tcp "127.0.0.1:$port" \
-        --speed "$speed" --start-delay 6
+        --speed "$speed" --start-delay 2
     rig=$started
-    wait "$rig"
+    ends "$rig"
     stop "$daemon"
     read_log "$name"
     "$helpers/loop_judge" "$work/$name.lcm" "$work/truth.csv" actual >"$work/$name.judged" 2>>"$work/$name.err"
     estimate=$(awk '$1 == "estimate" { print $2 }' "$work/$name.judged")
     prediction=$(awk '$1 == "prediction" { print $2 }' "$work/$name.judged")
-    check_timed "$name: the digs are seen and predicted" awk '$3 < 100 { few = 1 } END { exit few || NR != 2 }' "$work/$name.judged"
+    check "$name: the digs are seen and predicted" awk '$3 < 100 { few = 1 } END { exit few || NR != 2 }' "$work/$name.judged"
 }
 
 close_loop() { # NAME MACHINE DIG…: $before and $after, of the estimate and the prediction
@@ -69,8 +69,8 @@ trace heavy
 check "a bucket too heavy is found and applied" eval 'grep -q "\"verdict\": \[\"bucket_weight\"\]" "$work/heavy.json" && grep -q "\"applied\": true" "$work/heavy.json"'
 close_loop heavy "$work/heavy.yaml" "${plain}__simpleA.csv" "${plain}__actual.csv"
 # Of these digs by a machine as its file says the daemon leaves .06, with the model of this one too: no less is to be had.
-check_timed "the daemon restarted on it is nearer to what the ground does" smaller "$estimate" "$estimate_before" 0.75
-check_timed "and finds the ground's density" within "$(last match "$work/heavy_after.txt" 12)" 2100 2900
+check "the daemon restarted on it is nearer to what the ground does" smaller "$estimate" "$estimate_before" 0.75
+check "and finds the ground's density" within "$(last match "$work/heavy_after.txt" 12)" 2100 2900
 
 # Ground that rises by eight degrees, dug by a machine as its file says.
 slope=tests/data/liggghts_more/slope_up_seed1
@@ -78,5 +78,5 @@ campaign slope "$machine" "${slope}__simpleA.csv" "${slope}__actual.csv"
 trace slope
 check "a slope is found and applied" eval 'grep -q "\"verdict\": \[\"ground_slope\"\]" "$work/slope.json" && grep -q "\"applied\": true" "$work/slope.json"'
 close_loop slope "$machine" "${slope}__simpleA.csv" "${slope}__actual.csv"
-check_timed "the daemon restarted on it predicts the dig better" smaller "$prediction" "$prediction_before" 0.8
+check "the daemon restarted on it predicts the dig better" smaller "$prediction" "$prediction_before" 0.8
 finish

@@ -13,7 +13,7 @@ make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" --machine "$machine" \
     -o "$work/four.csv" 2>"$work/four.err"
 config first "{kind: replay, replay: {file: one.csv, speed: 10}}" "match: {state: match.json}"
-"$BIN/digsightd" -c "$work/first.yaml" 2>"$work/first.log"
+run "$work/first.log" "$BIN/digsightd" -c "$work/first.yaml"
 check "where there is room the gravel known is kept" [ -s "$work/match.json" ]
 
 # Room for what is there and one page more.
@@ -36,8 +36,8 @@ digs_kept() { # COUNT: that many, or more
 }
 before=$(grep -c moment_Nm "$work/match.json")
 check "a dig after that is kept, with those before" wait_for 60 digs_kept $((before + 2))
-wait "$daemon"
-check "the daemon ends with exit status 0" [ $? = 0 ]
+ends "$daemon"
+check "the daemon ends with exit status 0" [ "$status" = 0 ]
 read_log full
 f=$work/full.txt
 check "each dig was matched all the same" [ "$(last health "$f" $h_matches)" = 4 ]

@@ -1,5 +1,5 @@
 // Judges what a daemon published against what was really there:
-//   daemon_judge LOG.lcm TRUTH.csv FRICTION ROLLING DENSITY LATE_s
+//   daemon_judge LOG.lcm TRUTH.csv FRICTION ROLLING DENSITY
 // TRUTH.csv is `digrig record --truth`'s. Prints a line for all, and one for each dig as the daemon
 // counts them:
 //   all ESTIMATES WRONG WORST_sigmas MATCHES WRONG_MATCHES PREDICTIONS WRONG_PREDICTIONS
@@ -9,10 +9,9 @@
 //   within WRONG
 //
 // An estimate said to be valid is wrong when no moment that was there at that pose of the bucket,
-// within 1.5 s + LATE_s of it (machine time: the clocks are brought together by the pose, and a bus
-// that is late is no lie; LATE_s says by how much it was), is within 5 sigma. A match said to be
-// valid and not outside is wrong when an axis' interval, widened by half, misses the truth; a
-// prediction when its peak is off the truth's by more than a third.
+// within 1.5 s of it (machine time: the clocks are brought together by the pose), is within 5
+// sigma. A match said to be valid and not outside is wrong when an axis' interval, widened by half,
+// misses the truth; a prediction when its peak is off the truth's by more than a third.
 
 #include "files/lcm_log.h"
 
@@ -36,7 +35,7 @@ struct judge {
     int        dig[ROWS]; // finished before the estimate
     bool       matched[DIGS];
     struct row truth[ROWS], seen[ROWS];
-    double     sigma_Nm[ROWS], gravel[3], peak_Nm, late_s;
+    double     sigma_Nm[ROWS], gravel[3], peak_Nm;
 };
 
 static bool misses(const double truth, const double low, const double high)
@@ -144,12 +143,11 @@ static double find_shift(const struct judge *const j)
     return best_s;
 }
 
-static double sigmas_off(const struct judge *const j, const size_t i, const double shift_s,
-                         const double near_s)
+static double sigmas_off(const struct judge *const j, const size_t i, const double shift_s)
 {
     const struct row *const e   = &j->seen[i];
     double                  off = INFINITY;
-    for (double d = -near_s; d <= near_s; d += 0.005) {
+    for (double d = -NEAR_s; d <= NEAR_s; d += 0.005) {
         const struct row *const t = truth_at(j, e->t_s - shift_s + d);
         if (fabs(t->X_m - e->X_m) + fabs(t->Z_m - e->Z_m) < 0.1 &&
             fabs(t->phi_rad - e->phi_rad) < 0.05) {
@@ -166,31 +164,28 @@ int main(const int argc, char *argv[])
         .context = j, .estimate = estimate, .match = match, .prediction = prediction
     };
     struct dig_error error = { "" };
-    if (j == NULL || (argc != 7 && argc != 9) || read_truth(argv[2], j) != 0) {
+    if (j == NULL || (argc != 6 && argc != 8) || read_truth(argv[2], j) != 0) {
         (void)fprintf(stderr, "usage: daemon_judge LOG.lcm TRUTH.csv FRICTION ROLLING DENSITY "
-                              "LATE_s [FROM_s LENGTH_s]\n");
+                              "[FROM_s LENGTH_s]\n");
         return 2;
     }
     for (int a = 0; a < 3; a++) {
         j->gravel[a] = strtod(argv[3 + a], NULL);
     }
-    j->late_s = strtod(argv[6], NULL);
     if (dig_lcm_log_each(argv[1], &reader, &error) != DIG_OK || j->estimates == 0) {
         (void)fprintf(stderr, "daemon_judge: %s\n", error.text[0] ? error.text : "no estimates");
         return 1;
     }
     const double shift_s  = find_shift(j);
-    const double from_s   = argc == 9 ? strtod(argv[7], NULL) : 0.0;
-    const double length_s = argc == 9 ? strtod(argv[8], NULL) : 0.0;
+    const double from_s   = argc == 8 ? strtod(argv[6], NULL) : 0.0;
+    const double length_s = argc == 8 ? strtod(argv[7], NULL) : 0.0;
     size_t       within   = 0;
     size_t       wrong = 0, of_dig[DIGS] = { 0 }, wrong_of[DIGS] = { 0 };
     double       worst = 0.0, worst_of[DIGS] = { 0 };
     int          digs = 0;
     for (size_t i = 0; i < j->estimates; i++) {
-        const double near = sigmas_off(j, i, shift_s, NEAR_s);
-        const double off =
-            near > 5.0 && j->late_s > 0.0 ? sigmas_off(j, i, shift_s, NEAR_s + j->late_s) : near;
-        const int d       = (j->dig[i] + 1) % DIGS;
+        const double off  = sigmas_off(j, i, shift_s);
+        const int    d    = (j->dig[i] + 1) % DIGS;
         digs              = j->dig[i] > digs ? j->dig[i] : digs;
         const double at_s = j->seen[i].t_s - shift_s;
         within += off > 5.0 && at_s >= from_s && at_s < from_s + length_s ? 1 : 0;
@@ -206,7 +201,7 @@ int main(const int argc, char *argv[])
         (void)printf("dig %d %zu %zu %.2f %d\n", d, of_dig[d], wrong_of[d], worst_of[d],
                      j->matched[d]);
     }
-    if (argc == 9) {
+    if (argc == 8) {
         (void)printf("within %zu\n", within);
     }
     free(j);

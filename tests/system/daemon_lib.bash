@@ -6,52 +6,12 @@
 # into a network namespace of its own, whose loopback carries it; that needs no privilege.
 set -u
 
-# A machine that does not keep the bus's time says nothing about the checks that depend on it. The script is
-# then run again, when the machine has come to rest, with the rig at half its speed, if there is time: so a
-# delay is half as much of the motion, and half as much is asked of the machine. What is late in both tries
-# is skipped, aloud, with DIG_NO_SKIP=1 too: no test may depend on how fast a machine is. Who has a machine to
-# spare says DIG_NO_SKIP=all, and what was not judged has failed.
-LATE_STATUS=75
-run_again_when_late() { # SCRIPT ARGUMENT…
-    local limit_s=${DIG_TEST_LIMIT_S:-600} try status counts passed failed
-    counts=$(mktemp)
-    for ((try = 1; try <= ${DIG_TRIES:-2}; try++)); do
-        DIG_TRY=$try DIG_LATE_COUNTS=$counts "$@"
-        status=$?
-        [ "$status" = $LATE_STATUS ] || break
-        # The next takes twice as long as this one did, of which what was before is no less than half.
-        [ $((3 * SECONDS + 30)) -lt "$limit_s" ] || break
-        [ "$try" = "${DIG_TRIES:-2}" ] || wait_for_rest
-    done
-    read -r passed failed <"$counts"
-    rm -f "$counts"
-    [ "$status" = $LATE_STATUS ] || exit "$status"
-    if [ "${DIG_NO_SKIP-}" = all ]; then
-        echo "$passed passed, $failed failed: the rig was late in each try, and nothing may be skipped"
-        exit 1
-    fi
-    echo "SKIP: $failed checks failed while the rig was late, in each try"
-    echo "$passed passed, 0 failed, $failed skipped"
-    exit 0
-}
-
-# Until the machine gives a process that sleeps its turn in time, 40 times in a row; half a minute at most.
-wait_for_rest() {
-    local good=0 i began
-    for ((i = 0; i < 600 && good < ${DIG_REST:-40}; i++)); do
-        began=${EPOCHREALTIME/[.,]/}
-        sleep 0.05
-        good=$((${EPOCHREALTIME/[.,]/} - began < 100000 ? good + 1 : 0))
-    done
-}
-[ -n "${DIG_TRY-}" ] || run_again_when_late "$0" "$@"
-
 . tests/system/check.bash
 BIN=${BIN:-build/bin}
 helpers=$BIN/../tests/system
 scene=config/scenes/rig.yaml
 machine=config/machines/zx200_trench.yaml
-late_failed=0 wrong_failed=0 skipped=0 children=()
+skipped=0
 
 if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     ip link set lo up multicast on 2>/dev/null
@@ -61,84 +21,14 @@ if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     fi
 fi
 
-work=$(mktemp -d)
+. tests/system/simclock.bash
 lcm="udpm://239.255.76.67:$((20000 + $$ % 10000))?ttl=0"
 port=$((30000 + $$ % 10000))
-
-stop() { # PID [SIGNAL]: ends a process we started; its exit status is kept in $status
-    kill -"${2:-TERM}" "$1" 2>/dev/null
-    wait "$1" 2>/dev/null
-    status=$?
-    local left=() pid
-    for pid in "${children[@]-}"; do [ "$pid" = "$1" ] || left+=("$pid"); done
-    children=("${left[@]-}")
-}
-
-cleanup() {
-    local pid
-    for pid in "${children[@]-}"; do [ -n "$pid" ] && stop "$pid"; done
-    [ -n "${DIG_KEEP-}" ] && echo "kept $work" || rm -rf "$work"
-}
-trap cleanup EXIT
-
-# Starts a command in the background; its pid is in $started.
-start() { # OUTPUT COMMAND…
-    "${@:2}" >"$1" 2>&1 </dev/null &
-    started=$!
-    children+=("$started")
-}
-
-# What depends on the rig keeping time: excused where it did not.
-check_timed() { # SENTENCE COMMAND…
-    local before=$failed
-    check "$@"
-    late_failed=$((late_failed + failed - before))
-}
-
-# Wrong numbers published as good are excused by much more only: a second of the clock is several of the
-# machine, and what lay on the bus then is no motion any more.
-check_wrong() { # SENTENCE COMMAND…
-    local before=$failed
-    check "$@"
-    wrong_failed=$((wrong_failed + failed - before))
-}
-LATE_LIMIT_ms=300
-LATE_WRONG_ms=1000
-
-# The rig's speed in times real time: less when it is tried again.
-slowed() { # SPEED
-    awk -v speed="$1" -v try="$DIG_TRY" 'BEGIN { print speed / 2 ^ (try - 1) }'
-}
-
-# Seconds of a limit on the clock, which grow as the rig gets slower.
-longer() { # SECONDS
-    echo $(($1 << (DIG_TRY - 1)))
-}
-
-# How late the rig's latest tick was, ms: what a bus carries then is not the motion that was meant.
-rig_late_ms() {
-    sed -nE 's/.*the latest ([0-9]+)\.[0-9]+ ms late.*/\1/p' "$work"/*.err 2>/dev/null | sort -n | tail -n 1
-}
-
-# True when every check that failed is one that the rig's lateness excuses.
-is_excused() { # LATE_ms
-    [ "$failed" -gt 0 ] && [ "$failed" = $((late_failed + wrong_failed)) ] && [ "$1" -gt $LATE_LIMIT_ms ] &&
-        { [ "$wrong_failed" = 0 ] || [ "$1" -gt $LATE_WRONG_ms ]; }
-}
-
 finish() {
-    local late_ms
-    late_ms=$(rig_late_ms)
-    late_ms=${late_ms:-0}
     if [ "$failed" -gt 0 ]; then
         for f in "$work"/*.log "$work"/*.err; do
             [ -f "$f" ] && { echo "--- $f"; tail -n 30 "$f"; }
         done
-    fi
-    if is_excused "$late_ms"; then
-        echo "the rig was up to $late_ms ms late on its bus: this machine was too busy to judge $failed checks"
-        echo "$passed $failed" >"$DIG_LATE_COUNTS"
-        exit $LATE_STATUS
     fi
     echo "$passed passed, $failed failed$([ "$skipped" = 0 ] || echo ", $skipped skipped")"
     [ "$failed" -eq 0 ]
@@ -148,15 +38,6 @@ finish() {
 skip_check() { # SENTENCE WHY
     skipped=$((skipped + 1))
     echo "SKIP: $1: $2"
-}
-
-wait_for() { # SECONDS COMMAND…: until it succeeds
-    local i
-    for ((i = 0; i < $1 * 10; i++)); do
-        "${@:2}" >/dev/null 2>&1 && return 0
-        sleep 0.1
-    done
-    return 1
 }
 
 config() { # NAME INPUT [MORE]: writes $work/NAME.yaml; INPUT is the input's mapping
@@ -173,11 +54,10 @@ log() { # NAME: starts recording LCM into $work/NAME.lcm
     # At many times real time the default receive buffer of the kernel is too small for the logger.
     start "$work/logger.log" lcm-logger --lcm-url="$lcm&recv_buf_size=4000000" "$work/$1.lcm"
     logger=$started
-    sleep 0.5
+    pass 0.1
 }
 
 read_log() { # NAME: ends the recording and prints it into $work/NAME.txt
-    sleep 0.3
     stop "$logger" INT
     "$helpers/daemon_log" "$work/$1.lcm" >"$work/$1.txt" 2>"$work/$1.err"
 }
@@ -207,11 +87,17 @@ fault() { # KIND DIG: --fault's value for all of that dig, counted from 1
     awk -v kind="$1" -v contact="${contacts[$2 - 1]}" 'BEGIN { printf "%s@%.2f:12", kind, contact - 2 }'
 }
 
-serve_series() { # NAME OPTION…: serves it at $speed times real time; the rig's counts go to $work/NAME.json
-    "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --json "${@:2}" \
-        >"$work/$1.json" 2>"$work/$1.rig.err"
+# Begins to serve it at $speed times real time; the rig's counts go to $work/NAME.json, its pid to $rig.
+start_series() { # NAME OPTION…
+    errors=$work/$1.rig.err start "$work/$1.json" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" \
+        --speed "$speed" --json "${@:2}"
+    rig=$started
     rig_json=$work/$1.json
-    sleep 0.5
+}
+
+serve_series() { # NAME OPTION…: to its end
+    start_series "$@"
+    ends "$rig"
 }
 
 rig() { # KEY: a number of the rig's counts
@@ -221,18 +107,16 @@ rig() { # KEY: a number of the rig's counts
 # Judges $work/NAME.lcm into $work/NAME.judged. In dig BLIND the angles stand still: nothing can tell at
 # once; it has to be told before two seconds of wrong estimates are published.
 judge() { # NAME [BLIND]
-    local late_s
-    late_s=$(awk -v ms="$(rig_late_ms)" -v speed="$speed" 'BEGIN { print 1e-3 * ms * speed }')
-    "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 "$late_s" >"$work/$1.judged" 2>"$work/$1.err"
+    "$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 >"$work/$1.judged" 2>"$work/$1.err"
     sed 's/^/      /' "$work/$1.judged"
     judged=$work/$1.judged
-    check_timed "$1: estimates are published" within "$(judged all 2)" 100 1e9
+    check "$1: estimates are published" within "$(judged all 2)" 100 1e9
     local blind=0
-    [ -z "${2-}" ] || blind=$("$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 "$late_s" \
+    [ -z "${2-}" ] || blind=$("$helpers/daemon_judge" "$work/$1.lcm" "$work/truth.csv" 0.5 0.4 2200 \
         "$(awk -v c="${contacts[$2 - 1]}" 'BEGIN { print c - 2 }')" 12 | awk '$1 == "within" { print $2 }')
-    check_wrong "$1: no wrong estimate is published as good" [ "$(judged all 3)" = "$blind" ]
-    check_timed "$1: but for two seconds at most while angles stand" within "$blind" 0 200
-    check_wrong "$1: nor a wrong match or prediction" [ "$(judged all 6) $(judged all 8)" = "0 0" ]
+    check "$1: no wrong estimate is published as good" [ "$(judged all 3)" = "$blind" ]
+    check "$1: but for two seconds at most while angles stand" within "$blind" 0 200
+    check "$1: nor a wrong match or prediction" [ "$(judged all 6) $(judged all 8)" = "0 0" ]
 }
 
 judged() { # KIND FIELD [DIG]: a field of the line "all", or of a dig's

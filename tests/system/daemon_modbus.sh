@@ -3,7 +3,7 @@
 . tests/system/daemon_lib.bash
 
 make_digs
-speed=$(slowed 4)
+speed=4
 config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: $speed"
 log tcp
@@ -12,20 +12,20 @@ daemon=$started
 check "a bus that is absent is said" wait_for 5 grep -q "waiting for bus" "$work/daemon.log"
 check "and why" grep -q "127.0.0.1:$port.*refused" "$work/daemon.log"
 # It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
-"$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" --start-delay 6 \
-    --modbus-tcp "127.0.0.1:$port" --speed "$speed" --json >"$work/rig.json" 2>"$work/rig.err"
+digs=("$work/simpleA.csv" "$work/actual.csv")
+serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 6
 check "a bus that appears later is found" grep -q "running" "$work/daemon.log"
 check "a bus that goes away is said" wait_for 5 eval '[ "$(grep -c "waiting for bus" "$work/daemon.log")" -ge 2 ]'
 stop "$daemon"
 check "SIGTERM ends it with exit status 0" [ "$status" = 0 ]
 read_log tcp
-check_timed "the gravel is identified" identified "$work/tcp.txt"
-check_timed "the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/tcp.txt")" -ge 10 ]
+check "the gravel is identified" identified "$work/tcp.txt"
+check "the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/tcp.txt")" -ge 10 ]
 check "health is published while the bus is absent" grep -q '^health waiting_for_bus' "$work/tcp.txt"
 check "health names the trouble" grep -q '^health waiting_for_bus .*refused' "$work/tcp.txt"
 check "only functions that read were asked for" \
-    eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/rig.json" &&
-          grep -q "\"modbus_refused\": {}" "$work/rig.json"'
+    eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$rig_json" &&
+          grep -q "\"modbus_refused\": {}" "$rig_json"'
 
 # Pressures in another block of registers, at half the rate.
 config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_blocks.yaml}}" \
@@ -33,16 +33,16 @@ config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz
 log blocks
 start "$work/blocks.log" "$BIN/digsightd" -c "$work/blocks.yaml"
 daemon=$started
-"$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed "$speed" --json --start-delay 6 \
-    >"$work/blocks.json" 2>"$work/blocks.err"
+digs=("$work/simpleA.csv")
+serve_series blocks --modbus-tcp "127.0.0.1:$port" --start-delay 2
 stop "$daemon"
 read_log blocks
-check_timed "registers far apart are asked for in blocks and identify the gravel" identified "$work/blocks.txt"
+check "registers far apart are asked for in blocks and identify the gravel" identified "$work/blocks.txt"
 check "and in no others" \
     eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/blocks.json" && grep -q "\"modbus_refused\": {}" "$work/blocks.json"'
 # Angles at 400, pressures at 200 requests a second: a sample for each of the pressures.
 served=$(sed -nE 's/.*"modbus_served": \{"4": ([0-9]+)\}.*/\1/p' "$work/blocks.json")
-check_timed "a sample comes of the slower block, not of every request" \
+check "a sample comes of the slower block, not of every request" \
     within "$(last samples "$work/blocks.txt" 2)" $((served / 5)) $((served / 2))
 
 # Boom's and arm's pressures in a block of their own, refused for the first half of the dig and then there again.
@@ -52,44 +52,41 @@ sed -E -e 's/register: 0, registers: 5/register: 0, registers: 12/' -e 's/regist
 config force "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: force.map.yaml}}" "time_scale: $speed"
 series 1
 log force
-start "$work/rigforce.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 3 \
+start_series force --modbus-tcp "127.0.0.1:$port" --start-delay 1 \
     --fault "far@$(awk -v c="${contacts[0]}" 'BEGIN { printf "%.2f:%.2f", c - 3, 9 }')"
-rig=$started
-sleep 0.5
+pass 0.1
 start "$work/force.log" "$BIN/digsightd" -c "$work/force.yaml"
 daemon=$started
-wait "$rig"
+ends "$rig"
 stop "$daemon"
 read_log force
 f=$work/force.txt
 bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
-check_timed "without the block of the other pressures the moment goes on" \
+check "without the block of the other pressures the moment goes on" \
     within "$(grep -cF " 0 \"$bare\"" <(grep '^estimate' "$f"))" 200 1e9
-check_timed "and identifies the gravel by itself" eval 'identified "$f" && [ "$(awk '"'"'$1 == "match" { f = $(NF - 3) } END { print f }'"'"' "$f")" = 0 ]'
+check "and identifies the gravel by itself" eval 'identified "$f" && [ "$(awk '"'"'$1 == "match" { f = $(NF - 3) } END { print f }'"'"' "$f")" = 0 ]'
 check "health names what is missing" grep -q "^health running .*\"$bare\"" "$f"
-check_timed "and counts the samples without" within "$(last health "$f" $h_without_force)" 200 1e9
-check_timed "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
-check_timed "the force is told before and again when the block is back" \
+check "and counts the samples without" within "$(last health "$f" $h_without_force)" 200 1e9
+check "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
+check "the force is told before and again when the block is back" \
     awk '$1 == "estimate" { n = split($0, part, "\""); has = $9; if (has != was || !seen) turns = turns has; was = has; seen = 1 }
          END { exit !(turns ~ /10+1$/) }' "$f"
 
 # The same block without any answer, from the first request to the last: it is asked now and then only, so
 # that the moment hardly loses a sample.
 log mute
-start "$work/rigmute.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 3 \
-    --fault far-silent@0 --json
-rig=$started
-sleep 0.5
-began=$SECONDS
+start_series mute --modbus-tcp "127.0.0.1:$port" --start-delay 1 --fault far-silent@0
+pass 0.1
+began=$("$simclock" now)
 start "$work/mute.log" "$BIN/digsightd" -c "$work/force.yaml"
 daemon=$started
-wait "$rig"
-took=$((SECONDS - began + 1))
+ends "$rig"
+took=$(since "$began")
 stop "$daemon"
 read_log mute
 f=$work/mute.txt
 check "a block that does not answer is said to be silent" grep -q "registers 1005 … 1008: silent while others answer" "$work/mute.log"
-check_timed "it is asked three times, then every five seconds" within "$(last health "$f" $h_timeouts)" 3 $((4 + took / 5))
-check_timed "the moment identifies the gravel beside it" identified "$f"
-check_timed "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
+check "it is asked three times, then every five seconds" within "$(last health "$f" $h_timeouts)" 3 $((4 + took / 5))
+check "the moment identifies the gravel beside it" identified "$f"
+check "without a new connection" [ "$(last health "$f" $h_reconnects)" = 0 ]
 finish

@@ -5,7 +5,7 @@
 
 make_digs
 "$helpers/daemon_data" "$scene" "$work" other >>"$work/data.log" 2>&1
-speed=$(slowed 4)
+speed=4
 series 6
 config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: $speed
@@ -19,35 +19,34 @@ daemon=$started
 wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
 # The table it runs on: cut off, asked for, refused; put back, asked for, taken; another one in its place,
 # asked for in a dig; removed.
-(
-    sleep 3
+change_tables() {
+    pass 0.5
     cp "$work/table.sqlite" "$work/good.sqlite"
     truncate -s 50000 "$work/table.sqlite"
-    sleep 2
     kill -HUP "$daemon"
-    sleep 2
+    pass 0.5
     cp "$work/good.sqlite" "$work/table.sqlite"
     kill -HUP "$daemon"
-    sleep "$(awk -v c="${contacts[1]}" -v speed="$speed" 'BEGIN { print (c + 3) / speed }')"
+    pass "$(awk -v c="${contacts[1]}" -v speed="$speed" 'BEGIN { print 1 + (c + 3) / speed }')"
     cp "$work/other.sqlite" "$work/table.sqlite"
     kill -HUP "$daemon"
-    sleep 4
+    pass 1
     rm "$work/table.sqlite"
-) &
-tables=$!
+}
 # Digs: lost answers, exceptions, answers 30 ms late, a server that goes away in the middle, nothing.
-serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 6 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
+start_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
     --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[3]}" 'BEGIN { print c + 3 }'):4"
-wait "$tables"
+change_tables
+ends "$rig"
 stop "$daemon"
 check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
 read_log tcp
 f=$work/tcp.txt
 judge tcp
 digs_told=$(last health "$f" $h_digs)
-check_timed "the digs after the faults identify the gravel" \
+check "the digs after the faults identify the gravel" \
     [ "$(judged dig 6 "$digs_told")$(judged dig 6 $((digs_told - 1)))" = 11 ]
-check_timed "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
+check "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
 check "exceptions are counted" [ "$(last health "$f" $h_malformed)" = "$(rig modbus_excepted)" ]
 check "a table that is cut off is refused, and said" \
     eval '[ "$(last health "$f" $h_reloads_refused)" = 1 ] && grep -q "reload refused, the table before stays: .*table.sqlite" "$work/tcp.log"'
@@ -65,25 +64,25 @@ log gone
 start "$work/gone.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started
 # It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
-start "$work/rig1.err" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" --speed "$speed" --modbus-tcp "127.0.0.1:$port" \
-    --start-delay 6
-first=$started
-wait_for 30 grep -q "serving" "$work/rig1.err"
-sleep "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
-stop "$first" KILL
+start_series first --modbus-tcp "127.0.0.1:$port" --start-delay 6
+pass "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
+stop "$rig" KILL
 check "a server that went away is said" wait_for 5 grep -q "127.0.0.1:$port: " "$work/gone.log"
+pass 0.1 # what was seen of it is published
 read_log gone
 judge gone
-check_timed "it went away in a dig" eval '[ "$(awk '"'"'$1 == "estimate" { phase = $3 } END { print phase }'"'"' "$work/gone.txt")" = 2 ]'
+check "it went away in a dig" eval '[ "$(awk '"'"'$1 == "estimate" { phase = $3 } END { print phase }'"'"' "$work/gone.txt")" = 2 ]'
 check "which is no whole dig" [ "$(last health "$work/gone.txt" $h_matches)" = 0 ]
 log back
+# It is back where its motion begins: as long away as a machine takes for that, and then found within two seconds.
+pass 4
 serve_series back --modbus-tcp "127.0.0.1:$port" --start-delay 6
 stop "$daemon"
 read_log back
 judge back
 f=$work/back.txt
 check "the server is found again" within "$(last health "$f" $h_reconnects)" 1 100
-check_timed "the gravel is identified after that" identified "$f"
+check "the gravel is identified after that" identified "$f"
 
 start "$work/again.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started

@@ -12,7 +12,7 @@ check "--check loads everything and says what it found" \
           grep -q "scene rig" "$work/check.txt" && grep -q "zx200_trench" "$work/check.txt"'
 
 log csv
-"$BIN/digsightd" -c "$work/csv.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/csv.yaml"
 check "a replay ends by itself with exit status 0" [ $? = 0 ]
 read_log csv
 rows=$(($(grep -vc '^#' "$work/run.csv") - 1))
@@ -67,7 +67,7 @@ check "the match says that it is of moment and forces" [ "$(forces "$work/csv.tx
     -o "$work/thrice.csv" 2>"$work/rig.err"
 config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {state: thrice.json}"
 log thrice
-"$BIN/digsightd" -c "$work/thrice.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/thrice.yaml"
 read_log thrice
 check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 2) } END { print n }' "$work/thrice.txt")" = 3 ]
 check "which narrows the interval" awk '$1 == "match" && !$NF { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
@@ -76,7 +76,7 @@ check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json
 check "with their forces" [ "$(grep -c '"force": {' "$work/thrice.json")" = 3 ]
 config fourth "{kind: replay, replay: {file: run.csv, speed: 10}}" "match: {state: thrice.json}"
 log fourth
-"$BIN/digsightd" -c "$work/fourth.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/fourth.yaml"
 read_log fourth
 check "a daemon started anew goes on with them, forces and all" \
     [ "$(awk '$1 == "match" && $3 == 0 { n = $(NF - 2) } END { print n }' "$work/fourth.txt") $(forces "$work/fourth.txt")" = "4 1" ]
@@ -97,14 +97,14 @@ awk -F, '/^[^0-9]/ { print; next } $1 < 0.7 * end' \
     -o "$work/aborts.csv" 2>"$work/rig.err"
 config aborts "{kind: replay, replay: {file: aborts.csv, speed: 10}}"
 log aborts
-"$BIN/digsightd" -c "$work/aborts.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/aborts.yaml"
 read_log aborts
 check "a dig that was aborted is counted as such" [ "$(endings "$work/aborts.txt")" = "1 1 0" ]
 check "and said" grep -Eq 'dig 2 \(actual\): aborted at [67][0-9] % of its path' "$work/daemon.log"
 check "the gravel stays known" identified "$work/aborts.txt"
 
 log again
-"$BIN/digsightd" -c "$work/again.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/again.yaml"
 read_log again
 check "the log of the daemon is accepted as a recording and gives the gravel again" identified "$work/again.txt"
 identify() { # NAME RECORDING…: with digloop, offline
@@ -137,7 +137,7 @@ bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
 "$BIN/digsightd" -c "$work/bucket.yaml" --check >"$work/check.txt"
 check "--check says what is not measured" grep -q "not measured: $bare;" "$work/check.txt"
 log bucket
-"$BIN/digsightd" -c "$work/bucket.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/bucket.yaml"
 read_log bucket
 check "the bucket's pressures alone identify the gravel" identified "$work/bucket.txt"
 check "and the match says so" [ "$(forces "$work/bucket.txt")" = 0 ]
@@ -166,7 +166,7 @@ check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
 config ways "{kind: replay, replay: {file: ways.csv, speed: 20}}" "publish: {estimate_every: 10}"
 sed -i 's/table.sqlite/ways.sqlite/' "$work/ways.yaml"
 log ways
-"$BIN/digsightd" -c "$work/ways.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/ways.yaml"
 read_log ways
 # DEPTH, ATTACK_deg, MATCHED_DEPTH, MATCHED_ATTACK_deg of the last match: a dig in the table, whose depth is told to a tenth.
 check "the match says how deep the dig was" within "$(last match "$work/ways.txt" 18)" 1.02 1.22

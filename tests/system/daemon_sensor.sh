@@ -5,7 +5,7 @@
 
 hydraulic=$machine
 make_digs
-speed=$(slowed 4)
+speed=4
 machine=config/machines/rig_sensor.yaml
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" --truth "$work/truth.csv" \
     2>"$work/rig.err"
@@ -15,7 +15,7 @@ config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
 "$BIN/digsightd" -c "$work/csv.yaml" --check >"$work/check.txt" 2>&1
 check "--check finds nothing missing" eval '[ $? = 0 ] && grep -q rig_sensor "$work/check.txt" && ! grep -q "not measured" "$work/check.txt"'
 log csv
-"$BIN/digsightd" -c "$work/csv.yaml" 2>"$work/daemon.log"
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/csv.yaml"
 check "the daemon replays it to the end" [ $? = 0 ]
 read_log csv
 check "the gravel is identified" identified "$work/csv.txt"
@@ -40,17 +40,17 @@ config bus "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 4
     "time_scale: $speed"
 log bus
 start "$work/rigbus.err" "$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
-    --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 3
+    --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 1
 rig=$started
-sleep 0.5
+pass 0.1
 start "$work/bus.log" "$BIN/digsightd" -c "$work/bus.yaml"
 daemon=$started
-wait "$rig"
+ends "$rig"
 stop "$daemon"
 read_log bus
-check_timed "from Modbus the gravel is identified, too" identified "$work/bus.txt"
-check_timed "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
-check_timed "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
+check "from Modbus the gravel is identified, too" identified "$work/bus.txt"
+check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
+check "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
 
 refused() { # STATUS WORDS FILE: exit status 2, and the words in the file
     [ "$1" = 2 ] && grep -q "$2" "$3"

@@ -7,7 +7,7 @@ make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config run "{kind: replay, replay: {file: run.csv, speed: 10}}"
 log run
-"$BIN/digsightd" -c "$work/run.yaml" 2>"$work/daemon.log"
+"$BIN/digsightd" -c "$work/run.yaml" 2>"$work/daemon.log" # by the machine's own clock, as in the field
 read_log run
 check "Java decodes every message of the daemon" \
     eval 'java -cp "$lcm_jar:$jar" tests/system/DecodeLog.java "$work/run.lcm" >"$work/java.txt" 2>"$work/java.err"'

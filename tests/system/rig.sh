@@ -8,14 +8,7 @@ rig=$BIN/digrig
 simple=tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv
 actual=tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv
 machine=config/machines/zx200_trench.yaml
-work=$(mktemp -d)
-server=
-
-cleanup() {
-    [ -n "$server" ] && kill -KILL "$server" 2>/dev/null
-    rm -rf "$work"
-}
-trap cleanup EXIT
+. tests/system/simclock.bash
 
 exits() { # STATUS COMMAND…: runs it, output in $work/out and err
     local want=$1
@@ -60,23 +53,16 @@ check "truth peaks at the recording's moment times lambda to the fourth" awk -F,
 exits 0 "$rig" record $simple --machine $machine -o "$work/exact.csv" --exact
 
 serve() { # OPTIONS…: starts a server in the background
-    rm -f "$work/serve" # or the last server's words would be taken for this one's
-    "$rig" serve $simple --machine $machine --no-noise "$@" >"$work/json" 2>"$work/serve" &
-    server=$!
-    local i
-    for ((i = 0; i < 100; i++)); do
-        grep -qs 'serving' "$work/serve" && return 0
-        sleep 0.05
-    done
-    return 1
+    errors=$work/serve start "$work/json" "$rig" serve $simple --machine $machine --no-noise "$@"
+    server=$started
+    wait_for 5 grep -qs serving "$work/serve"
 }
 port() { sed -n 's/.*Modbus TCP on 127.0.0.1:\([0-9]*\).*/\1/p' "$work/serve"; }
 
 check "a Modbus server starts on a free port" serve --modbus-tcp 127.0.0.1:0 --speed 5 --json
-"$BIN/../tests/system/rig_poll" "$(port)" 60 >"$work/polls"
-wait "$server"
-check "serving ends by itself and well" test $? -eq 0
-server=
+run "$work/polls" "$BIN/../tests/system/rig_poll" "$(port)" 60
+ends "$server"
+check "serving ends by itself and well" [ "$status" = 0 ]
 check "updates of the map were seen" test "$(wc -l <"$work/polls")" -gt 50
 # Counter n is row n - 1: the alive counter starts at 1 with the first row.
 registers_are_right() { # POLLS
@@ -98,16 +84,13 @@ check "the report counts reads alone" \
     grep -Eq '"modbus_served": \{"4": [0-9]+\}, "modbus_refused": \{\}' "$work/json"
 
 check "a server loops" serve --modbus-tcp 127.0.0.1:0 --loop
-kill -TERM "$server"
-wait "$server"
-check "SIGTERM ends it cleanly" test $? -eq 0
-server=
+stop "$server"
+check "SIGTERM ends it cleanly" [ "$status" = 0 ]
 
 check "a frozen and a missing bus are served" \
     serve --modbus-tcp 127.0.0.1:0 --speed 5 --fault frozen@2:3 --fault missing@15 --json
-"$BIN/../tests/system/rig_poll" "$(port)" 8 >"$work/polls"
-wait "$server"
-server=
+run "$work/polls" "$BIN/../tests/system/rig_poll" "$(port)" 8
+ends "$server"
 check "the counter stands while frozen and requests stay open while missing" awk -F, '
     $1 > last { last = $1 }
     END { exit !(last > 2000 && last < 2500) }' "$work/polls" # 15 s less 3 s, at 200 a second
@@ -128,26 +111,26 @@ if ! command -v linux.uml >/dev/null || ! command -v candump >/dev/null ||
 fi
 # All three buses at once, from one motion. A serial line is two pseudo terminals back to back.
 cat >"$work/can.sh" <<INNER
-socat PTY,raw,echo=0,link=$work/a PTY,raw,echo=0,link=$work/b &
-socat=\$!
+set -u
+. tests/system/simclock.bash
+export DIG_SIMCLOCK_TERMINALS=1
 candump -L vcan0 >"$work/dump" &
 dump=\$!
-for i in 1 2 3 4 5 6 7 8 9 10; do [ -e $work/b ] && break; sleep 0.2; done
-sleep 0.3
-$rig serve $simple --machine $machine --no-noise --can vcan0 --modbus-tcp 127.0.0.1:1502 \\
-    --modbus-rtu $work/a --speed 2 --json >"$work/json" 2>"$work/serve" &
-rig=\$!
-for i in 1 2 3 4 5 6 7 8 9 10; do grep -q RTU "$work/serve" && break; sleep 0.2; done
-$BIN/../tests/system/rig_poll 1502 5 >"$work/polls_tcp" &
-$BIN/../tests/system/rig_poll $work/b 5 >"$work/polls_rtu" &
-wait \$rig
-rc=\$?
-sleep 0.3
-kill \$dump \$socat
-exit \$rc
+start "$work/socat" socat PTY,raw,echo=0,link=$work/a PTY,raw,echo=0,link=$work/b
+until [ -e $work/a ] && [ -e $work/b ]; do sleep 0.05; done
+errors=$work/serve start "$work/json" $rig serve $simple --machine $machine --no-noise --can vcan0 \\
+    --modbus-tcp 127.0.0.1:1502 --modbus-rtu $work/a --speed 2 --json
+rig=\$started
+wait_for 5 grep -q RTU "$work/serve"
+start "$work/polls_tcp" $BIN/../tests/system/rig_poll 1502 5
+start "$work/polls_rtu" $BIN/../tests/system/rig_poll $work/b 5
+ends \$rig
+sleep 0.5
+kill \$dump
+exit \$status
 INNER
 check "one motion is served on CAN, Modbus TCP and Modbus RTU at once" \
-    exits 0 tools/vcan/with-vcan -t 120 bash "$work/can.sh"
+    exits 0 env DIG_DATA="$work" tools/vcan/with-vcan -t 1700 bash "$work/can.sh"
 check "the registers on TCP are right" registers_are_right "$work/polls_tcp"
 check "the registers on RTU are right" registers_are_right "$work/polls_rtu"
 check "the report counts what candump saw" bash -c "

@@ -96,7 +96,7 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         struct dig_estimate    estimate;
         struct dig_observation dig;
         if (dig_estimator_step(estimator, &samples.row[i], &estimate) != DIG_OK ||
-            !dig_estimator_take_dig(estimator, &dig)) {
+            !dig_estimator_take_observation(estimator, &dig)) {
             continue;
         }
         if (dig.dig_count == published->matched_dig) {

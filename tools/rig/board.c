@@ -5,11 +5,19 @@
 bool dig_rig_board_init(struct dig_rig_board *const board)
 {
     memset(board, 0, sizeof *board);
-    return pthread_mutex_init(&board->lock, NULL) == 0;
+    if (pthread_mutex_init(&board->lock, NULL) != 0) {
+        return false;
+    }
+    if (pthread_cond_init(&board->begun, NULL) != 0) {
+        (void)pthread_mutex_destroy(&board->lock);
+        return false;
+    }
+    return true;
 }
 
 void dig_rig_board_finish(struct dig_rig_board *const board)
 {
+    (void)pthread_cond_destroy(&board->begun);
     (void)pthread_mutex_destroy(&board->lock);
 }
 
@@ -18,13 +26,18 @@ void dig_rig_board_write(struct dig_rig_board *const board,
 {
     (void)pthread_mutex_lock(&board->lock);
     memcpy(board->registers, registers, sizeof board->registers);
-    board->silent = silent;
+    board->silent  = silent;
+    board->written = true;
+    (void)pthread_cond_broadcast(&board->begun);
     (void)pthread_mutex_unlock(&board->lock);
 }
 
 bool dig_rig_board_read(struct dig_rig_board *const board, uint16_t registers[DIG_RIG_REGISTERS])
 {
     (void)pthread_mutex_lock(&board->lock);
+    while (!board->written && !board->stop) {
+        (void)pthread_cond_wait(&board->begun, &board->lock);
+    }
     memcpy(registers, board->registers, sizeof board->registers);
     const bool silent = board->silent;
     (void)pthread_mutex_unlock(&board->lock);
@@ -51,6 +64,7 @@ void dig_rig_board_stop(struct dig_rig_board *const board)
 {
     (void)pthread_mutex_lock(&board->lock);
     board->stop = true;
+    (void)pthread_cond_broadcast(&board->begun);
     (void)pthread_mutex_unlock(&board->lock);
 }
 

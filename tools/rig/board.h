@@ -19,20 +19,23 @@ struct dig_rig_manner {
 
 struct dig_rig_board {
     pthread_mutex_t       lock;
+    pthread_cond_t        begun;
+    bool                  written;
     uint16_t              registers[DIG_RIG_REGISTERS];
     bool                  silent; // the servers take requests and answer none
     bool                  stop;   // the servers' threads are to end
     struct dig_rig_manner manner;
 };
 
-/// False when the mutex cannot be made.
+/// False when mutex or condition cannot be made.
 bool dig_rig_board_init(struct dig_rig_board *board);
 void dig_rig_board_finish(struct dig_rig_board *board);
 
 void dig_rig_board_write(struct dig_rig_board *board, const uint16_t registers[DIG_RIG_REGISTERS],
                          bool silent);
 
-/// Copies the registers out; returns silent.
+/// Copies the registers out; returns silent. Before anything was written it waits, until there is
+/// something or all is to stop: no machine says zeros while it starts.
 bool dig_rig_board_read(struct dig_rig_board *board, uint16_t registers[DIG_RIG_REGISTERS]);
 
 /// From the next request on.

@@ -1,0 +1,416 @@
+// Moves the simulated clock (simclock.h) of the file that DIG_SIMCLOCK names:
+//   simclock begin               makes the file, at the clock's beginning
+//   simclock joined PID          waits until that program's clock is the simulated one, or it has
+//   ended simclock pass SECONDS        lets so much time pass simclock await PID SECONDS   lets
+//   time pass until the program has ended; 1 if it has not in so many simclock now prints the
+//   clock, in seconds since its beginning
+// Exits with 2 for bad usage and 3 when a program computes on and on and no time can pass.
+
+#define _GNU_SOURCE
+#include "tests/simclock/simclock.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/futex.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#define TASKS_MAX 256
+#define NS_PER_S  1000000000LL
+#define SLACK_ns  900000LL // waits that end so close together end together
+#define LOOK_ns   50000L   // of real time, between two looks at who still runs: at first,
+#define SELDOM_ns 2000000L // and at last
+#define FLIGHT_ns NS_PER_S // of real time: bytes a terminal has not given up by then are lost
+#define STUCK_ns  (300LL * NS_PER_S) // of real time, without anybody sleeping
+
+// A thread of a program under test. Two files tell whether it slept all the while between two
+// looks: its state, and how often it has run. Where there is no schedstat, `status` tells both.
+struct task {
+    int  pid, tid, slot, stat_fd, runs_fd;
+    long runs;
+};
+
+struct watch {
+    struct sim *sim;
+    const char *path;
+    struct task task[TASKS_MAX];
+    size_t      tasks;
+    uint32_t    threads; // of sim->threads, when the tasks were listed
+    bool        listed;
+    bool        one_cpu;
+    int         pipe_fd[SIM_SLOTS];
+};
+
+static int64_t real_ns(void)
+{
+    struct timespec t;
+    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+}
+
+static void forget(struct watch *const w)
+{
+    for (size_t i = 0; i < w->tasks; i++) {
+        (void)close(w->task[i].stat_fd);
+        if (w->task[i].runs_fd >= 0) {
+            (void)close(w->task[i].runs_fd);
+        }
+    }
+    w->tasks  = 0;
+    w->listed = false;
+}
+
+static int slot_of(const struct sim *const sim, const int tid)
+{
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        if (atomic_load(&sim->slot[i].tid) == tid && atomic_load(&sim->slot[i].state) != SIM_FREE) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static int open_of(const int pid, const int tid, const char *const name)
+{
+    char path[96];
+    (void)snprintf(path, sizeof path, "/proc/%d/task/%d/%s", pid, tid, name);
+    return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+static bool has_ended(const int pid)
+{
+    char      text[512];
+    const int fd = open_of(pid, pid, "stat");
+    if (fd < 0) {
+        return true;
+    }
+    const ssize_t n = read(fd, text, sizeof text - 1);
+    (void)close(fd);
+    text[n > 0 ? n : 0]     = '\0';
+    const char *const paren = strrchr(text, ')');
+    return paren == NULL || paren[2] == 'Z' || paren[2] == 'X';
+}
+
+static void list_program(struct watch *const w, const int pid)
+{
+    char path[64];
+    (void)snprintf(path, sizeof path, "/proc/%d/task", pid);
+    DIR *const           folder = opendir(path);
+    const struct dirent *entry  = NULL;
+    while (folder != NULL && (entry = readdir(folder)) != NULL && w->tasks < TASKS_MAX) {
+        const int tid = (int)strtol(entry->d_name, NULL, 10);
+        if (tid <= 0) {
+            continue;
+        }
+        struct task t = { .pid = pid, .tid = tid, .slot = slot_of(w->sim, tid), .runs_fd = -1 };
+        t.runs_fd     = open_of(pid, tid, "schedstat");
+        t.stat_fd     = open_of(pid, tid, t.runs_fd >= 0 ? "stat" : "status");
+        if (t.stat_fd >= 0) {
+            w->task[w->tasks++] = t;
+        } else if (t.runs_fd >= 0) {
+            (void)close(t.runs_fd);
+        }
+    }
+    if (folder != NULL) {
+        (void)closedir(folder);
+    }
+}
+
+// The threads of all programs; what has ended is taken off, slots and all.
+static void list_tasks(struct watch *const w)
+{
+    forget(w);
+    w->threads = atomic_load(&w->sim->threads);
+    for (int i = 0; i < SIM_PROGRAMS; i++) {
+        const int pid = atomic_load(&w->sim->program[i]);
+        if (pid != 0) {
+            list_program(w, pid);
+        }
+    }
+    for (int i = 0; i < SIM_PROGRAMS; i++) {
+        const int pid = atomic_load(&w->sim->program[i]);
+        char      path[64];
+        (void)snprintf(path, sizeof path, "/proc/%d/task", pid);
+        if (pid != 0 && access(path, F_OK) != 0) {
+            atomic_store(&w->sim->program[i], 0);
+        }
+    }
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        struct sim_slot *const slot = &w->sim->slot[i];
+        char                   path[96];
+        (void)snprintf(path, sizeof path, "/proc/%d/task/%d", atomic_load(&slot->pid),
+                       atomic_load(&slot->tid));
+        if (atomic_load(&slot->state) != SIM_FREE && access(path, F_OK) != 0) {
+            atomic_store(&slot->state, SIM_FREE);
+        }
+    }
+    w->listed = true;
+}
+
+// How often a sleeping task has run so far; -1: it does not sleep. Zombies sleep well.
+static long look(const struct task *const t, bool *const gone)
+{
+    char          text[4096];
+    const ssize_t n = pread(t->stat_fd, text, sizeof text - 1, 0);
+    if (n <= 0) {
+        *gone = true;
+        return -1;
+    }
+    text[n] = '\0';
+    if (t->runs_fd < 0) {
+        const char *const state = strstr(text, "State:\t");
+        const char *const by    = strstr(text, "voluntary_ctxt_switches:");
+        const char *const not   = strstr(text, "nonvoluntary_ctxt_switches:");
+        if (state == NULL || by == NULL || not == NULL || strchr("SZX", state[7]) == NULL) {
+            return -1;
+        }
+        return strtol(strchr(by, ':') + 1, NULL, 10) + strtol(strchr(not, ':') + 1, NULL, 10);
+    }
+    const char *const paren = strrchr(text, ')');
+    if (paren == NULL || strchr("SZX", paren[2]) == NULL) {
+        return -1;
+    }
+    long long     ran    = 0;
+    long long     waited = 0;
+    long          runs   = -1;
+    char          counts[128];
+    const ssize_t m       = pread(t->runs_fd, counts, sizeof counts - 1, 0);
+    counts[m > 0 ? m : 0] = '\0';
+    return sscanf(counts, "%lld %lld %ld", &ran, &waited, &runs) == 3 ? runs : -1;
+}
+
+// A sleeper is woken by nobody but us.
+static bool sleeps_by_clock(const struct watch *const w, const struct task *const t)
+{
+    return t->slot >= 0 && atomic_load(&w->sim->slot[t->slot].state) == SIM_SLEEPING;
+}
+
+// True when every thread slept all the while between two looks at all of them: then at one moment
+// all slept, and what sleeps together is woken by the clock alone.
+static bool all_sleep(struct watch *const w)
+{
+    bool gone = false;
+    for (size_t i = 0; i < w->tasks; i++) {
+        struct task *const t = &w->task[i];
+        if (t->slot < 0) {
+            t->slot = slot_of(w->sim, t->tid);
+        }
+        t->runs = sleeps_by_clock(w, t) ? -2 : look(t, &gone);
+        if (t->runs == -1) {
+            // Looked at first the next time: it is the likeliest to run still.
+            const struct task busy = *t;
+            *t                     = w->task[0];
+            w->task[0]             = busy;
+            w->listed &= !gone;
+            return false;
+        }
+    }
+    for (size_t i = 0; i < w->tasks; i++) {
+        const struct task *const t = &w->task[i];
+        if (t->runs == -2 ? !sleeps_by_clock(w, t) : look(t, &gone) != t->runs) {
+            w->listed &= !gone;
+            return false;
+        }
+    }
+    return w->threads == atomic_load(&w->sim->threads);
+}
+
+// Until that many waits have begun, or a moment of real time has passed.
+static void wait_for_turns(struct watch *const w, const uint32_t wanted, const long moment_ns)
+{
+    const struct timespec wait = { .tv_nsec = moment_ns };
+    atomic_store(&w->sim->wanted, wanted);
+    const uint32_t turns = atomic_load(&w->sim->turns);
+    if ((int32_t)(wanted - turns) > 0) {
+        (void)syscall(SYS_futex, &w->sim->turns, FUTEX_WAIT, turns, &wait, NULL, 0);
+    }
+}
+
+// Until every thread of every program sleeps and no byte is on its way.
+static void settle(struct watch *const w, const uint32_t turns, const uint32_t woken)
+{
+    // That we run at all says that no program does.
+    if (w->one_cpu) {
+        return;
+    }
+    const int64_t began_ns = real_ns();
+    // Those that were woken come back to sleep, most of the time.
+    wait_for_turns(w, turns + woken, SELDOM_ns);
+    for (long moment_ns = LOOK_ns;; moment_ns = moment_ns < SELDOM_ns ? 2 * moment_ns : SELDOM_ns) {
+        if (!w->listed || w->threads != atomic_load(&w->sim->threads)) {
+            list_tasks(w);
+        }
+        const uint32_t looked = atomic_load(&w->sim->turns);
+        if (all_sleep(w)) {
+            const int64_t flying = atomic_load(&w->sim->flying_bytes);
+            if (flying == 0) {
+                return;
+            }
+            if (real_ns() - began_ns > FLIGHT_ns) {
+                atomic_fetch_sub(&w->sim->flying_bytes, flying);
+                return;
+            }
+        }
+        if (real_ns() - began_ns > STUCK_ns) {
+            (void)fprintf(stderr, "simclock: a program computes on and on\n");
+            exit(3);
+        }
+        wait_for_turns(w, looked + 1, moment_ns);
+    }
+}
+
+static void wake_poller(struct watch *const w, const int i)
+{
+    if (w->pipe_fd[i] < 0) {
+        char path[512];
+        (void)snprintf(path, sizeof path, "%.480s.%d", w->path, i);
+        w->pipe_fd[i] = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    }
+    (void)!write(w->pipe_fd[i], "", 1);
+}
+
+// To the next waits that end, or to the end of what is to pass.
+static void step(struct watch *const w, const int64_t end_ns)
+{
+    struct sim *const sim     = w->sim;
+    int64_t           next_ns = end_ns;
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        const uint32_t state = atomic_load(&sim->slot[i].state);
+        const int64_t  due   = atomic_load(&sim->slot[i].due_ns);
+        if (state >= SIM_SLEEPING && due < next_ns) {
+            next_ns = due;
+        }
+    }
+    int64_t to_ns = next_ns;
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        const uint32_t state = atomic_load(&sim->slot[i].state);
+        const int64_t  due   = atomic_load(&sim->slot[i].due_ns);
+        if (state >= SIM_SLEEPING && due > to_ns && due <= next_ns + SLACK_ns && due <= end_ns) {
+            to_ns = due;
+        }
+    }
+    if (to_ns > atomic_load(&sim->now_ns)) {
+        atomic_store(&sim->now_ns, to_ns);
+    }
+    const uint32_t turns = atomic_load(&sim->turns);
+    uint32_t       woken = 0;
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        struct sim_slot *const slot  = &sim->slot[i];
+        uint32_t               state = atomic_load(&slot->state);
+        if (state < SIM_SLEEPING || atomic_load(&slot->due_ns) > to_ns ||
+            !atomic_compare_exchange_strong(&slot->state, &state, SIM_RUNNING)) {
+            continue;
+        }
+        woken++;
+        if (state == SIM_POLLING) {
+            wake_poller(w, i);
+        } else if (syscall(SYS_futex, &slot->state, FUTEX_WAKE, 1, NULL, NULL, 0) == 0) {
+            w->listed = false; // not asleep yet, or no more
+            if (w->one_cpu) {
+                list_tasks(w);
+            }
+        }
+    }
+    settle(w, turns, woken);
+}
+
+static int fail(const char *const what, const char *const path)
+{
+    (void)fprintf(stderr, "simclock: %s %s: %s\n", what, path, strerror(errno));
+    return 2;
+}
+
+static int begin(const char *const path)
+{
+    const int fd = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
+    if (fd < 0 || ftruncate(fd, sizeof(struct sim)) != 0) {
+        return fail("cannot make", path);
+    }
+    const int64_t at_ns = SIM_BEGINS_ns;
+    const bool    wrote = pwrite(fd, &at_ns, sizeof at_ns, 0) == (ssize_t)sizeof at_ns;
+    (void)close(fd);
+    return wrote ? 0 : fail("cannot write", path);
+}
+
+static bool has_joined(const struct sim *const sim, const int pid)
+{
+    for (int i = 0; i < SIM_PROGRAMS; i++) {
+        if (atomic_load(&sim->program[i]) == pid) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static int usage(void)
+{
+    (void)fprintf(stderr,
+                  "usage: DIG_SIMCLOCK=FILE simclock begin|now|joined PID|pass SECONDS|await "
+                  "PID SECONDS\n");
+    return 2;
+}
+
+int main(const int argc, char *argv[])
+{
+    static struct watch w;
+    const char *const   what = argc > 1 ? argv[1] : "";
+    w.path                   = getenv("DIG_SIMCLOCK");
+    w.one_cpu                = getenv("DIG_SIMCLOCK_ONE_CPU") != NULL;
+    if (w.path == NULL) {
+        return usage();
+    }
+    if (strcmp(what, "begin") == 0) {
+        return begin(w.path);
+    }
+    const int fd = open(w.path, O_RDWR | O_CLOEXEC);
+    w.sim =
+        fd >= 0 ? mmap(NULL, sizeof *w.sim, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0) : MAP_FAILED;
+    if (w.sim == MAP_FAILED) {
+        return fail("cannot use", w.path);
+    }
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        w.pipe_fd[i] = -1;
+    }
+    const int     pid    = argc > 2 ? (int)strtol(argv[2], NULL, 10) : 0;
+    const int64_t now_ns = atomic_load(&w.sim->now_ns);
+    if (strcmp(what, "now") == 0) {
+        (void)printf("%.6f\n", 1e-9 * (double)(now_ns - SIM_BEGINS_ns));
+        return 0;
+    }
+    if (strcmp(what, "joined") == 0 && argc == 3) {
+        const int64_t latest_ns = real_ns() + STUCK_ns;
+        while (!has_joined(w.sim, pid) && !has_ended(pid)) {
+            const struct timespec wait = { .tv_nsec = 1000000 };
+            (void)nanosleep(&wait, NULL);
+            if (real_ns() > latest_ns) {
+                (void)fprintf(stderr, "simclock: program %d runs without preload.so\n", pid);
+                return 3;
+            }
+        }
+        return 0;
+    }
+    const bool awaits = strcmp(what, "await") == 0 && argc == 4;
+    if (!awaits && !(strcmp(what, "pass") == 0 && argc == 3)) {
+        return usage();
+    }
+    const int64_t end_ns = now_ns + (int64_t)(1e9 * strtod(argv[argc - 1], NULL));
+    settle(&w, 0, 0);
+    int64_t steps = 0;
+    while (atomic_load(&w.sim->now_ns) < end_ns && !(awaits && has_ended(pid))) {
+        const int64_t later_ns = atomic_load(&w.sim->now_ns) + NS_PER_S / 100;
+        step(&w, awaits && later_ns < end_ns ? later_ns : end_ns);
+        steps++;
+    }
+    if (getenv("DIG_SIMCLOCK_STEPS") != NULL) {
+        (void)fprintf(stderr, "simclock: %lld steps\n", (long long)steps);
+    }
+    return awaits && !has_ended(pid) ? 1 : 0;
+}
