@@ -4,6 +4,7 @@
 #include "closed_loop/recordings/observe.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
+#include "estimator/predict/prediction.h"
 #include "files/lcm_log.h"
 #include "files/recording_csv.h"
 
