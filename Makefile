@@ -203,6 +203,15 @@ fuzz: ## Damaged files, frames and replies against every reader, under sanitizer
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
 	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
 
+FLIPS ?= 1000
+.PHONY: flips
+flips: $(BUILD)/tests/torture/flips ## FLIPS bits of every shipped table flipped, one at a time: refused, or nothing changes
+	$(Q)for t in tables/*.sqlite; do $(BUILD)/tests/torture/flips $$t $(FLIPS) $(FLIPS_SEED) || exit 1; done
+
+$(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
+
 $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))

@@ -196,7 +196,10 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     }
     enum dig_status status = dig_sql_setup(store->db, store->path, error);
     if (status == DIG_OK) {
-        status = dig_schema_tables(store->db, store->path, error);
+        status = dig_schema_tables(store->db, store->path, DIG_TABLE_VERSION, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_schema_number(store->db, store->path, error);
     }
     return status == DIG_OK ? fill(store, inputs, input, error) : status;
 }

@@ -44,6 +44,9 @@ static const char help_text[] =
     "  digtable check TABLE.sqlite [--complete] [--json]\n"
     "      version, integrity, and every curve against the runs it was made of; with --complete,\n"
     "      holes and missing packings fail too\n"
+    "  digtable seal TABLE.sqlite\n"
+    "      makes a table of an older version one that tells a flipped bit when it is read, after a "
+    "check\n"
     "  digtable --help | --version\n"
     "\n"
     "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n"
@@ -71,6 +74,7 @@ static const struct dig_command commands[] = {
       " friction rolling density depth attack-deg trajectory channel csv json " },
     { "import", dig_cli_import, 1, 1, "CURVES.csv", " map output " },
     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
+    { "seal", dig_cli_seal, 1, 1, "TABLE.sqlite", " " },
     { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs effects output " },
 };
 
