@@ -3,11 +3,13 @@
 #include "closed_loop/observe.h"
 #include "closed_loop/report.h"
 #include "closed_loop/score.h"
+#include "core/name.h"
 #include "estimator/estimator.h"
 #include "estimator/match.h"
 #include "files/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
+#include "files/whole.h"
 #include "tables/load.h"
 
 #include <getopt.h>
@@ -139,11 +141,27 @@ struct said {
     double            sigma_Nm[DIG_PREDICTION_POINTS];
 };
 
+// A log holds what anybody on the network sent.
+static bool are_finite(const size_t n, const double number[])
+{
+    size_t i = 0;
+    while (i < n && isfinite(number[i])) {
+        i++;
+    }
+    return i == n;
+}
+
 static void take_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
 {
     (void)time_us;
-    struct said *const said = context;
-    if (!m->valid || m->going_on || said->predicted) {
+    struct said *const said     = context;
+    const double       number[] = { m->friction,         m->rolling,         m->density_kgpm3,
+                                    m->friction_low,     m->rolling_low,     m->density_low_kgpm3,
+                                    m->friction_high,    m->rolling_high,    m->density_high_kgpm3,
+                                    m->nearest_friction, m->nearest_rolling, m->nearest_density_kgpm3,
+                                    m->distance };
+    if (!m->valid || m->going_on || said->predicted ||
+        !are_finite(sizeof number / sizeof number[0], number)) {
         return; // a later match is of a later dig
     }
     said->matched     = true;
@@ -165,7 +183,10 @@ static void take_prediction(void *const context, const int64_t time_us,
     (void)time_us;
     struct said *const said = context;
     if (!said->matched || said->predicted || !p->valid || p->points != DIG_PREDICTION_POINTS ||
-        strncmp(p->trajectory, "simple", 6) == 0) {
+        strncmp(p->trajectory, "simple", 6) == 0 || !dig_name_ok(p->trajectory) ||
+        !(p->from_progress >= 0.0 && p->from_progress < p->to_progress && p->to_progress <= 1.0) ||
+        !are_finite(DIG_PREDICTION_POINTS, p->moment_Nm) ||
+        !are_finite(DIG_PREDICTION_POINTS, p->sigma_Nm)) {
         return;
     }
     said->predicted = true;
@@ -393,14 +414,11 @@ static enum dig_status report(const struct options *const options, struct dig_er
         status = dig_report_html(all, options->html, error);
     }
     if (status == DIG_OK && options->json != NULL) {
-        FILE *const to = fopen(options->json, "w");
-        if (to == NULL) {
-            status = dig_error_set(error, DIG_EIO, "%s: cannot be written", options->json);
-            goto done;
-        }
-        dig_report_json(all, to);
-        if (fclose(to) != 0) {
-            status = dig_error_set(error, DIG_EIO, "%s: cannot be written", options->json);
+        struct dig_out out;
+        status = dig_out_open(&out, options->json, error);
+        if (status == DIG_OK) {
+            dig_report_json(all, out.file);
+            status = dig_out_commit(&out, error);
         }
     }
     if (status == DIG_OK) {
