@@ -1,7 +1,5 @@
 #include "files/lcm_layout.h"
 
-#include "core/text.h"
-
 #include <assert.h>
 
 #define FINGERPRINT_BYTES 8
@@ -11,16 +9,6 @@ static int64_t int32_at(const uint8_t data[])
     const uint32_t bits = ((uint32_t)data[0] << 24) | ((uint32_t)data[1] << 16) |
                           ((uint32_t)data[2] << 8) | (uint32_t)data[3];
     return bits <= INT32_MAX ? (int64_t)bits : (int64_t)bits - ((int64_t)1 << 32);
-}
-
-// Printable UTF-8 up to its NUL.
-static bool is_text(const char *const text, const size_t length)
-{
-    size_t at = 0;
-    for (size_t n; (n = dig_text_character(text + at)) > 0;) {
-        at += n;
-    }
-    return at == length;
 }
 
 // What the next field takes of the `left` bytes at data; false when its number cannot be. *count is
@@ -41,8 +29,7 @@ static bool field_bytes(const char field, const uint8_t data[], const size_t lef
     case 's':
         // A string ends with its NUL, which its length counts.
         *bytes = 4 + (size_t)number;
-        return number >= 1 && *bytes <= left && data[*bytes - 1] == '\0' &&
-               is_text((const char *)data + 4, (size_t)number - 1);
+        return number >= 1 && *bytes <= left && data[*bytes - 1] == '\0';
     default: assert(!"a layout has no such field"); return false;
     }
 }

@@ -11,7 +11,7 @@
 /// True when data of this size is exactly what layout describes, field by field behind the 8 bytes
 /// of the type's fingerprint:
 ///
-///   8  an int64_t or a double            s  a string: length with its NUL, then printable UTF-8
+///   8  an int64_t or a double            s  a string: length with its NUL, then the bytes
 ///   4  an int32_t; the arrays behind     D  an array of doubles, as many as the last 4 says
 ///      it have that many elements        B  an array of bytes, likewise
 ///   1  a byte or a boolean

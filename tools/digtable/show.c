@@ -1,5 +1,6 @@
 // digtable list, check, show and export.
 
+#include "core/text.h"
 #include "files/whole.h"
 #include "tables/export.h"
 #include "tables/listed.h"
@@ -70,10 +71,10 @@ int dig_cli_check(const struct dig_arguments *const a)
             report.points, report.entries, report.runs, report.holes, report.incomplete,
             report.effects, report.builds, report.approaches);
     } else {
-        (void)printf("%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
+        dig_text_put(stdout, a->positional[0]);
+        (void)printf(": sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
                      "entries with fewer packings",
-                     a->positional[0], report.points, report.entries, report.runs, report.holes,
-                     report.incomplete);
+                     report.points, report.entries, report.runs, report.holes, report.incomplete);
         if (report.effects > 0) {
             (void)printf("; %zu points with an effect", report.effects);
         }
@@ -93,7 +94,8 @@ int dig_cli_seal(const struct dig_arguments *const a)
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    (void)printf("%s: %s\n", a->positional[0], was ? "was sealed" : "sealed");
+    dig_text_put(stdout, a->positional[0]);
+    (void)puts(was ? ": was sealed" : ": sealed");
     return EXIT_DONE;
 }
 
