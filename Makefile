@@ -236,6 +236,11 @@ torture: all $(helpers) $(torture_made) ## kill -9, full disks, no memory, lying
 $(BUILD)/tests/torture/%.so: tests/torture/%.c
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D) && $(CC) -std=gnu11 -O2 -fPIC -shared $< -o $@ -ldl
+FLIPS ?= 1000
+.PHONY: flips
+flips: $(BUILD)/tests/torture/flips ## FLIPS bits of every shipped table flipped, one at a time: refused, or nothing changes
+	$(Q)for t in tables/*.sqlite; do $(BUILD)/tests/torture/flips $$t $(FLIPS) $(FLIPS_SEED) || exit 1; done
+
 $(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))

@@ -23,7 +23,11 @@ size_t dig_text_character(const char *const text)
     const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
     const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
                          (c[0] == 0xc2 && c[1] < 0xa0);
-    return overlong || surrogate || too_large || control ? 0 : n;
+    // Those that turn a line's direction make it read as another; U+FFFE and U+FFFF are none.
+    const bool turning = (c[0] == 0xe2 && c[1] == 0x80 && c[2] >= 0xaa && c[2] <= 0xae) ||
+                         (c[0] == 0xe2 && c[1] == 0x81 && c[2] >= 0xa6 && c[2] <= 0xa9);
+    const bool none = c[0] == 0xef && c[1] == 0xbf && c[2] >= 0xbe;
+    return overlong || surrogate || too_large || control || turning || none ? 0 : n;
 }
 
 void dig_text_clean(char text[])

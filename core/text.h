@@ -7,7 +7,8 @@
 #include <stdio.h>
 
 /// The bytes of the printable UTF-8 character at text, 1 to 4; 0 where none begins: at a byte that
-/// is not UTF-8, and at a control character, those from U+0080 to U+009F among them. A line break
+/// is not UTF-8, and at a control character, those from U+0080 to U+009F and those that turn the
+/// direction of writing among them. A line break
 /// and a tab count as printable.
 size_t dig_text_character(const char *text);
 

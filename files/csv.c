@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define ROWS_MAX ((size_t)1 << 22) // half a day at 100 Hz
+
 // What is being read, and where the reader stands.
 struct reader {
     const char                  *path;
@@ -117,6 +119,10 @@ static enum dig_status make_room(struct reader *const r)
 {
     if (r->csv.rows < r->room) {
         return DIG_OK;
+    }
+    if (r->room >= ROWS_MAX) {
+        return dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
+                             r->path, r->line, ROWS_MAX);
     }
     const size_t  room  = r->room == 0 ? 1024 : r->room * 2;
     double *const value = realloc(r->csv.value, room * r->columns * sizeof *value);

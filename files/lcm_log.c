@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,6 +133,9 @@ static const char match_layout[]      = "88114ss4888888888888888818s4DDDs8481188
 static const char prediction_layout[] = "8818s48884DDDD88188ss88DD";
 static const char health_layout[]     = "88sss1188888888888844888888888888884DDss8s444";
 
+#define TIME_MOST_ns ((int64_t)1 << 62) // of which differences can be taken
+#define ROWS_MAX     ((size_t)1 << 25)  // nine hours at a kilohertz
+
 struct rows {
     size_t             count, room;
     struct dig_sample *row;
@@ -154,9 +158,18 @@ static enum dig_status add_row(const struct reading *const r, const struct event
         status = dig_error_set(r->error, DIG_EINVAL,
                                "%s: event %" PRIu64 ": %d signals, expected %d to %d", r->path,
                                event->number, message.signals, least_signals, DIG_SIGNALS);
+    } else if (message.time_ns < 0 || message.time_ns > TIME_MOST_ns) {
+        status = dig_error_set(r->error, DIG_EINVAL,
+                               "%s: event %" PRIu64 ": time_ns %" PRId64 ", expected 0 to 2^62",
+                               r->path, event->number, message.time_ns);
     } else if (rows->count > 0 && message.time_ns <= rows->row[rows->count - 1].time_ns) {
         // A repetition, or a second daemon's: a recording ascends.
     } else {
+        if (rows->count >= ROWS_MAX) {
+            digsight_sample_t_decode_cleanup(&message);
+            return dig_error_set(r->error, DIG_EINVAL, "%s: more than %zu samples, expected fewer",
+                                 r->path, ROWS_MAX);
+        }
         if (rows->count == rows->room) {
             const size_t             room  = rows->room == 0 ? 1024 : 2 * rows->room;
             struct dig_sample *const grown = realloc(rows->row, room * sizeof *grown);
@@ -169,7 +182,7 @@ static enum dig_status add_row(const struct reading *const r, const struct event
         }
         struct dig_sample sample = { .time_ns = message.time_ns };
         for (int i = 0; i < message.signals; i++) {
-            sample.valid[i] = message.valid[i] != 0;
+            sample.valid[i] = message.valid[i] != 0 && isfinite(message.value[i]);
             sample.value[i] = sample.valid[i] ? message.value[i] : 0.0;
         }
         rows->row[rows->count++] = sample;

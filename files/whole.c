@@ -3,6 +3,8 @@
 
 #include "files/whole.h"
 
+#include "core/part.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <stdbool.h>
@@ -128,7 +130,7 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
     } else {
         memcpy(out->part, out->path, (size_t)length);
         memcpy(out->part + length, ".part", sizeof ".part");
-        out->file = fopen(out->part, "wb");
+        out->file = dig_part_open(out->part);
     }
     if (out->file == NULL) {
         const int why = errno;

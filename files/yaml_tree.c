@@ -54,14 +54,17 @@ static enum dig_status refuse_more(const char *const path, const char *const tex
 enum dig_status dig_yaml_parse(const char *const path, const char *const text, const size_t size,
                                yaml_document_t *const document, struct dig_error *const error)
 {
-    yaml_parser_t parser;
+    yaml_parser_t   parser;
+    enum dig_status status = dig_yaml_check_growth(path, text, size, error);
+    if (status != DIG_OK) {
+        return status;
+    }
     if (!yaml_parser_initialize(&parser)) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
 
     yaml_document_t loaded;
-    enum dig_status status;
     if (!yaml_parser_load(&parser, &loaded)) {
         status = refuse_syntax(path, text, size, &parser, error);
     } else if (yaml_document_get_root_node(&loaded) == NULL) {

@@ -9,8 +9,14 @@
 #include <cyaml/cyaml.h>
 #include <yaml.h>
 
+/// Refuses a text that its aliases make grow without bounds, or that nests without: 100000 values
+/// that aliases stand for, 64 deep. What is no YAML passes. O(size).
+DIG_MUST_CHECK enum dig_status dig_yaml_check_growth(const char *path, const char *text,
+                                                     size_t size, struct dig_error *error);
+
 /// Parses text, the content of path, into *document (free with yaml_document_delete()). Refuses
-/// syntax errors, an empty text and a second document, with file and line.
+/// syntax errors, an empty text, a second document, and what dig_yaml_check_growth() does, with
+/// file and line.
 DIG_MUST_CHECK enum dig_status dig_yaml_parse(const char *path, const char *text, size_t size,
                                               yaml_document_t *document, struct dig_error *error);
 

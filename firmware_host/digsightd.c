@@ -1,5 +1,6 @@
 // digsightd: reads a machine's bus, identifies the gravel, publishes what it will resist with.
 
+#include "core/text.h"
 #include "firmware_host/daemon.h"
 
 #include <getopt.h>
@@ -33,25 +34,34 @@ static const char help[] =
     "  digsightd -c config/digsightd_can.yaml\n"
     "  lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm    # record it\n";
 
+// Lines name files and what stands in them: nothing of that may command a terminal.
+static void put(FILE *const to, const char *const before, const char *const line,
+                const char *const behind)
+{
+    (void)fputs(before, to);
+    dig_text_put(to, line);
+    (void)fputs(behind, to);
+}
+
 static void say(const char *const line)
 {
-    (void)fprintf(stderr, "digsightd: %s\n", line);
+    put(stderr, "digsightd: ", line, "\n");
 }
 
 // On a terminal the last line shows where things stand; a line that is said goes above it.
 static void say_above(const char *const line)
 {
-    (void)fprintf(stderr, "\r\033[Kdigsightd: %s\n", line);
+    put(stderr, "\r\033[Kdigsightd: ", line, "\n");
 }
 
 static void show(const char *const line)
 {
-    (void)fprintf(stderr, "\r\033[K%s", line);
+    put(stderr, "\r\033[K", line, "");
 }
 
 static void print(const char *const line)
 {
-    (void)printf("%s\n", line);
+    put(stdout, "", line, "\n");
 }
 
 static int fail(const enum dig_status status, const struct dig_error *const error)

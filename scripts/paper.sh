@@ -45,7 +45,7 @@ tee -a "$out/paper.txt" <"$out/shapes.txt"
 cp "$table" "$out/without.sqlite"
 chmod u+w "$out/without.sqlite"
 where="SELECT id FROM ground WHERE abs(friction - .7) < 1e-9 OR abs(rolling - .7) < 1e-9"
-sqlite3 "$out/without.sqlite" "DELETE FROM entry WHERE ground IN ($where); DELETE FROM run WHERE ground IN ($where);
+sqlite3 "$out/without.sqlite" "DELETE FROM seal WHERE ground IN ($where); DELETE FROM entry WHERE ground IN ($where); DELETE FROM run WHERE ground IN ($where);
     DELETE FROM ground WHERE abs(friction - .7) < 1e-9 OR abs(rolling - .7) < 1e-9; VACUUM"
 one() { sed -nE "s/.*\"$1\": ([a-z0-9.e+-]+).*/\1/p" "$2" | head -n 1; }
 : >"$out/objects.txt"

@@ -1,6 +1,4 @@
-// A scene read back from its canonical text.
-
-#include "tables/scene.h"
+#include "tables/canonical_scene.h"
 
 #include <assert.h>
 #include <math.h>

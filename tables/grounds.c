@@ -13,7 +13,8 @@
 #pragma GCC diagnostic ignored "-Wanalyzer-use-of-uninitialized-value"
 #endif
 
-#define GROUNDS_MAX 1000000
+#define GROUNDS_MAX  1000000
+#define PACKINGS_MAX 1000000
 
 // Of the curve's own rms, where no entry of the table has a second packing: about what one dig
 // differs from the mean in the reference digs (relative L2 of two runs .13 to .35, over root two).
@@ -160,18 +161,18 @@ static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *co
     struct dig_grounds *const g          = l->into;
     const sqlite3_int64       ground     = sqlite3_column_int64(s, 0);
     const sqlite3_int64       trajectory = sqlite3_column_int64(s, 1);
-    const int                 packings   = sqlite3_column_int(s, 2);
+    const sqlite3_int64       packings   = sqlite3_column_int64(s, 2);
 
     // Rows come in the order the grounds were made, which is seldom far from ours.
     const size_t at =
         *hint < g->grounds && g->ground[*hint].id == ground ? *hint : index_of(g, ground);
     *hint = at;
     if (at >= g->grounds || trajectory < 0 || trajectory >= (sqlite3_int64)g->trajectories ||
-        packings < 1) {
+        packings < 1 || packings > PACKINGS_MAX) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: entry: expected a ground and a trajectory of the table, "
-                             "packings > 0",
-                             l->path);
+                             "packings 1 to %d",
+                             l->path, PACKINGS_MAX);
     }
     const size_t            entry = at * g->trajectories + (size_t)trajectory;
     struct dig_curve *const curve = &g->curve[entry];
@@ -181,7 +182,7 @@ static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *co
                              "%s: entry.mean, entry.spread: expected %d finite float32 each",
                              l->path, DIG_CHANNELS * DIG_CURVE_POINTS);
     }
-    g->packings[entry] = packings;
+    g->packings[entry] = (int)packings;
     return DIG_OK;
 }
 

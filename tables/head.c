@@ -3,13 +3,17 @@
 #include "core/approach.h"
 #include "core/name.h"
 #include "core/sha256.h"
-#include "tables/scene.h"
+#include "tables/canonical_scene.h"
 #include "tables/schema.h"
+#include "tables/seal.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define SMOOTH_MOST_s 60.0
 
 // The one integer a PRAGMA answers.
 static enum dig_status pragma_int(sqlite3 *const db, const char *const path, const char *const sql,
@@ -42,9 +46,9 @@ static enum dig_status check_identity(sqlite3 *const db, const char *const path,
                              "%s: not a digsight table (application_id %d, expected %d)", path, id,
                              DIG_TABLE_APPLICATION_ID);
     }
-    if (*version != DIG_TABLE_VERSION && *version != DIG_TABLE_VERSION_PLAIN) {
+    if (*version < DIG_TABLE_VERSION_PLAIN || *version > DIG_TABLE_VERSION) {
         return dig_error_set(error, DIG_ESCHEMA,
-                             "%s: user_version: table format %d, expected %d or %d as this program "
+                             "%s: user_version: table format %d, expected %d to %d as this program "
                              "knows them (the digtable generate command that made the table makes "
                              "it anew)",
                              path, *version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
@@ -96,6 +100,11 @@ static bool column_name(sqlite3_stmt *const s, const int column, char name[const
     return true;
 }
 
+static bool positive(const double value)
+{
+    return value > 0.0 && isfinite(value);
+}
+
 static enum dig_status damaged(const char *const path, const char *const what,
                                struct dig_error *const error)
 {
@@ -118,14 +127,14 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
         (void)sqlite3_finalize(s);
         return damaged(path, "scene: no row, expected one", error);
     }
-    const char *const hash   = (const char *)sqlite3_column_text(s, 1);
-    const char *const text   = (const char *)sqlite3_column_text(s, 2);
-    enum dig_status   status = DIG_OK;
-    head->tooth_m            = sqlite3_column_double(s, 3);
-    head->bucket_width_m     = sqlite3_column_double(s, 4);
-    head->young_Pa           = sqlite3_column_double(s, 5);
-    head->smooth_half_s      = sqlite3_column_double(s, 6);
-    const int points         = sqlite3_column_int(s, 7);
+    const char *const hash     = (const char *)sqlite3_column_text(s, 1);
+    const char *const text     = (const char *)sqlite3_column_text(s, 2);
+    enum dig_status   status   = DIG_OK;
+    head->tooth_m              = sqlite3_column_double(s, 3);
+    head->bucket_width_m       = sqlite3_column_double(s, 4);
+    head->young_Pa             = sqlite3_column_double(s, 5);
+    head->smooth_half_s        = sqlite3_column_double(s, 6);
+    const sqlite3_int64 points = sqlite3_column_int64(s, 7);
 
     char actual[65] = "";
     if (text != NULL) {
@@ -137,12 +146,13 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",
                                path, hash != NULL ? hash : "nothing", actual);
-    } else if (!(head->tooth_m > 0.0) || !(head->bucket_width_m > 0.0) || !(head->young_Pa > 0.0) ||
-               !(head->smooth_half_s >= 0.0)) {
+    } else if (!positive(head->tooth_m) || !positive(head->bucket_width_m) ||
+               !positive(head->young_Pa) ||
+               !(head->smooth_half_s >= 0.0 && head->smooth_half_s <= SMOOTH_MOST_s)) {
         status = damaged(path, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0", error);
     } else if (points != DIG_CURVE_POINTS) {
-        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %d, expected %d", path,
-                               points, DIG_CURVE_POINTS);
+        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %lld, expected %d", path,
+                               (long long)points, DIG_CURVE_POINTS);
     } else {
         memcpy(head->scene_hash, hash, sizeof head->scene_hash);
         *canonical = malloc(strlen(text) + 1);
@@ -171,8 +181,8 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
     enum dig_status status = DIG_OK;
     int             step;
     while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
-        const int id     = sqlite3_column_int(s, 0);
-        const int number = sqlite3_column_int(s, 5);
+        const sqlite3_int64 id     = sqlite3_column_int64(s, 0);
+        const sqlite3_int64 number = sqlite3_column_int64(s, 5);
         if (number == 0) {
             head->trajectories++;
         }
@@ -180,8 +190,8 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
             head->trajectories >= 1 && head->trajectories <= DIG_TRAJECTORY_MAX
                 ? &head->trajectory[head->trajectories - 1]
                 : NULL;
-        if (t == NULL || id != (int)head->trajectories - 1 || number >= DIG_PHASES_MAX ||
-            number != (int)t->phases || !column_name(s, 1, t->name) ||
+        if (t == NULL || id != (sqlite3_int64)head->trajectories - 1 || number >= DIG_PHASES_MAX ||
+            number != (sqlite3_int64)t->phases || !column_name(s, 1, t->name) ||
             !column_name(s, 6, t->phase[t->phases].name)) {
             status = damaged(path, "trajectory: expected rows numbered from 0, with their phases",
                              error);
@@ -195,8 +205,11 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
         p->vx_mps                 = sqlite3_column_double(s, 8);
         p->vz_mps                 = sqlite3_column_double(s, 9);
         p->omega_radps            = sqlite3_column_double(s, 10);
-        if (!(p->duration_s > 0.0)) {
+        if (!positive(p->duration_s)) {
             status = damaged(path, "phase.duration_s: expected > 0", error);
+        } else if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m) ||
+                   !isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
+            status = damaged(path, "trajectory, phase: expected finite numbers", error);
         }
     }
     if (status == DIG_OK && step != SQLITE_DONE) {
@@ -245,6 +258,9 @@ enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
     char                 *canonical = NULL;
     enum dig_status       status    = check_identity(db, path, &read.version, error);
     if (status == DIG_OK) {
+        status = dig_schema_compare(db, path, read.version, error);
+    }
+    if (status == DIG_OK) {
         status = check_integrity(db, path, error);
     }
     if (status == DIG_OK) {
@@ -263,6 +279,9 @@ enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
     free(canonical);
     if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {
         status = dig_schema_view(db, path, "main", "ground", error);
+    }
+    if (status == DIG_OK && read.version >= DIG_TABLE_VERSION) {
+        status = dig_seal_check(db, path, error);
     }
     if (status == DIG_OK) {
         *head = read;

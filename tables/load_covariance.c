@@ -89,7 +89,7 @@ static enum dig_status read_run(sqlite3_stmt *const s, const char *const path,
     if (trajectory < 0 || trajectory >= (sqlite3_int64)head->trajectories || windows < 2 ||
         windows > DIG_WINDOWS_MAX || bytes == NULL ||
         sqlite3_column_bytes(s, 5) != (int)windows * DIG_CHANNELS * 4 || !(step_s > 0.0) ||
-        !isfinite(first_s)) {
+        !isfinite(step_s) || !isfinite(first_s)) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s: run: expected a trajectory of the table and %d float32 for each "
                              "of its windows",

@@ -23,11 +23,7 @@ enum dig_status dig_table_list(const char *const path, struct dig_curve_set **co
     }
     struct dig_curve_set  *set    = NULL;
     struct dig_effect_set *varied = NULL;
-    // One transaction, so that a writer's commit cannot fall between two statements.
-    status = dig_sql_run(db, path, "BEGIN", error);
-    if (status == DIG_OK) {
-        status = dig_sql_load(db, path, &head, &set, error);
-    }
+    status                        = dig_sql_load(db, path, &head, &set, error);
     if (status == DIG_OK && set != NULL) {
         status = dig_sql_load_covariance(db, path, &head, set, error);
     }

@@ -1,8 +1,10 @@
 #include "tables/merge.h"
 
+#include "core/part.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +49,26 @@ static enum dig_status run(struct dig_store *const store, const char *const sql,
     return dig_sql_run(store->db, store->path, sql, error);
 }
 
+#define URI_SIZE ((size_t)3 * PATH_MAX + 32)
+
+// "file:PATH?mode=MODE", every byte that means something in it as %XX. What is longer no system
+// opens.
+static void uri_of(const char *const path, const char *const mode, char uri[const URI_SIZE])
+{
+    static const char plain[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+    size_t used = strlen(path[0] == '/' ? "file://" : "file:./");
+    memcpy(uri, path[0] == '/' ? "file://" : "file:./", used + 1);
+    for (size_t i = 0; path[i] != '\0' && i < PATH_MAX; i++) {
+        if (strchr(plain, path[i]) != NULL) {
+            uri[used++] = path[i];
+        } else {
+            used += (size_t)snprintf(uri + used, URI_SIZE - used, "%%%02X", (unsigned char)path[i]);
+        }
+    }
+    (void)snprintf(uri + used, URI_SIZE - used, "?mode=%s", mode);
+}
+
 static enum dig_status attach(struct dig_store *const store, const char *const input,
                               struct dig_error *const error)
 {
@@ -54,7 +76,9 @@ static enum dig_status attach(struct dig_store *const store, const char *const i
     if (sqlite3_prepare_v2(store->db, "ATTACH ?1 AS src", -1, &s, NULL) != SQLITE_OK) {
         return dig_sql_refuse(store->db, store->path, error);
     }
-    (void)sqlite3_bind_text(s, 1, input, -1, SQLITE_STATIC);
+    char uri[URI_SIZE];
+    uri_of(input, "ro", uri);
+    (void)sqlite3_bind_text(s, 1, uri, -1, SQLITE_STATIC);
     const enum dig_status status =
         sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, input, error);
     (void)sqlite3_finalize(s);
@@ -188,15 +212,23 @@ static enum dig_status check_inputs(struct dig_store *const store, const size_t 
 static enum dig_status merge_into(struct dig_store *const store, const size_t inputs,
                                   const char *const input[const], struct dig_error *const error)
 {
-    (void)unlink(store->path);
-    if (sqlite3_open_v2(store->path, &store->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
-                        NULL) != SQLITE_OK) {
+    FILE *const made = dig_part_open(store->path);
+    if (made == NULL || fclose(made) != 0) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+    }
+    char uri[URI_SIZE];
+    uri_of(store->path, "rw", uri);
+    if (sqlite3_open_v2(uri, &store->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_URI, NULL) !=
+        SQLITE_OK) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path,
                              store->db != NULL ? sqlite3_errmsg(store->db) : "no memory");
     }
     enum dig_status status = dig_sql_setup(store->db, store->path, error);
     if (status == DIG_OK) {
-        status = dig_schema_tables(store->db, store->path, error);
+        status = dig_schema_tables(store->db, store->path, DIG_TABLE_VERSION, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_schema_number(store->db, store->path, error);
     }
     return status == DIG_OK ? fill(store, inputs, input, error) : status;
 }

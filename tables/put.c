@@ -1,6 +1,8 @@
 // A run in, with the entry it changes: the half of the store that writes rows.
 
 #include "core/effect.h"
+#include "core/name.h"
+#include "tables/seal.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
 
@@ -31,6 +33,13 @@ static enum dig_status check_origin(const struct dig_run_origin *const o,
     if (!isfinite(o->magnitude) || (plain && fabs(o->magnitude) > 0.0)) {
         return dig_error_set(error, DIG_EINVAL, "run: magnitude %g of effect \"%s\", expected %s",
                              o->magnitude, o->effect, plain ? "0" : "a finite one");
+    }
+    if (!dig_label_ok(o->engine) || !dig_label_ok(o->version) ||
+        (o->made_utc[0] != '\0' && !dig_label_ok(o->made_utc))) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "run: engine \"%s\", version \"%s\", made \"%s\", "
+                             "expected " DIG_LABEL_RULE,
+                             o->engine, o->version, o->made_utc);
     }
     const struct dig_approach told = dig_approach_told(&o->approach);
     if (!(told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST) ||
@@ -205,6 +214,9 @@ enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_i
     if (status == DIG_OK) {
         status = write_entry(store, ground, trajectory, ensemble, error);
     }
+    if (status == DIG_OK) {
+        status = dig_seal_write(store->db, store->path, ground, trajectory, error);
+    }
     free(ensemble);
     return status;
 }
@@ -230,13 +242,14 @@ static enum dig_status put_in_transaction(struct dig_store *const            sto
                             : status;
 }
 
-// The first run added to a table from before digs had an approach makes it one of today's.
+// The first run added to a table of an older version makes it one of today's.
 static enum dig_status bring_up(struct dig_store *const store, struct dig_error *const error)
 {
     if (store->head.version == DIG_TABLE_VERSION) {
         return DIG_OK;
     }
-    const enum dig_status status = dig_schema_upgrade(store->db, store->path, error);
+    const enum dig_status status =
+        dig_schema_upgrade(store->db, store->path, store->head.version, error);
     if (status == DIG_OK) {
         store->head.version = DIG_TABLE_VERSION;
     }

@@ -1,5 +1,6 @@
 // Runs out, and the entries they make: the half of the store that reads rows.
 
+#include "core/name.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
 
@@ -80,12 +81,14 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     return status;
 }
 
-// Copies a text column, cut to fit: provenance is for people.
-static void column_text(sqlite3_stmt *const s, const int column, const size_t size,
-                        char text[const])
+// Copies a text column, cut to fit: provenance is for people. False when it holds what no label
+// may, which an export would take for a field's end.
+static bool column_label(sqlite3_stmt *const s, const int column, const size_t size,
+                         char text[const])
 {
     const char *const found = (const char *)sqlite3_column_text(s, column);
     (void)snprintf(text, size, "%s", found != NULL ? found : "");
+    return text[0] == '\0' || dig_label_ok(found);
 }
 
 #define RUN_COLUMNS                                                                                \
@@ -107,23 +110,29 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
     o->packing                     = (size_t)packing;
     o->trajectory                  = (size_t)trajectory;
     o->seed                        = (uint64_t)sqlite3_column_int64(s, 5);
-    column_text(s, 6, sizeof o->engine, o->engine);
-    column_text(s, 7, sizeof o->version, o->version);
-    o->grains = (size_t)sqlite3_column_int64(s, 8);
-    o->wall_s = sqlite3_column_double(s, 9);
-    column_text(s, 10, sizeof o->made_utc, o->made_utc);
-    column_text(s, 15, sizeof o->effect, o->effect);
-    o->magnitude = sqlite3_column_double(s, 16);
+    bool labels                    = column_label(s, 6, sizeof o->engine, o->engine);
+    labels                         = column_label(s, 7, sizeof o->version, o->version) && labels;
+    labels                         = column_label(s, 10, sizeof o->made_utc, o->made_utc) && labels;
+    labels                         = column_label(s, 15, sizeof o->effect, o->effect) && labels;
+    o->grains                      = (size_t)sqlite3_column_int64(s, 8);
+    o->wall_s                      = sqlite3_column_double(s, 9);
+    o->magnitude                   = sqlite3_column_double(s, 16);
     o->approach =
         (struct dig_approach){ sqlite3_column_double(s, 17), sqlite3_column_double(s, 18) };
     run->first_s = sqlite3_column_double(s, 12);
     run->step_s  = sqlite3_column_double(s, 13);
 
+    if (!labels) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: run: engine \"%s\", version \"%s\", made_utc \"%s\", "
+                             "expected " DIG_LABEL_RULE,
+                             store->path, o->engine, o->version, o->made_utc);
+    }
     const uint8_t *const bytes = sqlite3_column_blob(s, 14);
     const int            size  = sqlite3_column_bytes(s, 14);
     if (packing < 0 || trajectory < 0 || trajectory >= (sqlite3_int64)store->head.trajectories ||
         windows < 2 || windows > DIG_WINDOWS_MAX || size != (int)windows * DIG_CHANNELS * 4 ||
-        !(run->step_s > 0.0) || !isfinite(run->first_s)) {
+        !(run->step_s > 0.0) || !isfinite(run->step_s) || !isfinite(run->first_s)) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s: run.curve: %d bytes for %lld windows, expected %d each",
                              store->path, size, (long long)windows, DIG_CHANNELS * 4);

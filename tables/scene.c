@@ -1,10 +1,9 @@
 #include "tables/scene.h"
 
+#include "tables/canonical_scene.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static enum dig_status read_canonical(sqlite3 *const db, const char *const path,

@@ -13,8 +13,4 @@
 DIG_MUST_CHECK enum dig_status dig_table_scene(const char *path, struct dig_scene *scene,
                                                struct dig_error *error);
 
-/// The same out of the canonical text (core/scene.h), but for name and trajectories, which are left
-/// alone. A number that is not there becomes NaN.
-void dig_scene_from_canonical(const char *canonical, struct dig_scene *scene);
-
 #endif // DIG_TABLES_SCENE_H

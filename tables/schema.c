@@ -1,65 +1,78 @@
 #include "tables/schema.h"
 
 #include "core/sha256.h"
+#include "tables/seal.h"
 
 #include <assert.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char schema_sql[] =
-    "CREATE TABLE scene ("
-    "  id INTEGER PRIMARY KEY CHECK (id = 1),"
-    "  name TEXT NOT NULL,"
-    "  hash TEXT NOT NULL CHECK (length(hash) = 64),"
-    "  canonical TEXT NOT NULL,"
-    "  tooth_m REAL NOT NULL,"
-    "  bucket_width_m REAL NOT NULL,"
-    "  young_Pa REAL NOT NULL,"
-    "  smooth_half_s REAL NOT NULL,"
-    "  points INTEGER NOT NULL"
-    ") STRICT;"
-    "CREATE TABLE trajectory ("
+// What all versions have alike.
+static const char common_sql[] = "CREATE TABLE scene ("
+                                 "  id INTEGER PRIMARY KEY CHECK (id = 1),"
+                                 "  name TEXT NOT NULL,"
+                                 "  hash TEXT NOT NULL CHECK (length(hash) = 64),"
+                                 "  canonical TEXT NOT NULL,"
+                                 "  tooth_m REAL NOT NULL,"
+                                 "  bucket_width_m REAL NOT NULL,"
+                                 "  young_Pa REAL NOT NULL,"
+                                 "  smooth_half_s REAL NOT NULL,"
+                                 "  points INTEGER NOT NULL"
+                                 ") STRICT;"
+                                 "CREATE TABLE trajectory ("
+                                 "  id INTEGER PRIMARY KEY,"
+                                 "  name TEXT NOT NULL UNIQUE,"
+                                 "  theta0_rad REAL NOT NULL,"
+                                 "  start_x_m REAL NOT NULL,"
+                                 "  start_z_m REAL NOT NULL"
+                                 ") STRICT;"
+                                 "CREATE TABLE phase ("
+                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+                                 "  number INTEGER NOT NULL,"
+                                 "  name TEXT NOT NULL,"
+                                 "  duration_s REAL NOT NULL,"
+                                 "  vx_mps REAL NOT NULL,"
+                                 "  vz_mps REAL NOT NULL,"
+                                 "  omega_radps REAL NOT NULL,"
+                                 "  PRIMARY KEY (trajectory, number)"
+                                 ") STRICT;"
+                                 "CREATE TABLE run ("
+                                 "  id INTEGER PRIMARY KEY,"
+                                 "  ground INTEGER NOT NULL REFERENCES ground (id),"
+                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+                                 "  packing INTEGER NOT NULL CHECK (packing >= 0),"
+                                 "  seed INTEGER NOT NULL,"
+                                 "  engine TEXT NOT NULL,"
+                                 "  version TEXT NOT NULL,"
+                                 "  grains INTEGER NOT NULL,"
+                                 "  windows INTEGER NOT NULL CHECK (windows >= 2),"
+                                 "  first_s REAL NOT NULL,"
+                                 "  step_s REAL NOT NULL CHECK (step_s > 0),"
+                                 "  curve BLOB NOT NULL,"
+                                 "  made_utc TEXT NOT NULL,"
+                                 "  wall_s REAL NOT NULL,"
+                                 "  UNIQUE (ground, trajectory, packing)"
+                                 ") STRICT;"
+                                 "CREATE TABLE entry ("
+                                 "  ground INTEGER NOT NULL REFERENCES ground (id),"
+                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+                                 "  packings INTEGER NOT NULL CHECK (packings > 0),"
+                                 "  mean BLOB NOT NULL,"
+                                 "  spread BLOB CHECK ((spread IS NULL) = (packings = 1)),"
+                                 "  PRIMARY KEY (ground, trajectory)"
+                                 ") STRICT;";
+
+static const char plain_ground_sql[] =
+    "CREATE TABLE ground ("
     "  id INTEGER PRIMARY KEY,"
-    "  name TEXT NOT NULL UNIQUE,"
-    "  theta0_rad REAL NOT NULL,"
-    "  start_x_m REAL NOT NULL,"
-    "  start_z_m REAL NOT NULL"
-    ") STRICT;"
-    "CREATE TABLE phase ("
-    "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-    "  number INTEGER NOT NULL,"
-    "  name TEXT NOT NULL,"
-    "  duration_s REAL NOT NULL,"
-    "  vx_mps REAL NOT NULL,"
-    "  vz_mps REAL NOT NULL,"
-    "  omega_radps REAL NOT NULL,"
-    "  PRIMARY KEY (trajectory, number)"
-    ") STRICT;" DIG_GROUND_SQL("ground") "CREATE TABLE run ("
-                                         "  id INTEGER PRIMARY KEY,"
-                                         "  ground INTEGER NOT NULL REFERENCES ground (id),"
-                                         "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-                                         "  packing INTEGER NOT NULL CHECK (packing >= 0),"
-                                         "  seed INTEGER NOT NULL,"
-                                         "  engine TEXT NOT NULL,"
-                                         "  version TEXT NOT NULL,"
-                                         "  grains INTEGER NOT NULL,"
-                                         "  windows INTEGER NOT NULL CHECK (windows >= 2),"
-                                         "  first_s REAL NOT NULL,"
-                                         "  step_s REAL NOT NULL CHECK (step_s > 0),"
-                                         "  curve BLOB NOT NULL,"
-                                         "  made_utc TEXT NOT NULL,"
-                                         "  wall_s REAL NOT NULL,"
-                                         "  UNIQUE (ground, trajectory, packing)"
-                                         ") STRICT;"
-                                         "CREATE TABLE entry ("
-                                         "  ground INTEGER NOT NULL REFERENCES ground (id),"
-                                         "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-                                         "  packings INTEGER NOT NULL CHECK (packings > 0),"
-                                         "  mean BLOB NOT NULL,"
-                                         "  spread BLOB CHECK ((spread IS NULL) = (packings = 1)),"
-                                         "  PRIMARY KEY (ground, trajectory)"
-                                         ") STRICT;";
+    "  friction REAL NOT NULL,"
+    "  rolling REAL NOT NULL,"
+    "  density_kgpm3 REAL NOT NULL,"
+    "  effect TEXT NOT NULL,"
+    "  magnitude REAL NOT NULL CHECK (effect <> '' OR magnitude = 0),"
+    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude)"
+    ") STRICT;";
 
 enum dig_status dig_sql_refuse(sqlite3 *const db, const char *const path,
                                struct dig_error *const error)
@@ -84,16 +97,6 @@ enum dig_status dig_sql_run(sqlite3 *const db, const char *const path, const cha
 {
     return sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK ? DIG_OK
                                                                 : dig_sql_refuse(db, path, error);
-}
-
-enum dig_status dig_sql_setup(sqlite3 *const db, const char *const path,
-                              struct dig_error *const error)
-{
-    // A file from elsewhere may hold views and triggers: they shall not reach functions of ours.
-    (void)sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
-    (void)sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
-    (void)sqlite3_busy_timeout(db, 5000);
-    return dig_sql_run(db, path, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON;", error);
 }
 
 void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_head *const head)
@@ -173,14 +176,27 @@ static bool insert_trajectory(sqlite3 *const db, const int id, const struct dig_
     return done;
 }
 
-enum dig_status dig_schema_tables(sqlite3 *const db, const char *const path,
+enum dig_status dig_schema_tables(sqlite3 *const db, const char *const path, const int version,
+                                  struct dig_error *const error)
+{
+    static const char ground_sql[] = DIG_GROUND_SQL("ground");
+    enum dig_status   status       = dig_sql_run(db, path, common_sql, error);
+    if (status == DIG_OK) {
+        status = dig_sql_run(
+            db, path, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql, error);
+    }
+    return status == DIG_OK && version >= DIG_TABLE_VERSION
+               ? dig_sql_run(db, path, DIG_SEAL_SQL, error)
+               : status;
+}
+
+enum dig_status dig_schema_number(sqlite3 *const db, const char *const path,
                                   struct dig_error *const error)
 {
     char ids[128];
     (void)snprintf(ids, sizeof ids, "PRAGMA application_id = %d; PRAGMA user_version = %d;",
                    DIG_TABLE_APPLICATION_ID, DIG_TABLE_VERSION);
-    const enum dig_status status = dig_sql_run(db, path, schema_sql, error);
-    return status == DIG_OK ? dig_sql_run(db, path, ids, error) : status;
+    return dig_sql_run(db, path, ids, error);
 }
 
 enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
@@ -191,7 +207,10 @@ enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_schema_tables(db, path, error);
+    status = dig_schema_tables(db, path, DIG_TABLE_VERSION, error);
+    if (status == DIG_OK) {
+        status = dig_schema_number(db, path, error);
+    }
     if (status == DIG_OK && !insert_scene(db, scene)) {
         status = dig_sql_refuse(db, path, error);
     }

@@ -11,8 +11,9 @@
 #include <sqlite3.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
-#define DIG_TABLE_VERSION        3          // PRAGMA user_version
-#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack: every dig is plain
+#define DIG_TABLE_VERSION        4          // PRAGMA user_version
+#define DIG_TABLE_VERSION_BARE   3          // before seals: a flipped bit is found by a check alone
+#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack, too: every dig is plain
 #define DIG_CANONICAL_SIZE       16384      // eight trajectories of eight phases stay well below
 
 /// What was dug in, and how: the key of a dig but for its trajectory and packing.
@@ -46,7 +47,8 @@ void dig_table_head_of(const struct dig_scene *scene, struct dig_table_head *hea
 /// *error becomes "PATH: what SQLite says"; the status is that of a failed call.
 enum dig_status dig_sql_refuse(sqlite3 *db, const char *path, struct dig_error *error);
 
-/// Settings of every connection.
+/// Settings of every connection, before anything is read: a file from elsewhere is not trusted. It
+/// runs no triggers, views or functions of its own, nor has more, or larger, than a table needs.
 DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
                                              struct dig_error *error);
 
@@ -54,8 +56,12 @@ DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
 DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
                                            struct dig_error *error);
 
-/// Makes an empty database a table without rows.
-DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path,
+/// Makes an empty database a table of this version without rows; its number is not written.
+DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path, int version,
+                                                 struct dig_error *error);
+
+/// Writes application_id and user_version.
+DIG_MUST_CHECK enum dig_status dig_schema_number(sqlite3 *db, const char *path,
                                                  struct dig_error *error);
 
 /// Makes an empty database the table of this scene, in one transaction.
@@ -63,10 +69,15 @@ DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
                                                  const struct dig_scene *scene,
                                                  struct dig_error       *error);
 
+/// Refuses a file whose schema is not, word for word, that of a table of this version.
+DIG_MUST_CHECK enum dig_status dig_schema_compare(sqlite3 *db, const char *path, int version,
+                                                  struct dig_error *error);
+
 /// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
-/// damaged file; then reads the head. Writes *head on success only. Reads the whole file. From then
-/// on the connection reads `ground` with depth and attack_rad whatever the file's version: where
-/// the file has none, in a temporary view.
+/// damaged file; then reads the head, and compares every entry and its runs with their seal
+/// (tables/seal.h). Writes *head on success only. Reads the whole file. From then on the connection
+/// reads `ground` with depth and attack_rad whatever the file's version: where the file has none,
+/// in a temporary view. What it found holds for what is read in the same transaction.
 DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
                                                 struct dig_table_head *head,
                                                 struct dig_error      *error);
@@ -76,9 +87,9 @@ DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
 DIG_MUST_CHECK enum dig_status dig_schema_view(sqlite3 *db, const char *path, const char *database,
                                                const char *view, struct dig_error *error);
 
-/// Gives a table of DIG_TABLE_VERSION_PLAIN the columns of ours, every dig plain. In no
-/// transaction; all or nothing.
-DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path,
+/// Makes a table of an older version one of ours: digs without an approach become plain, entries
+/// are sealed. In no transaction; all or nothing.
+DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path, int version,
                                                   struct dig_error *error);
 
 #endif // DIG_TABLES_SCHEMA_H

@@ -36,6 +36,15 @@ static enum dig_status open_db(const char *const path, const int flags, sqlite3 
     return DIG_OK;
 }
 
+// In one transaction with what is read next: what was checked is what is read.
+static enum dig_status begin_checked(sqlite3 *const db, const char *const path,
+                                     struct dig_table_head *const head,
+                                     struct dig_error *const      error)
+{
+    const enum dig_status status = dig_sql_run(db, path, "BEGIN", error);
+    return status == DIG_OK ? dig_schema_check(db, path, head, error) : status;
+}
+
 enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
                                   struct dig_table_head *const head, struct dig_error *const error)
 {
@@ -52,7 +61,7 @@ enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_schema_check(opened, path, head, error);
+    status = begin_checked(opened, path, head, error);
 
     // A journal left by a crash can only be rolled back by one who may write.
     if (status == DIG_EIO && sqlite3_extended_errcode(opened) == SQLITE_READONLY_ROLLBACK) {
@@ -60,7 +69,7 @@ enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
         opened = NULL;
         status = open_db(path, SQLITE_OPEN_READWRITE, &opened, error);
         if (status == DIG_OK) {
-            status = dig_schema_check(opened, path, head, error);
+            status = begin_checked(opened, path, head, error);
         }
     }
     if (status != DIG_OK) {
@@ -98,6 +107,10 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     enum dig_status   status = make_store(path, &made, error);
     if (status == DIG_OK) {
         status = dig_sql_open_read(path, &made->db, &made->head, error);
+    }
+    // A reader that stays open must not keep a writer from committing.
+    if (status == DIG_OK) {
+        status = dig_sql_run(made->db, path, "COMMIT", error);
     }
     if (status != DIG_OK) {
         dig_store_close(made);
@@ -151,6 +164,15 @@ static enum dig_status check_same_scene(const struct dig_store *const store,
                          wanted.scene_name, wanted.scene_hash);
 }
 
+// Not before the file is checked: it would write into one that is not ours. A reader that dawdles
+// must not end a computation of hours.
+static enum dig_status prepare_writing(struct dig_store *const store, struct dig_error *const error)
+{
+    (void)sqlite3_busy_timeout(store->db, WRITER_WAIT_ms);
+    return dig_sql_run(store->db, store->path,
+                       "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
+}
+
 // A file of length 0 is a table not begun: what a crash between making and filling leaves.
 static enum dig_status open_or_fill(struct dig_store *const       store,
                                     const struct dig_scene *const scene,
@@ -170,12 +192,8 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
     if (status == DIG_OK) {
         status = dig_schema_check(store->db, store->path, &store->head, error);
     }
-    // Not before the check: it would write into a file that is not ours. A reader that dawdles must
-    // not end a computation of hours.
     if (status == DIG_OK) {
-        (void)sqlite3_busy_timeout(store->db, WRITER_WAIT_ms);
-        status = dig_sql_run(store->db, store->path,
-                             "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
+        status = prepare_writing(store, error);
     }
     return status == DIG_OK ? check_same_scene(store, scene, error) : status;
 }
@@ -206,6 +224,48 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
     }
     *store = made;
     return DIG_OK;
+}
+
+static enum dig_status seal(struct dig_store *const store, struct dig_error *const error)
+{
+    struct dig_store_report report;
+    enum dig_status         status = open_db(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
+    if (status == DIG_OK) {
+        status = dig_schema_check(store->db, store->path, &store->head, error);
+    }
+    if (status == DIG_OK) {
+        status = prepare_writing(store, error);
+    }
+    // What is damaged already must not be sealed so.
+    if (status == DIG_OK) {
+        status = dig_store_check(store, &report, error);
+    }
+    return status == DIG_OK && store->head.version < DIG_TABLE_VERSION
+               ? dig_schema_upgrade(store->db, store->path, store->head.version, error)
+               : status;
+}
+
+enum dig_status dig_store_seal(const char *const path, bool *const was,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && was != NULL);
+    if (access(path, F_OK) != 0) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    struct dig_store *store   = NULL;
+    bool              created = false;
+    enum dig_status   status  = make_store(path, &store, error);
+    if (status == DIG_OK) {
+        status = lock(store, &created, error);
+    }
+    if (status == DIG_OK) {
+        status = seal(store, error);
+    }
+    if (status == DIG_OK) {
+        *was = store->head.version >= DIG_TABLE_VERSION;
+    }
+    dig_store_close(store);
+    return status;
 }
 
 void dig_store_close(struct dig_store *const store)

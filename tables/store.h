@@ -51,6 +51,11 @@ struct dig_run {
 DIG_MUST_CHECK enum dig_status dig_store_create(const char *path, const struct dig_scene *scene,
                                                 struct dig_store **store, struct dig_error *error);
 
+/// Makes a table of an older version one of today's, every entry sealed, after a check as
+/// dig_store_check() makes it; all or nothing. *was: it is sealed already, and was checked alone.
+/// Refuses what that and dig_store_create() refuse.
+DIG_MUST_CHECK enum dig_status dig_store_seal(const char *path, bool *was, struct dig_error *error);
+
 /// Opens an existing table to read its runs.
 DIG_MUST_CHECK enum dig_status dig_store_open(const char *path, struct dig_store **store,
                                               struct dig_error *error);
@@ -67,7 +72,7 @@ const struct dig_trajectory *dig_store_trajectories(const struct dig_store *stor
 
 /// Stores one dig and refreshes its entry, both or neither. The recording's samples must be evenly
 /// spaced (within 1 % of the spacing). A table from before digs had an approach is brought to
-/// today's format first. DIG_EINVAL for a recording that is not finite, not even, or
+/// today's format first, and sealed. DIG_EINVAL for a recording that is not finite, not even, or
 /// for a run that is there already; for an effect core/effect.h does not name; for an approach out
 /// of range. A carried mass that
 /// is missing in one row is stored as not known in any.

@@ -20,7 +20,8 @@ struct dig_store {
     char                  path[PATH_MAX];
 };
 
-/// Opens the file read-only, rolling back first what a crash left half written, and checks it.
+/// Opens the file read-only, rolling back first what a crash left half written, begins a
+/// transaction and checks the file in it.
 DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, sqlite3 **db,
                                                  struct dig_table_head *head,
                                                  struct dig_error      *error);
@@ -51,7 +52,7 @@ DIG_MUST_CHECK enum dig_status dig_entry_derive(struct dig_store *store, sqlite3
                                                 size_t trajectory, struct dig_ensemble *ensemble,
                                                 struct dig_error *error);
 
-/// Derives one entry and writes it in place of what was there.
+/// Derives one entry and writes it, sealed, in place of what was there.
 DIG_MUST_CHECK enum dig_status dig_entry_refresh(struct dig_store *store, sqlite3_int64 ground,
                                                  size_t trajectory, struct dig_error *error);
 

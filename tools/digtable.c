@@ -22,6 +22,7 @@ static const struct dig_command commands[] = {
       " friction rolling density depth attack-deg trajectory channel csv json " },
     { "import", dig_cli_import, 1, 1, "CURVES.csv", " map output " },
     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX, "OUT.sqlite IN.sqlite…", " " },
+    { "seal", dig_cli_seal, 1, 1, "TABLE.sqlite", " " },
     { "export", dig_cli_export, 1, 1, "TABLE.sqlite", " runs effects output " },
 };
 

@@ -1,5 +1,6 @@
 #include "closed_loop/report/html.h"
 
+#include "core/part.h"
 #include "core/text.h"
 
 #include <assert.h>
@@ -90,7 +91,7 @@ enum dig_status dig_html_save(const char *const path,
     (void)snprintf(part, size, "%s.part", path);
 
     enum dig_status status = DIG_EIO;
-    FILE *const     to     = fopen(part, "w");
+    FILE *const     to     = dig_part_open(part);
     if (to == NULL) {
         (void)dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
         goto done;

@@ -1,5 +1,6 @@
 #include "firmware_host/bus/dbc.h"
 
+#include "core/text.h"
 #include "files/whole.h"
 
 #include <assert.h>
@@ -9,6 +10,8 @@
 #include <string.h>
 
 #define EXTENDED_FLAG 0x80000000U
+#define MESSAGES_MAX  8192 // each is compared with all before it
+#define SIGNALS_MAX   1024 // of one message, likewise
 
 // Position of the reader, for errors.
 struct cursor {
@@ -54,6 +57,9 @@ static enum dig_status read_message(const struct cursor *const cursor, const cha
     }
     if (bytes > 64) {
         return refuse(cursor, text, "at most 64 bytes");
+    }
+    if (dbc->messages == MESSAGES_MAX) {
+        return refuse(place, name, "at most 8192 messages");
     }
     if (dig_dbc_find(dbc, name) != NULL) {
         return refuse(cursor, name, "every message once");
@@ -104,6 +110,9 @@ static enum dig_status check_signal(const struct cursor *const         cursor,
     if (!isfinite(signal->factor) || !(fabs(signal->factor) > 0.0) || !isfinite(signal->offset)) {
         return refuse(cursor, signal->name, "a factor that is not 0 and a finite offset");
     }
+    if (message->signals == SIGNALS_MAX) {
+        return refuse(place, signal->name, "at most 1024 signals of a message");
+    }
     if (dig_dbc_find_signal(dbc, message, signal->name) != NULL) {
         return refuse(cursor, signal->name, "every signal of a message once");
     }
@@ -145,6 +154,7 @@ static enum dig_status read_signal(const struct cursor *const cursor, const char
         return refuse(cursor, text, grammar);
     }
     (void)sscanf(rest + used, "\"%15[^\"]", signal.unit); // "" leaves it empty
+    dig_text_clean(signal.unit);
     if ((order != '0' && order != '1') || (sign != '+' && sign != '-')) {
         return refuse(cursor, text, "@1 (Intel) or @0 (Motorola), then + or -");
     }
@@ -175,10 +185,10 @@ static void read_type(const char *const text, const struct dig_dbc *const dbc)
         return;
     }
     for (size_t i = 0; i < dbc->messages; i++) {
-        const struct dig_dbc_message *const m = &dbc->message[i];
-        for (size_t s = m->first; s < m->first + m->signals; s++) {
-            if ((m->id | (m->extended ? EXTENDED_FLAG : 0)) == id &&
-                strcmp(dbc->signal[s].name, name) == 0) {
+        const struct dig_dbc_message *const m  = &dbc->message[i];
+        const bool                          is = (m->id | (m->extended ? EXTENDED_FLAG : 0)) == id;
+        for (size_t s = m->first; is && s < m->first + m->signals; s++) {
+            if (strcmp(dbc->signal[s].name, name) == 0) {
                 dbc->signal[s].is_float = type != 0;
             }
         }

@@ -1,5 +1,6 @@
 #include "firmware_host/publish/output.h"
 
+#include "core/text.h"
 #include "estimator/match/match.h"
 #include "messages/digsight_estimate_t.h"
 #include "messages/digsight_health_t.h"
@@ -296,6 +297,8 @@ enum dig_status dig_output_health(struct dig_output *const       output,
     (void)snprintf(state, sizeof state, "%s", health->state);
     (void)snprintf(input, sizeof input, "%s", health->input);
     (void)snprintf(note, sizeof note, "%s", health->note);
+    dig_text_clean(input); // names of files, cut perhaps within a character
+    dig_text_clean(note);
     const struct dig_tick_status *const tick    = &health->tick_status;
     const digsight_health_t             message = {
                     .time_ns               = health->time_ns,

@@ -1,5 +1,6 @@
 #include "offline_dem/dig/vtk.h"
 
+#include "core/part.h"
 #include "offline_dem/law/law_general.h"
 #include "offline_dem/law/period.h"
 #include "offline_dem/world/bodies.h"
@@ -18,7 +19,7 @@ static FILE *begin(const char *const dir, const char *const what, const size_t f
     if (length < 0 || length >= PATH_SIZE) {
         return NULL;
     }
-    FILE *const file = fopen(path, "w");
+    FILE *const file = dig_part_open(path);
     if (file != NULL) {
         (void)fprintf(file, "# vtk DataFile Version 3.0\n%s, SI units\nASCII\nDATASET POLYDATA\n",
                       what);
@@ -253,7 +254,7 @@ static enum dig_status write_index(const char *const dir, const char *const what
 {
     char        path[PATH_SIZE];
     const int   length = snprintf(path, sizeof path, "%s/%s.vtk.series", dir, what);
-    FILE *const file   = length < 0 || length >= PATH_SIZE ? NULL : fopen(path, "w");
+    FILE *const file   = length < 0 || length >= PATH_SIZE ? NULL : dig_part_open(path);
     if (file == NULL) {
         return DIG_EIO;
     }

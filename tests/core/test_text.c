@@ -31,7 +31,11 @@ static void characters_are_told_from_bytes_that_are_none(void **state)
         { "\xe0\x80\xaf", 0 },     // and in three
         { "\xed\xa0\x80", 0 },     // half a surrogate pair
         { "\xf4\x90\x80\x80", 0 }, // beyond U+10FFFF
-        { "\xe2\x82", 0 },         // cut off
+        { "\xe2\x80\xae", 0 },     // what follows would be shown from right to left
+        { "\xe2\x81\xa6", 0 },
+        { "\xef\xbf\xbe", 0 }, // U+FFFE
+        { "\xef\xbf\xbd", 3 },
+        { "\xe2\x82", 0 }, // cut off
     };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         assert_int_equal(dig_text_character(all[i].text), all[i].bytes);

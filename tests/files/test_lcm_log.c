@@ -6,6 +6,7 @@
 #include "tests/scratch.h"
 
 #include <lcm/eventlog.h>
+#include <math.h>
 #include <stdlib.h>
 
 #define WITH_TYPE(type)                                                                            \
@@ -256,6 +257,40 @@ static void defects_are_refused_and_write_nothing(void **state)
     check_refused("damaged.lcm", DIG_EINVAL, "damaged.lcm: damaged at byte ");
 }
 
+// What anybody on the network may have sent.
+static void values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken(void **state)
+{
+    (void)state;
+    double               value[DIG_SIGNALS] = { 0.5, (double)NAN, (double)INFINITY, -0.25 };
+    int8_t               valid[DIG_SIGNALS] = { 1, 1, 1, 1 };
+    digsight_sample_t    message = { .signals = DIG_SIGNALS, .value = value, .valid = valid };
+    static const int64_t times[] = { 0, INT64_C(1) << 62 };
+    lcm_eventlog_t      *log     = begin("nan.lcm");
+    for (size_t i = 0; i < 2; i++) {
+        message.time_ns = times[i];
+        log_sample(log, "DIGSIGHT_SAMPLE", &message);
+    }
+    lcm_eventlog_destroy(log);
+    struct dig_machine_recording r = { 0 };
+    assert_int_equal(dig_lcm_log_read(scratch_path("nan.lcm"), &r, NULL), DIG_OK);
+    assert_true(r.row[0].valid[0] && r.row[0].valid[3]);
+    assert_false(r.row[0].valid[1] || r.row[0].valid[2]);
+    for (int i = 0; i < DIG_SIGNALS; i++) {
+        assert_true(isfinite(r.row[1].value[i]));
+    }
+    dig_machine_recording_finish(&r);
+
+    static const int64_t absurd[] = { -1, INT64_MIN, INT64_MAX, (INT64_C(1) << 62) + 1 };
+    for (size_t i = 0; i < sizeof absurd / sizeof absurd[0]; i++) {
+        log = begin("when.lcm");
+        put_sample(log, 1, DIG_SIGNALS);
+        message.time_ns = absurd[i];
+        log_sample(log, "DIGSIGHT_SAMPLE", &message);
+        lcm_eventlog_destroy(log);
+        check_refused("when.lcm", DIG_EINVAL, "expected 0 to 2^62");
+    }
+}
+
 // A length from a damaged header must not be believed.
 static void lengths_that_cannot_be_are_refused(void **state)
 {
@@ -283,6 +318,7 @@ int main(void)
         cmocka_unit_test(other_messages_are_handed_on_one_by_one),
         cmocka_unit_test(a_log_cut_off_in_its_last_event_is_read_up_to_there),
         cmocka_unit_test(defects_are_refused_and_write_nothing),
+        cmocka_unit_test(values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken),
         cmocka_unit_test(lengths_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests_name("lcm_log", tests, scratch_setup, scratch_teardown);

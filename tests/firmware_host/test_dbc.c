@@ -195,6 +195,35 @@ static void defects_are_refused_with_file_and_line_and_write_nothing(void **stat
     assert_int_equal(dbc.messages, 42);
 }
 
+static void a_database_without_end_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *says;
+        unsigned    lines;
+    } endless[] = {
+        { ":8193: \"M8192\", expected at most 8192 messages", 8200 },
+        { "expected at most 1024 signals", 1100 },
+    };
+    for (size_t i = 0; i < sizeof endless / sizeof endless[0]; i++) {
+        FILE *const file = fopen(scratch_path("endless.dbc"), "w");
+        assert_non_null(file);
+        if (i > 0) {
+            (void)fputs("BO_ 1 M: 8 S\n", file);
+        }
+        for (unsigned n = 0; n < endless[i].lines; n++) {
+            (void)fprintf(
+                file, i == 0 ? "BO_ 1 M%u: 8 S\n" : " SG_ s%u : 0|1@1+ (1,0) [0|1] \"\" S\n", n);
+        }
+        assert_int_equal(fclose(file), 0);
+        struct dig_dbc   dbc   = { .messages = 42 };
+        struct dig_error error = { "" };
+        assert_int_equal(dig_dbc_read(scratch_path("endless.dbc"), &dbc, &error), DIG_EINVAL);
+        assert_contains(error.text, endless[i].says);
+        assert_int_equal(dbc.messages, 42);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -204,6 +233,7 @@ int main(void)
         cmocka_unit_test(every_signal_equals_a_shift_of_the_whole_frame),
         cmocka_unit_test(what_is_no_message_is_passed_over),
         cmocka_unit_test(defects_are_refused_with_file_and_line_and_write_nothing),
+        cmocka_unit_test(a_database_without_end_is_refused),
     };
     return cmocka_run_group_tests_name("dbc", tests, scratch_setup, scratch_teardown);
 }

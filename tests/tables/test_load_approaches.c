@@ -212,7 +212,7 @@ static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
     assert_int_equal(report.points, 6);
     assert_int_equal(report.effects, 1);
     assert_int_equal(report.approaches, 1);
-    assert_int_equal(fixture_ask("old.sqlite", "PRAGMA user_version"), 3);
+    assert_int_equal(fixture_ask("old.sqlite", "PRAGMA user_version"), 4);
     assert_int_equal(fixture_ask("old.sqlite", "SELECT count(*) FROM ground WHERE depth = 1"), 7);
     assert_int_equal(fixture_ask("old.sqlite", "SELECT count(*) FROM pragma_foreign_key_check"), 0);
     assert_int_equal(fixture_ask("old.sqlite",

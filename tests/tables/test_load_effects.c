@@ -120,8 +120,8 @@ static void what_does_not_belong_together_is_refused(void **state)
     assert_int_equal(dig_effects_load(scratch_path("plain.sqlite"), plain, &set, &error),
                      DIG_EINVAL);
     assert_contains(error.text, "plain.sqlite: ground: no rows with an effect");
-    (void)fixture_copy("mine.sqlite", "odd.sqlite",
-                       "UPDATE ground SET effect = 'gremlins' WHERE effect = 'cohesion'");
+    (void)fixture_copy_bare("mine.sqlite", "odd.sqlite",
+                            "UPDATE ground SET effect = 'gremlins' WHERE effect = 'cohesion'");
     assert_int_equal(dig_effects_load(scratch_path("odd.sqlite"), plain, &set, &error), DIG_EINVAL);
     assert_contains(error.text, "ground.effect: \"gremlins\" of magnitude");
     assert_null(set);

@@ -15,7 +15,7 @@ static void a_new_table_says_what_it_is(void **state)
     (void)state;
     dig_store_close(fixture_create("new.sqlite"));
     assert_int_equal(fixture_ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
-    assert_int_equal(fixture_ask("new.sqlite", "PRAGMA user_version"), 3);
+    assert_int_equal(fixture_ask("new.sqlite", "PRAGMA user_version"), 4);
     assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM scene"), 1);
     assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM trajectory"), 2);
     assert_int_equal(fixture_ask("new.sqlite", "SELECT count(*) FROM phase"), 3);
@@ -187,10 +187,10 @@ static void what_cannot_become_a_table_is_left_as_it_was(void **state)
     assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
 
     dig_store_close(fixture_create("newer.sqlite"));
-    fixture_run_sql("newer.sqlite", "PRAGMA user_version = 4");
+    fixture_run_sql("newer.sqlite", "PRAGMA user_version = 5");
     assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
                      DIG_ESCHEMA);
-    assert_contains(error.text, "newer.sqlite: user_version: table format 4, expected 2 or 3");
+    assert_contains(error.text, "newer.sqlite: user_version: table format 5, expected 2 to 4");
 
     assert_int_equal(
         dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);
@@ -316,7 +316,7 @@ static void the_check_counts_holes_and_finds_entries_that_lie(void **state)
     for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
         struct dig_error error = { "" };
         report                 = (struct dig_store_report){ .runs = 42 };
-        (void)fixture_copy("check.sqlite", "lie.sqlite", lies[i]);
+        (void)fixture_copy_bare("check.sqlite", "lie.sqlite", lies[i]);
         assert_int_equal(dig_store_open(scratch_path("lie.sqlite"), &store, NULL), DIG_OK);
         assert_int_equal(dig_store_check(store, &report, &error), DIG_EINVAL);
         assert_contains(error.text, "lie.sqlite: entry: friction");

@@ -1,5 +1,6 @@
 // Tests for tables/scene.c: a scene through a file and back.
 
+#include "tables/canonical_scene.h"
 #include "tables/scene.h"
 
 #include "core/sha256.h"

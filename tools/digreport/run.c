@@ -2,6 +2,7 @@
 
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/observe.h"
+#include "core/name.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
 #include "estimator/predict/prediction.h"
@@ -26,11 +27,29 @@ struct published {
     double            sigma_Nm[DIG_PREDICTION_POINTS];
 };
 
+// A log holds what anybody on the network sent.
+static bool are_finite(const size_t n, const double number[])
+{
+    size_t i = 0;
+    while (i < n && isfinite(number[i])) {
+        i++;
+    }
+    return i == n;
+}
+
 static void take_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
 {
     (void)time_us;
     struct published *const published = context;
-    if (!m->valid || m->going_on || published->predicted) {
+    const double            number[]  = { m->friction,         m->rolling,
+                                          m->density_kgpm3,    m->friction_low,
+                                          m->rolling_low,      m->density_low_kgpm3,
+                                          m->friction_high,    m->rolling_high,
+                                          m->density_high_kgpm3, m->nearest_friction,
+                                          m->nearest_rolling,  m->nearest_density_kgpm3,
+                                          m->distance };
+    if (!m->valid || m->going_on || published->predicted ||
+        !are_finite(sizeof number / sizeof number[0], number)) {
         return; // a later match is of a later dig
     }
     published->matched     = true;
@@ -53,7 +72,11 @@ static void take_prediction(void *const context, const int64_t time_us,
     (void)time_us;
     struct published *const published = context;
     if (!published->matched || published->predicted || !p->valid ||
-        p->points != DIG_PREDICTION_POINTS || strncmp(p->trajectory, "simple", 6) == 0) {
+        p->points != DIG_PREDICTION_POINTS || strncmp(p->trajectory, "simple", 6) == 0 ||
+        !dig_name_ok(p->trajectory) ||
+        !(p->from_progress >= 0.0 && p->from_progress < p->to_progress && p->to_progress <= 1.0) ||
+        !are_finite(DIG_PREDICTION_POINTS, p->moment_Nm) ||
+        !are_finite(DIG_PREDICTION_POINTS, p->sigma_Nm)) {
         return;
     }
     published->predicted = true;

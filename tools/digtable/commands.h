@@ -9,6 +9,7 @@ int dig_cli_dig(const struct dig_arguments *a);
 int dig_cli_generate(const struct dig_arguments *a);
 int dig_cli_list(const struct dig_arguments *a);
 int dig_cli_check(const struct dig_arguments *a);
+int dig_cli_seal(const struct dig_arguments *a);
 int dig_cli_show(const struct dig_arguments *a);
 int dig_cli_import(const struct dig_arguments *a);
 int dig_cli_merge(const struct dig_arguments *a);

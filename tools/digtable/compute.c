@@ -1,5 +1,6 @@
 // digtable dig and digtable generate.
 
+#include "core/text.h"
 #include "files/grid_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
@@ -205,7 +206,8 @@ static int report_end(const struct dig_arguments *const a, const struct dig_swee
                       const enum dig_status status, const struct dig_error *const error)
 {
     char elapsed[32];
-    (void)fprintf(stderr, "%s: %zu of %zu digs, %s", a->output, s->digs_done, s->digs_total,
+    dig_text_put(stderr, a->output);
+    (void)fprintf(stderr, ": %zu of %zu digs, %s", s->digs_done, s->digs_total,
                   dig_progress_span(s->elapsed_s, sizeof elapsed, elapsed));
     if (s->digs_done < s->digs_total) {
         (void)fprintf(stderr, "; %zu left%s, the same command goes on with them",

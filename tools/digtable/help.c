@@ -42,6 +42,10 @@ static const struct dig_help commands[] = {
       "      the runs of all tables, each once, in a new one, whose bytes do not depend on their\n"
       "      order\n",
       "  digtable merge rig.sqlite part*.sqlite\n" },
+    { "seal", "  digtable seal TABLE.sqlite\n",
+      "      makes a table of an older version one that shows a flipped bit when it is read, after\n"
+      "      a check\n",
+      "  digtable seal old.sqlite\n" },
     { "export", "  digtable export TABLE.sqlite [--effects|--runs] [-o FILE.csv]\n",
       "      all curves; those dug with an effect; or all runs behind them\n",
       "  digtable export rig.sqlite --runs -o runs.csv\n" },

@@ -1,5 +1,6 @@
 // digtable import: digs that something else measured or computed, into a table of ours.
 
+#include "core/text.h"
 #include "files/curves_csv.h"
 #include "files/scene_yaml.h"
 #include "tables/store.h"
@@ -101,6 +102,9 @@ int dig_cli_import(const struct dig_arguments *const a)
         }
         return dig_cli_work_failed(status, &error);
     }
-    (void)fprintf(stderr, "%s: %zu digs of %s\n", a->output, import.digs, a->positional[0]);
+    dig_text_put(stderr, a->output);
+    (void)fprintf(stderr, ": %zu digs of ", import.digs);
+    dig_text_put(stderr, a->positional[0]);
+    (void)fputs("\n", stderr);
     return EXIT_DONE;
 }

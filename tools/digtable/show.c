@@ -1,5 +1,6 @@
 // digtable list, check, show and export.
 
+#include "core/text.h"
 #include "files/whole.h"
 #include "tables/export.h"
 #include "tables/listed.h"
@@ -70,10 +71,10 @@ int dig_cli_check(const struct dig_arguments *const a)
             report.points, report.entries, report.runs, report.holes, report.incomplete,
             report.effects, report.builds, report.approaches);
     } else {
-        (void)printf("%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
+        dig_text_put(stdout, a->positional[0]);
+        (void)printf(": sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
                      "entries with fewer packings",
-                     a->positional[0], report.points, report.entries, report.runs, report.holes,
-                     report.incomplete);
+                     report.points, report.entries, report.runs, report.holes, report.incomplete);
         if (report.effects > 0) {
             (void)printf("; %zu points with an effect", report.effects);
         }
@@ -83,6 +84,19 @@ int dig_cli_check(const struct dig_arguments *const a)
         (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
     }
     return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
+}
+
+int dig_cli_seal(const struct dig_arguments *const a)
+{
+    struct dig_error      error  = { "" };
+    bool                  was    = false;
+    const enum dig_status status = dig_store_seal(a->positional[0], &was, &error);
+    if (status != DIG_OK) {
+        return dig_cli_bad_input(status, &error);
+    }
+    dig_text_put(stdout, a->positional[0]);
+    (void)puts(was ? ": was sealed" : ": sealed");
+    return EXIT_DONE;
 }
 
 // The entry asked for, by number or by gravel and approach; their number when there is none.

@@ -1,0 +1,13 @@
+// Files that appear whole or not at all are written beside their name, as NAME.part.
+
+#ifndef DIG_CORE_PART_H
+#define DIG_CORE_PART_H
+
+#include <stdio.h>
+
+/// Opens a new file for writing at path. What a killed program left there is removed, and so is a
+/// link, which is never followed: what it points to stays as it is. NULL with errno, also when
+/// somebody else makes the file at the same time.
+FILE *dig_part_open(const char *path);
+
+#endif // DIG_CORE_PART_H

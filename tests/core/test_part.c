@@ -1,0 +1,117 @@
+// Tests for core/part.c, and for those who write with it: a link where their file should go.
+
+#include "closed_loop/report/html.h"
+#include "core/part.h"
+#include "files/whole.h"
+#include "tables/merge.h"
+#include "tests/tables_fixture.h"
+
+#include <sys/stat.h>
+
+static void assert_kept(void)
+{
+    size_t      size = 0;
+    char *const kept = scratch_read(scratch_path("precious"), &size);
+    assert_int_equal(size, 5);
+    assert_memory_equal(kept, "mine\n", 5);
+    free(kept);
+}
+
+static void lay_link(const char *const name)
+{
+    (void)scratch_write("precious", "mine\n");
+    (void)unlink(scratch_path(name));
+    assert_int_equal(symlink(scratch_path("precious"), scratch_path(name)), 0);
+}
+
+static void a_link_is_replaced_not_followed(void **state)
+{
+    (void)state;
+    lay_link("a.part");
+    FILE *const file = dig_part_open(scratch_path("a.part"));
+    assert_non_null(file);
+    assert_true(fputs("new", file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    assert_kept();
+    struct stat found;
+    assert_int_equal(lstat(scratch_path("a.part"), &found), 0);
+    assert_true(S_ISREG(found.st_mode));
+    assert_int_equal(found.st_size, 3);
+}
+
+static void what_was_left_there_is_replaced_and_a_folder_is_not(void **state)
+{
+    (void)state;
+    (void)scratch_write("b.part", "of a killed program, and longer");
+    FILE *const file = dig_part_open(scratch_path("b.part"));
+    assert_non_null(file);
+    assert_int_equal(fclose(file), 0);
+    struct stat found;
+    assert_int_equal(stat(scratch_path("b.part"), &found), 0);
+    assert_int_equal(found.st_size, 0);
+    assert_int_equal(mkdir(scratch_path("c.part"), 0700), 0);
+    assert_null(dig_part_open(scratch_path("c.part")));
+    assert_int_equal(rmdir(scratch_path("c.part")), 0);
+    assert_null(dig_part_open(scratch_path("no/such/d.part")));
+}
+
+static void an_output_file_does_not_write_through_a_link_at_its_part(void **state)
+{
+    (void)state;
+    struct dig_out   out;
+    struct dig_error error = { "" };
+    lay_link("out.csv.part");
+    assert_int_equal(dig_out_open(&out, scratch_path("out.csv"), &error), DIG_OK);
+    assert_true(fputs("new\n", out.file) >= 0);
+    assert_int_equal(dig_out_commit(&out, &error), DIG_OK);
+    assert_kept();
+    struct stat found;
+    assert_int_equal(lstat(scratch_path("out.csv"), &found), 0);
+    assert_true(S_ISREG(found.st_mode));
+}
+
+static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+{
+    (void)context;
+    (void)error;
+    return fputs("page", to) >= 0 ? DIG_OK : DIG_EIO;
+}
+
+static void nor_does_a_page(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    lay_link("page.html.part");
+    assert_int_equal(dig_html_save(scratch_path("page.html"), put_page, NULL, &error), DIG_OK);
+    assert_kept();
+}
+
+static void nor_does_a_merged_table(void **state)
+{
+    (void)state;
+    struct dig_store *const store = fixture_create("in.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    dig_store_close(store);
+    struct dig_error error = { "" };
+    char             out[512], in[512];
+    (void)snprintf(out, sizeof out, "%s", scratch_path("merged.sqlite"));
+    (void)snprintf(in, sizeof in, "%s", scratch_path("in.sqlite"));
+    const char *const input[] = { in };
+    lay_link("merged.sqlite.part");
+    if (dig_store_merge(out, 1, input, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_kept();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_link_is_replaced_not_followed),
+        cmocka_unit_test(what_was_left_there_is_replaced_and_a_folder_is_not),
+        cmocka_unit_test(an_output_file_does_not_write_through_a_link_at_its_part),
+        cmocka_unit_test(nor_does_a_page),
+        cmocka_unit_test(nor_does_a_merged_table),
+    };
+    return cmocka_run_group_tests_name("part", tests, scratch_setup, scratch_teardown);
+}

@@ -1,0 +1,81 @@
+// Tests for files/yaml_growth.c: small texts that stand for more than memory holds.
+
+#include "files/campaign_yaml.h"
+
+#include "tests/scratch.h"
+
+#define REST "scene: s.yaml\nrecordings:\n  - {file: a.csv, trajectory: t, role: fit}\n"
+
+static enum dig_status read_with(const char *const source, struct dig_error *const error)
+{
+    static char                text[400000];
+    static struct dig_campaign campaign;
+    (void)snprintf(text, sizeof text, "source: %s\n" REST, source);
+    (void)scratch_write("campaign.yaml", text);
+    return dig_campaign_read(scratch_dir, &campaign, error);
+}
+
+static void aliases_that_grow_tenfold_line_by_line_are_refused(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    char             text[4000];
+    size_t used = (size_t)snprintf(text, sizeof text, "\n  - &a [x, x, x, x, x, x, x, x, x, x]");
+    for (char c = 'b'; c <= 'j'; c++) {
+        const char p = (char)(c - 1);
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "\n  - &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]", c,
+                                 p, p, p, p, p, p, p, p, p, p);
+    }
+    assert_int_equal(read_with(text, &error), DIG_EINVAL);
+    assert_contains(error.text, "campaign.yaml:6: aliases stand for more than 100000 values");
+}
+
+static void an_alias_within_its_own_anchor_is_refused(void **state)
+{
+    (void)state;
+    struct dig_error error = { "" };
+    assert_int_equal(read_with("&a [1, *a]", &error), DIG_EINVAL);
+    assert_contains(error.text, "campaign.yaml:1: an alias within its own anchor");
+    assert_int_equal(read_with("&a {x: {y: *a}}", &error), DIG_EINVAL);
+}
+
+static void what_nests_without_end_is_refused_at_once(void **state)
+{
+    (void)state;
+    static char      text[300001];
+    struct dig_error error = { "" };
+    memset(text, '[', sizeof text - 1);
+    assert_int_equal(read_with(text, &error), DIG_EINVAL);
+    assert_contains(error.text, "campaign.yaml:1: nested deeper than 64");
+    (void)snprintf(text, sizeof text, "%.60s%.60s",
+                   "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[",
+                   "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]");
+    assert_int_equal(read_with(text, NULL), DIG_OK);
+}
+
+static void anchors_without_number_are_refused_and_a_few_aliases_are_not(void **state)
+{
+    (void)state;
+    static char      text[20000];
+    struct dig_error error = { "" };
+    size_t           used  = (size_t)snprintf(text, sizeof text, "[");
+    for (int i = 0; i < 300; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "&a%d x, ", i);
+    }
+    (void)snprintf(text + used, sizeof text - used, "y]");
+    assert_int_equal(read_with(text, &error), DIG_EINVAL);
+    assert_contains(error.text, "more than 256 anchors");
+    assert_int_equal(read_with("[&a {x: 1}, *a, &b [*a, *a], *b]", NULL), DIG_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(aliases_that_grow_tenfold_line_by_line_are_refused),
+        cmocka_unit_test(an_alias_within_its_own_anchor_is_refused),
+        cmocka_unit_test(what_nests_without_end_is_refused_at_once),
+        cmocka_unit_test(anchors_without_number_are_refused_and_a_few_aliases_are_not),
+    };
+    return cmocka_run_group_tests_name("yaml_growth", tests, scratch_setup, scratch_teardown);
+}

@@ -1,0 +1,236 @@
+// Tests for tables/guard.c and what reads a table: files that mean harm. Every one is refused by
+// every reader and by the writer, and stays as it was.
+
+#include "tests/tables_fixture.h"
+
+#include "tables/merge.h"
+
+static void make_good(void)
+{
+    struct dig_store *const store = fixture_create("good.sqlite");
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    fixture_put(store, .5, .3, 0, 1, 3.0);
+    dig_store_close(store);
+}
+
+static enum dig_status pass_over(void *const context, const struct dig_run *const run,
+                                 struct dig_error *const error)
+{
+    (void)context;
+    (void)run;
+    (void)error;
+    return DIG_OK;
+}
+
+// By the reader of curves, the reader of runs, the merger and the writer.
+static void assert_refused(const char *const path, const char *const says)
+{
+    const struct dig_scene       scene   = fixture_scene();
+    const struct dig_run_visitor visitor = { pass_over, NULL };
+    struct dig_curve_set        *set     = NULL;
+    struct dig_effect_set       *effects = NULL;
+    struct dig_store            *store   = NULL;
+    struct dig_error             error   = { "" };
+    assert_int_not_equal(dig_table_list(path, &set, &effects, &error), DIG_OK);
+    assert_null(set);
+    assert_contains(error.text, path);
+    assert_contains(error.text, says);
+    enum dig_status status = dig_store_open(path, &store, NULL);
+    if (status == DIG_OK) {
+        status = dig_store_walk(store, &visitor, NULL);
+        struct dig_store_report report;
+        if (status == DIG_OK) {
+            status = dig_store_check(store, &report, NULL);
+        }
+        dig_store_close(store);
+    }
+    assert_int_not_equal(status, DIG_OK);
+    const char *const input[] = { path };
+    char              out[512];
+    (void)snprintf(out, sizeof out, "%s", scratch_path("out.sqlite"));
+    if (dig_store_merge(out, 1, input, NULL) == DIG_OK) {
+        (void)unlink(out); // what a merge makes of its runs is sound
+    }
+    assert_false(scratch_exists("out.sqlite.part"));
+    (void)scene;
+}
+
+static void a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs(void **state)
+{
+    (void)state;
+    make_good();
+    static const char *const hostile[] = {
+        "CREATE VIEW photos AS SELECT 1",
+        "CREATE TRIGGER t AFTER INSERT ON run BEGIN DELETE FROM entry; END",
+        "CREATE TRIGGER t AFTER UPDATE ON entry BEGIN UPDATE run SET seed = 0; END",
+        "CREATE TABLE photos (x)",
+        "CREATE INDEX i ON run (abs(seed))",
+        "CREATE VIRTUAL TABLE words USING fts5 (x)",
+        "ALTER TABLE run ADD COLUMN twice REAL AS (first_s * 2)",
+        "ALTER TABLE ground ADD COLUMN more REAL",
+        "ALTER TABLE ground RENAME COLUMN rolling TO turning",
+        "ALTER TABLE entry RENAME TO e; CREATE VIEW entry AS SELECT * FROM e",
+        "DROP TABLE phase; CREATE VIEW phase AS SELECT 1 AS trajectory",
+        "ANALYZE",
+        "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'STRICT', '') "
+        "WHERE name = 'ground'",
+        "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'depth > 0', "
+        "'randomblob(9e8) > 0') WHERE name = 'ground'",
+        "PRAGMA user_version = 3",
+        "PRAGMA user_version = 2",
+        "DROP TABLE seal",
+    };
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        const char *const path   = fixture_copy("good.sqlite", "bad.sqlite", hostile[i]);
+        size_t            size   = 0;
+        char *const       before = scratch_read(path, &size);
+        assert_refused(path, ": schema: ");
+
+        const struct dig_scene scene = fixture_scene();
+        struct dig_store      *store = NULL;
+        struct dig_error       error = { "" };
+        assert_int_equal(dig_store_create(path, &scene, &store, &error), DIG_EINVAL);
+        assert_contains(error.text, ": schema: ");
+        size_t      again = 0;
+        char *const after = scratch_read(path, &again);
+        assert_int_equal(again, size);
+        assert_memory_equal(after, before, size);
+        free(before);
+        free(after);
+    }
+}
+
+static void what_is_no_number_of_its_column_is_refused(void **state)
+{
+    (void)state;
+    make_good();
+    // A column takes anything once its table is not STRICT; then the schema is made to look right.
+#define FORGED(table, change)                                                                      \
+    "PRAGMA writable_schema = ON;"                                                                 \
+    "UPDATE sqlite_schema SET sql = replace(replace(sql, 'STRICT', ''), 'NOT NULL', '') "          \
+    "WHERE name = '" table "';"                                                                    \
+    "PRAGMA writable_schema = RESET;" change ";"                                                   \
+    "PRAGMA writable_schema = ON;"                                                                 \
+    "UPDATE sqlite_schema SET sql = (SELECT sql FROM good.sqlite_schema g WHERE g.name = '" table  \
+    "') WHERE name = '" table "'"
+    static const struct {
+        const char *sql, *says;
+    } hostile[] = {
+        { FORGED("ground", "UPDATE ground SET friction = 'rough' WHERE id = 1"), "damaged" },
+        { FORGED("ground", "UPDATE ground SET density_kgpm3 = NULL WHERE id = 1"), "damaged" },
+        { FORGED("ground", "UPDATE ground SET effect = x'00' WHERE id = 1"), "damaged" },
+        { FORGED("run", "UPDATE run SET windows = '400 or so'"), "damaged" },
+        { FORGED("run", "UPDATE run SET curve = 'none'"), "damaged" },
+        { FORGED("run", "UPDATE run SET step_s = x'ff'"), "damaged" },
+        { FORGED("entry", "UPDATE entry SET mean = NULL"), "damaged" },
+        { FORGED("entry", "UPDATE entry SET packings = 'two' WHERE packings > 1"), "damaged" },
+        { FORGED("phase", "UPDATE phase SET vx_mps = 'fast'"), "damaged" },
+        { FORGED("trajectory", "UPDATE trajectory SET theta0_rad = NULL"), "damaged" },
+        { FORGED("scene", "UPDATE scene SET tooth_m = 'long'"), "damaged" },
+    };
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        char sql[2048];
+        (void)snprintf(sql, sizeof sql, "ATTACH '%s' AS good; %s", scratch_path("good.sqlite"),
+                       hostile[i].sql);
+        const char *const path =
+            fixture_copy("good.sqlite", "bad.sqlite", "DROP TABLE seal; PRAGMA user_version = 3");
+        fixture_run_sql("bad.sqlite", sql);
+        assert_refused(path, hostile[i].says);
+    }
+}
+
+static void numbers_out_of_all_bounds_are_refused(void **state)
+{
+    (void)state;
+    make_good();
+    static const struct {
+        const char *sql, *says;
+    } hostile[] = {
+        { "UPDATE entry SET packings = 4294967297 WHERE packings > 1", "packings 1 to" },
+        { "UPDATE entry SET mean = zeroblob(100000000)", "too big" },
+        { "UPDATE run SET windows = 9223372036854775807", "run: expected" },
+        { "UPDATE run SET windows = 1000001, curve = zeroblob(16000016)", "run: expected" },
+        { "UPDATE run SET step_s = 9e999", "run: expected" },
+        { "UPDATE run SET first_s = -9e999", "run: expected" },
+        { "UPDATE ground SET friction = 9e999 WHERE id = 1", "ground.friction: inf" },
+        { "UPDATE ground SET magnitude = 9e999, effect = 'cohesion'", "ground.effect" },
+        { "UPDATE ground SET attack_rad = 9e999 WHERE id = 1", "attack_rad: inf" },
+        { "UPDATE scene SET points = 4294967552", "scene.points: 4294967552, expected 256" },
+        { "UPDATE trajectory SET id = id + 4294967296; UPDATE phase SET trajectory = trajectory + "
+          "4294967296; UPDATE run SET trajectory = trajectory + 4294967296; UPDATE entry SET "
+          "trajectory = trajectory + 4294967296",
+          "trajectory: expected rows numbered from 0" },
+        { "UPDATE phase SET number = number + 4294967296", "trajectory: expected rows" },
+    };
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        assert_refused(fixture_copy_bare("good.sqlite", "bad.sqlite", hostile[i].sql),
+                       hostile[i].says);
+    }
+}
+
+static void texts_that_would_break_an_export_are_refused_where_runs_are_read(void **state)
+{
+    (void)state;
+    make_good();
+    static const char *const hostile[] = {
+        "UPDATE run SET engine = 'a,b'",
+        "UPDATE run SET version = '1' || char(10) || '2'",
+        "UPDATE run SET engine = char(27) || '[2J'",
+        "UPDATE run SET made_utc = '$(x)'",
+    };
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        const struct dig_run_visitor visitor = { pass_over, NULL };
+        struct dig_store            *store   = NULL;
+        struct dig_error             error   = { "" };
+        const char *const path = fixture_copy_bare("good.sqlite", "bad.sqlite", hostile[i]);
+        assert_int_equal(dig_store_open(path, &store, NULL), DIG_OK);
+        assert_int_equal(dig_store_walk(store, &visitor, &error), DIG_EINVAL);
+        assert_contains(error.text, "run: engine ");
+        dig_store_close(store);
+    }
+    struct dig_store *const    store     = fixture_create("put.sqlite");
+    const struct dig_recording recording = fixture_recording(400, 1.0);
+    struct dig_run_origin      origin    = fixture_origin(.3, .3, 2500, 0, 0);
+    struct dig_error           error     = { "" };
+    (void)snprintf(origin.engine, sizeof origin.engine, "a,b");
+    assert_int_equal(dig_store_put(store, &origin, &recording, &error), DIG_EINVAL);
+    assert_contains(error.text, "run: engine \"a,b\"");
+    dig_store_close(store);
+}
+
+// Both trees of a table on one page, and a tree that holds itself.
+static void pages_that_belong_to_two_or_to_themselves_are_refused(void **state)
+{
+    (void)state;
+    make_good();
+    static const char *const hostile[] = {
+        "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage FROM "
+        "sqlite_schema WHERE name = 'entry') WHERE name = 'run'",
+        "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = 1 WHERE name = 'run'",
+        "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = 99999 WHERE name = "
+        "'entry'",
+    };
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        assert_refused(fixture_copy("good.sqlite", "bad.sqlite", hostile[i]), "");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(
+            a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs, scratch_setup,
+            scratch_teardown),
+        cmocka_unit_test_setup_teardown(what_is_no_number_of_its_column_is_refused, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(numbers_out_of_all_bounds_are_refused, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(
+            texts_that_would_break_an_export_are_refused_where_runs_are_read, scratch_setup,
+            scratch_teardown),
+        cmocka_unit_test_setup_teardown(pages_that_belong_to_two_or_to_themselves_are_refused,
+                                        scratch_setup, scratch_teardown),
+    };
+    return cmocka_run_group_tests_name("hostile", tests, NULL, NULL);
+}

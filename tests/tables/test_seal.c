@@ -1,0 +1,179 @@
+// Tests for tables/seal.c: nothing of a table changes in silence.
+
+#include "tests/table_content.h"
+#include "tests/tables_fixture.h"
+
+#include "tables/merge.h"
+
+static void make_sealed(const char *const name)
+{
+    struct dig_store *const store = fixture_create(name);
+    fixture_put(store, .3, .3, 0, 0, 1.0);
+    fixture_put(store, .3, .3, 1, 0, 2.0);
+    fixture_put(store, .3, .3, 0, 1, 2.5);
+    fixture_put(store, .5, .3, 0, 1, 3.0);
+    fixture_put_run(store, fixture_varied(fixture_origin(.5, .3, 2500, 0, 0), "cohesion", 2e5), 4);
+    dig_store_close(store);
+}
+
+static enum dig_status try_load(const char *const path, struct dig_error *const error)
+{
+    struct dig_curve_set  *set     = NULL;
+    struct dig_effect_set *effects = NULL;
+    const enum dig_status  status  = dig_table_list(path, &set, &effects, error);
+    dig_curve_set_destroy(set);
+    dig_effect_set_destroy(effects);
+    return status;
+}
+
+static void every_column_of_a_run_and_of_an_entry_counts(void **state)
+{
+    (void)state;
+    make_sealed("good.sqlite");
+    assert_int_equal(try_load(scratch_path("good.sqlite"), NULL), DIG_OK);
+    static const char *const changes[] = {
+        "UPDATE run SET seed = seed + 1 WHERE id = 1",
+        "UPDATE run SET engine = 'tesu' WHERE id = 2",
+        "UPDATE run SET version = '1.3' WHERE id = 5",
+        "UPDATE run SET grains = 13 WHERE id = 1",
+        "UPDATE run SET first_s = first_s + 1e-9 WHERE id = 1",
+        "UPDATE run SET step_s = step_s * (1 + 1e-12) WHERE id = 1",
+        "UPDATE run SET made_utc = '2026-01-01T00:00:01Z' WHERE id = 1",
+        "UPDATE run SET wall_s = 0.25 WHERE id = 4",
+        "UPDATE run SET packing = 7 WHERE id = 4",
+        "UPDATE run SET windows = windows / 2, curve = CAST(substr(curve, 1, length(curve) / 2) "
+        "AS BLOB) WHERE id = 1",
+        "UPDATE run SET curve = CAST(x'01' || substr(curve, 2) AS BLOB) WHERE id = 4",
+        "UPDATE entry SET mean = CAST(x'01' || substr(mean, 2) AS BLOB) WHERE rowid = 4",
+        "UPDATE entry SET spread = CAST(x'01' || substr(spread, 2) AS BLOB) WHERE packings = 2",
+        "UPDATE entry SET packings = 3 WHERE packings = 2",
+        "UPDATE ground SET friction = 0.31 WHERE id = 1",
+        "UPDATE ground SET magnitude = 1e5 WHERE effect <> ''",
+        "UPDATE ground SET depth = 1.1 WHERE id = 1",
+        "UPDATE ground SET attack_rad = 0.1 WHERE id = 1",
+        "UPDATE scene SET tooth_m = tooth_m * 1.01",
+        "UPDATE scene SET bucket_width_m = bucket_width_m * 1.01",
+        "UPDATE scene SET young_Pa = young_Pa * 1.01",
+        "UPDATE scene SET smooth_half_s = 0.17",
+        "UPDATE scene SET name = 'tuc'",
+        "UPDATE seal SET sum = sum + 1 WHERE rowid = 1",
+        "DELETE FROM seal WHERE rowid = 2",
+        "DELETE FROM run WHERE id = 1",
+        "DELETE FROM seal WHERE rowid = 1; DELETE FROM entry WHERE rowid = 1",
+        "UPDATE entry SET trajectory = 0 WHERE rowid = 4; UPDATE run SET trajectory = 0 WHERE id = "
+        "4; UPDATE seal SET trajectory = 0 WHERE rowid = 4",
+    };
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        struct dig_error  error = { "" };
+        const char *const path  = fixture_copy("good.sqlite", "bad.sqlite", changes[i]);
+        if (try_load(path, &error) != DIG_EINVAL) {
+            fail_msg("taken: %s", changes[i]);
+        }
+        assert_contains(error.text, "bad.sqlite: damaged: ");
+    }
+}
+
+// One bit anywhere in the file: in pages of tables and indexes, in the header, between rows.
+static void a_flipped_bit_is_found_or_changes_nothing(void **state)
+{
+    (void)state;
+    make_sealed("good.sqlite");
+    uint64_t before = 0;
+    assert_true(table_content(scratch_path("good.sqlite"), &before));
+    size_t      size    = 0;
+    char *const whole   = scratch_read(scratch_path("good.sqlite"), &size);
+    size_t      refused = 0, as_before = 0;
+    uint64_t    random = 88172645463325252U;
+    const int   flips  = getenv("DIG_TEST_QUICK") != NULL ? 200 : 600;
+    for (int i = 0; i < flips; i++) {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        const size_t at   = (size_t)(random >> 3) % size;
+        const char   kept = whole[at];
+        uint64_t     sum  = 0;
+        whole[at]         = (char)(kept ^ (1 << (random & 7)));
+        if (!table_content(scratch_write_bytes("flip.sqlite", whole, size), &sum)) {
+            refused++;
+        } else if (sum == before) {
+            as_before++;
+        } else {
+            fail_msg("bit %u of byte %zu: other curves in silence", (unsigned)(random & 7), at);
+        }
+        whole[at] = kept;
+    }
+    free(whole);
+    assert_true(refused > 0 && as_before > 0); // rows, and what is free between them
+}
+
+static void a_table_of_before_is_read_and_sealed_when_asked(void **state)
+{
+    (void)state;
+    make_sealed("good.sqlite");
+    const char *const path   = fixture_copy_bare("good.sqlite", "bare.sqlite", "");
+    uint64_t          before = 0;
+    uint64_t          after  = 0;
+    bool              was    = true;
+    assert_true(table_content(path, &before));
+    assert_int_equal(dig_store_seal(path, &was, NULL), DIG_OK);
+    assert_false(was);
+    assert_int_equal(fixture_ask("bare.sqlite", "PRAGMA user_version"), 4);
+    assert_int_equal(fixture_ask("bare.sqlite", "SELECT count(*) FROM seal"), 4);
+    assert_true(table_content(path, &after));
+    assert_true(before == after);
+    assert_int_equal(dig_store_seal(path, &was, NULL), DIG_OK);
+    assert_true(was);
+
+    // The sums are those of the table that was sealed as it was made.
+    assert_true(fixture_ask("bare.sqlite", "SELECT sum(sum / 16) FROM seal") ==
+                fixture_ask("good.sqlite", "SELECT sum(sum / 16) FROM seal"));
+}
+
+static void what_is_damaged_already_is_not_sealed(void **state)
+{
+    (void)state;
+    make_sealed("good.sqlite");
+    struct dig_error  error = { "" };
+    bool              was   = true;
+    const char *const path  = fixture_copy_bare(
+         "good.sqlite", "bare.sqlite", "UPDATE entry SET spread = mean WHERE spread IS NOT NULL");
+    assert_int_equal(dig_store_seal(path, &was, &error), DIG_EINVAL);
+    assert_contains(error.text, "bare.sqlite: entry: ");
+    assert_int_equal(fixture_ask("bare.sqlite", "PRAGMA user_version"), 3);
+    assert_true(was);
+    assert_int_equal(dig_store_seal(scratch_path("absent.sqlite"), &was, &error), DIG_EIO);
+    assert_false(scratch_exists("absent.sqlite"));
+}
+
+static void a_merged_table_has_the_seals_of_its_inputs(void **state)
+{
+    (void)state;
+    make_sealed("good.sqlite");
+    char out[512];
+    (void)snprintf(out, sizeof out, "%s", scratch_path("merged.sqlite"));
+    const char *const input[] = { scratch_path("good.sqlite") };
+    struct dig_error  error   = { "" };
+    if (dig_store_merge(out, 1, input, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    assert_int_equal(try_load(out, NULL), DIG_OK);
+    assert_true(fixture_ask("merged.sqlite", "SELECT sum(sum / 16) FROM seal") ==
+                fixture_ask("good.sqlite", "SELECT sum(sum / 16) FROM seal"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_column_of_a_run_and_of_an_entry_counts, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_flipped_bit_is_found_or_changes_nothing, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_table_of_before_is_read_and_sealed_when_asked,
+                                        scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(what_is_damaged_already_is_not_sealed, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_merged_table_has_the_seals_of_its_inputs, scratch_setup,
+                                        scratch_teardown),
+    };
+    return cmocka_run_group_tests_name("seal", tests, NULL, NULL);
+}
