@@ -3,31 +3,52 @@
 #include <assert.h>
 #include <stdbool.h>
 
+// The bytes that a character beginning with c has; 0: none begins so.
+static size_t length_of(const unsigned char c)
+{
+    if (c < 0x80) {
+        return 1;
+    }
+    if (c < 0xc2 || c > 0xf4) {
+        return 0;
+    }
+    return c < 0xe0 ? 2 : c < 0xf0 ? 3 : 4;
+}
+
+// Written longer than needed, half of a surrogate pair, or beyond U+10FFFF.
+static bool is_no_code_point(const unsigned char c[])
+{
+    return (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90) ||
+           (c[0] == 0xed && c[1] >= 0xa0) || (c[0] == 0xf4 && c[1] >= 0x90);
+}
+
+static bool is_control(const unsigned char c[])
+{
+    return (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
+           (c[0] == 0xc2 && c[1] < 0xa0);
+}
+
+// Those that turn a line's direction make it read as another; U+FFFE and U+FFFF are none.
+static bool is_no_text(const unsigned char c[])
+{
+    if (c[0] == 0xe2) {
+        return (c[1] == 0x80 && c[2] >= 0xaa && c[2] <= 0xae) ||
+               (c[1] == 0x81 && c[2] >= 0xa6 && c[2] <= 0xa9);
+    }
+    return c[0] == 0xef && c[1] == 0xbf && c[2] >= 0xbe;
+}
+
 size_t dig_text_character(const char *const text)
 {
     assert(text != NULL);
     const unsigned char *const c = (const unsigned char *)text;
-    const size_t               n = c[0] < 0x80    ? 1
-                                   : c[0] < 0xc2  ? 0
-                                   : c[0] < 0xe0  ? 2
-                                   : c[0] < 0xf0  ? 3
-                                   : c[0] <= 0xf4 ? 4
-                                                  : 0;
+    const size_t               n = length_of(c[0]);
     for (size_t i = 1; i < n; i++) {
         if ((c[i] & 0xc0) != 0x80) {
             return 0;
         }
     }
-    const bool overlong  = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xf0 && c[1] < 0x90);
-    const bool surrogate = c[0] == 0xed && c[1] >= 0xa0;
-    const bool too_large = c[0] == 0xf4 && c[1] >= 0x90;
-    const bool control   = (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
-                         (c[0] == 0xc2 && c[1] < 0xa0);
-    // Those that turn a line's direction make it read as another; U+FFFE and U+FFFF are none.
-    const bool turning = (c[0] == 0xe2 && c[1] == 0x80 && c[2] >= 0xaa && c[2] <= 0xae) ||
-                         (c[0] == 0xe2 && c[1] == 0x81 && c[2] >= 0xa6 && c[2] <= 0xa9);
-    const bool none = c[0] == 0xef && c[1] == 0xbf && c[2] >= 0xbe;
-    return overlong || surrogate || too_large || control || turning || none ? 0 : n;
+    return n == 0 || is_no_code_point(c) || is_control(c) || is_no_text(c) ? 0 : n;
 }
 
 void dig_text_clean(char text[])

@@ -25,7 +25,9 @@ static void put_text(FILE *const to, const char *const key, const char *const te
     (void)snprintf(clean, sizeof clean, "%s", text);
     dig_text_clean(clean);
     for (char *c = clean; *c != '\0'; c++) {
-        *c = *c == '\n' || *c == '\t' ? '?' : *c;
+        if (*c == '\n' || *c == '\t') {
+            *c = '?';
+        }
     }
     (void)fprintf(to, "\"%s\": ", key);
     dig_text_put_json(to, clean);
