@@ -59,7 +59,7 @@ static enum dig_status read_message(const struct cursor *const cursor, const cha
         return refuse(cursor, text, "at most 64 bytes");
     }
     if (dbc->messages == MESSAGES_MAX) {
-        return refuse(place, name, "at most 8192 messages");
+        return refuse(cursor, name, "at most 8192 messages");
     }
     if (dig_dbc_find(dbc, name) != NULL) {
         return refuse(cursor, name, "every message once");
@@ -111,7 +111,7 @@ static enum dig_status check_signal(const struct cursor *const         cursor,
         return refuse(cursor, signal->name, "a factor that is not 0 and a finite offset");
     }
     if (message->signals == SIGNALS_MAX) {
-        return refuse(place, signal->name, "at most 1024 signals of a message");
+        return refuse(cursor, signal->name, "at most 1024 signals of a message");
     }
     if (dig_dbc_find_signal(dbc, message, signal->name) != NULL) {
         return refuse(cursor, signal->name, "every signal of a message once");

@@ -41,12 +41,10 @@ static void take_match(void *const context, const int64_t time_us, const digsigh
 {
     (void)time_us;
     struct published *const published = context;
-    const double            number[]  = { m->friction,         m->rolling,
-                                          m->density_kgpm3,    m->friction_low,
-                                          m->rolling_low,      m->density_low_kgpm3,
-                                          m->friction_high,    m->rolling_high,
-                                          m->density_high_kgpm3, m->nearest_friction,
-                                          m->nearest_rolling,  m->nearest_density_kgpm3,
+    const double            number[]  = { m->friction,         m->rolling,         m->density_kgpm3,
+                                          m->friction_low,     m->rolling_low,     m->density_low_kgpm3,
+                                          m->friction_high,    m->rolling_high,    m->density_high_kgpm3,
+                                          m->nearest_friction, m->nearest_rolling, m->nearest_density_kgpm3,
                                           m->distance };
     if (!m->valid || m->going_on || published->predicted ||
         !are_finite(sizeof number / sizeof number[0], number)) {

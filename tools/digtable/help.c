@@ -43,7 +43,8 @@ static const struct dig_help commands[] = {
       "      order\n",
       "  digtable merge rig.sqlite part*.sqlite\n" },
     { "seal", "  digtable seal TABLE.sqlite\n",
-      "      makes a table of an older version one that shows a flipped bit when it is read, after\n"
+      "      makes a table of an older version one that shows a flipped bit when it is read, "
+      "after\n"
       "      a check\n",
       "  digtable seal old.sqlite\n" },
     { "export", "  digtable export TABLE.sqlite [--effects|--runs] [-o FILE.csv]\n",
