@@ -114,7 +114,7 @@ cat >"$work/can.sh" <<INNER
 set -u
 . tests/system/simclock.bash
 export DIG_SIMCLOCK_TERMINALS=1
-candump -L vcan0 >"$work/dump" &
+candump -r 16777216 -L vcan0 >"$work/dump" &
 dump=\$!
 start "$work/socat" socat PTY,raw,echo=0,link=$work/a PTY,raw,echo=0,link=$work/b
 until [ -e $work/a ] && [ -e $work/b ]; do sleep 0.05; done
