@@ -24,7 +24,8 @@ run_one() { # INDEX PROGRAM
     [ "${failed:-0}" = 0 ] || word=FAILED
     printf '  %-6s %-44s %3d passed %3d.%d s%s\n' "$word" "$2" "${passed:-0}" $((spent / 10)) $((spent % 10)) \
         "$([ "${skipped:-0}" = 0 ] || echo ", $skipped SKIPPED")"
-    [ "$word" = ok ] || sed 's/^/      | /' "$log" | tail -n 60
+    # The checks that failed first: what follows them may be longer than what is shown.
+    [ "$word" = ok ] || { grep '^FAIL' "$log"; tail -n 60 "$log"; } | sed 's/^/      | /'
     grep -h '^SKIP' "$log" | sed 's/^/      /'
 }
 

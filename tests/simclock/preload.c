@@ -85,9 +85,10 @@ static struct sim_slot *own_slot(void)
 {
     for (int i = 0; slot_number < 0 && i < SIM_SLOTS; i++) {
         uint32_t free = SIM_FREE;
-        if (atomic_compare_exchange_strong(&sim->slot[i].state, &free, SIM_RUNNING)) {
+        if (atomic_compare_exchange_strong(&sim->slot[i].state, &free, SIM_TAKEN)) {
             atomic_store(&sim->slot[i].pid, (int32_t)getpid());
             atomic_store(&sim->slot[i].tid, (int32_t)syscall(SYS_gettid));
+            atomic_store(&sim->slot[i].state, SIM_RUNNING);
             slot_number = i;
             (void)pthread_setspecific(slot_key, &sim->slot[i]);
         }

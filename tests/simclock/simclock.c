@@ -71,7 +71,7 @@ static void forget(struct watch *const w)
 static int slot_of(const struct sim *const sim, const int tid)
 {
     for (int i = 0; i < SIM_SLOTS; i++) {
-        if (atomic_load(&sim->slot[i].tid) == tid && atomic_load(&sim->slot[i].state) != SIM_FREE) {
+        if (atomic_load(&sim->slot[i].state) > SIM_TAKEN && atomic_load(&sim->slot[i].tid) == tid) {
             return i;
         }
     }
@@ -144,12 +144,15 @@ static void list_tasks(struct watch *const w)
         }
     }
     for (int i = 0; i < SIM_SLOTS; i++) {
-        struct sim_slot *const slot = &w->sim->slot[i];
+        struct sim_slot *const slot  = &w->sim->slot[i];
+        uint32_t               state = atomic_load(&slot->state);
+        const int32_t          pid   = atomic_load(&slot->pid);
+        const int32_t          tid   = atomic_load(&slot->tid);
         char                   path[96];
-        (void)snprintf(path, sizeof path, "/proc/%d/task/%d", atomic_load(&slot->pid),
-                       atomic_load(&slot->tid));
-        if (atomic_load(&slot->state) != SIM_FREE && access(path, F_OK) != 0) {
-            atomic_store(&slot->state, SIM_FREE);
+        (void)snprintf(path, sizeof path, "/proc/%d/task/%d", pid, tid);
+        if (state > SIM_TAKEN && access(path, F_OK) != 0 && atomic_load(&slot->pid) == pid &&
+            atomic_load(&slot->tid) == tid) {
+            (void)atomic_compare_exchange_strong(&slot->state, &state, SIM_FREE);
         }
     }
     w->listed = true;

@@ -29,7 +29,8 @@
 #define SIM_PROGRAMS  32
 #define SIM_BEGINS_ns 1000000000000LL
 
-enum sim_state { SIM_FREE, SIM_RUNNING, SIM_SLEEPING, SIM_POLLING };
+// Taken: whose it is is being written down; nobody may take it for a slot of the dead meanwhile.
+enum sim_state { SIM_FREE, SIM_TAKEN, SIM_RUNNING, SIM_SLEEPING, SIM_POLLING };
 
 // One thread's. A sleeper is woken through the word `state`, who polls through the pipe FILE.N of
 // its number.
