@@ -13,7 +13,7 @@ trap 'rm -rf "$out"' EXIT
 run_one() { # INDEX PROGRAM
     local log=$out/$1.log rc=0 start=$EPOCHREALTIME passed failed skipped
     timeout -k 5 "$limit_s" "$2" >"$log" 2>&1 </dev/null || rc=$?
-    # On CAN in User Mode Linux about one run in ten fails, for a reason not found yet: such a test is run once more.
+    # On CAN in User Mode Linux a test may fail beside others, for a reason not found yet: it is run once more.
     case $rc:$2 in
     0:*) ;;
     *:*/daemon_can*.sh | *:*/rig.sh)
