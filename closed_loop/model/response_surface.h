@@ -3,10 +3,10 @@
 //   curve(g) = amplitude(g) shape(g),   log amplitude and shape polynomials in (x, y, z)
 //
 // x, y, z: friction, rolling friction and log density, -1 … 1 over the table's axes; up to the
-// second degree as far as an axis has points for it; fitted by least squares weighted by packings.
-// All entries vouch for every gravel, so that the curve's own error is a fraction of an entry's:
-// noise() says which, as a multiple of the variance of one dig. Amplitude:
-// closed_loop/recordings/features.h.
+// third degree where the table has entries for it, else the second; fitted by least squares
+// weighted by packings, the cubic terms drawn towards none. All entries vouch for every gravel, so
+// that the curve's own error is a fraction of an entry's: noise() says which, as a multiple of the
+// variance of one dig. Amplitude: closed_loop/recordings/features.h.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_RESPONSE_SURFACE_H
 #define DIG_CLOSED_LOOP_MODEL_RESPONSE_SURFACE_H
@@ -14,7 +14,8 @@
 #include "closed_loop/recordings/features.h"
 #include "core/curve.h"
 
-#define DIG_RESPONSE_SURFACE_TERMS 10
+#define DIG_RESPONSE_SURFACE_TERMS 20
+#define DIG_RESPONSE_SURFACE_LEAST 10 // gravels that a parabola needs
 
 struct dig_response_surface {
     const struct dig_curve_set *set; // not owned

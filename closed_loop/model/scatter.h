@@ -15,7 +15,7 @@
 #include "closed_loop/model/response_surface.h"
 #include "core/error.h"
 
-#define DIG_SCATTER_FLOOR 0.015
+#define DIG_SCATTER_FLOOR 0.002
 
 struct dig_scatter {
     double freedom[DIG_TRAJECTORY_MAX]; // degrees of freedom S was pooled from

@@ -16,7 +16,7 @@ static void split(const struct dig_whitened_digs *const batch, const struct dig_
         statistic->about += batch->group[g].about;
     }
     statistic->misfit = dig_hypothesis_differs(&fitted->hypothesis)
-                            ? dig_hypothesis_squares(batch, soil, fitted, fitted->noise)
+                            ? dig_hypothesis_squares(batch, soil, fitted, fitted)
                             : fitted->squares - statistic->about;
 }
 
@@ -101,11 +101,15 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
                               struct dig_whitened_digs *const drawn)
 {
     assert(batch != NULL && fitted != NULL && seed != NULL && drawn != NULL);
-    double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double                  common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    struct dig_common_error error[DIG_TRAJECTORY_MAX];
+    dig_hypothesis_errors(batch, soil, fitted, error);
     for (size_t g = 0; g < batch->groups; g++) {
+        double smooth[DIG_FEATURES];
         draw_scatter(batch, g, seed, common[g]);
+        dig_common_error_draw(&batch->group[g], &error[g], seed, smooth);
         for (size_t k = 0; k < batch->group[g].features; k++) {
-            common[g][k] *= sqrt(fitted->noise[g]);
+            common[g][k] = common[g][k] * sqrt(error[g].even) + smooth[k];
         }
     }
     for (size_t i = 0; i < batch->digs; i++) {

@@ -37,6 +37,7 @@ struct hump {
 // One place tried: each group's hump there, in the batch's units.
 struct place {
     double ahead_m;
+    double feature[DIG_TRAJECTORY_MAX][DIG_FEATURES]; // units of the table
     double y[DIG_TRAJECTORY_MAX][DIG_FEATURES];
     double squares[DIG_TRAJECTORY_MAX];
 };
@@ -94,7 +95,6 @@ static void put_place(const struct room *const r, const double ahead_m, struct p
     p->ahead_m = ahead_m;
     for (size_t g = 0; g < r->batch->groups; g++) {
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double feature[DIG_FEATURES];
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             double more[DIG_FORCE_CHANNELS];
             shifted(&r->hump[g], k, ahead_m, more);
@@ -102,8 +102,8 @@ static void put_place(const struct room *const r, const double ahead_m, struct p
                 curve[c][k] = more[c];
             }
         }
-        dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
-        dig_whitened_digs_whiten(&r->batch->group[g], feature, p->y[g]);
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, p->feature[g]);
+        dig_whitened_digs_whiten(&r->batch->group[g], p->feature[g], p->y[g]);
         p->squares[g] = 0.0;
         for (size_t k = 0; k < r->batch->group[g].features; k++) {
             p->squares[g] += p->y[g][k] * p->y[g][k];
@@ -138,44 +138,60 @@ static void fit_factors(const struct room *const r, const struct place *const p,
                         const double most_squares[], const struct dig_fitted *const fitted,
                         double factor[])
 {
+    struct dig_common_error error[DIG_TRAJECTORY_MAX];
+    dig_hypothesis_errors(r->batch, r->soil, fitted, error);
     for (size_t g = 0; g < r->batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &r->batch->group[g];
-        double                                      y[DIG_FEATURES];
+        double                                      rest[DIG_FEATURES];
+        double                                      hump[DIG_FEATURES];
         double                                      along = 0.0;
-        model_of(r, fitted, g, y);
+        model_of(r, fitted, g, rest);
         for (size_t k = 0; k < group->features; k++) {
-            along += p->y[g][k] * (group->mean[k] - y[k]);
+            rest[k] = group->mean[k] - rest[k];
+        }
+        memcpy(hump, p->y[g], sizeof hump);
+        (void)dig_common_error_squares(group, &error[g], rest);
+        const double squares = dig_common_error_squares(group, &error[g], hump);
+        for (size_t k = 0; k < group->features; k++) {
+            along += hump[k] * rest[k];
         }
         const bool is_there = p->squares[g] > least_hump * most_squares[g];
-        factor[g]           = is_there ? fmax(along / p->squares[g], 0.0) : 0.0;
+        factor[g]           = is_there ? fmax(along / squares, 0.0) : 0.0;
     }
 }
 
-// Squares of the means and the misfit with the hump's own noise, as a hypothesis has them; and the
-// squares as they would be with the noise of another fit.
+// Squares of the means and the misfit with what the hump may be unlike; and the squares as they
+// would be by the covariance of another fit.
 static void judge(const struct room *const r, const struct place *const p,
                   const struct dig_fitted *const plain, struct dig_rock *const rock)
 {
     struct dig_fitted *const f = &rock->plain;
-    f->squares                 = 0.0;
-    f->misfit                  = 0.0;
-    rock->squares              = 0.0;
-    rock->numbers              = 1;
+    struct dig_common_error  own[DIG_TRAJECTORY_MAX];
+    struct dig_common_error  other[DIG_TRAJECTORY_MAX];
+    dig_hypothesis_errors(&r->without, r->soil, f, own);
+    dig_hypothesis_errors(r->batch, r->soil, plain, other);
+    f->squares    = 0.0;
+    f->misfit     = 0.0;
+    rock->squares = 0.0;
+    rock->numbers = 1;
     for (size_t g = 0; g < r->batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &r->without.group[g];
-        const double                                n     = (double)group->digs;
-        double                                      y[DIG_FEATURES];
-        double                                      left = 0.0;
-        model_of(r, f, g, y);
+        double                                      rest[DIG_FEATURES];
+        double                                      again[DIG_FEATURES];
+        model_of(r, f, g, rest);
         for (size_t k = 0; k < group->features; k++) {
-            left += (group->mean[k] - y[k]) * (group->mean[k] - y[k]);
+            rest[k] = group->mean[k] - rest[k];
         }
-        f->noise[g] += unlikeness * unlikeness * rock->factor[g] * rock->factor[g] * p->squares[g] /
-                       (double)group->features;
-        const double variance = 1.0 / n + f->noise[g];
-        f->squares += left / variance;
-        f->misfit += left / variance + (double)group->features * log(variance) + group->about;
-        rock->squares += left / (1.0 / n + plain->noise[g]);
+        memcpy(again, rest, sizeof again);
+        for (size_t i = 0; i < DIG_FEATURES; i++) {
+            own[g].size[1][i] = unlikeness * rock->factor[g] * p->feature[g][i];
+        }
+        dig_common_error_build(group, &own[g]);
+        const double left = dig_common_error_squares(group, &own[g], rest);
+        f->noise[g]       = own[g].noise;
+        f->squares += left;
+        f->misfit += left + own[g].log_det + group->about;
+        rock->squares += dig_common_error_squares(group, &other[g], again);
         rock->numbers += rock->factor[g] > 0.0 ? 1 : 0;
     }
 }
@@ -193,7 +209,7 @@ static void fit_place(struct room *const r, const struct place *const p,
         double from[DIG_HYPOTHESIS_NUMBERS];
         memcpy(from, rock->plain.number, sizeof from);
         dig_hypothesis_fit(&r->without, r->soil, &plain->hypothesis, from,
-                           round == 0 ? DIG_FIT_THOROUGH : DIG_FIT_ONCE, &rock->plain);
+                           round == 0 ? DIG_FIT_THOROUGH : DIG_FIT_BARE, &rock->plain);
     }
     judge(r, p, plain, rock);
 }

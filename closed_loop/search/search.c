@@ -21,7 +21,8 @@ static void list_rivals(struct dig_search_work *const c)
         const enum dig_effect_id effect = (enum dig_effect_id)e;
         if (!dig_effect_is_of_machine(effect) && effect != DIG_EFFECT_UNLISTED &&
             c->s->rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(c->batch, c->soil, effect)) {
-            c->single[c->s->rivals++] = (struct dig_hypothesis){ 1, { effect }, false };
+            c->single[c->s->rivals++] =
+                (struct dig_hypothesis){ .effects = 1, .effect = { effect } };
         }
     }
 }
@@ -42,6 +43,7 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     }
     dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
                        &c->s->beyond);
+    dig_hypothesis_fit_unlisted(c->batch, c->soil, fitted[0].number, &c->s->nameless);
 }
 
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.

@@ -10,15 +10,13 @@ static const double temper = 0.5;
 // A gravel that the grid does not hold explains the digs at least as well as what was chosen.
 bool dig_search_is_outside(const struct dig_search_work *const c)
 {
-    const struct dig_fitted *const chosen = &c->s->chosen;
-    const double p = dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->beyond));
-    const double by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
-    const double by_effect = c->s->unlisted
-                                 ? dig_search_best_evidence(c->s)
-                                 : dig_search_evidence(c, chosen, chosen->hypothesis.effects);
+    const struct dig_fitted *const chosen    = &c->s->chosen;
+    const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    const double                   by_effect = c->s->unlisted
+                                                   ? dig_search_best_evidence(c->s)
+                                                   : dig_search_evidence(c, chosen, chosen->hypothesis.effects);
     return by_gravel > 0.0 && by_gravel >= by_effect &&
-           (p >= DIG_SEARCH_LEAST_FIT ||
-            dig_search_share(c, &c->s->beyond) >= DIG_SEARCH_LEAST_SHARE);
+           by_gravel >= dig_search_evidence(c, &c->s->nameless, 0);
 }
 
 static bool is_near_chosen(const struct dig_search_work *const c, const size_t rival)

@@ -10,13 +10,9 @@
 
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 
-// An effect that misfits more than digs of its own would may leave at most so many times what they
-// would; where the plain hypothesis leaves so many times what is expected, its curves must explain
-// this share of it, see is_matched(), and those of a rock elsewhere half.
-static const double most_left = 2.5;
-static const double much_left = 4.0;
-static const double matched   = 0.65;
-static const double half      = 0.5;
+// Share of what the plain hypothesis leaves that a rock elsewhere must explain: another depth gives
+// its hump another shape.
+static const double half = 0.5;
 
 // Of a normal distribution, exceeded either way once in a hundred.
 static const double most_bent = 2.576;
@@ -60,7 +56,7 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
         struct dig_statistic  statistic;
         const size_t          n = list_additions(c, &c->single[first], added);
         dig_null_simulation_fit(c->batch, c->soil, &c->single[first], n, added,
-                                c->s->rival[first].number, DIG_FIT_ONCE, fitted, &statistic);
+                                c->s->rival[first].number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
             best  = fitted[1 + statistic.best].misfit;
             *pair = fitted[1 + statistic.best];
@@ -89,8 +85,6 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
                                                             added, draws, &c->seed, &null);
     if (status == DIG_OK) {
         c->s->p_fit = dig_null_simulation_p(&null, 0, statistic.misfit);
-        c->left     = statistic.misfit;
-        c->expected = null.mean[0];
         if (more != NULL) {
             *more = n > 0 && dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
         }
@@ -98,23 +92,10 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
     return status;
 }
 
-// Where much is left of the plain hypothesis, the effect's own curves must explain it: not only the
-// noise that an effect of this size, known from few beds, brings along.
-static bool is_matched(const struct dig_search_work *const c)
+// What has no name explains the digs no better than the effect does.
+static bool is_believable(const struct dig_search_work *const c, const double evidence)
 {
-    const double expected = c->plain_null.mean[0];
-    const double before =
-        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
-    const double after =
-        dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, c->s->plain.noise);
-    return before < much_left * expected || before - after >= matched * (before - expected);
-}
-
-static bool is_believable(const struct dig_search_work *const c)
-{
-    return is_matched(c) && (c->s->p_fit >= DIG_SEARCH_LEAST_FIT ||
-                             (dig_search_share(c, &c->s->chosen) >= DIG_SEARCH_LEAST_SHARE &&
-                              c->left <= most_left * c->expected));
+    return evidence >= dig_search_evidence(c, &c->s->nameless, 0);
 }
 
 // A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
@@ -147,7 +128,7 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
         if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
             struct dig_fitted again;
             start[DIG_AXES] = pair->number[DIG_AXES + e];
-            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_ONCE, &again);
+            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_BARE, &again);
             if (again.misfit < c->s->rival[best].misfit) {
                 c->s->rival[best]        = again;
                 c->s->log_evidence[best] = dig_search_evidence(c, &again, 1);
@@ -172,10 +153,13 @@ static enum dig_status choose_pair(struct dig_search_work *const c, const size_t
     return status;
 }
 
+// The gravel is the one beside something that may be anything: the plain one follows what is not
+// its own. What digs of it scatter by is as for that.
 static void give_up(struct dig_search_work *const c)
 {
     c->s->unlisted = true;
-    c->s->chosen   = c->s->plain;
+    c->s->chosen   = c->s->nameless;
+    memcpy(c->s->chosen.noise, c->s->plain.noise, sizeof c->s->chosen.noise);
 }
 
 // What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
@@ -187,10 +171,9 @@ static enum dig_status look_for_rock(struct dig_search_work *const c)
     if (status != DIG_OK || !rock->known) {
         return status;
     }
-    const double before =
-        dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, c->s->plain.noise);
-    rock->log_evidence = dig_search_evidence(c, &rock->plain, rock->numbers);
-    rock->p_fit        = dig_null_simulation_p(&c->plain_null, 0, rock->plain.squares);
+    const double before = dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, &c->s->plain);
+    rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers);
+    rock->p_fit         = dig_null_simulation_p(&c->plain_null, 0, rock->plain.squares);
     const double lead =
         rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
     c->s->is_rock = lead >= DIG_SEARCH_TOLD_APART &&
@@ -230,7 +213,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
                                            &c->s->confirmed);
     }
     if (status == DIG_OK && (!is_decisive(c, evidence) || c->s->confirmed < 0.0 ||
-                             !is_believable(c) || drifts_otherwise(c))) {
+                             !is_believable(c, evidence) || drifts_otherwise(c))) {
         give_up(c);
         status = look_for_rock(c);
     }

@@ -31,18 +31,8 @@ static double about_of(const struct dig_whitened_digs *const batch)
 double dig_search_left(const struct dig_search_work *const c, const struct dig_fitted *const fitted)
 {
     return dig_hypothesis_differs(&fitted->hypothesis)
-               ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted->noise)
+               ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted)
                : fitted->squares - about_of(c->batch);
-}
-
-// Share of the plain hypothesis' excess misfit that a fit takes away.
-double dig_search_share(const struct dig_search_work *const c,
-                        const struct dig_fitted *const      fitted)
-{
-    const double expected = c->plain_null.mean[0];
-    const double before   = dig_search_left(c, &c->s->plain) - expected;
-    const double after    = dig_search_left(c, fitted) - expected;
-    return before > 0.0 ? 1.0 - after / before : 1.0;
 }
 
 bool dig_search_holds(const struct dig_hypothesis *const hypothesis,

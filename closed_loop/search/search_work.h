@@ -9,10 +9,9 @@
 /// from two.
 #define DIG_SEARCH_TOLD_APART 6.0
 
-/// An effect is believed to be the whole truth when digs of its own would misfit as much in one
-/// campaign of a hundred, or when it takes away this share of what the plain hypothesis leaves.
-#define DIG_SEARCH_LEAST_FIT   0.01
-#define DIG_SEARCH_LEAST_SHARE 0.75
+/// An effect may be the whole truth when digs of its own would misfit as much in one campaign of a
+/// hundred.
+#define DIG_SEARCH_LEAST_FIT 0.01
 
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
@@ -22,7 +21,6 @@ struct dig_search_work {
     uint64_t                   seed;
     struct dig_hypothesis      single[DIG_RIVALS_MAX];
     struct dig_null_simulation plain_null;
-    double                     left, expected; // misfit of chosen, and of digs that it made
     struct dig_search         *s;
 };
 
@@ -32,9 +30,6 @@ double dig_search_evidence(const struct dig_search_work *c, const struct dig_fit
 
 /// What a fit leaves of the digs' means.
 double dig_search_left(const struct dig_search_work *c, const struct dig_fitted *fitted);
-
-/// Share of the plain hypothesis' excess misfit that a fit takes away.
-double dig_search_share(const struct dig_search_work *c, const struct dig_fitted *fitted);
 
 bool dig_search_holds(const struct dig_hypothesis *hypothesis, enum dig_effect_id effect);
 

@@ -25,8 +25,8 @@ struct slopes {
 // The numbers of a fit, and the normal equations of its last round.
 struct joint {
     const struct dig_whitened_digs *batch;
-    const struct dig_fitted        *plain;
     const struct slopes            *slopes;
+    struct dig_common_error         error[DIG_TRAJECTORY_MAX]; // of the groups' means
     size_t                          steps;
     double                          z[STEPS];
     double                          place[DIG_AXES];
@@ -132,9 +132,8 @@ static void plain_model(const struct dig_whitened_digs *const batch, const size_
 static void add_group(struct joint *const j, const size_t g)
 {
     const struct dig_whitened_digs_group *const group = &j->batch->group[g];
-    const double weight = 1.0 / (1.0 / (double)group->digs + j->plain->noise[g]);
-    double       rest[DIG_FEATURES];
-    double       slope[UNKNOWNS][DIG_FEATURES];
+    double                                      rest[DIG_FEATURES];
+    double                                      slope[UNKNOWNS][DIG_FEATURES];
     plain_model(j->batch, g, j->place, rest);
     for (size_t p = 0; p < DIG_AXES; p++) {
         double there[DIG_AXES];
@@ -152,11 +151,13 @@ static void add_group(struct joint *const j, const size_t g)
             slope[k][f] = j->slopes->of[k][g][f];
         }
     }
-    for (size_t f = 0; f < group->features; f++) {
-        for (size_t i = 0; i < j->steps + DIG_AXES; i++) {
-            j->b[i] += weight * slope[i][f] * rest[f];
+    (void)dig_common_error_squares(group, &j->error[g], rest);
+    for (size_t i = 0; i < j->steps + DIG_AXES; i++) {
+        (void)dig_common_error_squares(group, &j->error[g], slope[i]);
+        for (size_t f = 0; f < group->features; f++) {
+            j->b[i] += slope[i][f] * rest[f];
             for (size_t k = 0; k <= i; k++) {
-                j->a[i][k] += weight * slope[i][f] * slope[k][f];
+                j->a[i][k] += slope[i][f] * slope[k][f];
             }
         }
     }
@@ -232,19 +233,19 @@ enum dig_status dig_joint_fit(struct dig_machine_side *const         machine,
                               const struct dig_machine_answer *const answer, const size_t digs,
                               const struct dig_measured             measured[],
                               const struct dig_whitened_digs *const batch,
+                              const struct dig_soil *const          soil,
                               const struct dig_fitted *const        plain,
                               struct dig_machine_answer *const fitted, double *const log_cost)
 {
     assert(machine != NULL && answer != NULL && measured != NULL && batch != NULL);
-    assert(plain != NULL && fitted != NULL && log_cost != NULL);
+    assert(soil != NULL && plain != NULL && fitted != NULL && log_cost != NULL);
     struct slopes *const slopes = malloc(sizeof *slopes);
     struct joint *const  j      = calloc(1, sizeof *j);
     enum dig_status      status = DIG_ENOMEM;
     if (slopes != NULL && j != NULL) {
-        *j = (struct joint){
-            .batch = batch, .plain = plain, .slopes = slopes, .steps = answer->numbers
-        };
+        *j = (struct joint){ .batch = batch, .slopes = slopes, .steps = answer->numbers };
         memcpy(j->place, plain->number, sizeof j->place);
+        dig_hypothesis_errors(batch, soil, plain, j->error);
         status = find_slopes(machine, batch, answer, digs, measured, slopes);
     }
     double log_spread = 0.0;

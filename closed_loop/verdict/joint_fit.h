@@ -17,11 +17,10 @@
 /// and the log of what the step from free air's values costs beside the digs' likelihood at the new
 /// ones (<= 0). plain: the gravel fitted to the batch with measured[].machine taken off.
 /// DIG_ENOMATCH: a dig is not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
-DIG_MUST_CHECK enum dig_status dig_joint_fit(struct dig_machine_side         *machine,
-                                             const struct dig_machine_answer *answer, size_t digs,
-                                             const struct dig_measured       measured[],
-                                             const struct dig_whitened_digs *batch,
-                                             const struct dig_fitted        *plain,
-                                             struct dig_machine_answer *fitted, double *log_cost);
+DIG_MUST_CHECK enum dig_status
+dig_joint_fit(struct dig_machine_side *machine, const struct dig_machine_answer *answer,
+              size_t digs, const struct dig_measured measured[],
+              const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+              const struct dig_fitted *plain, struct dig_machine_answer *fitted, double *log_cost);
 
 #endif // DIG_CLOSED_LOOP_VERDICT_JOINT_FIT_H

@@ -18,7 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What leaves everything open explains all, for so much log evidence.
+// What has no name, of the machine or of the soil, is the answer only where it leads by so much log
+// evidence.
 static const double unnamed_cost = DIG_SEARCH_TOLD_APART;
 
 // Answers whose log evidence differs by less cannot be told apart.
@@ -27,14 +28,11 @@ static const double tie = 5.0;
 // Odds are of tempered evidence, as the search's are.
 static const double temper = 0.5;
 
-// What a fit of chance gains, in log likelihood.
-static const double chance_fit = 3.0;
-
 struct choice {
     struct dig_machine_answer best;
     size_t                    from; // which of free air's
     double                    evidence;
-    double                    soil0, left0;            // of the digs as they were measured
+    double                    soil0;                   // of the digs as they were measured
     double                    of[DIG_MACHINE_ANSWERS]; // evidence of each
 };
 
@@ -58,22 +56,19 @@ static void take_off_batch(const struct dig_whitened_digs *const raw,
 }
 
 // The log evidence of the digs, of the best that the soil can be; *plain: of them with no effect.
-// *left: log likelihood beyond what chance leaves of the best that has a name.
 static double soil_evidence(const struct dig_whitened_digs *const batch,
-                            const struct dig_soil *const soil, struct dig_fitted *const plain,
-                            double *const left)
+                            const struct dig_soil *const soil, struct dig_fitted *const plain)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, plain);
-    double features = 0.0;
-    double means    = plain->squares;
+    double            features = 0.0;
+    struct dig_fitted fitted;
     for (size_t g = 0; g < batch->groups; g++) {
         features += (double)batch->group[g].features;
-        means -= batch->group[g].about;
     }
-    const double excess = 0.5 * (means - (features - (double)plain->free));
-    double       gain   = 0.0;
+    dig_hypothesis_fit_unlisted(batch, soil, plain->number, &fitted);
+    double gain = fmax(0.5 * (plain->misfit - fitted.misfit) - unnamed_cost, 0.0);
     for (int e = 0; e < DIG_EFFECTS; e++) {
         const enum dig_effect_id    effect = (enum dig_effect_id)e;
         const struct dig_hypothesis single = { .effects = 1, .effect = { effect } };
@@ -81,14 +76,12 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
             !dig_hypothesis_possible(batch, soil, effect)) {
             continue;
         }
-        struct dig_fitted fitted;
-        double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        double start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
         dig_hypothesis_fit(batch, soil, &single, start, DIG_FIT_BARE, &fitted);
         gain = fmax(gain, 0.5 * (plain->misfit - fitted.misfit - log(features)));
     }
-    *left = fmax(excess - gain, 0.0);
-    return fmax(gain, excess - unnamed_cost) - 0.5 * plain->misfit;
+    return gain - 0.5 * plain->misfit;
 }
 
 // Where a dig is not told with an answer (a cylinder at its stop, a bucket off its path) it is no
@@ -118,7 +111,6 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     struct dig_machine_answer              fitted;
     struct dig_fitted                      plain;
     double                                 log_cost = 0.0;
-    double                                 left     = 0.0;
     struct dig_whitened_digs *const        batch    = malloc(sizeof *batch);
     enum dig_status                        status =
         batch != NULL ? dig_machine_side_apply(machine, answer->effects, answer->effect, measured)
@@ -126,16 +118,12 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     if (status == DIG_OK) {
         take_off_batch(w->batch, measured, batch);
         keep_best(answer, from,
-                  answer->log_evidence + soil_evidence(batch, w->soil, &plain, &left) -
-                      choice->soil0,
+                  answer->log_evidence + soil_evidence(batch, w->soil, &plain) - choice->soil0,
                   choice);
     }
-    // Without more left than chance leaves there is nothing that other values could explain.
-    if (status == DIG_OK && left > chance_fit) {
-        status = dig_joint_fit(machine, answer, digs, measured, batch, &plain, &fitted, &log_cost);
-    } else if (status == DIG_OK) {
-        free(batch);
-        return DIG_OK;
+    if (status == DIG_OK) {
+        status = dig_joint_fit(machine, answer, digs, measured, batch, w->soil, &plain, &fitted,
+                               &log_cost);
     }
     if (status == DIG_OK) {
         status = dig_machine_side_apply(machine, fitted.effects, fitted.effect, measured);
@@ -143,8 +131,8 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     if (status == DIG_OK) {
         take_off_batch(w->batch, measured, batch);
         keep_best(&fitted, from,
-                  answer->log_evidence_wide + log_cost +
-                      soil_evidence(batch, w->soil, &plain, &left) - choice->soil0,
+                  answer->log_evidence_wide + log_cost + soil_evidence(batch, w->soil, &plain) -
+                      choice->soil0,
                   choice);
     }
     free(batch);
@@ -231,7 +219,12 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
     enum dig_status                   status  = DIG_OK;
     struct dig_fitted                 plain;
     choice->evidence = -INFINITY;
-    choice->soil0    = soil_evidence(w->batch, w->soil, &plain, &choice->left0);
+    choice->soil0    = soil_evidence(w->batch, w->soil, &plain);
+    // All that an answer could explain of the digs.
+    double left = 0.5 * plain.squares;
+    for (size_t g = 0; g < w->batch->groups; g++) {
+        left -= 0.5 * w->batch->group[g].about;
+    }
     for (size_t i = 0; i < air->answers; i++) {
         choice->of[i] = -INFINITY;
     }
@@ -239,7 +232,7 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
         unnamed = fmax(unnamed, air->answer[i].log_evidence - unnamed_cost);
         // Not one that could explain all the digs leave and still be no answer, or none of the
         // best.
-        const double most = air->answer[i].log_evidence + choice->left0 + chance_fit;
+        const double most = air->answer[i].log_evidence + left;
         if (most >= fmax(least, choice->evidence - tie)) {
             status = weigh(machine, i, digs, measured, w, choice);
         }

@@ -3,6 +3,7 @@
 #include "closed_loop/accuracy/decision.h"
 #include "closed_loop/accuracy/effect_size.h"
 #include "closed_loop/accuracy/judge.h"
+#include "closed_loop/model/posterior.h"
 #include "closed_loop/verdict/residuals.h"
 #include "closed_loop/verdict/tell_apart.h"
 #include "closed_loop/verdict/trace_parts.h"
@@ -65,7 +66,7 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
     if (dig_response_surface_fit(set, w->surface) != DIG_OK) {
         return dig_error_set(error, DIG_EINVAL,
                              "the table holds too few gravels to trace with, expected %d or more",
-                             DIG_RESPONSE_SURFACE_TERMS);
+                             DIG_RESPONSE_SURFACE_LEAST);
     }
     enum dig_status status = table != NULL
                                  ? dig_scatter_measure(table, w->surface, &w->scatter, error)
@@ -264,6 +265,20 @@ static enum dig_status weigh_soil(struct dig_trace_work *const w)
     return status;
 }
 
+// How well all that is reported is known.
+static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed)
+{
+    struct dig_search *const s      = w->search;
+    enum dig_status          status = dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen);
+    if (status == DIG_OK) {
+        status = dig_posterior_intervals(w->batch, w->soil, seed, &w->before);
+    }
+    for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
+        status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i]);
+    }
+    return status;
+}
+
 static enum dig_status run(const struct dig_curve_set *const set, const char *const table,
                            const struct dig_effect_set *const     effects,
                            const struct dig_trace_settings *const settings,
@@ -299,6 +314,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     // Nothing was found that is corrected: nothing changes.
     if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
         w->search->chosen = w->before;
+    }
+    if (status == DIG_OK) {
+        status = find_intervals(w, settings->seed);
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
                                    digs, measured,   w->batch,   &w->before, w->search };

@@ -26,6 +26,7 @@ static const char help[] =
     "  --data DIR        where the digs are (tests/data)\n"
     "  --cache DIR       for exact machine recordings, kept between calls (build/blind)\n"
     "  --split dev|judge seeds to develop with, or to judge with (dev)\n"
+    "  --seed N          other seeds of that split: campaigns that no run has drawn before (0)\n"
     "  -n N              campaigns without an effect (100); those with one follow from it\n"
     "  -j N              at a time (1)\n"
     "  --only NAME       only campaigns with this effect, or of this kind: none, single, pair,\n"
@@ -39,6 +40,7 @@ static const char help[] =
 struct options {
     const char *table, *bin, *data, *cache, *split, *only, *keep, *json;
     size_t      n, jobs;
+    uint64_t    seed;
     bool        make_only;
 };
 
@@ -60,13 +62,19 @@ static int usage(const char *const what)
 
 static bool parse(const int argc, char *argv[], struct options *const options)
 {
-    enum { TABLE = 256, BIN, DATA, CACHE, SPLIT, ONLY, KEEP, MAKE, JSON };
+    enum { TABLE = 256, BIN, DATA, CACHE, SPLIT, SEED, ONLY, KEEP, MAKE, JSON };
     static const struct option known[] = {
-        { "table", required_argument, NULL, TABLE }, { "bin", required_argument, NULL, BIN },
-        { "data", required_argument, NULL, DATA },   { "cache", required_argument, NULL, CACHE },
-        { "split", required_argument, NULL, SPLIT }, { "only", required_argument, NULL, ONLY },
-        { "keep", required_argument, NULL, KEEP },   { "make", no_argument, NULL, MAKE },
-        { "json", required_argument, NULL, JSON },   { NULL, 0, NULL, 0 },
+        { "table", required_argument, NULL, TABLE },
+        { "bin", required_argument, NULL, BIN },
+        { "data", required_argument, NULL, DATA },
+        { "cache", required_argument, NULL, CACHE },
+        { "split", required_argument, NULL, SPLIT },
+        { "seed", required_argument, NULL, SEED },
+        { "only", required_argument, NULL, ONLY },
+        { "keep", required_argument, NULL, KEEP },
+        { "make", no_argument, NULL, MAKE },
+        { "json", required_argument, NULL, JSON },
+        { NULL, 0, NULL, 0 },
     };
     struct options o = { .bin   = "build/bin",
                          .data  = "tests/data",
@@ -81,6 +89,7 @@ static bool parse(const int argc, char *argv[], struct options *const options)
         case DATA: o.data = optarg; break;
         case CACHE: o.cache = optarg; break;
         case SPLIT: o.split = optarg; break;
+        case SEED: o.seed = strtoull(optarg, NULL, 10); break;
         case ONLY: o.only = optarg; break;
         case KEEP: o.keep = optarg; break;
         case MAKE: o.make_only = true; break;
@@ -268,8 +277,11 @@ static struct blind_result play(const struct bench *const       bench,
         return r;
     }
     (void)snprintf(r.source, sizeof r.source, "%s", c->group->source);
-    r.gravel     = c->group->gravel;
-    r.magnitude  = c->group->magnitude;
+    r.gravel    = c->group->gravel;
+    r.magnitude = c->group->magnitude;
+    for (size_t e = 0; e < order->effects; e++) {
+        r.magnitude = order->effect[e].how == BLIND_BY_GROUND ? c->ground[e].p[0] : r.magnitude;
+    }
     r.by_machine = c->by_machine;
     r.digs       = c->digs;
     for (size_t d = 0; d < c->digs; d++) {
@@ -413,7 +425,8 @@ static int bench_with(const struct options *const o, const struct dig_curve_set 
     (void)snprintf(bench.digloop, sizeof bench.digloop, "%s/digloop", o->bin);
     (void)snprintf(temporary, sizeof temporary, "%s/blind_XXXXXX",
                    getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp");
-    plan.seed    = strcmp(o->split, "dev") == 0 ? UINT64_C(20260101) : UINT64_C(77001977);
+    plan.seed = (strcmp(o->split, "dev") == 0 ? UINT64_C(20260101) : UINT64_C(77001977)) +
+                o->seed * UINT64_C(0x9E3779B97F4A7C15);
     plan.choices = choices(pool, plan.choice, CHOICES_MAX);
     plan.order   = calloc(plan.most, sizeof *plan.order);
     if (plan.order == NULL || blind_oracle_create(set, &oracle, &error) != DIG_OK ||

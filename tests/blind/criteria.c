@@ -19,7 +19,7 @@ struct blind_share blind_share_of(const size_t k, const size_t n)
 }
 
 // An effect of the catalogue that is not there, claimed with a probability above one half.
-static bool sure_of_wrong(const struct blind_result *const r)
+static size_t sure_of_wrong(const struct blind_result *const r)
 {
     bool is = false;
     for (size_t i = 0; i < r->verdict.effects; i++) {
@@ -30,7 +30,7 @@ static bool sure_of_wrong(const struct blind_result *const r)
     return is;
 }
 
-static bool sure_of_any(const struct blind_result *const r)
+static size_t sure_of_any(const struct blind_result *const r)
 {
     bool is = false;
     for (size_t i = 0; i < r->verdict.effects; i++) {
@@ -40,94 +40,175 @@ static bool sure_of_any(const struct blind_result *const r)
     return is;
 }
 
-static bool is_none(const struct blind_result *const r)
+static size_t is_none(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_NONE;
 }
-static bool alarmed(const struct blind_result *const r)
+static size_t alarmed(const struct blind_result *const r)
 {
     return !blind_says(r, "none");
 }
-static bool is_clear(const struct blind_result *const r)
+static size_t is_clear(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 3;
 }
-static bool is_middling(const struct blind_result *const r)
+static size_t is_middling(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 1;
 }
-static bool is_faint(const struct blind_result *const r)
+static size_t is_faint(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 0;
 }
-static bool is_single_in_soil(const struct blind_result *const r, const int class)
+static size_t is_single_in_soil(const struct blind_result *const r, const int class)
 {
     return r->order.kind == BLIND_SINGLE && blind_class_of_size(blind_size_in_soil(r)) == class;
 }
-static bool is_clear_in_soil(const struct blind_result *const r)
+static size_t is_clear_in_soil(const struct blind_result *const r)
 {
     return is_single_in_soil(r, 3);
 }
-static bool is_middling_in_soil(const struct blind_result *const r)
+static size_t is_middling_in_soil(const struct blind_result *const r)
 {
     return is_single_in_soil(r, 1);
 }
-static bool is_faint_in_soil(const struct blind_result *const r)
+static size_t is_faint_in_soil(const struct blind_result *const r)
 {
     return is_single_in_soil(r, 0);
 }
-static bool is_right(const struct blind_result *const r)
+static size_t is_right(const struct blind_result *const r)
 {
     return blind_answer_of(r) == BLIND_RIGHT || blind_answer_of(r) == BLIND_IN_SET;
 }
-static bool is_clear_pair(const struct blind_result *const r)
+static size_t is_clear_pair(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_PAIR && blind_class_of(r) == 3;
 }
-static bool has_both(const struct blind_result *const r)
+static size_t has_both(const struct blind_result *const r)
 {
     return blind_found(r, &r->order.effect[0]) && blind_found(r, &r->order.effect[1]);
 }
-static bool is_outside(const struct blind_result *const r)
+static size_t is_outside(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_OUTSIDE;
 }
-static bool is_clear_outside(const struct blind_result *const r)
+static size_t is_clear_outside(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_OUTSIDE && blind_class_of(r) == 3;
 }
-static bool is_clear_outside_in_soil(const struct blind_result *const r)
+static size_t is_clear_outside_in_soil(const struct blind_result *const r)
 {
     return is_outside(r) && blind_class_of_size(blind_size_in_soil(r)) == 3;
 }
-static bool is_unlisted(const struct blind_result *const r)
+static size_t is_unlisted(const struct blind_result *const r)
 {
     return blind_says(r, "unlisted");
 }
-static bool is_known(const struct blind_result *const r)
+static size_t is_known(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && isfinite(r->verdict.after) && blind_class_of(r) == 3;
 }
-static bool is_near_oracle(const struct blind_result *const r)
+static size_t is_near_oracle(const struct blind_result *const r)
 {
     return r->verdict.after <= 1.15 * r->truth.error;
 }
-static bool has_errors(const struct blind_result *const r)
+static size_t has_errors(const struct blind_result *const r)
 {
     return isfinite(r->verdict.before) && isfinite(r->verdict.after);
 }
-static bool made_worse(const struct blind_result *const r)
+static size_t made_worse(const struct blind_result *const r)
 {
     return r->verdict.after > r->verdict.before * (1.0 + 1e-9);
 }
-static bool is_any(const struct blind_result *const r)
+static size_t is_any(const struct blind_result *const r)
 {
     (void)r;
-    return true;
+    return 1;
 }
-static bool is_quick(const struct blind_result *const r)
+static size_t is_quick(const struct blind_result *const r)
 {
     return r->cpu_s <= 10.0 && r->peak_B <= 500e6;
+}
+
+// Ground whose gravel a trace is to find: the rate's formula changes the size of a dig as density
+// does, and a pair's effects are of two kinds.
+static bool has_gravel(const struct blind_result *const r)
+{
+    return r->order.kind == BLIND_NONE || (r->order.kind == BLIND_SINGLE &&
+                                           strcmp(r->order.effect[0].name, "rate_dependence") != 0);
+}
+static bool is_soil_effect(const struct blind_result *const r)
+{
+    return r->order.kind == BLIND_SINGLE && r->order.effect[0].how != BLIND_BY_MACHINE;
+}
+static bool is_ours(const struct blind_result *const r)
+{
+    return strcmp(r->source, "ours") == 0;
+}
+static size_t plain_gravel(const struct blind_result *const r, const bool ours)
+{
+    return has_gravel(r) && !is_soil_effect(r) && is_ours(r) == ours ? DIG_AXES : 0;
+}
+static size_t plain_gravel_of_ours(const struct blind_result *const r)
+{
+    return plain_gravel(r, true);
+}
+static size_t plain_gravel_of_another(const struct blind_result *const r)
+{
+    return plain_gravel(r, false);
+}
+// Beside an effect that was found: of one that was not, the gravel is told wrongly with reason.
+static size_t gravel_beside(const struct blind_result *const r, const bool ours)
+{
+    return has_gravel(r) && is_soil_effect(r) && is_ours(r) == ours && is_right(r) ? DIG_AXES : 0;
+}
+static size_t gravel_beside_of_ours(const struct blind_result *const r)
+{
+    return gravel_beside(r, true);
+}
+static size_t gravel_beside_of_another(const struct blind_result *const r)
+{
+    return gravel_beside(r, false);
+}
+static size_t gravel_held(const struct blind_result *const r)
+{
+    size_t held = 0;
+    for (int a = 0; a < DIG_AXES; a++) {
+        held += r->gravel.value[a] >= r->verdict.gravel_low.value[a] &&
+                        r->gravel.value[a] <= r->verdict.gravel_high.value[a]
+                    ? 1
+                    : 0;
+    }
+    return held;
+}
+// Which effect of the verdict is the one that is there; the number of effects when none is.
+static size_t named(const struct blind_result *const r)
+{
+    size_t i = 0;
+    while (i < r->verdict.effects && strcmp(r->verdict.effect[i], r->order.effect[0].name) != 0) {
+        i++;
+    }
+    return i;
+}
+// Compaction has no magnitude of its own: it is what passes before did.
+static size_t magnitude(const struct blind_result *const r, const bool ours)
+{
+    const bool has = is_soil_effect(r) && strcmp(r->order.effect[0].name, "compaction") != 0 &&
+                     strcmp(r->order.effect[0].name, "rate_dependence") != 0;
+    return has && is_ours(r) == ours && named(r) < r->verdict.effects ? 1 : 0;
+}
+static size_t magnitude_of_ours(const struct blind_result *const r)
+{
+    return magnitude(r, true);
+}
+static size_t magnitude_of_another(const struct blind_result *const r)
+{
+    return magnitude(r, false);
+}
+static size_t magnitude_held(const struct blind_result *const r)
+{
+    const size_t i = named(r);
+    return r->magnitude >= r->verdict.low[i] && r->magnitude <= r->verdict.high[i] ? 1 : 0;
 }
 
 const struct blind_criterion blind_criterion[BLIND_CRITERIA] = {
@@ -148,6 +229,14 @@ const struct blind_criterion blind_criterion[BLIND_CRITERIA] = {
     { "one effect, size 3 and more: error after <= 1.15 of the oracle's", is_known, is_near_oracle,
       0.50, true },
     { "holdout error made worse", has_errors, made_worse, 0.02, false },
+    { "plain gravel or machine: 90 % intervals of the gravel hold, our DEM", plain_gravel_of_ours,
+      gravel_held, 0.85, true },
+    { "  another code", plain_gravel_of_another, gravel_held, 0.75, true },
+    { "beside an effect of the soil that was found: of the gravel, our DEM", gravel_beside_of_ours,
+      gravel_held, 0.85, true },
+    { "  another code", gravel_beside_of_another, gravel_held, 0.75, true },
+    { "  of its magnitude, our DEM", magnitude_of_ours, magnitude_held, 0.85, true },
+    { "  another code", magnitude_of_another, magnitude_held, 0.75, true },
     { "traced in 10 s of one core and 500 MB", is_any, is_quick, 1.0, true },
 };
 struct blind_share blind_criterion_judge(const struct blind_criterion *const c, const size_t n,
@@ -156,9 +245,10 @@ struct blind_share blind_criterion_judge(const struct blind_criterion *const c, 
     size_t about  = 0;
     size_t counts = 0;
     for (size_t i = 0; i < n; i++) {
-        if (result[i].state == BLIND_TRACED && c->about(&result[i])) {
-            about++;
-            counts += c->counts(&result[i]) ? 1 : 0;
+        const size_t of = result[i].state == BLIND_TRACED ? c->about(&result[i]) : 0;
+        if (of > 0) {
+            about += of;
+            counts += c->counts(&result[i]);
         }
     }
     return blind_share_of(counts, about);

@@ -5,7 +5,7 @@
 
 #include "tests/blind/answer.h"
 
-#define BLIND_CRITERIA 14
+#define BLIND_CRITERIA 20
 
 /// A share with its 95 % interval (Wilson, 1927).
 struct blind_share {
@@ -15,11 +15,12 @@ struct blind_share {
 
 struct blind_share blind_share_of(size_t k, size_t n);
 
-/// One acceptance criterion: whom it is about, what counts, and what the share is to be.
+/// One acceptance criterion: how many things of a campaign it is about (none: not about it), how
+/// many of them count, and what the share is to be.
 struct blind_criterion {
     const char *title;
-    bool (*about)(const struct blind_result *);
-    bool (*counts)(const struct blind_result *);
+    size_t (*about)(const struct blind_result *);
+    size_t (*counts)(const struct blind_result *);
     double bound;
     bool   at_least;
 };

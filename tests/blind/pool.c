@@ -76,7 +76,7 @@ static struct blind_bed *bed_of(struct blind_pool *const pool, const struct blin
     return bed;
 }
 
-// What the digs under liggghts_digs are made of, by their make.sh.
+// What LIGGGHTS' digs are made of, by the make.sh of liggghts_digs.
 static bool liggghts_gravel(const char *const name, struct blind_group *const group)
 {
     static const struct {
@@ -88,6 +88,8 @@ static bool liggghts_gravel(const char *const name, struct blind_group *const gr
         { "poly", "polydispersity", 1.667, { { 0.5, 0.5, 2500.0 } } },
         { "cohesion", "cohesion", 1e5, { { 0.5, 0.5, 2500.0 } } },
         { "cohesion_all", "cohesion", 1.001e5, { { 0.5, 0.5, 2500.0 } } },
+        { "cohesion_2e5", "cohesion", 2e5, { { 0.5, 0.5, 2500.0 } } },
+        { "obstacle", "obstacle", 0.03, { { 0.5, 0.5, 2500.0 } } },
         { "clump", "grain_shape", 1.5, { { 0.5, 0.5, 2500.0 } } },
         { "other", "", 0.0, { { 0.7, 0.5, 1500.0 } } },
         { "slope_up", "ground_slope", 8.0, { { 0.5, 0.5, 2500.0 } } },
@@ -149,7 +151,7 @@ static enum dig_status read_liggghts(const char *const folder, struct blind_pool
         struct blind_group what;
         unsigned           packing = 1;
         int                path    = -1;
-        char               file[1024];
+        char               file[2048];
         if (!liggghts_name(e->d_name, &what, &packing, &path)) {
             continue;
         }
@@ -301,13 +303,14 @@ enum dig_status blind_pool_read(const char *const data, const bool to_judge,
     if (p.group == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    (void)snprintf(folder, sizeof folder, "%s/reference", data);
-    enum dig_status status = read_liggghts(folder, &p, error);
-    if (status == DIG_OK) {
-        (void)snprintf(folder, sizeof folder, "%s/liggghts_digs", data);
+    static const char *const of_liggghts[] = { "reference", "liggghts_digs", "liggghts_more" };
+    enum dig_status          status        = DIG_OK;
+    for (size_t i = 0; i < sizeof of_liggghts / sizeof of_liggghts[0] && status == DIG_OK; i++) {
+        (void)snprintf(folder, sizeof folder, "%s/%s", data, of_liggghts[i]);
         status = read_liggghts(folder, &p, error);
     }
     if (status == DIG_OK) {
+        (void)snprintf(folder, sizeof folder, "%s/liggghts_digs", data);
         status = read_tables(folder, &p, error);
     }
     if (status == DIG_OK) {

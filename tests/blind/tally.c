@@ -221,6 +221,12 @@ static void put_campaign(FILE *const to, const struct blind_result *const r)
             (void)fprintf(to, "%s\"%s\"", i == 0 ? "" : ", ", r->verdict.name[i]);
         }
         (void)fprintf(to, "], \"answer\": \"%s\"", answer_title[blind_answer_of(r)]);
+        static const char *const axis[DIG_AXES] = { "friction", "rolling", "density_kgpm3" };
+        for (int a = 0; a < DIG_AXES; a++) {
+            (void)fprintf(to, ", \"%s\": [%.5g, %.5g, %.5g]", axis[a], r->gravel.value[a],
+                          r->verdict.gravel_low.value[a], r->verdict.gravel_high.value[a]);
+        }
+        put_number(to, "magnitude", r->magnitude);
         put_number(to, "before", r->verdict.before);
         put_number(to, "after", r->verdict.after);
         put_number(to, "oracle", r->truth.error);

@@ -49,6 +49,21 @@ static double number(const yaml_node_t *const node)
     return strtod((const char *)node->data.scalar.value, NULL);
 }
 
+// The 90 % interval of a number: {"value": …, "low": …, "high": …}.
+static void interval(yaml_document_t *const doc, const yaml_node_t *const node, double *const low,
+                     double *const high)
+{
+    *low  = number(value_of(doc, node, "low"));
+    *high = number(value_of(doc, node, "high"));
+}
+
+static const yaml_node_t *first_value(yaml_document_t *const doc, const yaml_node_t *const map)
+{
+    const bool any = map != NULL && map->type == YAML_MAPPING_NODE &&
+                     map->data.mapping.pairs.top > map->data.mapping.pairs.start;
+    return any ? yaml_document_get_node(doc, map->data.mapping.pairs.start->value) : NULL;
+}
+
 static size_t names(yaml_document_t *const doc, const yaml_node_t *const list,
                     char to[BLIND_NAMES_MAX][DIG_NAME_SIZE])
 {
@@ -84,6 +99,14 @@ static enum dig_status take(yaml_document_t *const doc, const char *const path,
         const yaml_node_t *const effect = item(doc, effects, v->effects);
         copy(v->effect[v->effects], value_of(doc, effect, "name"));
         v->probability[v->effects] = number(value_of(doc, effect, "probability"));
+        interval(doc, first_value(doc, value_of(doc, effect, "parameters")), &v->low[v->effects],
+                 &v->high[v->effects]);
+    }
+    static const char *const axis[DIG_AXES] = { "friction", "rolling", "density_kgpm3" };
+    const yaml_node_t *const material       = value_of(doc, root, "material");
+    for (int a = 0; a < DIG_AXES; a++) {
+        interval(doc, value_of(doc, material, axis[a]), &v->gravel_low.value[a],
+                 &v->gravel_high.value[a]);
     }
     const yaml_node_t *const sets = value_of(doc, root, "indistinguishable");
     for (; v->sets < items(sets) && v->sets < BLIND_SETS_MAX; v->sets++) {

@@ -18,10 +18,12 @@ struct blind_verdict {
     size_t effects;
     char   effect[BLIND_NAMES_MAX][DIG_NAME_SIZE];
     double probability[BLIND_NAMES_MAX];
-    size_t sets;
-    size_t set_size[BLIND_SETS_MAX];
-    char   set[BLIND_SETS_MAX][BLIND_NAMES_MAX][DIG_NAME_SIZE];
-    double noise_floor, before, after; // NaN: null
+    double low[BLIND_NAMES_MAX], high[BLIND_NAMES_MAX]; // of its first parameter; NaN: it has none
+    struct dig_gravel gravel_low, gravel_high;
+    size_t            sets;
+    size_t            set_size[BLIND_SETS_MAX];
+    char              set[BLIND_SETS_MAX][BLIND_NAMES_MAX][DIG_NAME_SIZE];
+    double            noise_floor, before, after; // NaN: null
 };
 
 /// DIG_EINVAL: a key of the contract is missing; *error names it.

@@ -37,7 +37,7 @@ static void dig_with(const double layer, const uint64_t seed)
 static const struct dig_fitted *fit_of(const enum dig_effect_id effect, const size_t effects)
 {
     static struct dig_fitted    fitted[2];
-    const struct dig_hypothesis hypothesis                     = { effects, { effect }, false };
+    const struct dig_hypothesis hypothesis = { .effects = effects, .effect = { effect } };
     const double                middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     dig_hypothesis_fit(&batch, soil, &hypothesis, middle, DIG_FIT_THOROUGH, &fitted[effects]);
     return &fitted[effects];

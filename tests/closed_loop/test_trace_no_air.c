@@ -21,7 +21,7 @@ static struct dig_trace_work work(const size_t digs)
     static const bool                  take[DIGS] = { true, true, true, true };
     static const struct dig_gravel     gravel     = { { 0.6, 0.55, 2500 } };
     static const struct dig_hypothesis plain      = { .effects = 0 };
-    static const struct dig_hypothesis layer      = { 1, { DIG_EFFECT_LAYERING }, false };
+    static const struct dig_hypothesis layer = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     const double                       magnitude                      = 0.8;
     uint64_t                           seed                           = 61;

@@ -1,0 +1,121 @@
+#include "closed_loop/model/common_error.h"
+
+#include "closed_loop/numeric/chance.h"
+#include "closed_loop/numeric/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// How far along the dig, in bins, each part's factor stays alike, and how alike it is on two
+// channels.
+static const double alike_bins[DIG_COMMON_ERROR_PARTS] = { 2.5, 2.5, 0.7 };
+static const double alike_channels                     = 0.7;
+
+// R of a part. The ridge keeps it positive definite.
+static double likeness(const size_t part, const size_t a, const size_t b)
+{
+    static const double ridge = 1e-6;
+    const double        apart = (double)(a % DIG_FEATURE_BINS) - (double)(b % DIG_FEATURE_BINS);
+    const bool          same  = a / DIG_FEATURE_BINS == b / DIG_FEATURE_BINS;
+    return (same ? 1.0 : alike_channels) * exp(-0.5 * pow(apart / alike_bins[part], 2.0)) +
+           (a == b ? ridge : 0.0);
+}
+
+// The smooth part's covariance, units of the table.
+static void smooth_part(const struct dig_whitened_digs_group *const group,
+                        const struct dig_common_error *const error, double k[])
+{
+    const size_t n = group->features;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            const size_t a   = group->feature[i];
+            const size_t b   = group->feature[j];
+            double       sum = 0.0;
+            for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
+                sum += error->size[p][a] * error->size[p][b] * likeness(p, a, b);
+            }
+            k[i * n + j] = sum;
+            k[j * n + i] = k[i * n + j];
+        }
+    }
+}
+
+// Overwrites the lower triangle of k with that of W k W'; whiten[i] adds nothing to y before y[i].
+static void whiten_both(const struct dig_whitened_digs_group *const group, double k[])
+{
+    const size_t n = group->features;
+    double       half[DIG_FEATURES * DIG_FEATURES]; // W k
+    memset(half, 0, n * n * sizeof half[0]);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t r = i; r < n; r++) {
+            for (size_t j = 0; j < n; j++) {
+                half[r * n + j] += group->whiten[i][r] * k[i * n + j];
+            }
+        }
+    }
+    memset(k, 0, n * n * sizeof k[0]);
+    for (size_t j = 0; j < n; j++) {
+        for (size_t r = j; r < n; r++) {
+            for (size_t c = j; c <= r; c++) {
+                k[r * n + c] += half[r * n + j] * group->whiten[j][c];
+            }
+        }
+    }
+}
+
+void dig_common_error_build(const struct dig_whitened_digs_group *const group,
+                            struct dig_common_error *const              error)
+{
+    assert(group != NULL && error != NULL);
+    const size_t n     = group->features;
+    double       trace = 0.0;
+    smooth_part(group, error, error->lower);
+    whiten_both(group, error->lower);
+    for (size_t i = 0; i < n; i++) {
+        trace += error->lower[i * n + i] / (double)n;
+        error->lower[i * n + i] += 1.0 / (double)group->digs + error->even;
+    }
+    error->noise = error->even + trace;
+    // Positive definite by what is on its diagonal.
+    const enum dig_status status = dig_cholesky(n, error->lower);
+    assert(status == DIG_OK);
+    (void)status;
+    error->log_det = dig_lower_log_det(n, error->lower);
+}
+
+double dig_common_error_squares(const struct dig_whitened_digs_group *const group,
+                                const struct dig_common_error *const error, double residual[])
+{
+    double sum = 0.0;
+    dig_lower_solve(group->features, error->lower, residual);
+    for (size_t k = 0; k < group->features; k++) {
+        sum += residual[k] * residual[k];
+    }
+    return sum;
+}
+
+void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
+                           const struct dig_common_error *const error, uint64_t *const seed,
+                           double y[DIG_FEATURES])
+{
+    double feature[DIG_FEATURES] = { 0.0 };
+    for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
+        double lower[DIG_FEATURES * DIG_FEATURES];
+        double factor[DIG_FEATURES];
+        for (size_t a = 0; a < DIG_FEATURES; a++) {
+            factor[a] = dig_chance_normal(seed);
+            for (size_t b = 0; b <= a; b++) {
+                lower[a * DIG_FEATURES + b] = likeness(p, a, b);
+            }
+        }
+        const enum dig_status status = dig_cholesky(DIG_FEATURES, lower);
+        assert(status == DIG_OK);
+        (void)status;
+        dig_lower_multiply(DIG_FEATURES, lower, factor);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            feature[f] += error->size[p][f] * factor[f];
+        }
+    }
+    dig_whitened_digs_whiten(group, feature, y);
+}

@@ -1,0 +1,99 @@
+#include "closed_loop/model/forward.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
+static const size_t least_order = 4;    // digs that can show a trend: two that differ are none
+
+static bool differs_by_dig(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
+           effect == DIG_EFFECT_COMPACTION;
+}
+
+bool dig_hypothesis_differs(const struct dig_hypothesis *const hypothesis)
+{
+    bool differs = false;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        differs = differs || differs_by_dig(hypothesis->effect[e]);
+    }
+    return differs;
+}
+
+bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
+                             const struct dig_soil *const soil, const enum dig_effect_id effect)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        if (!dig_soil_knows(soil, effect, batch->group[g].trajectory)) {
+            return false;
+        }
+    }
+    if (!differs_by_dig(effect)) {
+        return true;
+    }
+    if (effect == DIG_EFFECT_WEAR && batch->digs < least_order) {
+        return false;
+    }
+    double least = INFINITY;
+    double most  = -INFINITY;
+    for (size_t i = 0; i < batch->digs; i++) {
+        const double share = dig_soil_share(effect, &batch->measured[batch->dig[i].measured]);
+        least              = fmin(least, share);
+        most               = fmax(most, share);
+    }
+    // Ground dug before differs from the table's even where all digs are of the same pass.
+    return effect == DIG_EFFECT_COMPACTION
+               ? most > 0.5
+               : most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
+}
+
+struct dig_plain dig_plain_of(const struct dig_soil *const soil, const size_t trajectory,
+                              const double number[])
+{
+    struct dig_plain plain;
+    dig_response_surface_features(soil->surface, trajectory, number, plain.feature,
+                                  plain.amplitude);
+    return plain;
+}
+
+void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *const plain,
+                     const struct dig_hypothesis *const hypothesis, const double number[],
+                     const struct dig_measured *const dig, double feature[DIG_FEATURES],
+                     double *const noise)
+{
+    memcpy(feature, plain->feature, sizeof plain->feature);
+    if (noise != NULL) {
+        *noise = 0.0;
+    }
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const double share = dig_soil_share(hypothesis->effect[e], dig);
+        dig_soil_add(soil, hypothesis->effect[e], (size_t)dig->trajectory, number,
+                     number[DIG_AXES + e], share, plain->feature, plain->amplitude, feature, noise);
+    }
+}
+
+void dig_hypothesis_features(const struct dig_soil *const       soil,
+                             const struct dig_hypothesis *const hypothesis, const double number[],
+                             const struct dig_measured *const dig, double feature[DIG_FEATURES],
+                             double *const noise)
+{
+    const struct dig_plain plain = dig_plain_of(soil, (size_t)dig->trajectory, number);
+    dig_forward_add(soil, &plain, hypothesis, number, dig, feature, noise);
+}
+
+void dig_hypothesis_curve(const struct dig_soil *const       soil,
+                          const struct dig_hypothesis *const hypothesis, const double number[],
+                          const struct dig_measured *const dig,
+                          double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const size_t t = (size_t)dig->trajectory;
+    double       plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    dig_response_surface_curve(soil->surface, t, number, plain);
+    memcpy(curve, plain, sizeof plain);
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const double share = dig_soil_share(hypothesis->effect[e], dig);
+        dig_soil_add_curve(soil, hypothesis->effect[e], t, number, number[DIG_AXES + e], share,
+                           (const double(*)[DIG_CURVE_POINTS])plain, curve);
+    }
+}

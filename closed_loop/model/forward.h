@@ -1,0 +1,53 @@
+// The forward model: what a gravel, and effects of the soil or none, make of a dig.
+
+#ifndef DIG_CLOSED_LOOP_MODEL_FORWARD_H
+#define DIG_CLOSED_LOOP_MODEL_FORWARD_H
+
+#include "closed_loop/model/soil.h"
+#include "closed_loop/model/whitened_digs.h"
+
+#define DIG_HYPOTHESIS_EFFECTS 3
+#define DIG_HYPOTHESIS_NUMBERS (DIG_AXES + DIG_HYPOTHESIS_EFFECTS)
+
+struct dig_hypothesis {
+    size_t             effects; // 0: nothing but a gravel
+    enum dig_effect_id effect[DIG_HYPOTHESIS_EFFECTS];
+    bool               outside;  // the gravel may lie beyond the table's grid
+    double             unlisted; // 1 sigma of what has no name, over the plain dig: likelihood.h
+};
+
+/// The plain dig that effects are added to: the same for all digs of a trajectory.
+struct dig_plain {
+    double feature[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+};
+
+struct dig_plain dig_plain_of(const struct dig_soil *soil, size_t trajectory,
+                              const double number[]);
+
+/// True when the digs of a batch can show the effect at all: templates along every trajectory,
+/// passes, paces or an order that differ.
+bool dig_hypothesis_possible(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+                             enum dig_effect_id effect);
+
+/// True when some effect of it differs from dig to dig of a trajectory.
+bool dig_hypothesis_differs(const struct dig_hypothesis *hypothesis);
+
+/// Features of one dig, units of the table: the plain ones with the hypothesis' effects added.
+/// number: the gravel's place, then u of each effect. *noise (NULL: not asked for): the variance of
+/// the templates, in variances of one plain dig.
+void dig_forward_add(const struct dig_soil *soil, const struct dig_plain *plain,
+                     const struct dig_hypothesis *hypothesis, const double number[],
+                     const struct dig_measured *dig, double feature[DIG_FEATURES], double *noise);
+
+/// The same from the gravel on.
+void dig_hypothesis_features(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
+                             const double number[], const struct dig_measured *dig,
+                             double feature[DIG_FEATURES], double *noise);
+
+/// The whole curve.
+void dig_hypothesis_curve(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
+                          const double number[], const struct dig_measured *dig,
+                          double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+
+#endif // DIG_CLOSED_LOOP_MODEL_FORWARD_H

@@ -1,0 +1,228 @@
+#include "closed_loop/model/likelihood.h"
+
+#include "closed_loop/model/soil_fit.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// By how much another DEM code's plain dig differs from ours beyond the scatter of both, and what
+// lies in the ground from a template's: shares of it, 1 sigma. Rocks have all shapes: what one of
+// triangles in another code adds to Fz differs by a third from what a sphere does
+// (tests/offline_dem/test_ensemble.c).
+static const double of_codes     = 0.015;
+static const double of_templates = 0.2, of_rocks = 0.3;
+
+// What of that changes from bin to bin, in variances of one dig.
+static const double rough = 0.01;
+
+// What has no name changes a plain dig slowly along it and, by this share of that, from bin to bin.
+static const double quick = 0.5;
+
+static bool is_same(const size_t n, const double a[], const double b[])
+{
+    bool same = true;
+    for (size_t i = 0; i < n; i++) {
+        same = same && fabs(a[i] - b[i]) <= 0.0;
+    }
+    return same;
+}
+
+// NaN is never the same.
+void dig_likelihood_init(struct dig_likelihood *const          l,
+                         const struct dig_whitened_digs *const batch,
+                         const struct dig_soil *const          soil,
+                         const struct dig_hypothesis *const    hypothesis)
+{
+    assert(l != NULL && batch != NULL && soil != NULL && hypothesis != NULL);
+    l->batch      = batch;
+    l->soil       = soil;
+    l->hypothesis = hypothesis;
+    l->numbers    = DIG_AXES + hypothesis->effects;
+    l->differs    = dig_hypothesis_differs(hypothesis);
+    l->residuals  = 0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        l->residuals += batch->group[g].features * (1 + (l->differs ? batch->group[g].digs : 0));
+    }
+    for (size_t i = 0; i < DIG_HYPOTHESIS_NUMBERS; i++) {
+        l->at[i]         = (double)NAN;
+        l->weighed_at[i] = (double)NAN;
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        l->place[a] = (double)NAN;
+    }
+}
+
+static const struct dig_plain *plain_at(struct dig_likelihood *const l, const size_t group,
+                                        const double x[])
+{
+    if (!is_same(DIG_AXES, l->place, x)) {
+        memcpy(l->place, x, sizeof l->place);
+        for (size_t g = 0; g < l->batch->groups; g++) {
+            l->plain[g] = dig_plain_of(l->soil, l->batch->group[g].trajectory, x);
+        }
+    }
+    return &l->plain[group];
+}
+
+static void model_dig(struct dig_likelihood *const l, const size_t group,
+                      const struct dig_measured *const dig, const double x[], double y[])
+{
+    double feature[DIG_FEATURES];
+    dig_forward_add(l->soil, plain_at(l, group, x), l->hypothesis, x, dig, feature, NULL);
+    dig_whitened_digs_whiten(&l->batch->group[group], feature, y);
+}
+
+static void model_digs(struct dig_likelihood *const l, const size_t group, const double x[])
+{
+    const struct dig_whitened_digs_group *const of = &l->batch->group[group];
+    memset(l->mean[group], 0, sizeof l->mean[group]);
+    for (size_t i = 0; i < l->batch->digs; i++) {
+        if (l->batch->dig[i].group == group) {
+            model_dig(l, group, &l->batch->measured[l->batch->dig[i].measured], x, l->y[i]);
+            for (size_t k = 0; k < of->features; k++) {
+                l->mean[group][k] += l->y[i][k] / (double)of->digs;
+            }
+        }
+    }
+}
+
+// y of the model at x: where all digs of a trajectory are alike only their mean counts.
+static void model_at(struct dig_likelihood *const l, const double x[])
+{
+    if (is_same(l->numbers, l->at, x)) {
+        return;
+    }
+    memcpy(l->at, x, l->numbers * sizeof x[0]);
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        if (l->differs) {
+            model_digs(l, g, x);
+        } else {
+            model_dig(l, g, dig_whitened_digs_first(l->batch, g), x, l->mean[g]);
+        }
+    }
+}
+
+void dig_likelihood_residual(void *const context, const double x[], double r[])
+{
+    struct dig_likelihood *const l = context;
+    size_t                       n = 0;
+    model_at(l, x);
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        for (size_t k = 0; k < group->features; k++) {
+            r[n + k] = group->mean[k] - l->mean[g][k];
+        }
+        (void)dig_common_error_squares(group, &l->error[g], r + n);
+        n += group->features;
+        for (size_t i = 0; l->differs && i < l->batch->digs; i++) {
+            for (size_t k = 0; l->batch->dig[i].group == g && k < group->features; k++) {
+                r[n++] = l->batch->dig[i].y[k] - group->mean[k] - (l->y[i][k] - l->mean[g][k]);
+            }
+        }
+    }
+}
+
+// The size of a plain dig of the gravel over that of the group's digs, squared: what is known of
+// the plain digs' scatter counts for as much less beside digs that are larger.
+static double size2_of_plain(struct dig_likelihood *const l, const size_t g, const double x[],
+                             double *const factor)
+{
+    const struct dig_whitened_digs_group *const group     = &l->batch->group[g];
+    const double *const                         amplitude = plain_at(l, g, x)->amplitude;
+    *factor = dig_scatter_factor(l->batch->scatter, group->trajectory,
+                                 dig_soil_strength(l->soil->surface, x, amplitude));
+    return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
+}
+
+static double likeness_of(const struct dig_hypothesis *const hypothesis)
+{
+    double most = of_templates;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        most = hypothesis->effect[e] == DIG_EFFECT_OBSTACLE ? of_rocks : most;
+    }
+    return most;
+}
+
+// What the effects add to a group's mean dig, and the variance of their templates.
+static double effects_of(struct dig_likelihood *const l, const size_t g, const double x[],
+                         double added[DIG_FEATURES])
+{
+    const struct dig_whitened_digs_group *const group    = &l->batch->group[g];
+    const struct dig_plain *const               plain    = plain_at(l, g, x);
+    const struct dig_measured *const            first    = dig_whitened_digs_first(l->batch, g);
+    double                                      variance = 0.0;
+    memset(added, 0, DIG_FEATURES * sizeof added[0]);
+    for (size_t i = 0; l->hypothesis->effects > 0 && i < l->batch->digs; i++) {
+        const struct dig_measured *const dig   = &l->batch->measured[l->batch->dig[i].measured];
+        const double                     share = l->differs ? 1.0 / (double)group->digs : 1.0;
+        double                           with[DIG_FEATURES];
+        double                           of_one;
+        if (l->batch->dig[i].group != g || (!l->differs && dig != first)) {
+            continue;
+        }
+        dig_forward_add(l->soil, plain, l->hypothesis, x, dig, with, &of_one);
+        variance += share * of_one;
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            added[f] += share * (with[f] - plain->feature[f]);
+        }
+    }
+    return variance;
+}
+
+void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
+{
+    if (is_same(l->numbers, l->weighed_at, x)) {
+        return;
+    }
+    memcpy(l->weighed_at, x, l->numbers * sizeof x[0]);
+    const double unlike   = likeness_of(l->hypothesis);
+    const double unlisted = l->hypothesis->unlisted;
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        struct dig_common_error *const              error = &l->error[g];
+        double                                      factor;
+        const double                                size2     = size2_of_plain(l, g, x, &factor);
+        const double                                templates = effects_of(l, g, x, error->size[1]);
+        error->even =
+            rough + group->repeats + size2 * templates +
+            size2 * factor * dig_response_surface_noise(l->soil->surface, group->trajectory, x);
+        const double *const plain = plain_at(l, g, x)->feature;
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            error->size[0][f] = hypot(of_codes, unlisted) * plain[f];
+            error->size[1][f] *= unlike;
+            error->size[2][f] = quick * unlisted * plain[f];
+        }
+        dig_common_error_build(group, error);
+    }
+}
+
+// Digs that a hypothesis takes for alike scatter about their mean.
+double dig_likelihood_misfit(const struct dig_likelihood *const l, const double residual[],
+                             double *const squares)
+{
+    double logs = 0.0;
+    *squares    = 0.0;
+    for (size_t i = 0; i < l->residuals; i++) {
+        *squares += residual[i] * residual[i];
+    }
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        *squares += l->differs ? 0.0 : l->batch->group[g].about;
+        logs += l->error[g].log_det;
+    }
+    return *squares + logs;
+}
+
+double dig_likelihood_means(struct dig_likelihood *const l, const double x[])
+{
+    double sum = 0.0;
+    model_at(l, x);
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        double r[DIG_FEATURES];
+        for (size_t k = 0; k < l->batch->group[g].features; k++) {
+            r[k] = l->batch->group[g].mean[k] - l->mean[g][k];
+        }
+        sum += dig_common_error_squares(&l->batch->group[g], &l->error[g], r);
+    }
+    return sum;
+}

@@ -1,0 +1,54 @@
+// How well a hypothesis at given numbers explains a batch: the misfit, -2 log likelihood.
+//
+//   sum over trajectories [ |L^-1 (mean y - mean model)|^2 + log det L L'
+//                           + sum over digs |(y - mean y) - (model - mean model)|^2 ]
+//
+// L L' is the covariance of a trajectory's mean: closed_loop/model/common_error.h. What has no name
+// is an effect whose form is not known: a factor on the plain dig, with a wide prior, that changes
+// along it. It has no numbers to fit; the covariance holds all that it may be.
+
+#ifndef DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
+#define DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
+
+#include "closed_loop/model/common_error.h"
+#include "closed_loop/model/forward.h"
+
+#define DIG_LIKELIHOOD_RESIDUALS ((DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES)
+
+/// The same numbers are asked about again and again: what was worked out of the last ones is kept.
+struct dig_likelihood {
+    const struct dig_whitened_digs *batch;      // not owned
+    const struct dig_soil          *soil;       // not owned
+    const struct dig_hypothesis    *hypothesis; // not owned
+    size_t                          numbers;    // of the hypothesis
+    size_t                          residuals;
+    bool                            differs; // from dig to dig of a trajectory
+
+    double           place[DIG_AXES]; // of which plain is
+    struct dig_plain plain[DIG_TRAJECTORY_MAX];
+
+    double at[DIG_HYPOTHESIS_NUMBERS];             // of which these are
+    double mean[DIG_TRAJECTORY_MAX][DIG_FEATURES]; // y of the model, over a group's digs
+    double y[DIG_MEASURED_MAX][DIG_FEATURES];      // of each dig, where they differ
+
+    double                  weighed_at[DIG_HYPOTHESIS_NUMBERS]; // of which this is
+    struct dig_common_error error[DIG_TRAJECTORY_MAX];
+};
+
+void dig_likelihood_init(struct dig_likelihood *likelihood, const struct dig_whitened_digs *batch,
+                         const struct dig_soil *soil, const struct dig_hypothesis *hypothesis);
+
+/// Takes the covariance at these numbers for all that follows.
+void dig_likelihood_weigh(struct dig_likelihood *likelihood, const double number[]);
+
+/// The whitened residuals of the means, then of the digs about them; context: the likelihood.
+void dig_likelihood_residual(void *context, const double number[], double residual[]);
+
+/// The misfit of residuals so long; *squares: of it, what is not a logarithm.
+double dig_likelihood_misfit(const struct dig_likelihood *likelihood, const double residual[],
+                             double *squares);
+
+/// Squares of the means' misfit at these numbers, by the covariance that was taken.
+double dig_likelihood_means(struct dig_likelihood *likelihood, const double number[]);
+
+#endif // DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H

@@ -1,0 +1,19 @@
+// How well the numbers of a hypothesis are known: its posterior within the bounds of the table and
+// the effects, all as likely before. Numbers at a bound, and those that trade off against each
+// other, need no case of their own.
+
+#ifndef DIG_CLOSED_LOOP_MODEL_POSTERIOR_H
+#define DIG_CLOSED_LOOP_MODEL_POSTERIOR_H
+
+#include "closed_loop/model/hypothesis.h"
+
+#include <stdint.h>
+
+/// Fills fitted->low and high: the shortest interval that holds 90 % of each number's posterior,
+/// the fitted one in it. By a random walk (Metropolis and others 1953) whose steps follow the
+/// curvature at the fit, by the covariance there. Some hundredths of a second. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *batch,
+                                                       const struct dig_soil *soil, uint64_t seed,
+                                                       struct dig_fitted *fitted);
+
+#endif // DIG_CLOSED_LOOP_MODEL_POSTERIOR_H

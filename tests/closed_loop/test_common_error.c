@@ -1,0 +1,112 @@
+// Tests for closed_loop/model/common_error.h.
+
+#include "closed_loop/model/common_error.h"
+
+#include "closed_loop/numeric/chance.h"
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIGS = 3, DRAWS = 20000 };
+
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+
+static const struct dig_whitened_digs_group *make_group(void)
+{
+    static const bool       take[DIGS] = { true, true, true };
+    const struct dig_gravel gravel     = { { 0.5, 0.5, 2500 } };
+    uint64_t                seed       = 3;
+    double                  place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] = made_dig(&gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
+    }
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+    return &batch.group[0];
+}
+
+// A factor that changes along the dig and from channel to channel.
+static struct dig_common_error some_error(const struct dig_whitened_digs_group *const group)
+{
+    struct dig_common_error error = { .even = 0.05 };
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const double amplitude = group->amplitude[f / DIG_FEATURE_BINS];
+        error.size[0][f]       = 0.1 * amplitude * cos(0.3 * (double)f);
+        error.size[1][f]       = f % DIG_FEATURE_BINS > 5 ? 0.2 * amplitude : 0.0;
+    }
+    dig_common_error_build(group, &error);
+    return error;
+}
+
+// What is drawn has the covariance that is built: the squares of the mean of n digs, the even part
+// and the smooth one, over it are chi squared, in the mean and in their variance.
+static void what_is_drawn_has_the_covariance_that_is_built(void **state)
+{
+    (void)state;
+    const struct dig_whitened_digs_group *const group = make_group();
+    const struct dig_common_error               error = some_error(group);
+    const double                                n     = (double)group->features;
+    uint64_t                                    seed  = 11;
+    double                                      sum   = 0.0;
+    double                                      sum2  = 0.0;
+    for (int i = 0; i < DRAWS; i++) {
+        double y[DIG_FEATURES];
+        dig_common_error_draw(group, &error, &seed, y);
+        for (size_t k = 0; k < group->features; k++) {
+            y[k] += sqrt(1.0 / DIGS + error.even) * model_normal(&seed);
+        }
+        const double squares = dig_common_error_squares(group, &error, y);
+        sum += squares / DRAWS;
+        sum2 += squares * squares / DRAWS;
+    }
+    // Five standard errors of mean and variance of chi squared.
+    assert_close(sum, n, 5.0 * sqrt(2.0 * n / DRAWS));
+    assert_close(sum2 - sum * sum, 2.0 * n, 5.0 * 2.0 * n * sqrt((2.0 + 12.0 / n) / DRAWS));
+}
+
+// What a factor may be wrong by, all along the dig alike, is told by no number of digs: the squares
+// of ten times as much are near those of ten sigmas, however small the scatter is beside it.
+static void a_smooth_factor_is_as_uncertain_as_its_size(void **state)
+{
+    (void)state;
+    const struct dig_whitened_digs_group *const group = make_group();
+    struct dig_common_error                     error = { .even = 0.0 };
+    double                                      ten[DIG_FEATURES];
+    double                                      y[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        error.size[0][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS];
+        ten[f]           = 10.0 * error.size[0][f];
+    }
+    dig_common_error_build(group, &error);
+    dig_whitened_digs_whiten(group, ten, y);
+    const double squares = dig_common_error_squares(group, &error, y);
+    assert_true(squares > 100.0 && squares < 4.0 * 100.0);
+}
+
+static void without_parts_only_scatter_and_the_even_part_are_left(void **state)
+{
+    (void)state;
+    const struct dig_whitened_digs_group *const group           = make_group();
+    struct dig_common_error                     error           = { .even = 0.1 };
+    double                                      y[DIG_FEATURES] = { 0.0 };
+    dig_common_error_build(group, &error);
+    y[4] = 3.0;
+    assert_close(dig_common_error_squares(group, &error, y), 9.0 / (1.0 / DIGS + 0.1), 1e-9);
+    assert_close(error.log_det, (double)group->features * log(1.0 / DIGS + 0.1), 1e-9);
+    assert_close(error.noise, 0.1, 1e-12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_drawn_has_the_covariance_that_is_built),
+        cmocka_unit_test(a_smooth_factor_is_as_uncertain_as_its_size),
+        cmocka_unit_test(without_parts_only_scatter_and_the_even_part_are_left),
+    };
+    return cmocka_run_group_tests_name("common_error", tests, world_setup, world_teardown);
+}

@@ -1,0 +1,172 @@
+// What the table that ships is uncertain by, judged by digs of another DEM code (LIGGGHTS) whose
+// gravel is known: thirteen plain gravels, ten of them on no point of the table's grid or seldom
+// dug.
+
+#include "closed_loop/model/likelihood.h"
+#include "closed_loop/model/posterior.h"
+#include "closed_loop/recordings/observe.h"
+#include "files/recording_csv.h"
+#include "tables/load.h"
+#include "tests/testlib.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TABLE "tables/rig.sqlite"
+
+enum { GRAVELS_MAX = 32, DIGS_MAX = 12 };
+
+static struct dig_curve_set        *set;
+static struct dig_response_surface *surface;
+static struct dig_scatter          *scatter;
+static struct dig_soil             *soil;
+
+static const struct dig_hypothesis plain = { .effects = 0 };
+
+struct ground {
+    struct dig_gravel   gravel;
+    size_t              digs;
+    struct dig_measured dig[DIGS_MAX];
+};
+
+static struct ground ground[GRAVELS_MAX];
+static size_t        grounds;
+
+static void take(const char *const path, const struct dig_gravel *const gravel)
+{
+    size_t g = 0;
+    while (g < grounds && memcmp(&ground[g].gravel, gravel, sizeof *gravel) != 0) {
+        g++;
+    }
+    assert_true(g < GRAVELS_MAX && ground[g].digs < DIGS_MAX);
+    struct dig_recording recording;
+    struct dig_observed  seen;
+    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+    assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
+    dig_recording_finish(&recording);
+    ground[g].gravel             = *gravel;
+    struct dig_measured *const m = &ground[g].dig[ground[g].digs++];
+
+    *m = (struct dig_measured){ .trajectory = seen.trajectory,
+                                .pass       = 1,
+                                .pace       = seen.pace,
+                                .first      = seen.first,
+                                .last       = seen.last };
+    memcpy(m->measured, seen.measured, sizeof seen.measured);
+    memcpy(m->value, seen.value, sizeof seen.value);
+    grounds = g == grounds ? g + 1 : grounds;
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    static const char *const files[] = { "tests/data/reference/mu*.csv",
+                                         "tests/data/liggghts_more/mu*.csv" };
+    surface                          = calloc(1, sizeof *surface);
+    if (surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
+        dig_response_surface_fit(set, surface) != DIG_OK ||
+        dig_scatter_measure(TABLE, surface, &scatter, NULL) != DIG_OK ||
+        dig_soil_create(surface, NULL, NULL, &soil) != DIG_OK) {
+        return 1;
+    }
+    for (size_t f = 0; f < sizeof files / sizeof files[0]; f++) {
+        glob_t found;
+        assert_int_equal(glob(files[f], 0, NULL, &found), 0);
+        for (size_t i = 0; i < found.gl_pathc; i++) {
+            struct dig_gravel gravel;
+            assert_int_equal(sscanf(strrchr(found.gl_pathv[i], '/'), "/mu%lf_mur%lf_rho%lf",
+                                    &gravel.value[0], &gravel.value[1], &gravel.value[2]),
+                             DIG_AXES);
+            // One has no rolling friction, which no gravel of the table has.
+            if (gravel.value[DIG_AXIS_ROLLING] > 0.0) {
+                take(found.gl_pathv[i], &gravel);
+            }
+        }
+        globfree(&found);
+    }
+    return grounds == 13 ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    free(soil);
+    dig_scatter_destroy(scatter);
+    free(surface);
+    dig_curve_set_destroy(set);
+    return 0;
+}
+
+static void make_batch(const struct ground *const g, double place[DIG_AXES],
+                       struct dig_whitened_digs *const batch)
+{
+    bool all[DIGS_MAX];
+    memset(all, true, sizeof all);
+    dig_response_surface_place(surface, &g->gravel, place);
+    assert_int_equal(dig_whitened_digs_make(surface, scatter, g->digs, g->dig, all, place, batch),
+                     DIG_OK);
+}
+
+// At the gravel that was dug, the means differ from the table by no more than the covariance says,
+// and by not much less; so do the digs from their means.
+static void what_the_digs_leave_of_the_table_is_as_large_as_expected(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs batch;
+    static struct dig_likelihood    likelihood;
+    double                          means = 0.0, features = 0.0, about = 0.0, freedom = 0.0;
+    for (size_t i = 0; i < grounds; i++) {
+        double place[DIG_AXES];
+        make_batch(&ground[i], place, &batch);
+        dig_likelihood_init(&likelihood, &batch, soil, &plain);
+        dig_likelihood_weigh(&likelihood, place);
+        means += dig_likelihood_means(&likelihood, place);
+        for (size_t g = 0; g < batch.groups; g++) {
+            const double n = (double)batch.group[g].features;
+            features += n;
+            about += batch.group[g].about;
+            freedom += n * (double)(batch.group[g].digs - 1);
+        }
+    }
+    print_message("squares over expected: means %.2f of %.0f, digs about them %.2f of %.0f\n",
+                  means / features, features, about / freedom, freedom);
+    assert_true(means / features > 0.5 && means / features < 1.0);
+    assert_true(about / freedom > 0.6 && about / freedom < 1.1);
+}
+
+static void intervals_of_the_gravel_hold(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs batch;
+    const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    size_t                          held                           = 0;
+    for (size_t i = 0; i < grounds; i++) {
+        struct dig_fitted fitted;
+        double            place[DIG_AXES];
+        make_batch(&ground[i], place, &batch);
+        dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted), DIG_OK);
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            // An interval may not hold everything either.
+            held += place[a] >= fitted.low[a] - 1e-9 && place[a] <= fitted.high[a] + 1e-9 &&
+                            fitted.high[a] - fitted.low[a] < 1.5
+                        ? 1
+                        : 0;
+        }
+    }
+    print_message("90 %% intervals of the gravel hold %zu times of %zu\n", held,
+                  grounds * DIG_AXES);
+    assert_true((double)held >= 0.75 * (double)(grounds * DIG_AXES));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_the_digs_leave_of_the_table_is_as_large_as_expected),
+        cmocka_unit_test(intervals_of_the_gravel_hold),
+    };
+    return cmocka_run_group_tests_name("noise_shipped", tests, setup, teardown);
+}

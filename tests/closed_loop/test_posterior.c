@@ -1,0 +1,107 @@
+// Tests for closed_loop/model/posterior.h.
+
+#include "closed_loop/model/posterior.h"
+
+#include "closed_loop/model/likelihood.h"
+#include "closed_loop/search/null_simulation.h"
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIGS = 4, CAMPAIGNS = 100, GRID = 41 };
+
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+
+static const struct dig_hypothesis plain = { .effects = 0 };
+
+static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
+{
+    static const bool take[DIGS]                    = { true, true, true, true };
+    const double      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    double            place[DIG_AXES];
+    struct dig_fitted fitted;
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, seed);
+    }
+    dig_response_surface_place(world.surface, gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+    dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
+    return fitted;
+}
+
+// Digs drawn from the model itself at places of its prior: nine of ten intervals hold the place,
+// to three sigmas of a binomial, more where a bound is counted in.
+static void nine_intervals_of_ten_hold_the_truth(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs drawn;
+    const struct dig_gravel         gravel = { { 0.6, 0.6, 2500 } };
+    uint64_t                        seed   = 21;
+    struct dig_fitted               truth  = fit_digs(&gravel, &seed);
+    double                          held   = 0.0;
+    for (int c = 0; c < CAMPAIGNS; c++) {
+        struct dig_fitted fitted;
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            truth.number[a] = 2.0 * model_uniform(&seed) - 1.0;
+        }
+        drawn = batch;
+        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
+        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted), DIG_OK);
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            const double at = truth.number[a];
+            assert_true(fitted.low[a] <= fitted.number[a] && fitted.number[a] <= fitted.high[a]);
+            held += at >= fitted.low[a] && at <= fitted.high[a] ? 1.0 : 0.0;
+        }
+    }
+    const double n = CAMPAIGNS * DIG_AXES;
+    assert_true(held / n > 0.9 - 3.0 * sqrt(0.09 / n) && held / n < 0.99);
+}
+
+// The walk against the posterior itself, on a grid of places: an interval holds nine tenths of it.
+static void an_interval_holds_nine_tenths_of_the_posterior(void **state)
+{
+    (void)state;
+    static struct dig_likelihood l;
+    static double                r[DIG_LIKELIHOOD_RESIDUALS];
+    const struct dig_gravel      gravel           = { { 0.34, 0.6, 3600 } }; // near two bounds
+    uint64_t                     seed             = 5;
+    struct dig_fitted            fitted           = fit_digs(&gravel, &seed);
+    double                       inside[DIG_AXES] = { 0.0 };
+    double                       all              = 0.0;
+    assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted), DIG_OK);
+    dig_likelihood_init(&l, &batch, soil, &plain);
+    dig_likelihood_weigh(&l, fitted.number);
+    for (int i = 0; i < GRID * GRID * GRID; i++) {
+        const double x[DIG_AXES] = { 2.0 * (i % GRID) / (GRID - 1.0) - 1.0,
+                                     2.0 * (i / GRID % GRID) / (GRID - 1.0) - 1.0,
+                                     2.0 * (i / GRID / GRID) / (GRID - 1.0) - 1.0 };
+        double       squares;
+        dig_likelihood_residual(&l, x, r);
+        const double density = exp(0.5 * (fitted.misfit - dig_likelihood_misfit(&l, r, &squares)));
+        all += density;
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            inside[a] += x[a] >= fitted.low[a] && x[a] <= fitted.high[a] ? density : 0.0;
+        }
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        // The walk's own error, and a twentieth at each bound that is counted in.
+        assert_true(inside[a] / all > 0.86);
+        assert_true(inside[a] / all < 0.94 || fitted.low[a] <= -1.0 || fitted.high[a] >= 1.0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nine_intervals_of_ten_hold_the_truth),
+        cmocka_unit_test(an_interval_holds_nine_tenths_of_the_posterior),
+    };
+    return cmocka_run_group_tests_name("posterior", tests, world_setup, world_teardown);
+}
