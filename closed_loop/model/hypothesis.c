@@ -113,7 +113,7 @@ void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
                                  const struct dig_soil *const soil, const double start[],
                                  struct dig_fitted *const fitted)
 {
-    static const double sizes[] = { 0.1, 0.2, 0.4 };
+    static const double sizes[] = { 0.1, 0.2, 0.4, 0.8 };
     const size_t        n       = sizeof sizes / sizeof sizes[0];
     struct dig_fitted   best    = { .misfit = INFINITY };
     for (size_t i = 0; i < n; i++) {

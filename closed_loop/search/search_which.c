@@ -17,9 +17,6 @@ static const double half = 0.5;
 // Of a normal distribution, exceeded either way once in a hundred.
 static const double most_bent = 2.576;
 
-// Below this chance of its own misfit the plain hypothesis is refuted by itself.
-static const double refuted = 0.001;
-
 // The chosen hypothesis with each other effect beside it.
 static size_t list_additions(const struct dig_search_work *const c,
                              const struct dig_hypothesis *const  base,
@@ -92,10 +89,12 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
     return status;
 }
 
-// What has no name explains the digs no better than the effect does.
+// An effect must explain the digs better than none by what tells two answers apart, and no worse
+// than what has no name.
 static bool is_believable(const struct dig_search_work *const c, const double evidence)
 {
-    return evidence >= dig_search_evidence(c, &c->s->nameless, 0);
+    return evidence >= DIG_SEARCH_TOLD_APART &&
+           evidence >= dig_search_evidence(c, &c->s->nameless, 0);
 }
 
 // A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
@@ -108,13 +107,6 @@ static bool drifts_otherwise(struct dig_search_work *const c)
                        "the order of the digs");
     }
     return does;
-}
-
-// Beside a plain hypothesis that could be true an effect must be decisive. Where it cannot, an
-// effect need only be the likelier.
-static bool is_decisive(const struct dig_search_work *const c, const double evidence)
-{
-    return evidence >= DIG_SEARCH_TOLD_APART || (evidence > 0.0 && c->s->plain_fit < refuted);
 }
 
 // The best single effect again, from where a pair that holds it has led: a pair must not lead for
@@ -212,8 +204,8 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
         status = dig_cross_validation_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen,
                                            &c->s->confirmed);
     }
-    if (status == DIG_OK && (!is_decisive(c, evidence) || c->s->confirmed < 0.0 ||
-                             !is_believable(c, evidence) || drifts_otherwise(c))) {
+    if (status == DIG_OK &&
+        (c->s->confirmed < 0.0 || !is_believable(c, evidence) || drifts_otherwise(c))) {
         give_up(c);
         status = look_for_rock(c);
     }
