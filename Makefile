@@ -74,7 +74,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
+.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind bench-ablation check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -296,6 +296,10 @@ bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig
 	$(Q)mkdir -p $(BUILD)/blind
 	$(Q)$(BUILD)/tests/blind/blind --table $(BLIND_TABLE) --bin $(BUILD)/bin --cache $(BUILD)/blind \
 	    --split judge -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
+
+bench-ablation: $(BUILD)/tests/blind/blind ## What each rule of the closed loop is worth, on the split for development (ABLATION_N=20)
+	$(Q)mkdir -p $(BUILD)/blind
+	$(Q)JOBS=$(JOBS) scripts/ablation.sh $(or $(ABLATION_N),20)
 
 $(BUILD)/tests/blind/blind: $(blind_objs) $(libs)
 	$(call say,LD,$@)
