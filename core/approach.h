@@ -1,4 +1,4 @@
-// How a dig along a trajectory is made: as it stands, or deeper, or with the bucket turned.
+// The approach of a dig: along its trajectory as it stands, deeper, or with the bucket turned.
 //
 //   depth   factor on how far below the ground the tooth is at the end of the first phase. The
 //           pin's velocity in that phase is scaled, so that its direction, its duration and its

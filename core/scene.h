@@ -1,5 +1,5 @@
-// What is dug, with what, and how: bucket, bed box, law and trajectories. Read from a scene YAML by
-// files/scene_yaml.h, computed in by offline_dem/, named by its hash in every table.
+// The scene of a dig: bucket, bed box, contact law and trajectories. files/scene_yaml.h reads it,
+// offline_dem/ computes in it, every table names it by its hash.
 // World frame and signs: core/curve.h.
 
 #ifndef DIG_CORE_SCENE_H

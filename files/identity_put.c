@@ -1,4 +1,4 @@
-// An identity out: the half of files/identity_json.h that writes.
+// Writes an identity: one half of files/identity_json.h.
 
 #include "core/text.h"
 #include "core/units.h"

@@ -1,4 +1,4 @@
-// Whether the derived rows of a table still are what its runs say.
+// Checks the derived rows of a table against its runs.
 
 #include "tables/grounds.h"
 #include "tables/load.h"

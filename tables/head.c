@@ -1,4 +1,4 @@
-// Whether a file is a table of ours, whole and of this version, and what it says of itself.
+// Checks that a file is a whole table of a known version, and reads its head.
 
 #include "core/approach.h"
 #include "core/name.h"

@@ -1,4 +1,4 @@
-// A run in, with the entry it changes: the half of the store that writes rows.
+// Stores a run and the entry it changes: the half of the store that writes rows.
 
 #include "core/effect.h"
 #include "core/name.h"

@@ -1,4 +1,4 @@
-// Runs out, and the entries they make: the half of the store that reads rows.
+// Reads runs, and derives entries from them: the half of the store that reads rows.
 
 #include "core/name.h"
 #include "tables/store.h"

@@ -1,5 +1,5 @@
-// What a table is on disk: its SQL, its version, and the checks every opening makes. Internal to
-// tables/; docs/formats.md shows the schema to people.
+// A table on disk: its SQL, its version, and the checks of every opening. Internal to tables/;
+// docs/formats/tables.md shows the schema to people.
 
 #ifndef DIG_TABLES_SCHEMA_H
 #define DIG_TABLES_SCHEMA_H

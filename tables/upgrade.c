@@ -1,5 +1,5 @@
-// Tables from before digs had a depth and an attack angle, or entries a seal: read as they are, and
-// made today's in place when the first run is added.
+// Older tables, without depth and attack of digs or without seals: read as they are, and upgraded
+// in place when the first run is added.
 
 #include "tables/schema.h"
 #include "tables/seal.h"
