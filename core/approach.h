@@ -34,8 +34,8 @@ struct dig_approach {
 /// Depth 1, attack 0.
 struct dig_approach dig_approach_plain(void);
 
-/// As it is told to people and to tables: depth 0 becomes 1.
-struct dig_approach dig_approach_told(const struct dig_approach *approach);
+/// For people and tables: depth 0, of a zeroed struct, becomes 1.
+struct dig_approach dig_approach_normalized(const struct dig_approach *approach);
 
 bool dig_approach_is_plain(const struct dig_approach *approach);
 bool dig_approach_is_same(const struct dig_approach *a, const struct dig_approach *b);

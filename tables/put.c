@@ -41,7 +41,7 @@ static enum dig_status check_origin(const struct dig_run_origin *const o,
                              "expected " DIG_LABEL_RULE,
                              o->engine, o->version, o->made_utc);
     }
-    const struct dig_approach told = dig_approach_told(&o->approach);
+    const struct dig_approach told = dig_approach_normalized(&o->approach);
     if (!(told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST) ||
         !(fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
         return dig_error_set(error, DIG_EINVAL,

@@ -158,7 +158,7 @@ static void show_approaches(const struct pool *const pool, FILE *const to)
 {
     for (size_t d = 0; d < pool->digs; d++) {
         const struct dig_observation *const dig     = &pool->dig[d];
-        const struct dig_approach           matched = dig_approach_told(&dig->approach);
+        const struct dig_approach           matched = dig_approach_normalized(&dig->approach);
         if (!(dig->made.depth > 0.0)) {
             continue;
         }
