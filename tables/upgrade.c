@@ -10,18 +10,15 @@ enum dig_status dig_schema_view(sqlite3 *const db, const char *const path,
                                 const char *const database, const char *const view,
                                 struct dig_error *const error)
 {
-    char            sql[256];
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = DIG_OK;
+    char          sql[256];
+    sqlite3_stmt *s = NULL;
     (void)snprintf(sql, sizeof sql, "PRAGMA %s.user_version", database);
-    if (sqlite3_prepare_v2(db, sql, -1, &s, NULL) != SQLITE_OK || sqlite3_step(s) != SQLITE_ROW) {
-        status = dig_sql_refuse(db, path, error);
-    }
-    const bool plain = status == DIG_OK && sqlite3_column_int(s, 0) == DIG_TABLE_VERSION_PLAIN;
-    (void)sqlite3_finalize(s);
+    const enum dig_status status = dig_sql_first(db, path, sql, &s, error);
     if (status != DIG_OK) {
         return status;
     }
+    const bool plain = sqlite3_column_int(s, 0) == DIG_TABLE_VERSION_PLAIN;
+    (void)sqlite3_finalize(s);
     (void)snprintf(sql, sizeof sql,
                    "CREATE TEMP VIEW %s AS SELECT id, friction, rolling, "
                    "density_kgpm3, effect, magnitude, %s FROM %s.ground",
