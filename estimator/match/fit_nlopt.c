@@ -339,11 +339,13 @@ static enum dig_status refine(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-static enum dig_status check_and_refine(const struct dig_curve_set *const set,
-                                        const struct dig_prefilter *const prefilter,
-                                        const size_t digs, const struct dig_observation dig[],
-                                        const int max_evaluations, struct dig_match *const match)
+enum dig_status dig_fit_refine(const struct dig_curve_set *const set,
+                               const struct dig_prefilter *const prefilter, const size_t digs,
+                               const struct dig_observation dig[], const int max_evaluations,
+                               struct dig_match *const match)
 {
+    assert(set != NULL && dig != NULL && match != NULL);
+    assert(prefilter == NULL || prefilter->set == set);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
         max_evaluations < 1 || digs < 1) {
         return DIG_EINVAL;
@@ -356,20 +358,4 @@ static enum dig_status check_and_refine(const struct dig_curve_set *const set,
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
     return refine(set, prefilter, &sums, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine(const struct dig_curve_set *const set, const size_t digs,
-                               const struct dig_observation dig[], const int max_evaluations,
-                               struct dig_match *const match)
-{
-    assert(set != NULL && dig != NULL && match != NULL);
-    return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const prefilter,
-                                           const size_t digs, const struct dig_observation dig[],
-                                           const int max_evaluations, struct dig_match *const match)
-{
-    assert(prefilter != NULL && dig != NULL && match != NULL);
-    return check_and_refine(prefilter->set, prefilter, digs, dig, max_evaluations, match);
 }

@@ -258,10 +258,10 @@ static void a_summary_changes_nothing_that_matters(void **state)
         const size_t digs = 1 + (size_t)trial / 4;
 
         struct dig_match plain, by;
-        assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &plain), DIG_OK);
-        assert_int_equal(dig_match_nearest_prefiltered(&summary, digs, dig, 2.5, &by), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, digs, dig, 100, &plain), DIG_OK);
-        assert_int_equal(dig_fit_refine_prefiltered(&summary, digs, dig, 100, &by), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &plain), DIG_OK);
+        assert_int_equal(dig_match_nearest(summary.set, &summary, digs, dig, 2.5, &by), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, NULL, digs, dig, 100, &plain), DIG_OK);
+        assert_int_equal(dig_fit_refine(summary.set, &summary, digs, dig, 100, &by), DIG_OK);
         for (int a = 0; a < DIG_AXES; a++) {
             const double share = 1e-4 * (a == DIG_AXIS_DENSITY_kgpm3 ? 2500.0 : 1.0);
             assert_close(by.mean.value[a], plain.mean.value[a], share);
