@@ -12,7 +12,7 @@
 #include "estimator/match/likelihood.h"
 #include "estimator/match/pool.h"
 #include "files/recording_csv.h"
-#include "tests/bench/table_runs.h"
+#include "tests/table_runs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -157,7 +157,7 @@ static void leave_out_of(struct dig_covariance *const c, const double mean[][DIG
 
 static void leave_out(struct bench *const b, const size_t left)
 {
-    const size_t slot = b->all.run[left].entry * b->all.set->trajectories + b->all.trajectory;
+    const size_t                slot  = table_run_slot(&b->all, &b->all.run[left]);
     struct dig_curve *const     curve = &b->all.set->curve[slot];
     static struct dig_ensemble  rest, all;
     const struct dig_curve      whole = *curve;
@@ -180,7 +180,7 @@ static void leave_out(struct bench *const b, const size_t left)
                  (const double(*)[DIG_CURVE_POINTS])all.mean, &b->all.run[left],
                  (double)all.packings);
     b->all.set->packings[slot]--;
-    struct dig_observation dig = table_run_observed(&b->all, &b->all.run[left]);
+    struct dig_observation dig = table_run_observed(&b->all.run[left]);
     judge_all(b, &dig, &b->all.set->gravel[b->all.run[left].entry]);
     b->all.set->packings[slot]++;
     *curve                                    = whole;

@@ -11,7 +11,7 @@
 #include "estimator/match/likelihood.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
-#include "tests/bench/table_runs.h"
+#include "tests/table_runs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -82,7 +82,7 @@ static double off_by(const struct bench *const b, const struct dig_curve *const 
 
 static void judge(struct bench *const b, const struct table_run *const run)
 {
-    struct dig_observation dig = table_run_observed(&b->all, run);
+    struct dig_observation dig = table_run_observed(run);
     struct dig_match       match;
     if (dig_match_nearest(b->all.set, NULL, 1, &dig, 2.5, &match) != DIG_OK) {
         return;
@@ -106,22 +106,11 @@ static void judge(struct bench *const b, const struct table_run *const run)
 // The table without the dig. A single one that is left has the entry's spread.
 static void leave_out(struct bench *const b, const size_t left)
 {
-    const size_t            slot  = slot_of(b, b->all.run[left].entry, b->all.trajectory);
+    const size_t            slot  = table_run_slot(&b->all, &b->all.run[left]);
     struct dig_curve *const curve = &b->all.set->curve[slot];
     const struct dig_curve  whole = *curve;
-    struct dig_ensemble     ensemble;
-    memset(&ensemble, 0, sizeof ensemble);
-    for (size_t i = 0; i < b->all.runs; i++) {
-        if (i != left && b->all.run[i].entry == b->all.run[left].entry) {
-            dig_ensemble_add(&ensemble, (const double(*)[DIG_CURVE_POINTS])b->all.run[i].value);
-        }
-    }
-    if (ensemble.packings == 0) {
+    if (table_runs_without(&b->all, left, curve) == 0) {
         return;
-    }
-    dig_ensemble_curve(&ensemble, curve);
-    if (ensemble.packings == 1) {
-        memcpy(curve->sd, whole.sd, sizeof curve->sd);
     }
     b->all.set->packings[slot]--;
     judge(b, &b->all.run[left]);

@@ -14,7 +14,7 @@
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
 #include "estimator/match/posterior.h"
-#include "tests/bench/table_runs.h"
+#include "tests/table_runs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,7 +43,7 @@ static size_t slot_of(const struct bench *const b, const size_t entry, const siz
 static struct dig_observation observed(const struct bench *const     b,
                                        const struct table_run *const run)
 {
-    struct dig_observation o = table_run_observed(&b->all, run);
+    struct dig_observation o = table_run_observed(run);
     o.last                   = b->last;
     o.forces                 = true;
     return o;
@@ -135,24 +135,14 @@ static void look_inside(struct bench *const b)
 {
     struct tally tally = { .digs = 0 };
     for (size_t left = 0; left < b->all.runs; left++) {
-        const size_t      slot  = slot_of(b, b->all.run[left].entry, b->all.trajectory);
+        const size_t      slot  = table_run_slot(&b->all, &b->all.run[left]);
         struct dig_curve *curve = &b->all.set->curve[slot];
         const int         all   = b->all.set->packings[slot];
         if (all < 2) {
             continue;
         }
-        const struct dig_curve     whole    = *curve;
-        static struct dig_ensemble ensemble = { .packings = 0 };
-        memset(&ensemble, 0, sizeof ensemble);
-        for (size_t i = 0; i < b->all.runs; i++) {
-            if (i != left && b->all.run[i].entry == b->all.run[left].entry) {
-                dig_ensemble_add(&ensemble, (const double(*)[DIG_CURVE_POINTS])b->all.run[i].value);
-            }
-        }
-        dig_ensemble_curve(&ensemble, curve);
-        if (ensemble.packings == 1) {
-            memcpy(curve->sd, whole.sd, sizeof curve->sd);
-        }
+        const struct dig_curve whole = *curve;
+        (void)table_runs_without(&b->all, left, curve);
         b->all.set->packings[slot] = all - 1;
         judge(b, b->all.set, &b->all.run[left], &tally);
         b->all.set->packings[slot] = all;
