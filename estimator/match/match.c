@@ -139,8 +139,8 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
 }
 
 // The entry nearest to all digs, the first of several; -1: none.
-static int look_at_all(const struct dig_curve_set *const set,
-                       const struct dig_pool_sums *const sums)
+static int nearest_of_all(const struct dig_curve_set *const set,
+                          const struct dig_pool_sums *const sums)
 {
     int    nearest = -1;
     double least   = INFINITY;
@@ -173,7 +173,7 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const set,
     dig_pool_sum(digs, dig, &sums);
 
     const int nearest =
-        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : look_at_all(set, &sums);
+        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : nearest_of_all(set, &sums);
     if (nearest < 0) {
         return DIG_ENOMATCH;
     }
