@@ -43,13 +43,13 @@ static void put(FILE *const to, const char *const before, const char *const line
     (void)fputs(behind, to);
 }
 
-static void print_message(const char *const line)
+static void say(const char *const line)
 {
     put(stderr, "digsightd: ", line, "\n");
 }
 
-// On a terminal the last line is the status; other lines are printed above it.
-static void print_above_status(const char *const line)
+// On a terminal the last line shows where things stand; a line that is said goes above it.
+static void say_above(const char *const line)
 {
     put(stderr, "\r\033[Kdigsightd: ", line, "\n");
 }
@@ -66,7 +66,7 @@ static void print(const char *const line)
 
 static int fail(const enum dig_status status, const struct dig_error *const error)
 {
-    print_message(error->text[0] != '\0' ? error->text : dig_status_str(status));
+    say(error->text[0] != '\0' ? error->text : dig_status_str(status));
     return status == DIG_ENOMEM ? EXIT_FAILED : EXIT_USAGE;
 }
 
@@ -103,17 +103,17 @@ int main(const int argc, char *argv[])
     if (status != DIG_OK) {
         return fail(status, &error);
     }
-    dig_daemon_describe(daemon, check ? print : print_message);
+    dig_daemon_describe(daemon, check ? print : say);
     if (!check) {
         const bool               terminal = isatty(STDERR_FILENO) != 0;
-        const struct dig_console console  = { .say  = terminal ? print_above_status : print_message,
+        const struct dig_console console  = { .say  = terminal ? say_above : say,
                                               .show = terminal ? show : NULL };
         status                            = dig_daemon_run(daemon, &console, &error);
         (void)fputs(terminal ? "\n" : "", stderr);
     }
     dig_daemon_destroy(daemon);
     if (status != DIG_OK) {
-        print_message(error.text);
+        say(error.text);
         return EXIT_FAILED;
     }
     return EXIT_DONE;

@@ -1,5 +1,5 @@
-// Older tables, without depth and attack of digs or without seals: read as they are, and upgraded
-// in place when the first run is added.
+// Tables from before digs had a depth and an attack angle, or entries a seal: read as they are, and
+// made today's in place when the first run is added.
 
 #include "tables/schema.h"
 #include "tables/seal.h"
@@ -10,15 +10,18 @@ enum dig_status dig_schema_view(sqlite3 *const db, const char *const path,
                                 const char *const database, const char *const view,
                                 struct dig_error *const error)
 {
-    char          sql[256];
-    sqlite3_stmt *s = NULL;
+    char            sql[256];
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = DIG_OK;
     (void)snprintf(sql, sizeof sql, "PRAGMA %s.user_version", database);
-    const enum dig_status status = dig_sql_first(db, path, sql, &s, error);
+    if (sqlite3_prepare_v2(db, sql, -1, &s, NULL) != SQLITE_OK || sqlite3_step(s) != SQLITE_ROW) {
+        status = dig_sql_refuse(db, path, error);
+    }
+    const bool plain = status == DIG_OK && sqlite3_column_int(s, 0) == DIG_TABLE_VERSION_PLAIN;
+    (void)sqlite3_finalize(s);
     if (status != DIG_OK) {
         return status;
     }
-    const bool plain = sqlite3_column_int(s, 0) == DIG_TABLE_VERSION_PLAIN;
-    (void)sqlite3_finalize(s);
     (void)snprintf(sql, sizeof sql,
                    "CREATE TEMP VIEW %s AS SELECT id, friction, rolling, "
                    "density_kgpm3, effect, magnitude, %s FROM %s.ground",

@@ -42,8 +42,8 @@ struct progress {
     int64_t next_ns;
 };
 
-static void print_progress(struct progress *const progress, const double done_s,
-                           const double total_s, const double speed)
+static void tell_progress(struct progress *const progress, const double done_s,
+                          const double total_s, const double speed)
 {
     const int64_t now = now_ns();
     if (now < progress->next_ns) {
@@ -169,7 +169,7 @@ enum dig_status dig_rig_serve(const struct dig_machine *const     machine,
         const int64_t late_ns = now_ns() - deadline_ns;
         worst_ns              = late_ns > worst_ns ? late_ns : worst_ns;
         play(&player, &buses, tick);
-        print_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
+        tell_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
         tick++;
     }
     if (progress.terminal) {
