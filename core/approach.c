@@ -15,7 +15,7 @@ struct dig_approach dig_approach_plain(void)
     return (struct dig_approach){ .depth = 1.0 };
 }
 
-struct dig_approach dig_approach_told(const struct dig_approach *const approach)
+struct dig_approach dig_approach_normalized(const struct dig_approach *const approach)
 {
     assert(approach != NULL);
     struct dig_approach told = *approach;
@@ -25,8 +25,8 @@ struct dig_approach dig_approach_told(const struct dig_approach *const approach)
 
 int dig_approach_compare(const struct dig_approach *const a, const struct dig_approach *const b)
 {
-    const struct dig_approach x = dig_approach_told(a);
-    const struct dig_approach y = dig_approach_told(b);
+    const struct dig_approach x = dig_approach_normalized(a);
+    const struct dig_approach y = dig_approach_normalized(b);
     if (x.depth < y.depth || x.depth > y.depth) {
         return x.depth < y.depth ? -1 : 1;
     }
@@ -46,7 +46,7 @@ bool dig_approach_is_plain(const struct dig_approach *const approach)
 
 void dig_approach_text(const struct dig_approach *const approach, char text[DIG_APPROACH_TEXT_SIZE])
 {
-    const struct dig_approach told = dig_approach_told(approach);
+    const struct dig_approach told = dig_approach_normalized(approach);
     text[0]                        = '\0';
     if (!dig_approach_is_plain(&told)) {
         (void)snprintf(text, DIG_APPROACH_TEXT_SIZE, ", depth %.6g, attack %.6g deg", told.depth,
@@ -97,7 +97,7 @@ enum dig_status dig_approach_apply(const struct dig_trajectory *const trajectory
                                    struct dig_trajectory *const made, struct dig_error *const error)
 {
     assert(trajectory != NULL && approach != NULL && made != NULL && trajectory->phases >= 1);
-    const struct dig_approach told   = dig_approach_told(approach);
+    const struct dig_approach told   = dig_approach_normalized(approach);
     const enum dig_status     status = check_range(&told, trajectory, error);
     if (status != DIG_OK) {
         return status;

@@ -1,4 +1,4 @@
-// How a dig along a trajectory is made: as it stands, or deeper, or with the bucket turned.
+// The approach of a dig: along its trajectory as it stands, deeper, or with the bucket turned.
 //
 //   depth   factor on how far below the ground the tooth is at the end of the first phase. The
 //           pin's velocity in that phase is scaled, so that its direction, its duration and its
@@ -34,8 +34,8 @@ struct dig_approach {
 /// Depth 1, attack 0.
 struct dig_approach dig_approach_plain(void);
 
-/// As it is told to people and to tables: depth 0 becomes 1.
-struct dig_approach dig_approach_told(const struct dig_approach *approach);
+/// For people and tables: depth 0, of a zeroed struct, becomes 1.
+struct dig_approach dig_approach_normalized(const struct dig_approach *approach);
 
 bool dig_approach_is_plain(const struct dig_approach *approach);
 bool dig_approach_is_same(const struct dig_approach *a, const struct dig_approach *b);

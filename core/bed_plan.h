@@ -1,5 +1,5 @@
-// What a scene's bed holds beyond one kind of equal spheres: checked, and written into the scene's
-// identity. A plain scene's identity does not know of it.
+// Checks a scene's bed beyond one kind of equal spheres, and writes it into the scene's identity.
+// A plain scene's identity does not hold it.
 
 #ifndef DIG_CORE_BED_PLAN_H
 #define DIG_CORE_BED_PLAN_H

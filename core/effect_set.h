@@ -1,5 +1,5 @@
-// What effects of the soil do to the curves of a table, as a DEM computed it: the same digs in beds
-// that hold one effect at one magnitude, at a few gravels. Loaded by tables/load_effects.h.
+// Beds with an effect of the soil: curves of a table's digs in beds that hold one effect at one
+// magnitude, at a few gravels. Loaded by tables/load_effects.h.
 
 #ifndef DIG_CORE_EFFECT_SET_H
 #define DIG_CORE_EFFECT_SET_H

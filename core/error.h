@@ -1,4 +1,4 @@
-// What went wrong, in words for the person who must mend it. Libraries fill it and never print it;
+// An error in words for the person who must mend it. Libraries fill it and never print it;
 // main programs print it once, where the error stops.
 
 #ifndef DIG_CORE_ERROR_H

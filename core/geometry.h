@@ -1,5 +1,5 @@
-// Whether a machine could be built and would move: what its file says of geometry and masses, held
-// against itself. A slip of a unit, a sign or a digit shows here before it shows as a moment.
+// Checks whether a machine could be built and would move, by comparing geometry and masses of its
+// file with each other. A slip of a unit, a sign or a digit shows here before it shows as a moment.
 
 #ifndef DIG_CORE_GEOMETRY_H
 #define DIG_CORE_GEOMETRY_H

@@ -1,5 +1,5 @@
-// From a cylinder's push to moment about the joint it turns: the two pin-to-pin cylinders of boom
-// and arm, and the bucket's four-bar.
+// The moment of a cylinder's push about the joint it turns: the pin-to-pin cylinders of boom and
+// arm, and the bucket's four-bar.
 //
 //     G------------------M          G  cylinder base pin, on the arm
 //                      /   \        N  rocker pin, on the arm

@@ -1,5 +1,5 @@
-// What the closed loop found, as the daemon applies it: a gravel, and the effects the table lacks
-// with their parameters. Read and written by files/model_json.h.
+// The model that the closed loop found and the daemon applies: a gravel, and the effects that the
+// table lacks, with their parameters. Read and written by files/model_json.h.
 
 #ifndef DIG_CORE_MODEL_H
 #define DIG_CORE_MODEL_H

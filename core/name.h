@@ -1,6 +1,6 @@
-// What may be called what. Names stand in tables, messages, pages, paths and shell lines: they are
-// of few characters, so that they mean the same everywhere. Every reader of a file or a message
-// checks with these, and says where the name stands.
+// Rules for names. Names stand in tables, messages, pages, paths and shell lines, so few characters
+// are allowed, which mean the same everywhere. Every reader of a file or message checks with these,
+// and says where the name stands.
 
 #ifndef DIG_CORE_NAME_H
 #define DIG_CORE_NAME_H

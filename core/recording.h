@@ -1,4 +1,4 @@
-// What was recorded of one dig, in memory. files/recording_csv.h reads and writes it.
+// A recording of one dig, in memory. files/recording_csv.h reads and writes it.
 
 #ifndef DIG_CORE_RECORDING_H
 #define DIG_CORE_RECORDING_H

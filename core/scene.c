@@ -3,6 +3,7 @@
 #include "core/bed_plan.h"
 #include "core/canonical.h"
 #include "core/name.h"
+#include "core/sha256.h"
 
 #include <assert.h>
 #include <math.h>
@@ -208,4 +209,12 @@ size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t siz
     }
     dig_bed_plan_canonical(scene, &all);
     return all.length;
+}
+
+void dig_scene_hash(const struct dig_scene *const scene, char hex[const 65])
+{
+    char         text[DIG_SCENE_TEXT_SIZE];
+    const size_t length = dig_scene_canonical(scene, sizeof text, text);
+    assert(length < sizeof text);
+    dig_sha256_hex(text, length, hex);
 }

@@ -1,5 +1,5 @@
-// What is dug, with what, and how: bucket, bed box, law and trajectories. Read from a scene YAML by
-// files/scene_yaml.h, computed in by offline_dem/, named by its hash in every table.
+// The scene of a dig: bucket, bed box, contact law and trajectories. files/scene_yaml.h reads it,
+// offline_dem/ computes in it, every table names it by its hash.
 // World frame and signs: core/curve.h.
 
 #ifndef DIG_CORE_SCENE_H
@@ -174,8 +174,14 @@ const struct dig_trajectory *dig_scene_find(const struct dig_scene *scene, const
 DIG_MUST_CHECK enum dig_status dig_scene_check(const struct dig_scene *scene,
                                                struct dig_error       *error);
 
+#define DIG_SCENE_TEXT_SIZE                                                                        \
+    16384 // eight trajectories of eight phases and a bed of everything need less
+
 /// Writes the canonical text the scene's identity is the SHA-256 of: every field that changes a
 /// curve, numbers as %.17g, one `key=value` a line. Returns the length it needs, as snprintf does.
 size_t dig_scene_canonical(const struct dig_scene *scene, size_t size, char text[]);
+
+/// The scene's identity: lower-case hex SHA-256 of its canonical text.
+void dig_scene_hash(const struct dig_scene *scene, char hex[65]);
 
 #endif // DIG_CORE_SCENE_H

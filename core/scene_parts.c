@@ -1,4 +1,4 @@
-// What is read off a scene: no check, no identity.
+// Quantities derived from a scene: neither its check nor its identity.
 
 #include "core/scene.h"
 

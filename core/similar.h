@@ -1,6 +1,6 @@
-// Whether two scenes are one but for their size, so that digs in one can be told by a table of the
-// other. Froude similarity: lengths, grains and Young's modulus in proportion to the bucket,
-// gravity the same.
+// Compares two scenes up to their size: digs in one can be matched with a table of the other where
+// they are similar. Froude similarity: lengths, grains and Young's modulus in proportion to the
+// bucket, gravity the same.
 
 #ifndef DIG_CORE_SIMILAR_H
 #define DIG_CORE_SIMILAR_H

@@ -391,7 +391,7 @@ static void convert(const struct grid_text *const text, struct dig_grid *const g
                               .states   = fabs(p->depth) > 0.0 || fabs(p->attack_deg) > 0.0,
                               .approach = { p->depth, p->attack_deg * DIG_RAD_PER_DEG },
         };
-        grid->point[i].approach = dig_approach_told(&grid->point[i].approach);
+        grid->point[i].approach = dig_approach_normalized(&grid->point[i].approach);
     }
     for (size_t i = 0; i < grid->trajectories; i++) {
         memcpy(grid->trajectory[i], text->trajectories[i].text, DIG_NAME_SIZE);

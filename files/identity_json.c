@@ -148,7 +148,7 @@ static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DI
 // Depth 0 is none given.
 static bool is_approach(const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_told(approach);
+    const struct dig_approach told = dig_approach_normalized(approach);
     return told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST &&
            fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
 }

@@ -1,4 +1,4 @@
-// An identity out: the half of files/identity_json.h that writes.
+// Writes an identity: one half of files/identity_json.h.
 
 #include "core/text.h"
 #include "core/units.h"
@@ -51,7 +51,7 @@ static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
 static void put_approach(FILE *const to, const char *const prefix,
                          const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_told(approach);
+    const struct dig_approach told = dig_approach_normalized(approach);
     (void)fprintf(to, "\"%sdepth\": %.9g, \"%sattack_deg\": %.9g", prefix, told.depth, prefix,
                   told.attack_rad / DIG_RAD_PER_DEG);
 }
@@ -79,7 +79,7 @@ static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
 static void put_made(FILE *const to, const struct dig_identity *const identity)
 {
     const struct dig_approach *const made    = &identity->made;
-    const struct dig_approach        matched = dig_approach_told(&identity->matched);
+    const struct dig_approach        matched = dig_approach_normalized(&identity->matched);
     if (!(made->depth > 0.0)) {
         return;
     }

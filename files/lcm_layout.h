@@ -1,5 +1,5 @@
-// Whether an encoded LCM message is as long as its own counts say. LCM's generated decoders trust
-// the lengths of strings and arrays that stand in a message; a damaged log must not be trusted.
+// Checks that an encoded LCM message is as long as its own counts say. LCM's generated decoders
+// trust the lengths of strings and arrays in a message; a damaged log must not be trusted.
 
 #ifndef DIG_FILES_LCM_LAYOUT_H
 #define DIG_FILES_LCM_LAYOUT_H

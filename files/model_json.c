@@ -105,9 +105,8 @@ static void put_unlisted(FILE *const to, const struct dig_model_unlisted *const 
     (void)fputs("]}", to);
 }
 
-void dig_model_write(FILE *const to, const struct dig_model *const model)
+static void write_model(FILE *const to, const struct dig_model *const model)
 {
-    assert(to != NULL && model != NULL);
     (void)fputs("{\"version\": 1,\n ", to);
     put_text(to, "table", model->table);
     put_text(to, "effects_table", model->effects_table);
@@ -139,7 +138,7 @@ enum dig_status dig_model_save(const char *const path, const struct dig_model *c
     if (status != DIG_OK) {
         return status;
     }
-    dig_model_write(out.file, model);
+    write_model(out.file, model);
     return dig_out_commit(&out, error);
 }
 

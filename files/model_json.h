@@ -7,13 +7,8 @@
 #include "core/error.h"
 #include "core/model.h"
 
-#include <stdio.h>
-
-/// One JSON object and a line feed. A number that is not finite is left out with its key where the
-/// key may be missing, and written as 0 elsewhere.
-void dig_model_write(FILE *to, const struct dig_model *model);
-
-/// The same into a file: PATH.part first, then renamed. DIG_EIO with *error.
+/// Writes one JSON object: PATH.part first, then renamed. A number that is not finite is left out
+/// with its key where the key may be missing, and written as 0 elsewhere. DIG_EIO with *error.
 DIG_MUST_CHECK enum dig_status dig_model_save(const char *path, const struct dig_model *model,
                                               struct dig_error *error);
 

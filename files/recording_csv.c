@@ -119,28 +119,35 @@ static struct dig_force_row force_row(const double v[const FORCE_COLUMNS])
     };
 }
 
-static enum dig_status no_memory(const char *const path, const size_t rows,
+// Checks the rows' times and their rate, and makes room for as many of `size` bytes.
+static enum dig_status make_rows(const struct dig_csv *const csv, const char *const path,
+                                 const bool forces, const size_t size, void **const rows,
                                  struct dig_error *const error)
 {
-    (void)dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, rows);
-    return DIG_ENOMEM;
+    enum dig_status status = check_rows(csv, path, error);
+    if (status == DIG_OK) {
+        status = check_rate(csv, forces, path, error);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    *rows = malloc(csv->rows * size);
+    return *rows != NULL
+               ? DIG_OK
+               : dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv->rows);
 }
 
 static enum dig_status take_force_rows(const struct dig_csv *const csv, const char *const path,
                                        struct dig_recording *const recording,
                                        struct dig_error *const     error)
 {
-    enum dig_status status = check_rows(csv, path, error);
-    if (status == DIG_OK) {
-        status = check_rate(csv, true, path, error);
-    }
+    void                 *rows = NULL;
+    const enum dig_status status =
+        make_rows(csv, path, true, sizeof(struct dig_force_row), &rows, error);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_force_row *const row = malloc(csv->rows * sizeof *row);
-    if (row == NULL) {
-        return no_memory(path, csv->rows, error);
-    }
+    struct dig_force_row *const row = rows;
     for (size_t i = 0; i < csv->rows; i++) {
         row[i] = force_row(csv->value + i * csv->columns);
     }
@@ -178,17 +185,13 @@ static enum dig_status take_machine_rows(const struct machine_columns *const of,
                                          struct dig_machine_recording *const recording,
                                          struct dig_error *const             error)
 {
-    enum dig_status status = check_rows(csv, path, error);
-    if (status == DIG_OK) {
-        status = check_rate(csv, false, path, error);
-    }
+    void                 *rows = NULL;
+    const enum dig_status status =
+        make_rows(csv, path, false, sizeof(struct dig_sample), &rows, error);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_sample *const row = malloc(csv->rows * sizeof *row);
-    if (row == NULL) {
-        return no_memory(path, csv->rows, error);
-    }
+    struct dig_sample *const row = rows;
     for (size_t i = 0; i < csv->rows; i++) {
         row[i] = sample_row(of, csv->value + i * csv->columns);
     }

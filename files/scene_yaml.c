@@ -1,6 +1,5 @@
 #include "files/scene_yaml.h"
 
-#include "core/sha256.h"
 #include "core/units.h"
 #include "files/bed_yaml.h"
 #include "files/yaml.h"
@@ -217,13 +216,4 @@ enum dig_status dig_scene_read(const char *const path, struct dig_scene *const s
     }
     *scene = loaded;
     return DIG_OK;
-}
-
-void dig_scene_hash(const struct dig_scene *const scene, char hex[const 65])
-{
-    // Eight trajectories of eight phases and a bed of everything stay well below this.
-    char         text[16384];
-    const size_t length = dig_scene_canonical(scene, sizeof text, text);
-    assert(length < sizeof text);
-    dig_sha256_hex(text, length, hex);
 }

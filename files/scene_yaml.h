@@ -10,7 +10,4 @@
 DIG_MUST_CHECK enum dig_status dig_scene_read(const char *path, struct dig_scene *scene,
                                               struct dig_error *error);
 
-/// The scene's identity: lower-case hex SHA-256 of dig_scene_canonical().
-void dig_scene_hash(const struct dig_scene *scene, char hex[65]);
-
 #endif // DIG_FILES_SCENE_YAML_H

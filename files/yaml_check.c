@@ -1,4 +1,4 @@
-// What is wrong with a document in the eyes of a schema.
+// Checks a document against a schema.
 
 #include "files/yaml_tree.h"
 

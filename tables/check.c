@@ -1,4 +1,4 @@
-// Whether the derived rows of a table still are what its runs say.
+// Checks the derived rows of a table against its runs.
 
 #include "tables/grounds.h"
 #include "tables/load.h"
@@ -144,17 +144,14 @@ static size_t count_holes(const struct dig_curve_set *const set)
 static enum dig_status count_builds(const struct dig_store *const store, size_t *const builds,
                                     struct dig_error *const error)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = DIG_OK;
-    if (sqlite3_prepare_v2(store->db,
-                           "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", -1,
-                           &s, NULL) != SQLITE_OK ||
-        sqlite3_step(s) != SQLITE_ROW) {
-        status = dig_sql_refuse(store->db, store->path, error);
-    } else {
+    sqlite3_stmt         *s = NULL;
+    const enum dig_status status =
+        dig_sql_first(store->db, store->path,
+                      "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", &s, error);
+    if (status == DIG_OK) {
         *builds = (size_t)sqlite3_column_int64(s, 0);
+        (void)sqlite3_finalize(s);
     }
-    (void)sqlite3_finalize(s);
     return status;
 }
 

@@ -1,5 +1,5 @@
-// From runs to what a table is read for: a run smoothed and mapped to path progress, and the mean
-// and spread of the runs of one gravel. And the bytes curves are stored as. Internal to tables/.
+// Derives entries from runs: each run is smoothed and mapped to trajectory progress, and the runs
+// of one gravel give a mean and a spread. Also packs curves into bytes. Internal to tables/.
 //
 //   run (moment and forces at 5 ms) -> moving average +-0.16 s -> value at the time at which k/255
 //   of the path is done -> mean and standard deviation (n - 1) over packings

@@ -48,9 +48,7 @@ static enum dig_status prepare(const struct loader *const l, const char *const c
     char sql[400];
     (void)snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE %s %s", columns, from, l->where,
                    order);
-    return sqlite3_prepare_v2(l->db, sql, -1, s, NULL) == SQLITE_OK
-               ? DIG_OK
-               : dig_sql_refuse(l->db, l->path, l->error);
+    return dig_sql_prepare(l->db, l->path, sql, s, l->error);
 }
 
 static enum dig_status count_rows(const struct loader *const l, size_t *const rows)

@@ -1,4 +1,5 @@
-// What a connection lets a file do, and whether its schema is ours: a table may come from anybody.
+// Restricts what a file can do through a connection, and checks its schema: a table may come from
+// anybody.
 
 #include "tables/schema.h"
 

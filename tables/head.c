@@ -1,4 +1,4 @@
-// Whether a file is a table of ours, whole and of this version, and what it says of itself.
+// Checks that a file is a whole table of a known version, and reads its head.
 
 #include "core/approach.h"
 #include "core/name.h"
@@ -19,15 +19,13 @@
 static enum dig_status pragma_int(sqlite3 *const db, const char *const path, const char *const sql,
                                   int *const value, struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, sql, -1, &s, NULL) != SQLITE_OK || sqlite3_step(s) != SQLITE_ROW) {
-        const enum dig_status status = dig_sql_refuse(db, path, error);
+    sqlite3_stmt         *s      = NULL;
+    const enum dig_status status = dig_sql_first(db, path, sql, &s, error);
+    if (status == DIG_OK) {
+        *value = sqlite3_column_int(s, 0);
         (void)sqlite3_finalize(s);
-        return status;
     }
-    *value = sqlite3_column_int(s, 0);
-    (void)sqlite3_finalize(s);
-    return DIG_OK;
+    return status;
 }
 
 static enum dig_status check_identity(sqlite3 *const db, const char *const path, int *const version,
@@ -59,33 +57,30 @@ static enum dig_status check_identity(sqlite3 *const db, const char *const path,
 static enum dig_status check_integrity(sqlite3 *const db, const char *const path,
                                        struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, "PRAGMA integrity_check(1)", -1, &s, NULL) != SQLITE_OK ||
-        sqlite3_step(s) != SQLITE_ROW) {
-        const enum dig_status status = dig_sql_refuse(db, path, error);
-        (void)sqlite3_finalize(s);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_first(db, path, "PRAGMA integrity_check(1)", &s, error);
+    if (status != DIG_OK) {
         return status;
     }
-    const char     *found  = (const char *)sqlite3_column_text(s, 0);
-    enum dig_status status = DIG_OK;
+    const char *const found = (const char *)sqlite3_column_text(s, 0);
     if (found == NULL || strcmp(found, "ok") != 0) {
         status = dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
                                found != NULL ? found : "?");
     }
     (void)sqlite3_finalize(s);
 
-    s = NULL;
-    if (status == DIG_OK) {
-        if (sqlite3_prepare_v2(db, "PRAGMA foreign_key_check", -1, &s, NULL) != SQLITE_OK) {
-            status = dig_sql_refuse(db, path, error);
-        } else if (sqlite3_step(s) == SQLITE_ROW) {
-            status = dig_error_set(error, DIG_EINVAL,
-                                   "%s: damaged: a row of %s refers to nothing, expected an intact "
-                                   "table",
-                                   path, (const char *)sqlite3_column_text(s, 0));
-        }
-        (void)sqlite3_finalize(s);
+    if (status != DIG_OK) {
+        return status;
     }
+    s      = NULL;
+    status = dig_sql_prepare(db, path, "PRAGMA foreign_key_check", &s, error);
+    if (status == DIG_OK && sqlite3_step(s) == SQLITE_ROW) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s: damaged: a row of %s refers to nothing, expected an intact "
+                               "table",
+                               path, (const char *)sqlite3_column_text(s, 0));
+    }
+    (void)sqlite3_finalize(s);
     return status;
 }
 
@@ -116,12 +111,14 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
                                   struct dig_table_head *const head, char **const canonical,
                                   struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db,
-                           "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
-                           "smooth_half_s, points FROM scene",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(db, path, error);
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        dig_sql_prepare(db, path,
+                        "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
+                        "smooth_half_s, points FROM scene",
+                        &s, error);
+    if (status != DIG_OK) {
+        return status;
     }
     if (sqlite3_step(s) != SQLITE_ROW) {
         (void)sqlite3_finalize(s);
@@ -129,7 +126,6 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
     }
     const char *const hash     = (const char *)sqlite3_column_text(s, 1);
     const char *const text     = (const char *)sqlite3_column_text(s, 2);
-    enum dig_status   status   = DIG_OK;
     head->tooth_m              = sqlite3_column_double(s, 3);
     head->bucket_width_m       = sqlite3_column_double(s, 4);
     head->young_Pa             = sqlite3_column_double(s, 5);
@@ -170,16 +166,17 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
                                          struct dig_table_head *const head,
                                          struct dig_error *const      error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db,
-                           "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, "
-                           "duration_s, vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p "
-                           "ON p.trajectory = t.id ORDER BY t.id, number",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(db, path, error);
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        dig_sql_prepare(db, path,
+                        "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, "
+                        "duration_s, vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p "
+                        "ON p.trajectory = t.id ORDER BY t.id, number",
+                        &s, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    enum dig_status status = DIG_OK;
-    int             step;
+    int step;
     while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
         const sqlite3_int64 id     = sqlite3_column_int64(s, 0);
         const sqlite3_int64 number = sqlite3_column_int64(s, 5);
@@ -225,7 +222,7 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     static const char first[] = "trajectory=";
     struct dig_scene  scene   = { .trajectories = head->trajectories };
     memcpy(scene.trajectory, head->trajectory, sizeof scene.trajectory);
-    char text[DIG_CANONICAL_SIZE];
+    char text[DIG_SCENE_TEXT_SIZE];
     if (dig_scene_canonical(&scene, sizeof text, text) >= sizeof text) {
         return false;
     }

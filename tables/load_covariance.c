@@ -155,14 +155,12 @@ enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const pat
     }
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        sqlite3_prepare_v2(db,
-                           "SELECT ground, trajectory, windows, first_s, step_s, curve "
-                           "FROM run JOIN ground g ON g.id = run.ground "
-                           "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
-                           "ORDER BY ground, trajectory, packing",
-                           -1, &s, NULL) == SQLITE_OK
-            ? DIG_OK
-            : dig_sql_refuse(db, path, error);
+        dig_sql_prepare(db, path,
+                        "SELECT ground, trajectory, windows, first_s, step_s, curve "
+                        "FROM run JOIN ground g ON g.id = run.ground "
+                        "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
+                        "ORDER BY ground, trajectory, packing",
+                        &s, error);
     if (status == DIG_OK) {
         status = pool(s, db, path, head, made, error);
     }

@@ -1,4 +1,4 @@
-// How digs of one gravel differ, from the runs a table holds. Internal to tables/.
+// The covariance of digs of one gravel, from the runs of a table. Internal to tables/.
 
 #ifndef DIG_TABLES_LOAD_COVARIANCE_H
 #define DIG_TABLES_LOAD_COVARIANCE_H

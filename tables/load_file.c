@@ -1,4 +1,4 @@
-// Tables and tables of effects from files: what all but tables/ calls.
+// Loads tables and tables of effects from files, for the other folders.
 
 #include "tables/load.h"
 

@@ -1,4 +1,4 @@
-// A run in, with the entry it changes: the half of the store that writes rows.
+// Stores a run and the entry it changes: the half of the store that writes rows.
 
 #include "core/effect.h"
 #include "core/name.h"
@@ -9,18 +9,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-
-static enum dig_status refuse(const struct dig_store *const store, struct dig_error *const error)
-{
-    return dig_sql_refuse(store->db, store->path, error);
-}
-
-static enum dig_status prepare(const struct dig_store *const store, const char *const sql,
-                               sqlite3_stmt **const s, struct dig_error *const error)
-{
-    return sqlite3_prepare_v2(store->db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
-                                                                        : refuse(store, error);
-}
 
 static enum dig_status check_origin(const struct dig_run_origin *const o,
                                     struct dig_error *const            error)
@@ -41,7 +29,7 @@ static enum dig_status check_origin(const struct dig_run_origin *const o,
                              "expected " DIG_LABEL_RULE,
                              o->engine, o->version, o->made_utc);
     }
-    const struct dig_approach told = dig_approach_told(&o->approach);
+    const struct dig_approach told = dig_approach_normalized(&o->approach);
     if (!(told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST) ||
         !(fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
         return dig_error_set(error, DIG_EINVAL,
@@ -108,15 +96,16 @@ static enum dig_status make_ground(struct dig_store *const            store,
                                    const struct dig_run_origin *const origin,
                                    sqlite3_int64 *const id, struct dig_error *const error)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(store,
-                "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
-                "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO NOTHING",
-                &s, error);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        store->db, store->path,
+        "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
+        "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO NOTHING",
+        &s, error);
     if (status == DIG_OK) {
         dig_ground_bind(s, origin);
-        status = sqlite3_step(s) == SQLITE_DONE ? DIG_OK : refuse(store, error);
+        status =
+            sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
     }
     (void)sqlite3_finalize(s);
     return status == DIG_OK ? dig_ground_find(store, origin, id, error) : status;
@@ -127,13 +116,13 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
                                   const double first_s, const double step_s,
                                   const uint8_t *const bytes, struct dig_error *const error)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(store,
-                "INSERT INTO run (ground, trajectory, packing, seed, engine, version, grains, "
-                "windows, first_s, step_s, curve, made_utc, wall_s) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                &s, error);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        store->db, store->path,
+        "INSERT INTO run (ground, trajectory, packing, seed, engine, version, grains, "
+        "windows, first_s, step_s, curve, made_utc, wall_s) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -163,7 +152,7 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
                                origin->effect[0] != '\0' ? " with " : "", origin->effect,
                                store->head.trajectory[origin->trajectory].name, how);
     } else if (step != SQLITE_DONE) {
-        status = refuse(store, error);
+        status = dig_sql_refuse(store->db, store->path, error);
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -183,11 +172,11 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
 
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        prepare(store,
-                "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
-                "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
-                "SET packings = ?3, mean = ?4, spread = ?5",
-                &s, error);
+        dig_sql_prepare(store->db, store->path,
+                        "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
+                        "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
+                        "SET packings = ?3, mean = ?4, spread = ?5",
+                        &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -198,7 +187,8 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     if (e->packings > 1) {
         (void)sqlite3_bind_blob(s, 5, spread, sizeof spread, SQLITE_STATIC);
     }
-    status = sqlite3_step(s) == SQLITE_DONE ? DIG_OK : refuse(store, error);
+    status =
+        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
     (void)sqlite3_finalize(s);
     return status;
 }

@@ -1,4 +1,4 @@
-// What is still to be dug: the plan less what the table holds.
+// The queue of digs to compute: the plan less what the table holds.
 //
 // The queue lives in the memory of the one process that writes the table. A job is claimed by being
 // given out and finished by its runs being stored; a job of a process that died is therefore simply

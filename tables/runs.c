@@ -1,4 +1,4 @@
-// Runs out, and the entries they make: the half of the store that reads rows.
+// Reads runs, and derives entries from them: the half of the store that reads rows.
 
 #include "core/name.h"
 #include "tables/store.h"
@@ -9,18 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static enum dig_status refuse(const struct dig_store *const store, struct dig_error *const error)
-{
-    return dig_sql_refuse(store->db, store->path, error);
-}
-
-static enum dig_status prepare(const struct dig_store *const store, const char *const sql,
-                               sqlite3_stmt **const s, struct dig_error *const error)
-{
-    return sqlite3_prepare_v2(store->db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
-                                                                        : refuse(store, error);
-}
-
 void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const origin)
 {
     for (int a = 0; a < DIG_AXES; a++) {
@@ -28,7 +16,7 @@ void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const o
     }
     (void)sqlite3_bind_text(s, DIG_AXES + 1, origin->effect, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, DIG_AXES + 2, origin->magnitude);
-    const struct dig_approach told = dig_approach_told(&origin->approach);
+    const struct dig_approach told = dig_approach_normalized(&origin->approach);
     (void)sqlite3_bind_double(s, DIG_AXES + 3, told.depth);
     (void)sqlite3_bind_double(s, DIG_AXES + 4, told.attack_rad);
 }
@@ -42,10 +30,12 @@ enum dig_status dig_ground_find(const struct dig_store *const      store,
                                 struct dig_error *const error)
 {
     sqlite3_stmt   *s      = NULL;
-    enum dig_status status = prepare(store, "SELECT id FROM ground WHERE " SAME_GROUND, &s, error);
+    enum dig_status status = dig_sql_prepare(store->db, store->path,
+                                             "SELECT id FROM ground WHERE " SAME_GROUND, &s, error);
     if (status == DIG_OK) {
         dig_ground_bind(s, origin);
-        status = sqlite3_step(s) == SQLITE_ROW ? DIG_OK : refuse(store, error);
+        status =
+            sqlite3_step(s) == SQLITE_ROW ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
     }
     if (status == DIG_OK) {
         *id = sqlite3_column_int64(s, 0);
@@ -61,10 +51,10 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     assert(store != NULL && origin != NULL && there != NULL);
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        prepare(store,
-                "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE " SAME_GROUND
-                " AND packing = ?8 AND trajectory = ?9",
-                &s, error);
+        dig_sql_prepare(store->db, store->path,
+                        "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE " SAME_GROUND
+                        " AND packing = ?8 AND trajectory = ?9",
+                        &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -75,7 +65,7 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     if (step == SQLITE_ROW || step == SQLITE_DONE) {
         *there = step == SQLITE_ROW;
     } else {
-        status = refuse(store, error);
+        status = dig_sql_refuse(store->db, store->path, error);
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -171,7 +161,7 @@ static enum dig_status walk(struct dig_store *const store, sqlite3_stmt *const s
         free(value);
     }
     if (status == DIG_OK && step != SQLITE_DONE) {
-        status = refuse(store, error);
+        status = dig_sql_refuse(store->db, store->path, error);
     }
     return status;
 }
@@ -181,13 +171,13 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
                                struct dig_error *const             error)
 {
     assert(store != NULL && visitor != NULL);
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(store,
-                "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground ORDER BY "
-                "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
-                "trajectory, packing",
-                &s, error);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        store->db, store->path,
+        "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground ORDER BY "
+        "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
+        "trajectory, packing",
+        &s, error);
     if (status == DIG_OK) {
         status = walk(store, s, visitor, error);
     }
@@ -220,12 +210,12 @@ enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_in
                                  const size_t trajectory, struct dig_ensemble *const ensemble,
                                  struct dig_error *const error)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(store,
-                "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground WHERE ground = "
-                "?1 AND trajectory = ?2 ORDER BY packing",
-                &s, error);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        store->db, store->path,
+        "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground WHERE ground = "
+        "?1 AND trajectory = ?2 ORDER BY packing",
+        &s, error);
     if (status == DIG_OK) {
         (void)sqlite3_bind_int64(s, 1, ground);
         (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);

@@ -9,11 +9,10 @@
 static enum dig_status read_canonical(sqlite3 *const db, const char *const path,
                                       struct dig_scene *const scene, struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, "SELECT canonical FROM scene", -1, &s, NULL) != SQLITE_OK ||
-        sqlite3_step(s) != SQLITE_ROW) {
-        const enum dig_status status = dig_sql_refuse(db, path, error);
-        (void)sqlite3_finalize(s);
+    sqlite3_stmt         *s = NULL;
+    const enum dig_status status =
+        dig_sql_first(db, path, "SELECT canonical FROM scene", &s, error);
+    if (status != DIG_OK) {
         return status;
     }
     const char *const text = (const char *)sqlite3_column_text(s, 0);

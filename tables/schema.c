@@ -1,9 +1,7 @@
 #include "tables/schema.h"
 
-#include "core/sha256.h"
 #include "tables/seal.h"
 
-#include <assert.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -99,12 +97,27 @@ enum dig_status dig_sql_run(sqlite3 *const db, const char *const path, const cha
                                                                 : dig_sql_refuse(db, path, error);
 }
 
+enum dig_status dig_sql_prepare(sqlite3 *const db, const char *const path, const char *const sql,
+                                sqlite3_stmt **const s, struct dig_error *const error)
+{
+    return sqlite3_prepare_v2(db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
+                                                                 : dig_sql_refuse(db, path, error);
+}
+
+enum dig_status dig_sql_first(sqlite3 *const db, const char *const path, const char *const sql,
+                              sqlite3_stmt **const s, struct dig_error *const error)
+{
+    if (sqlite3_prepare_v2(db, sql, -1, s, NULL) == SQLITE_OK && sqlite3_step(*s) == SQLITE_ROW) {
+        return DIG_OK;
+    }
+    const enum dig_status status = dig_sql_refuse(db, path, error);
+    (void)sqlite3_finalize(*s);
+    *s = NULL;
+    return status;
+}
+
 void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_head *const head)
 {
-    char         text[DIG_CANONICAL_SIZE];
-    const size_t length = dig_scene_canonical(scene, sizeof text, text);
-    assert(length < sizeof text);
-
     *head = (struct dig_table_head){
         .tooth_m        = dig_scene_tooth_m(scene),
         .bucket_width_m = scene->bucket.width_m,
@@ -114,13 +127,13 @@ void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_hea
     };
     memcpy(head->scene_name, scene->name, sizeof head->scene_name);
     memcpy(head->trajectory, scene->trajectory, sizeof head->trajectory);
-    dig_sha256_hex(text, length, head->scene_hash);
+    dig_scene_hash(scene, head->scene_hash);
 }
 
 static bool insert_scene(sqlite3 *const db, const struct dig_scene *const scene)
 {
     struct dig_table_head head;
-    char                  text[DIG_CANONICAL_SIZE];
+    char                  text[DIG_SCENE_TEXT_SIZE];
     (void)dig_scene_canonical(scene, sizeof text, text);
     dig_table_head_of(scene, &head);
 

@@ -1,5 +1,5 @@
-// What a table is on disk: its SQL, its version, and the checks every opening makes. Internal to
-// tables/; docs/formats.md shows the schema to people.
+// A table on disk: its SQL, its version, and the checks of every opening. Internal to tables/;
+// docs/formats/tables.md shows the schema to people.
 
 #ifndef DIG_TABLES_SCHEMA_H
 #define DIG_TABLES_SCHEMA_H
@@ -11,10 +11,8 @@
 #include <sqlite3.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
-#define DIG_TABLE_VERSION        4          // PRAGMA user_version
-#define DIG_TABLE_VERSION_BARE   3          // before seals: a flipped bit is found by a check alone
-#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack, too: every dig is plain
-#define DIG_CANONICAL_SIZE       16384      // eight trajectories of eight phases stay well below
+#define DIG_TABLE_VERSION        4          // PRAGMA user_version; 3 has no seals
+#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack: every dig is plain
 
 /// What was dug in, and how: the key of a dig but for its trajectory and packing.
 #define DIG_GROUND_SQL(name)                                                                       \
@@ -55,6 +53,15 @@ DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
 /// Runs statements that return no rows.
 DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
                                            struct dig_error *error);
+
+/// Prepares a statement. On failure too *s is for sqlite3_finalize().
+DIG_MUST_CHECK enum dig_status dig_sql_prepare(sqlite3 *db, const char *path, const char *sql,
+                                               sqlite3_stmt **s, struct dig_error *error);
+
+/// Prepares a statement and steps to its first row, which there must be. On failure it is
+/// finalized.
+DIG_MUST_CHECK enum dig_status dig_sql_first(sqlite3 *db, const char *path, const char *sql,
+                                             sqlite3_stmt **s, struct dig_error *error);
 
 /// Makes an empty database a table of this version without rows; its number is not written.
 DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path, int version,

@@ -32,10 +32,9 @@ static enum dig_status refuse(const struct sealer *const s)
 
 static enum dig_status begin(struct sealer *const s)
 {
-    return sqlite3_prepare_v2(s->db, entry_sql, -1, &s->entry, NULL) == SQLITE_OK &&
-                   sqlite3_prepare_v2(s->db, runs_sql, -1, &s->runs, NULL) == SQLITE_OK
-               ? DIG_OK
-               : refuse(s);
+    const enum dig_status status = dig_sql_prepare(s->db, s->path, entry_sql, &s->entry, s->error);
+    return status == DIG_OK ? dig_sql_prepare(s->db, s->path, runs_sql, &s->runs, s->error)
+                            : status;
 }
 
 static void end(struct sealer *const s)
@@ -120,14 +119,14 @@ static enum dig_status write_one(const struct sealer *const s, const sqlite3_int
     sqlite3_stmt   *into   = NULL;
     sqlite3_int64   sum    = 0;
     enum dig_status status = sum_of(s, ground, trajectory, &sum);
+    if (status == DIG_OK) {
+        status = dig_sql_prepare(s->db, s->path,
+                                 "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
+                                 "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3",
+                                 &into, s->error);
+    }
     if (status != DIG_OK) {
         return status;
-    }
-    if (sqlite3_prepare_v2(s->db,
-                           "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
-                           "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3",
-                           -1, &into, NULL) != SQLITE_OK) {
-        return refuse(s);
     }
     (void)sqlite3_bind_int64(into, 1, ground);
     (void)sqlite3_bind_int64(into, 2, trajectory);
@@ -170,11 +169,8 @@ static enum dig_status check_one(const struct sealer *const s, sqlite3_stmt *con
 static enum dig_status each(const struct sealer *const s, const char *const sql,
                             enum dig_status (*const what)(const struct sealer *, sqlite3_stmt *))
 {
-    sqlite3_stmt *entry = NULL;
-    if (sqlite3_prepare_v2(s->db, sql, -1, &entry, NULL) != SQLITE_OK) {
-        return refuse(s);
-    }
-    enum dig_status status = DIG_OK;
+    sqlite3_stmt   *entry  = NULL;
+    enum dig_status status = dig_sql_prepare(s->db, s->path, sql, &entry, s->error);
     int             step   = SQLITE_DONE;
     while (status == DIG_OK && (step = sqlite3_step(entry)) == SQLITE_ROW) {
         status = what(s, entry);

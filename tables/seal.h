@@ -1,11 +1,11 @@
-// What finds a flipped bit: a sum over all that an entry is made of, kept beside it. Internal to
+// Seals, which detect a flipped bit: a hash over an entry and its runs, kept beside it. Internal to
 // tables/.
 //
 //   scene (hash, numbers), ground, trajectory, packings, mean, spread, and of every run packing,
 //   seed, engine, version, grains, windows, times, curve, date, wall time   -- SHA-256 -->   63
 //   bits
 //
-// Not against who would deceive: whoever can write the file can seal it. What a sum is of does not
+// Damage alone is detected: whoever can write the file can seal it. What a sum is of does not
 // depend on rows' ids or order, so that merged tables have those of their inputs.
 
 #ifndef DIG_TABLES_SEAL_H

@@ -1,4 +1,4 @@
-// What a store is, for the files of tables/ that share it.
+// The store's struct, shared by the files of tables/.
 
 #ifndef DIG_TABLES_STORE_PRIVATE_H
 #define DIG_TABLES_STORE_PRIVATE_H

@@ -1,4 +1,4 @@
-// digreport: what a run of the daemon showed, from its LCM log.
+// digreport: reports a run of the daemon from its LCM log.
 
 #include "closed_loop/report/report.h"
 #include "files/machine_yaml.h"

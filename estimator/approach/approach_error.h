@@ -9,7 +9,6 @@
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_ERROR_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_ERROR_H
 
-#include "core/approach.h"
 #include "core/curve.h"
 
 /// Of one trajectory; all relative to the rms of the plain curve.

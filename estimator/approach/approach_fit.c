@@ -129,12 +129,3 @@ double dig_approach_fit(const struct dig_trajectory *const trajectory, const dou
     *approach = (struct dig_approach){ at[0], at[1] };
     return least;
 }
-
-double dig_approach_off_m(const struct dig_trajectory *const trajectory, const double tooth_m,
-                          const struct dig_path_point path[const POINTS])
-{
-    assert(trajectory != NULL && path != NULL);
-    double off[RESIDUALS];
-    residuals(trajectory, tooth_m, path, off);
-    return rms(off);
-}

@@ -23,8 +23,4 @@ double dig_approach_fit(const struct dig_trajectory *trajectory, double tooth_m,
                         const struct dig_path_point path[DIG_APPROACH_FIT_POINTS],
                         struct dig_approach        *approach);
 
-/// The rms distance of the path and the plain trajectory, up to a shift, m.
-double dig_approach_off_m(const struct dig_trajectory *trajectory, double tooth_m,
-                          const struct dig_path_point path[DIG_APPROACH_FIT_POINTS]);
-
 #endif // DIG_ESTIMATOR_APPROACH_APPROACH_FIT_H

@@ -4,7 +4,6 @@
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_ROUTE_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_ROUTE_H
 
-#include "core/approach.h"
 #include "core/curve.h"
 #include "estimator/track/route.h"
 #include "estimator/track/track.h"

@@ -49,6 +49,6 @@ int dig_approach_slot(const struct dig_curve_set *const set, const size_t trajec
         return nearest;
     }
     slots->slot[slots->slots] =
-        (struct dig_approached_slot){ trajectory, dig_approach_told(approach) };
+        (struct dig_approached_slot){ trajectory, dig_approach_normalized(approach) };
     return (int)slots->slots++;
 }

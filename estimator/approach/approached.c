@@ -136,7 +136,7 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
         assert(slot[s].trajectory < set->trajectories);
         struct dig_approached_slot wanted = slot[s];
         struct dig_approach_error  own    = { .farthest_m = 0.0 };
-        wanted.approach                   = dig_approach_told(&wanted.approach);
+        wanted.approach                   = dig_approach_normalized(&wanted.approach);
         made->trajectory[s] = dig_response_trajectory(set, wanted.trajectory, &wanted.approach);
         if (error != NULL) {
             own = error[wanted.trajectory];

@@ -43,7 +43,7 @@ struct point {
 static struct point place_of(const struct dig_curve_set *const set, const size_t trajectory,
                              const struct dig_approach *const approach)
 {
-    const struct dig_approach wanted = dig_approach_told(approach);
+    const struct dig_approach wanted = dig_approach_normalized(approach);
     const double depth_m = set->approaches != NULL ? set->approaches->depth_m[trajectory] : 0.0;
     return (struct point){ depth_m * (wanted.depth - 1.0), set->tooth_m * wanted.attack_rad };
 }
@@ -155,7 +155,7 @@ double dig_approach_clamp(const struct dig_curve_set *const set, const size_t tr
         }
     }
     if (inside) {
-        *nearest = dig_approach_told(approach);
+        *nearest = dig_approach_normalized(approach);
         return 0.0;
     }
     const double depth_m = set->approaches != NULL ? set->approaches->depth_m[trajectory] : 0.0;
@@ -257,7 +257,7 @@ bool dig_approach_weigh(const struct dig_nodes *const    nodes,
                         double                           weight[const DIG_NODES_MAX])
 {
     assert(nodes != NULL && approach != NULL);
-    const struct dig_approach wanted = dig_approach_told(approach);
+    const struct dig_approach wanted = dig_approach_normalized(approach);
     struct bracket            depth;
     struct bracket            attack;
     if (nodes->nodes == 0 || !find_bracket(nodes, false, wanted.depth, &depth) ||

@@ -101,7 +101,7 @@ struct starts {
 };
 
 // Inserts a starting point if it is good enough; the nearest entry stays first.
-static void keep_start(struct starts *const starts, const double distance, const double x[DIG_AXES])
+static void add_start(struct starts *const starts, const double distance, const double x[DIG_AXES])
 {
     size_t place = starts->count;
     while (place > 1 && distance < starts->distance[place - 1]) {
@@ -154,13 +154,13 @@ static struct starts choose_starts(const struct problem *const    problem,
     double nearest[DIG_AXES] = { 0.0 };
     position_of(problem, &problem->fixed, nearest);
     struct starts starts = { .count = 0 };
-    keep_start(&starts, 0.0, nearest);
+    add_start(&starts, 0.0, nearest);
 
     const double at_middle = distance_at(problem, middle).distance;
     if (at_middle < no_curve) {
         double x[DIG_AXES] = { 0.0 };
         position_of(problem, middle, x);
-        keep_start(&starts, at_middle, x);
+        add_start(&starts, at_middle, x);
     }
 
     for (unsigned side = 0; side < 2 * problem->dimensions; side++) {
@@ -177,7 +177,7 @@ static struct starts choose_starts(const struct problem *const    problem,
         if (distance < no_curve) {
             double x[DIG_AXES] = { nearest[0], nearest[1], nearest[2] };
             x[d]               = dig_axis_position(set, axis, gravel.value[axis]);
-            keep_start(&starts, distance, x);
+            add_start(&starts, distance, x);
         }
     }
     return starts;
@@ -258,10 +258,10 @@ static enum dig_status contradict(const struct dig_curve_set *const set,
 
 // The posterior. Where no gravel of the table fits both moment and forces, that of the moment alone
 // predicts the next dig better than a compromise.
-static enum dig_status judge(const struct dig_curve_set *const set,
-                             const struct dig_prefilter *const prefilter,
-                             struct dig_pool_sums *const sums, struct dig_match *const refined,
-                             bool *const contradicted)
+static enum dig_status fill_posterior(const struct dig_curve_set *const set,
+                                      const struct dig_prefilter *const prefilter,
+                                      struct dig_pool_sums *const       sums,
+                                      struct dig_match *const refined, bool *const contradicted)
 {
     *contradicted          = false;
     enum dig_status status = dig_posterior_fill(set, prefilter, sums, refined);
@@ -285,7 +285,7 @@ static enum dig_status refine(const struct dig_curve_set *const set,
     // A table of scattered points has no cell, so no posterior: the nearest entry stands.
     struct dig_match      refined = *match;
     bool                  contradicted;
-    const enum dig_status judged = judge(set, prefilter, sums, &refined, &contradicted);
+    const enum dig_status judged = fill_posterior(set, prefilter, sums, &refined, &contradicted);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -339,11 +339,13 @@ static enum dig_status refine(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-static enum dig_status check_and_refine(const struct dig_curve_set *const set,
-                                        const struct dig_prefilter *const prefilter,
-                                        const size_t digs, const struct dig_observation dig[],
-                                        const int max_evaluations, struct dig_match *const match)
+enum dig_status dig_fit_refine(const struct dig_curve_set *const set,
+                               const struct dig_prefilter *const prefilter, const size_t digs,
+                               const struct dig_observation dig[], const int max_evaluations,
+                               struct dig_match *const match)
 {
+    assert(set != NULL && dig != NULL && match != NULL);
+    assert(prefilter == NULL || prefilter->set == set);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
         max_evaluations < 1 || digs < 1) {
         return DIG_EINVAL;
@@ -356,20 +358,4 @@ static enum dig_status check_and_refine(const struct dig_curve_set *const set,
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
     return refine(set, prefilter, &sums, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine(const struct dig_curve_set *const set, const size_t digs,
-                               const struct dig_observation dig[], const int max_evaluations,
-                               struct dig_match *const match)
-{
-    assert(set != NULL && dig != NULL && match != NULL);
-    return check_and_refine(set, NULL, digs, dig, max_evaluations, match);
-}
-
-enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter *const prefilter,
-                                           const size_t digs, const struct dig_observation dig[],
-                                           const int max_evaluations, struct dig_match *const match)
-{
-    assert(prefilter != NULL && dig != NULL && match != NULL);
-    return check_and_refine(prefilter->set, prefilter, digs, dig, max_evaluations, match);
 }

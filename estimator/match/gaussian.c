@@ -115,7 +115,7 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
 
 // Share of each number's standard deviation that comes from the digs' correlated scatter, the rest
 // being the measurement's; for digs as large as those measured.
-static void tell_shares(const struct dig_gaussian *const g, double share[NUMBERS])
+static void scatter_shares(const struct dig_gaussian *const g, double share[NUMBERS])
 {
     double size2[CHANNELS] = { 0.0 };
     double count[CHANNELS] = { 0.0 };
@@ -137,7 +137,7 @@ static bool factor(const struct matrix *const c, struct dig_gaussian *const g)
 {
     size_t at[NUMBERS];
     double share[NUMBERS];
-    tell_shares(g, share);
+    scatter_shares(g, share);
     for (size_t i = 0; i < g->numbers; i++) {
         at[i] = g->compared[i].channel * BLOCKS + g->compared[i].block;
     }
@@ -302,8 +302,8 @@ struct there {
     double mean, u2;
 };
 
-static void look(const struct dig_gaussian *const g, const struct dig_cell *const cell,
-                 struct there there[NUMBERS])
+static void predict_numbers(const struct dig_gaussian *const g, const struct dig_cell *const cell,
+                            struct there there[NUMBERS])
 {
     double mean[CHANNELS][HALVES];
     double size2[CHANNELS];
@@ -329,7 +329,7 @@ struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const
     double       miss[NUMBERS];
     double       mantissa = 1.0;
     int          exponent = 0;
-    look(g, cell, there);
+    predict_numbers(g, cell, there);
     for (size_t i = 0; i < g->numbers; i++) {
         miss[i] = (g->compared[i].mean - there[i].mean) / sqrt(there[i].u2);
         mantissa *= there[i].u2;
@@ -355,7 +355,7 @@ void dig_gaussian_scale(const struct dig_gaussian *const g, const struct dig_cel
 {
     assert(g != NULL && cell != NULL && u != NULL);
     struct there there[NUMBERS];
-    look(g, cell, there);
+    predict_numbers(g, cell, there);
     for (size_t i = 0; i < g->numbers; i++) {
         u[i] = sqrt(there[i].u2);
     }

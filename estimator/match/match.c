@@ -139,8 +139,8 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
 }
 
 // The entry nearest to all digs, the first of several; -1: none.
-static int look_at_all(const struct dig_curve_set *const set,
-                       const struct dig_pool_sums *const sums)
+static int nearest_of_all(const struct dig_curve_set *const set,
+                          const struct dig_pool_sums *const sums)
 {
     int    nearest = -1;
     double least   = INFINITY;
@@ -154,12 +154,13 @@ static int look_at_all(const struct dig_curve_set *const set,
     return nearest;
 }
 
-// By the prefilter, if there is one.
-static enum dig_status find(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const prefilter, const size_t digs,
-                            const struct dig_observation dig[], const double outside_floors,
-                            struct dig_match *const match)
+enum dig_status dig_match_nearest(const struct dig_curve_set *const set,
+                                  const struct dig_prefilter *const prefilter, const size_t digs,
+                                  const struct dig_observation dig[], const double outside_floors,
+                                  struct dig_match *const match)
 {
+    assert(set != NULL && dig != NULL && match != NULL);
+    assert(prefilter == NULL || prefilter->set == set);
     if (digs < 1 || !(outside_floors > 0.0)) {
         return DIG_EINVAL;
     }
@@ -172,7 +173,7 @@ static enum dig_status find(const struct dig_curve_set *const set,
     dig_pool_sum(digs, dig, &sums);
 
     const int nearest =
-        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : look_at_all(set, &sums);
+        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : nearest_of_all(set, &sums);
     if (nearest < 0) {
         return DIG_ENOMATCH;
     }
@@ -211,21 +212,4 @@ void dig_match_find_weighted(const struct dig_curve_set *const set,
         dig_weighted_find(set, prefilter, &sums, (size_t)match->nearest);
     match->weighted          = best.entry;
     match->weighted_distance = best.entry >= 0 ? best.distance : (double)NAN;
-}
-
-enum dig_status dig_match_nearest(const struct dig_curve_set *const set, const size_t digs,
-                                  const struct dig_observation dig[], const double outside_floors,
-                                  struct dig_match *const match)
-{
-    assert(set != NULL && dig != NULL && match != NULL);
-    return find(set, NULL, digs, dig, outside_floors, match);
-}
-
-enum dig_status dig_match_nearest_prefiltered(const struct dig_prefilter *const prefilter,
-                                              const size_t digs, const struct dig_observation dig[],
-                                              const double            outside_floors,
-                                              struct dig_match *const match)
-{
-    assert(prefilter != NULL && dig != NULL && match != NULL);
-    return find(prefilter->set, prefilter, digs, dig, outside_floors, match);
 }

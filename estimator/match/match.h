@@ -61,17 +61,12 @@ DIG_MUST_CHECK enum dig_status dig_match_interpolate(const struct dig_curve_set 
 ///   sqrt(sum (sd^2 (1 + 1/packings) + sigma^2)) / ||measured||
 ///
 /// An entry that lacks a trajectory that was dug is skipped. DIG_ENOMATCH: every entry lacks one.
-/// DIG_EINVAL: an observation fails dig_observation_check(). O(entries); 120 kB of stack.
-DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set, size_t digs,
+/// DIG_EINVAL: an observation fails dig_observation_check(). By a prefilter of the set the same
+/// result sooner (estimator/match/nearest.h); NULL is allowed. O(entries); 120 kB of stack.
+DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set,
+                                                 const struct dig_prefilter *prefilter, size_t digs,
                                                  const struct dig_observation dig[],
                                                  double outside_floors, struct dig_match *match);
-
-/// The same result by a prefilter, sooner (estimator/match/nearest.h).
-DIG_MUST_CHECK enum dig_status dig_match_nearest_prefiltered(const struct dig_prefilter  *prefilter,
-                                                             size_t                       digs,
-                                                             const struct dig_observation dig[],
-                                                             double            outside_floors,
-                                                             struct dig_match *match);
 
 /// Finds the entry nearest by the noise-weighted distance (estimator/match/weighted.h), over every
 /// channel that all digs measured; sets weighted and weighted_distance of a valid match of these
@@ -104,17 +99,12 @@ void dig_match_untold(const struct dig_match *match, char text[DIG_UNTOLD_SIZE])
 /// the most probable gravel (DIG_POSTERIOR_OUTSIDE), and the gravel is then that of the moment
 /// alone. DIG_EINVAL: no valid match of these digs, or max_evaluations < 1; DIG_ENOMEM. *match is
 /// unchanged then. Allocates (in NLopt): never in the tick. Some ten milliseconds; 350 kB of stack.
-DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set *set, size_t digs,
+/// By a prefilter of the set sooner: gravels whose outlines are hopeless are left out of the
+/// posterior, and no end of an interval moves by a thousandth of its axis. NULL is allowed.
+DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set *set,
+                                              const struct dig_prefilter *prefilter, size_t digs,
                                               const struct dig_observation dig[],
                                               int max_evaluations, struct dig_match *match);
-
-/// The same by a prefilter, sooner: gravels whose outlines are hopeless are left out of the
-/// posterior. No end of an interval moves by a thousandth of its axis.
-DIG_MUST_CHECK enum dig_status dig_fit_refine_prefiltered(const struct dig_prefilter  *prefilter,
-                                                          size_t                       digs,
-                                                          const struct dig_observation dig[],
-                                                          int               max_evaluations,
-                                                          struct dig_match *match);
 
 /// The curve predicted for one trajectory at the match, rig scale: mean and 1 sigma of one dig, the
 /// spread between packings and the uncertainty of the gravel taken together. A match that was not

@@ -100,7 +100,7 @@ static double miss_Nm2(const struct search *const s, const size_t entry)
     return all;
 }
 
-static void look_at(struct search *const s, const size_t entry)
+static void try_entry(struct search *const s, const size_t entry)
 {
     const double miss2    = miss_Nm2(s, entry);
     const double distance = sqrt(miss2 / s->norm2_Nm2);
@@ -130,7 +130,7 @@ static void begin(struct search *const s)
         }
     }
     if (at >= 0) {
-        look_at(s, (size_t)at);
+        try_entry(s, (size_t)at);
     }
 }
 
@@ -154,7 +154,7 @@ int dig_nearest_find(const struct dig_prefilter *const prefilter,
     begin(&s);
     for (size_t e = 0; e < prefilter->set->entries; e++) {
         if (!(bound_Nm2(&s, e) > s.reach_Nm2)) {
-            look_at(&s, e);
+            try_entry(&s, e);
         }
     }
     return s.nearest;

@@ -178,10 +178,10 @@ static void draw_samples(const struct fine *const fine, const double weight[],
 }
 
 // Marks the points to evaluate by 0, others by -infinity; all without a prefilter.
-static void look_roughly(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const prefilter,
-                         const struct dig_pool_sums *const sums, const struct fine *const fine,
-                         struct dig_likelihood l[], double weight[])
+static void mark_likely(const struct dig_curve_set *const set,
+                        const struct dig_prefilter *const prefilter,
+                        const struct dig_pool_sums *const sums, const struct fine *const fine,
+                        struct dig_likelihood l[], double weight[])
 {
     bool rough = prefilter != NULL;
     bool dear  = false; // more than the rough look
@@ -213,7 +213,7 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
     struct dig_likelihood l[DIG_TRAJECTORY_MAX];
     double                weight[GRID_MAX];
-    look_roughly(set, prefilter, sums, &fine, l, weight);
+    mark_likely(set, prefilter, sums, &fine, l, weight);
 
     for (size_t g = 0; g < sums->groups; g++) {
         dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);

@@ -105,7 +105,7 @@ static double square_of(const struct search *const s, const size_t entry, const 
     return sum;
 }
 
-static void look_at(struct search *const s, const size_t entry)
+static void try_entry(struct search *const s, const size_t entry)
 {
     const double sum = square_of(s, entry, s->least);
     if (sum < s->least || (sum <= s->least && entry < s->entry)) {
@@ -131,10 +131,10 @@ struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
     s.entry = nearest;
     s.least = square_of(&s, nearest, INFINITY);
     for (size_t e = 0; e < set->entries; e += FIRST_LOOK) {
-        look_at(&s, e);
+        try_entry(&s, e);
     }
     for (size_t e = 0; e < set->entries; e++) {
-        look_at(&s, e);
+        try_entry(&s, e);
     }
     return (struct dig_weighted){ .entry = (int)s.entry, .distance = sqrt(s.least / numbers) };
 }

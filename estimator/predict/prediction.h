@@ -4,7 +4,6 @@
 #define DIG_ESTIMATOR_PREDICT_PREDICTION_H
 
 #include "core/approach.h"
-#include "core/curve.h"
 
 #include <stdbool.h>
 

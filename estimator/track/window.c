@@ -132,8 +132,8 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
 }
 
 // The progress observed: of a dig in progress only as far as samples on both sides smooth it.
-static double told_until(const struct dig_window *const window, const struct range range,
-                         const double half_s)
+static double observed_until(const struct dig_window *const window, const struct range range,
+                             const double half_s)
 {
     size_t i = range.end - 1;
     if (window->in_progress && window->progress[i] < 1.0) {
@@ -284,7 +284,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
         return DIG_ENOMATCH;
     }
     const double first = window->progress[range.first];
-    const double last  = told_until(window, range, half_s);
+    const double last  = observed_until(window, range, half_s);
     struct spot  spot[DIG_CURVE_POINTS];
     if (find_spots(window, range, first, last, spot) < 2) {
         return DIG_ENOMATCH;

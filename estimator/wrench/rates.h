@@ -13,7 +13,6 @@
 #define DIG_ESTIMATOR_WRENCH_RATES_H
 
 #include "core/machine.h"
-#include "core/status.h"
 
 #include <stddef.h>
 #include <stdint.h>

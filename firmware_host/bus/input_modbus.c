@@ -87,7 +87,7 @@ static bool is_dispensable(const struct dig_map_group *const group)
 }
 
 // A time-out. While no block answers, the server is silent, not the block.
-static void hear_nothing(struct dig_input *const input, const size_t block)
+static void count_timeout(struct dig_input *const input, const size_t block)
 {
     struct modbus_source *const       s     = input->source;
     const struct dig_map_group *const group = &s->map->group[block];
@@ -130,7 +130,7 @@ static enum dig_status bear(struct dig_input *const input, const size_t block,
         (void)modbus_flush(s->bus);
         s->next_ns[block] += few ? 0 : DISPENSABLE_ns;
         if (why == ETIMEDOUT) {
-            hear_nothing(input, block);
+            count_timeout(input, block);
         }
         return DIG_OK;
     }

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 // The file of that name beside another, when there is one; else the name as it stands.
-static void look_beside(const char *const beside, const char *const name, const size_t size,
+static void find_beside(const char *const beside, const char *const name, const size_t size,
                         char path[])
 {
     const char *const slash  = strrchr(beside, '/');
@@ -101,7 +101,7 @@ static enum dig_status change_curves(const char *const model_path, const char *c
     }
     if (status == DIG_OK && model->effects_table[0] != '\0') {
         char path[DIG_MODEL_PATH_SIZE];
-        look_beside(table_path, model->effects_table, sizeof path, path);
+        find_beside(table_path, model->effects_table, sizeof path, path);
         status = dig_effects_load(path, plain, &effects, error);
     }
     if (status == DIG_OK && dig_effects_apply(plain, effects, model, set) != DIG_OK) {

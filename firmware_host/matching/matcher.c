@@ -54,32 +54,37 @@ static const struct dig_curve_set *as_dug(struct dig_matcher *const         matc
                : NULL;
 }
 
+// What digs are matched with: the table itself, or one made as they were dug.
+struct basis {
+    const struct dig_curve_set   *set; // NULL: no memory
+    const struct dig_prefilter   *prefilter;
+    const struct dig_observation *dig;
+};
+
+static struct basis basis_of(struct dig_matcher *const         matcher,
+                             const struct dig_curve_set *const set, const size_t digs,
+                             const struct dig_observation dig[])
+{
+    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
+    if (matcher->varies) {
+        return (struct basis){ as_dug(matcher, set, digs, dig), NULL, matcher->dig };
+    }
+    return (struct basis){ set, matcher->outline != NULL ? &matcher->prefilter : NULL, dig };
+}
+
 enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
                                     const struct dig_curve_set *const set, const size_t digs,
                                     const struct dig_observation dig[], const double outside_floors,
                                     struct dig_match *const match)
 {
-    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
-    if (matcher->varies) {
-        const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
-        if (dug == NULL) {
-            return DIG_ENOMEM;
-        }
-        const enum dig_status status =
-            dig_match_nearest(dug, digs, matcher->dig, outside_floors, match);
-        if (status == DIG_OK) {
-            dig_match_find_weighted(dug, NULL, digs, matcher->dig, match);
-        }
-        return status;
+    const struct basis of = basis_of(matcher, set, digs, dig);
+    if (of.set == NULL) {
+        return DIG_ENOMEM;
     }
-    const struct dig_prefilter *const prefilter =
-        matcher->outline != NULL ? &matcher->prefilter : NULL;
     const enum dig_status status =
-        prefilter != NULL
-            ? dig_match_nearest_prefiltered(prefilter, digs, dig, outside_floors, match)
-            : dig_match_nearest(set, digs, dig, outside_floors, match);
+        dig_match_nearest(of.set, of.prefilter, digs, of.dig, outside_floors, match);
     if (status == DIG_OK) {
-        dig_match_find_weighted(set, prefilter, digs, dig, match);
+        dig_match_find_weighted(of.set, of.prefilter, digs, of.dig, match);
     }
     return status;
 }
@@ -89,15 +94,10 @@ enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
                                    const struct dig_observation dig[], const int max_evaluations,
                                    struct dig_match *const match)
 {
-    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
-    if (matcher->varies) {
-        const struct dig_curve_set *const dug = as_dug(matcher, set, digs, dig);
-        return dug != NULL ? dig_fit_refine(dug, digs, matcher->dig, max_evaluations, match)
-                           : DIG_ENOMEM;
-    }
-    return matcher->outline != NULL
-               ? dig_fit_refine_prefiltered(&matcher->prefilter, digs, dig, max_evaluations, match)
-               : dig_fit_refine(set, digs, dig, max_evaluations, match);
+    const struct basis of = basis_of(matcher, set, digs, dig);
+    return of.set != NULL
+               ? dig_fit_refine(of.set, of.prefilter, digs, of.dig, max_evaluations, match)
+               : DIG_ENOMEM;
 }
 
 void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curve_set *const set,

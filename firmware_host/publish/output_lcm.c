@@ -162,7 +162,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     const struct dig_gravel              weighted =
         m->weighted >= 0 ? k->weighted
                                       : (struct dig_gravel){ { (double)NAN, (double)NAN, (double)NAN } };
-    const struct dig_approach matched = dig_approach_told(&k->matched);
+    const struct dig_approach matched = dig_approach_normalized(&k->matched);
     char                      name[TEXT_SIZE];
     char                      table[TEXT_SIZE];
     char                      wanted[TEXT_SIZE];
@@ -241,7 +241,7 @@ enum dig_status dig_output_prediction(struct dig_output *const                  
 {
     assert(output != NULL && set != NULL && record != NULL);
     struct dig_prediction     prediction = record->prediction;
-    const struct dig_approach dug        = dig_approach_told(&prediction.approach);
+    const struct dig_approach dug        = dig_approach_normalized(&prediction.approach);
     char                      name[TEXT_SIZE];
     char                      reason[TEXT_SIZE];
     (void)snprintf(reason, sizeof reason, "%s", dig_prediction_state_str(record->state));

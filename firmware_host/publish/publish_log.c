@@ -54,7 +54,7 @@ __attribute__((format(printf, 2, 3))) void dig_publisher_log_limited(struct dig_
 static void approach_text(const struct dig_gravel_track *const k, const size_t size, char text[])
 {
     static const double       shown   = 0.005; // half of a depth's last digit
-    const struct dig_approach matched = dig_approach_told(&k->matched);
+    const struct dig_approach matched = dig_approach_normalized(&k->matched);
     const struct dig_approach made    = k->made;
     text[0]                           = '\0';
     if (!(made.depth > 0.0)) {

@@ -1,5 +1,5 @@
-// What a service manager wants to hear (sd_notify's protocol): datagrams to $NOTIFY_SOCKET, nothing
-// when it is not set. No libsystemd.
+// Notifies a service manager (sd_notify's protocol): datagrams to $NOTIFY_SOCKET, nothing when it
+// is not set. No libsystemd.
 
 #ifndef DIG_FIRMWARE_HOST_THREADS_NOTIFY_H
 #define DIG_FIRMWARE_HOST_THREADS_NOTIFY_H

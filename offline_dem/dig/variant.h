@@ -30,7 +30,6 @@
 #ifndef DIG_OFFLINE_DEM_DIG_VARIANT_H
 #define DIG_OFFLINE_DEM_DIG_VARIANT_H
 
-#include "core/curve.h"
 #include "core/effect.h"
 #include "core/error.h"
 #include "core/scene.h"

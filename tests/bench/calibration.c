@@ -12,22 +12,15 @@
 #include "estimator/match/likelihood.h"
 #include "estimator/match/pool.h"
 #include "files/recording_csv.h"
-#include "tables/derive.h"
-#include "tables/load.h"
-#include "tables/store.h"
+#include "tests/table_runs.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { RUNS_MAX = 400, FINE = 25, FINE_DENSITY = 13, GRID = FINE * FINE * FINE_DENSITY };
+enum { FINE = 25, FINE_DENSITY = 13, GRID = FINE * FINE * FINE_DENSITY };
 static const int fine[DIG_AXES] = { FINE, FINE, FINE_DENSITY };
-
-struct run {
-    size_t entry;
-    double value[DIG_CHANNELS][DIG_CURVE_POINTS];
-};
 
 struct score {
     int    digs, asked[DIG_AXES], inside[DIG_AXES];
@@ -35,33 +28,9 @@ struct score {
 };
 
 struct bench {
-    struct dig_curve_set *set;
-    size_t                trajectory, runs;
-    struct run            run[RUNS_MAX];
-    struct score          score[2][2]; // forces, by the covariance
+    struct table_runs all;
+    struct score      score[2][2]; // forces, by the covariance
 };
-
-static enum dig_status take(void *const context, const struct dig_run *const run,
-                            struct dig_error *const error)
-{
-    struct bench *const b = context;
-    if (run->origin.trajectory != b->trajectory || run->origin.effect[0] != '\0' ||
-        !dig_approach_is_plain(&run->origin.approach)) {
-        return DIG_OK;
-    }
-    if (b->runs == RUNS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "more than %d runs", RUNS_MAX);
-    }
-    struct run *const one = &b->run[b->runs++];
-    for (size_t e = 0; e < b->set->entries; e++) {
-        if (memcmp(&b->set->gravel[e], &run->origin.gravel, sizeof run->origin.gravel) == 0) {
-            one->entry = e;
-        }
-    }
-    return dig_derive_run(&b->set->trajectory[b->trajectory], b->set->tooth_m,
-                          b->set->smooth_half_s, run->windows, run->first_s, run->step_s,
-                          run->value, one->value);
-}
 
 // Weights of the fine grid, the sum of which is 1.
 static void weigh(const struct dig_curve_set *const set, const struct dig_observation *const dig,
@@ -142,13 +111,13 @@ static void judge(const struct dig_curve_set *const set, const struct dig_observ
 static void judge_all(struct bench *const b, struct dig_observation *const dig,
                       const struct dig_gravel *const truth)
 {
-    struct dig_covariance *const covariance = b->set->covariance;
+    struct dig_covariance *const covariance = b->all.set->covariance;
     for (int way = 0; way < 4; way++) {
-        dig->forces        = way / 2 == 1;
-        b->set->covariance = way % 2 == 1 ? covariance : NULL;
-        judge(b->set, dig, truth, &b->score[way / 2][way % 2]);
+        dig->forces            = way / 2 == 1;
+        b->all.set->covariance = way % 2 == 1 ? covariance : NULL;
+        judge(b->all.set, dig, truth, &b->score[way / 2][way % 2]);
     }
-    b->set->covariance = covariance;
+    b->all.set->covariance = covariance;
 }
 
 static double block_mean(const double curve[], const size_t block)
@@ -163,7 +132,7 @@ static double block_mean(const double curve[], const size_t block)
 
 // The covariance without what one of n digs adds to it.
 static void leave_out_of(struct dig_covariance *const c, const double mean[][DIG_CURVE_POINTS],
-                         const struct run *const run, const double n)
+                         const struct table_run *const run, const double n)
 {
     enum { BLOCKS = DIG_COVARIANCE_BLOCKS };
     double off[DIG_COVARIANCE_NUMBERS];
@@ -188,18 +157,18 @@ static void leave_out_of(struct dig_covariance *const c, const double mean[][DIG
 
 static void leave_out(struct bench *const b, const size_t left)
 {
-    const size_t                slot  = b->run[left].entry * b->set->trajectories + b->trajectory;
-    struct dig_curve *const     curve = &b->set->curve[slot];
+    const size_t                slot  = table_run_slot(&b->all, &b->all.run[left]);
+    struct dig_curve *const     curve = &b->all.set->curve[slot];
     static struct dig_ensemble  rest, all;
     const struct dig_curve      whole = *curve;
-    const struct dig_covariance known = b->set->covariance[b->trajectory];
+    const struct dig_covariance known = b->all.set->covariance[b->all.trajectory];
     memset(&rest, 0, sizeof rest);
     memset(&all, 0, sizeof all);
-    for (size_t i = 0; i < b->runs; i++) {
-        if (b->run[i].entry == b->run[left].entry) {
-            dig_ensemble_add(&all, (const double(*)[DIG_CURVE_POINTS])b->run[i].value);
+    for (size_t i = 0; i < b->all.runs; i++) {
+        if (b->all.run[i].entry == b->all.run[left].entry) {
+            dig_ensemble_add(&all, (const double(*)[DIG_CURVE_POINTS])b->all.run[i].value);
             if (i != left) {
-                dig_ensemble_add(&rest, (const double(*)[DIG_CURVE_POINTS])b->run[i].value);
+                dig_ensemble_add(&rest, (const double(*)[DIG_CURVE_POINTS])b->all.run[i].value);
             }
         }
     }
@@ -207,16 +176,15 @@ static void leave_out(struct bench *const b, const size_t left)
         return;
     }
     dig_ensemble_curve(&rest, curve);
-    leave_out_of(&b->set->covariance[b->trajectory], (const double(*)[DIG_CURVE_POINTS])all.mean,
-                 &b->run[left], (double)all.packings);
-    b->set->packings[slot]--;
-    struct dig_observation dig = { .trajectory = (int)b->trajectory, .last = 1.0 };
-    memcpy(dig.moment_Nm, b->run[left].value[0], sizeof dig.moment_Nm);
-    memcpy(dig.force_N, b->run[left].value[1], sizeof dig.force_N);
-    judge_all(b, &dig, &b->set->gravel[b->run[left].entry]);
-    b->set->packings[slot]++;
-    *curve                            = whole;
-    b->set->covariance[b->trajectory] = known;
+    leave_out_of(&b->all.set->covariance[b->all.trajectory],
+                 (const double(*)[DIG_CURVE_POINTS])all.mean, &b->all.run[left],
+                 (double)all.packings);
+    b->all.set->packings[slot]--;
+    struct dig_observation dig = table_run_observed(&b->all.run[left]);
+    judge_all(b, &dig, &b->all.set->gravel[b->all.run[left].entry]);
+    b->all.set->packings[slot]++;
+    *curve                                    = whole;
+    b->all.set->covariance[b->all.trajectory] = known;
 }
 
 static void judge_recording(struct bench *const b, const char *const path)
@@ -229,14 +197,14 @@ static void judge_recording(struct bench *const b, const char *const path)
     if (sscanf(name, "mu%lf_mur%lf_rho%lf", &truth.value[0], &truth.value[1], &truth.value[2]) !=
             3 ||
         dig_recording_read(path, &recording, &error) != DIG_OK ||
-        dig_observe_dig(b->set, &recording, &seen, &error) != DIG_OK) {
+        dig_observe_dig(b->all.set, &recording, &seen, &error) != DIG_OK) {
         (void)fprintf(stderr, "calibration: %s: %s\n", path, error.text);
         return;
     }
     dig_recording_finish(&recording);
     for (int a = 0; a < DIG_AXES; a++) {
         struct dig_axis_interval place;
-        if (dig_axis_locate(b->set, (enum dig_axis)a, truth.value[a], &place) != DIG_OK) {
+        if (dig_axis_locate(b->all.set, (enum dig_axis)a, truth.value[a], &place) != DIG_OK) {
             return; // no gravel of the table
         }
     }
@@ -267,37 +235,26 @@ static void print(const struct bench *const b, const char *const what)
 int main(const int argc, char *argv[])
 {
     struct dig_error    error = { "TABLE.sqlite TRAJECTORY [RECORDING.csv…]" };
-    struct dig_store   *store = NULL;
     struct bench *const b     = calloc(1, sizeof *b);
     int                 rc    = 1;
-    if (argc >= 3 && b != NULL && dig_table_load(argv[1], &b->set, &error) == DIG_OK &&
-        dig_store_open(argv[1], &store, &error) == DIG_OK) {
-        while (b->trajectory < b->set->trajectories &&
-               strcmp(b->set->trajectory[b->trajectory].name, argv[2]) != 0) {
-            b->trajectory++;
+    if (argc >= 3 && b != NULL && table_runs_read(argv[1], argv[2], &b->all, &error) == DIG_OK) {
+        for (size_t i = 0; i < b->all.runs; i++) {
+            leave_out(b, i);
         }
-        const struct dig_run_visitor visitor = { take, b };
-        if (b->trajectory < b->set->trajectories &&
-            dig_store_walk(store, &visitor, &error) == DIG_OK) {
-            for (size_t i = 0; i < b->runs; i++) {
-                leave_out(b, i);
-            }
-            print(b, "left out");
-            memset(b->score, 0, sizeof b->score);
-            for (int i = 3; i < argc; i++) {
-                judge_recording(b, argv[i]);
-            }
-            if (b->score[0][0].digs > 0) {
-                print(b, "LIGGGHTS");
-            }
-            rc = 0;
+        print(b, "left out");
+        memset(b->score, 0, sizeof b->score);
+        for (int i = 3; i < argc; i++) {
+            judge_recording(b, argv[i]);
         }
+        if (b->score[0][0].digs > 0) {
+            print(b, "LIGGGHTS");
+        }
+        rc = 0;
     }
     if (rc != 0) {
         (void)fprintf(stderr, "calibration: %s\n", error.text);
     }
-    dig_store_close(store);
-    dig_curve_set_destroy(b != NULL ? b->set : NULL);
+    dig_curve_set_destroy(b != NULL ? b->all.set : NULL);
     free(b);
     return rc;
 }

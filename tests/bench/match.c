@@ -217,11 +217,11 @@ static double match_once(const struct dig_prefilter *const   summary,
 {
     struct dig_match match, plain;
     const double     from = cpu_ms();
-    if (dig_match_nearest_prefiltered(summary, 1, o, outside_floors, &match) != DIG_OK) {
+    if (dig_match_nearest(summary->set, summary, 1, o, outside_floors, &match) != DIG_OK) {
         die("no match");
     }
     const double found = cpu_ms();
-    if (dig_match_nearest(summary->set, 1, o, outside_floors, &plain) != DIG_OK) {
+    if (dig_match_nearest(summary->set, NULL, 1, o, outside_floors, &plain) != DIG_OK) {
         die("no match");
     }
     const double found_plainly = cpu_ms();
@@ -232,11 +232,11 @@ static double match_once(const struct dig_prefilter *const   summary,
     }
 
     const double start = cpu_ms();
-    if (dig_fit_refine_prefiltered(summary, 1, o, EVALUATIONS, &match) != DIG_OK) {
+    if (dig_fit_refine(summary->set, summary, 1, o, EVALUATIONS, &match) != DIG_OK) {
         die("not refined");
     }
     const double done = cpu_ms();
-    if (dig_fit_refine(summary->set, 1, o, EVALUATIONS, &plain) != DIG_OK) {
+    if (dig_fit_refine(summary->set, NULL, 1, o, EVALUATIONS, &plain) != DIG_OK) {
         die("not refined");
     }
     note(refined, done - start, cpu_ms() - done);

@@ -11,33 +11,23 @@
 //
 //   outside TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE_OF_THE_PATH]
 
-#include "core/error.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
 #include "estimator/match/posterior.h"
-#include "tables/derive.h"
-#include "tables/load.h"
-#include "tables/store.h"
+#include "tests/table_runs.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { RUNS_MAX = 400, EVALUATIONS = 300 };
+enum { EVALUATIONS = 300 };
 static const double floors = 2.5;
 
-struct run {
-    size_t entry;
-    double value[DIG_CHANNELS][DIG_CURVE_POINTS];
-};
-
 struct bench {
-    struct dig_curve_set *set;
-    size_t                trajectory, other;
-    double                last; // of the path that is measured
-    size_t                runs;
-    struct run            run[RUNS_MAX];
+    struct table_runs all;
+    size_t            other;
+    double            last; // of the path that is measured
 };
 
 struct tally {
@@ -47,38 +37,15 @@ struct tally {
 
 static size_t slot_of(const struct bench *const b, const size_t entry, const size_t trajectory)
 {
-    return entry * b->set->trajectories + trajectory;
+    return entry * b->all.set->trajectories + trajectory;
 }
 
-static enum dig_status take(void *const context, const struct dig_run *const run,
-                            struct dig_error *const error)
+static struct dig_observation observed(const struct bench *const     b,
+                                       const struct table_run *const run)
 {
-    struct bench *const b = context;
-    if (run->origin.trajectory != b->trajectory || run->origin.effect[0] != '\0' ||
-        !dig_approach_is_plain(&run->origin.approach)) {
-        return DIG_OK;
-    }
-    if (b->runs == RUNS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "more than %d runs", RUNS_MAX);
-    }
-    struct run *const one = &b->run[b->runs++];
-    for (size_t e = 0; e < b->set->entries; e++) {
-        if (memcmp(&b->set->gravel[e], &run->origin.gravel, sizeof run->origin.gravel) == 0) {
-            one->entry = e;
-        }
-    }
-    return dig_derive_run(&b->set->trajectory[b->trajectory], b->set->tooth_m,
-                          b->set->smooth_half_s, run->windows, run->first_s, run->step_s,
-                          run->value, one->value);
-}
-
-static struct dig_observation observed(const struct bench *const b, const struct run *const run)
-{
-    struct dig_observation o = {
-        .dig_count = 1, .trajectory = (int)b->trajectory, .last = b->last, .forces = true
-    };
-    memcpy(o.moment_Nm, run->value[0], sizeof o.moment_Nm);
-    memcpy(o.force_N, run->value[1], sizeof o.force_N);
+    struct dig_observation o = table_run_observed(run);
+    o.last                   = b->last;
+    o.forces                 = true;
     return o;
 }
 
@@ -88,11 +55,11 @@ static double error_of(const struct bench *const b, const struct dig_curve_set *
 {
     static struct dig_curve predicted;
     const size_t            slot = slot_of(b, entry, b->other);
-    if (b->set->packings[slot] < 1 ||
+    if (b->all.set->packings[slot] < 1 ||
         dig_predict_curve(set, match, b->other, &predicted) != DIG_OK) {
         return (double)NAN;
     }
-    const float *const truth  = b->set->curve[slot].mean[DIG_CHANNEL_MY_Nm];
+    const float *const truth  = b->all.set->curve[slot].mean[DIG_CHANNEL_MY_Nm];
     double             miss2  = 0.0;
     double             whole2 = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -103,20 +70,20 @@ static double error_of(const struct bench *const b, const struct dig_curve_set *
 }
 
 static void judge(const struct bench *const b, const struct dig_curve_set *const set,
-                  const struct run *const run, struct tally *const tally)
+                  const struct table_run *const run, struct tally *const tally)
 {
     static struct dig_pool_sums  sums;
     const struct dig_observation o = observed(b, run);
     struct dig_match             told;
-    if (dig_match_nearest(set, 1, &o, floors, &told) != DIG_OK ||
-        dig_fit_refine(set, 1, &o, EVALUATIONS, &told) != DIG_OK) {
+    if (dig_match_nearest(set, NULL, 1, &o, floors, &told) != DIG_OK ||
+        dig_fit_refine(set, NULL, 1, &o, EVALUATIONS, &told) != DIG_OK) {
         return;
     }
     struct dig_match       bare;
     struct dig_observation alone = o;
     alone.forces                 = false;
-    if (dig_match_nearest(set, 1, &alone, floors, &bare) != DIG_OK ||
-        dig_fit_refine(set, 1, &alone, EVALUATIONS, &bare) != DIG_OK) {
+    if (dig_match_nearest(set, NULL, 1, &alone, floors, &bare) != DIG_OK ||
+        dig_fit_refine(set, NULL, 1, &alone, EVALUATIONS, &bare) != DIG_OK) {
         return;
     }
     tally->by_moment += bare.outside ? 1 : 0;
@@ -167,29 +134,19 @@ static void add(struct tally *const sum, const struct tally *const more)
 static void look_inside(struct bench *const b)
 {
     struct tally tally = { .digs = 0 };
-    for (size_t left = 0; left < b->runs; left++) {
-        const size_t      slot  = slot_of(b, b->run[left].entry, b->trajectory);
-        struct dig_curve *curve = &b->set->curve[slot];
-        const int         all   = b->set->packings[slot];
+    for (size_t left = 0; left < b->all.runs; left++) {
+        const size_t      slot  = table_run_slot(&b->all, &b->all.run[left]);
+        struct dig_curve *curve = &b->all.set->curve[slot];
+        const int         all   = b->all.set->packings[slot];
         if (all < 2) {
             continue;
         }
-        const struct dig_curve     whole    = *curve;
-        static struct dig_ensemble ensemble = { .packings = 0 };
-        memset(&ensemble, 0, sizeof ensemble);
-        for (size_t i = 0; i < b->runs; i++) {
-            if (i != left && b->run[i].entry == b->run[left].entry) {
-                dig_ensemble_add(&ensemble, (const double(*)[DIG_CURVE_POINTS])b->run[i].value);
-            }
-        }
-        dig_ensemble_curve(&ensemble, curve);
-        if (ensemble.packings == 1) {
-            memcpy(curve->sd, whole.sd, sizeof curve->sd);
-        }
-        b->set->packings[slot] = all - 1;
-        judge(b, b->set, &b->run[left], &tally);
-        b->set->packings[slot] = all;
-        *curve                 = whole;
+        const struct dig_curve whole = *curve;
+        (void)table_runs_without(&b->all, left, curve);
+        b->all.set->packings[slot] = all - 1;
+        judge(b, b->all.set, &b->all.run[left], &tally);
+        b->all.set->packings[slot] = all;
+        *curve                     = whole;
     }
     tell("inside", &tally);
 }
@@ -197,14 +154,14 @@ static void look_inside(struct bench *const b)
 static bool is_on_face(const struct bench *const b, const size_t entry, const int axis,
                        const double face)
 {
-    return fabs(b->set->gravel[entry].value[axis] / face - 1.0) < 1e-9;
+    return fabs(b->all.set->gravel[entry].value[axis] / face - 1.0) < 1e-9;
 }
 
 // The grid without its first (end 0) or last points of an axis; entries of that face have no digs.
 static struct dig_curve_set without(const struct bench *const b, const int axis, const int end,
                                     const double face, int packings[], int cell[])
 {
-    const struct dig_curve_set *const set   = b->set;
+    const struct dig_curve_set *const set   = b->all.set;
     struct dig_curve_set              less  = *set;
     const size_t                      slots = set->entries * set->trajectories;
     for (size_t s = 0; s < slots; s++) {
@@ -227,19 +184,20 @@ static struct dig_curve_set without(const struct bench *const b, const int axis,
 
 static void look_beyond(struct bench *const b)
 {
-    const size_t slots    = b->set->entries * b->set->trajectories;
+    const size_t slots    = b->all.set->entries * b->all.set->trajectories;
     int *const   packings = malloc(slots * sizeof *packings);
-    int *const cell = malloc(b->set->axis_count[0] * b->set->axis_count[1] * b->set->axis_count[2] *
-                             sizeof *cell);
-    struct tally all = { .digs = 0 };
+    int *const   cell     = malloc(b->all.set->axis_count[0] * b->all.set->axis_count[1] *
+                                   b->all.set->axis_count[2] * sizeof *cell);
+    struct tally all      = { .digs = 0 };
     for (int axis = 0; packings != NULL && cell != NULL && axis < DIG_AXES; axis++) {
-        for (int end = 0; end < 2 && b->set->axis_count[axis] > 2; end++) {
-            const double face = b->set->axis[axis][end == 0 ? 0 : b->set->axis_count[axis] - 1];
+        for (int end = 0; end < 2 && b->all.set->axis_count[axis] > 2; end++) {
+            const double face =
+                b->all.set->axis[axis][end == 0 ? 0 : b->all.set->axis_count[axis] - 1];
             const struct dig_curve_set less  = without(b, axis, end, face, packings, cell);
             struct tally               tally = { .digs = 0 };
-            for (size_t i = 0; i < b->runs; i++) {
-                if (is_on_face(b, b->run[i].entry, axis, face)) {
-                    judge(b, &less, &b->run[i], &tally);
+            for (size_t i = 0; i < b->all.runs; i++) {
+                if (is_on_face(b, b->all.run[i].entry, axis, face)) {
+                    judge(b, &less, &b->all.run[i], &tally);
                 }
             }
             char name[64];
@@ -254,29 +212,15 @@ static void look_beyond(struct bench *const b)
     free(cell);
 }
 
-static size_t trajectory_of(const struct dig_curve_set *const set, const char *const name)
-{
-    size_t t = 0;
-    while (t < set->trajectories && strcmp(set->trajectory[t].name, name) != 0) {
-        t++;
-    }
-    return t;
-}
-
 int main(const int argc, char *argv[])
 {
     struct dig_error    error = { "TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE]" };
-    struct dig_store   *store = NULL;
     struct bench *const b     = calloc(1, sizeof *b);
     int                 rc    = 1;
-    if (argc >= 4 && b != NULL && dig_table_load(argv[1], &b->set, &error) == DIG_OK &&
-        dig_store_open(argv[1], &store, &error) == DIG_OK) {
-        b->last                              = argc > 4 ? atof(argv[4]) : 1.0;
-        b->trajectory                        = trajectory_of(b->set, argv[2]);
-        b->other                             = trajectory_of(b->set, argv[3]);
-        const struct dig_run_visitor visitor = { take, b };
-        if (b->trajectory < b->set->trajectories && b->other < b->set->trajectories &&
-            dig_store_walk(store, &visitor, &error) == DIG_OK) {
+    if (argc >= 4 && b != NULL && table_runs_read(argv[1], argv[2], &b->all, &error) == DIG_OK) {
+        b->last  = argc > 4 ? atof(argv[4]) : 1.0;
+        b->other = table_runs_trajectory(b->all.set, argv[3]);
+        if (b->other < b->all.set->trajectories) {
             look_inside(b);
             look_beyond(b);
             rc = 0;
@@ -285,8 +229,7 @@ int main(const int argc, char *argv[])
     if (rc != 0) {
         (void)fprintf(stderr, "outside: %s\n", error.text);
     }
-    dig_store_close(store);
-    dig_curve_set_destroy(b != NULL ? b->set : NULL);
+    dig_curve_set_destroy(b != NULL ? b->all.set : NULL);
     free(b);
     return rc;
 }

@@ -2,7 +2,6 @@
 
 #include "core/curve.h"
 
-#include "core/units.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>

@@ -2,7 +2,6 @@
 
 #include "core/geometry.h"
 
-#include "core/units.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 

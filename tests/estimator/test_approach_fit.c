@@ -49,7 +49,6 @@ static void depth_and_attack_are_found_wherever_the_ground_lies(void **state)
             assert_close(found.depth, made.depth, 2e-3);
             assert_close(found.attack_rad, made.attack_rad, 2e-4);
             assert_true(off_m < 5e-5);
-            assert_true(i == 0 || dig_approach_off_m(&plain, 0.09, way) > 10.0 * off_m);
         }
     }
 }

@@ -137,8 +137,8 @@ static void the_interval_holds_the_gravel(void **state)
                                                   1500 * pow(4000.0 / 1500.0, model_uniform(&seed)) } };
         const struct dig_observation dig    = dig_there(&gravel, true, true, &seed);
         struct dig_match             match;
-        assert_int_equal(dig_match_nearest(set, 1, &dig, 3.0, &match), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, 1, &dig, 100, &match), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, NULL, 1, &dig, 3.0, &match), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, NULL, 1, &dig, 100, &match), DIG_OK);
         for (int a = 0; a < DIG_AXES; a++) {
             in[a] +=
                 gravel.value[a] >= match.low.value[a] && gravel.value[a] <= match.high.value[a];

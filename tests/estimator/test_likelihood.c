@@ -5,8 +5,7 @@
 
 #include "estimator/match/match.h"
 #include "estimator/match/posterior.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
+#include "tests/estimator/random_dig.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>
@@ -15,30 +14,6 @@
 enum { POINTS = DIG_CURVE_POINTS, PACKINGS = 3 };
 
 static const struct made_options options = { .relative_sd = 0.15, .packings = PACKINGS };
-
-static struct dig_gravel random_gravel(uint64_t *const seed)
-{
-    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  1500 + 2500 * model_uniform(seed) } };
-}
-
-// With forces as the table has them: -8 and 5 times the moment, and errors of their own.
-static struct dig_observation make_dig(const struct dig_gravel *const gravel,
-                                       const enum made_trajectory along, const bool forces,
-                                       uint64_t *const seed)
-{
-    struct dig_observation o = made_observation(gravel, along, 0.0);
-    made_disturb(&o, 0.1, seed);
-    for (int k = 0; k < POINTS; k++) {
-        o.sigma_Nm[k]         = 0.01 * model_uniform(seed);
-        o.force_N[0][k]       = -8.0 * o.moment_Nm[k] + 0.1 * model_normal(seed);
-        o.force_N[1][k]       = 5.0 * o.moment_Nm[k] + 0.1 * model_normal(seed);
-        o.force_sigma_N[0][k] = 0.05 + 0.1 * model_uniform(seed);
-        o.force_sigma_N[1][k] = 0.05 + 0.1 * model_uniform(seed);
-    }
-    o.forces = forces;
-    return o;
-}
 
 static struct dig_prefilter sum_up(const struct dig_curve_set *const set,
                                    struct dig_outline **const        outline)
@@ -258,10 +233,10 @@ static void a_summary_changes_nothing_that_matters(void **state)
         const size_t digs = 1 + (size_t)trial / 4;
 
         struct dig_match plain, by;
-        assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &plain), DIG_OK);
-        assert_int_equal(dig_match_nearest_prefiltered(&summary, digs, dig, 2.5, &by), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, digs, dig, 100, &plain), DIG_OK);
-        assert_int_equal(dig_fit_refine_prefiltered(&summary, digs, dig, 100, &by), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &plain), DIG_OK);
+        assert_int_equal(dig_match_nearest(summary.set, &summary, digs, dig, 2.5, &by), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, NULL, digs, dig, 100, &plain), DIG_OK);
+        assert_int_equal(dig_fit_refine(summary.set, &summary, digs, dig, 100, &by), DIG_OK);
         for (int a = 0; a < DIG_AXES; a++) {
             const double share = 1e-4 * (a == DIG_AXIS_DENSITY_kgpm3 ? 2500.0 : 1.0);
             assert_close(by.mean.value[a], plain.mean.value[a], share);

@@ -88,8 +88,8 @@ static int nearest_of(const struct dig_curve_set *const set, const size_t digs,
     struct dig_prefilter      summary;
     struct dig_match          plain = { .nearest = -1 }, by = { .nearest = -1 };
     dig_prefilter_make(set, outline, &summary);
-    const enum dig_status status = dig_match_nearest_prefiltered(&summary, digs, dig, 2.5, &by);
-    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &plain), status);
+    const enum dig_status status = dig_match_nearest(summary.set, &summary, digs, dig, 2.5, &by);
+    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &plain), status);
     free(outline);
     assert_int_equal(by.valid, status == DIG_OK);
     assert_int_equal(by.nearest, plain.nearest);
@@ -296,11 +296,11 @@ static void what_is_refused_of_all_entries_is_refused_by_a_summary(void **state)
     struct dig_prefilter   summary;
     struct dig_match       match = { .nearest = 42 };
     dig_prefilter_make(set, outline, &summary);
-    assert_int_equal(dig_match_nearest_prefiltered(&summary, 0, &dig, 2.5, &match), DIG_EINVAL);
-    assert_int_equal(dig_match_nearest_prefiltered(&summary, 1, &dig, NAN, &match), DIG_EINVAL);
-    assert_int_equal(dig_fit_refine_prefiltered(&summary, 1, &dig, 100, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(summary.set, &summary, 0, &dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, NAN, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(summary.set, &summary, 1, &dig, 100, &match), DIG_EINVAL);
     dig.trajectory = 1;
-    assert_int_equal(dig_match_nearest_prefiltered(&summary, 1, &dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, 2.5, &match), DIG_EINVAL);
     assert_int_equal(match.nearest, 42);
     made_table_destroy(set);
 }
@@ -329,7 +329,7 @@ static void what_is_far_by_its_outline_is_not_looked_at(void **state)
         }
     }
     struct dig_match match;
-    assert_int_equal(dig_match_nearest_prefiltered(&summary, 1, &dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, NEAREST);
     made_table_destroy(set);
 }

@@ -186,8 +186,8 @@ static struct dig_match fit(const struct dig_curve_set *const set, const size_t 
                             const struct dig_observation dig[])
 {
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, digs, dig, 100, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, NULL, digs, dig, 100, &match), DIG_OK);
     return match;
 }
 
@@ -252,10 +252,10 @@ static void forces_count_only_where_every_dig_has_them(void **state)
     dig[0].forces        = true;
     dig[0].force_N[1][7] = NAN;
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, 1, &dig[0], 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, NULL, 1, &dig[0], 2.5, &match), DIG_EINVAL);
     dig[0].force_N[1][7]       = 0.0;
     dig[0].force_sigma_N[0][7] = -1.0;
-    assert_int_equal(dig_match_nearest(set, 1, &dig[0], 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, NULL, 1, &dig[0], 2.5, &match), DIG_EINVAL);
     made_table_destroy(set);
 }
 

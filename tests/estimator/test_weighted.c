@@ -6,8 +6,7 @@
 #include "estimator/match/entry_scatter.h"
 #include "estimator/match/match.h"
 #include "estimator/match/posterior.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
+#include "tests/estimator/random_dig.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>
@@ -26,29 +25,6 @@ static const struct made_options options = { .relative_sd = 0.15, .packings = PA
 static const double channels[3][3] = { { 1, DIG_POSTERIOR_MY_FX, DIG_POSTERIOR_MY_FZ },
                                        { DIG_POSTERIOR_MY_FX, 1, DIG_POSTERIOR_FX_FZ },
                                        { DIG_POSTERIOR_MY_FZ, DIG_POSTERIOR_FX_FZ, 1 } };
-
-static struct dig_gravel random_gravel(uint64_t *const seed)
-{
-    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  1500 + 2500 * model_uniform(seed) } };
-}
-
-static struct dig_observation make_dig(const struct dig_gravel *const gravel,
-                                       const enum made_trajectory along, const bool forces,
-                                       uint64_t *const seed)
-{
-    struct dig_observation o = made_observation(gravel, along, 0.0);
-    made_disturb(&o, 0.1, seed);
-    for (int k = 0; k < POINTS; k++) {
-        o.sigma_Nm[k]         = 0.01 * model_uniform(seed);
-        o.force_N[0][k]       = -8.0 * o.moment_Nm[k] + 0.1 * model_normal(seed);
-        o.force_N[1][k]       = 5.0 * o.moment_Nm[k] + 0.1 * model_normal(seed);
-        o.force_sigma_N[0][k] = 0.05 + 0.1 * model_uniform(seed);
-        o.force_sigma_N[1][k] = 0.05 + 0.1 * model_uniform(seed);
-    }
-    o.forces = forces;
-    return o;
-}
 
 // What is compared of one trajectory: a number a block and channel, and D between all of them.
 struct numbers {

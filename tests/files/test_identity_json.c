@@ -133,8 +133,8 @@ static void a_depth_is_written_once_and_only_where_it_was_told(void **state)
         assert_true((strstr(text, "\"depth\"") != NULL) == cases[i].says);
         assert_true((strstr(text, "\"matched_depth\"") != NULL) == cases[i].says_matched);
         assert_int_equal(dig_identity_read(scratch_path("made.json"), &back, NULL), DIG_OK);
-        const struct dig_approach matched = dig_approach_told(&back.matched);
-        const struct dig_approach was     = dig_approach_told(&cases[i].matched);
+        const struct dig_approach matched = dig_approach_normalized(&back.matched);
+        const struct dig_approach was     = dig_approach_normalized(&cases[i].matched);
         assert_close(back.made.depth, cases[i].made.depth, 1e-9);
         assert_close(back.made.attack_rad, cases[i].made.attack_rad, 1e-9);
         assert_close(matched.depth, was.depth, 1e-9);

@@ -4,7 +4,6 @@
 #include "tests/offline_dem/liggghts_fixture.h"
 
 #define FINE_s    3e-5
-#define SMALL_m   0.00375
 #define LARGE_m   0.0045
 #define COHESION  1e5
 #define BIG_KGPM3 4000.0

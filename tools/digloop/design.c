@@ -1,4 +1,4 @@
-// digloop design: which simple dig of the table tells most.
+// digloop design: ranks the simple digs of a table by their information on the gravel.
 
 #include "closed_loop/design/design.h"
 

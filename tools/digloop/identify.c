@@ -106,7 +106,8 @@ static enum dig_status match_all(const struct digloop_options *const options,
                                  const struct pool *const pool, struct dig_match *const match,
                                  struct dig_error *const error)
 {
-    enum dig_status status = dig_match_nearest(set, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
+    enum dig_status status =
+        dig_match_nearest(set, NULL, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
     if (status == DIG_ENOMATCH) {
         return dig_error_set(error, status, "%s: holds no gravel with a curve along %s%s",
                              options->table,
@@ -115,7 +116,7 @@ static enum dig_status match_all(const struct digloop_options *const options,
     }
     if (status == DIG_OK) {
         dig_match_find_weighted(set, NULL, pool->digs, pool->dig, match);
-        status = dig_fit_refine(set, pool->digs, pool->dig, EVALUATIONS, match);
+        status = dig_fit_refine(set, NULL, pool->digs, pool->dig, EVALUATIONS, match);
     }
     return status == DIG_OK
                ? DIG_OK
@@ -158,7 +159,7 @@ static void show_approaches(const struct pool *const pool, FILE *const to)
 {
     for (size_t d = 0; d < pool->digs; d++) {
         const struct dig_observation *const dig     = &pool->dig[d];
-        const struct dig_approach           matched = dig_approach_told(&dig->approach);
+        const struct dig_approach           matched = dig_approach_normalized(&dig->approach);
         if (!(dig->made.depth > 0.0)) {
             continue;
         }

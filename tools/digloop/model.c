@@ -1,4 +1,4 @@
-// What a trace found as a model file that digsightd loads.
+// Writes the result of a trace as a model file that digsightd loads.
 
 #include "files/model_json.h"
 #include "tools/digloop/commands.h"

@@ -1,6 +1,5 @@
 #include "tools/digloop/next_table.h"
 
-#include "core/sha256.h"
 #include "core/shell.h"
 #include "files/campaign_yaml.h"
 #include "files/scene_yaml.h"
@@ -14,12 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PACKINGS = 4, CANONICAL_SIZE = 16384 };
+enum { PACKINGS = 4 };
 
 struct work {
     struct dig_campaign campaign;
     struct dig_scene    own, file, varied; // the table's, a file's, with an effect in it
-    char                text[CANONICAL_SIZE];
 };
 
 // Appends, as far as there is room.
@@ -70,11 +68,7 @@ static bool is_scene_of(const struct dig_curve_set *const set, const char *const
     if (dig_scene_read(path, &w->file, NULL) != DIG_OK) {
         return false;
     }
-    const size_t length = dig_scene_canonical(&w->file, sizeof w->text, w->text);
-    if (length >= sizeof w->text) {
-        return false;
-    }
-    dig_sha256_hex(w->text, length, hash);
+    dig_scene_hash(&w->file, hash);
     return strcmp(hash, set->scene_hash) == 0;
 }
 

@@ -1,4 +1,4 @@
-// Whether a table is similar to a campaign's scene and to a machine's bucket.
+// Checks that a table is similar to a campaign's scene and to a machine's bucket.
 
 #ifndef DIG_TOOLS_DIGLOOP_SCENE_H
 #define DIG_TOOLS_DIGLOOP_SCENE_H

@@ -1,4 +1,4 @@
-// digloop trace: a campaign folder in, what the model lacks out.
+// digloop trace: finds what the model lacks in the recordings of a campaign.
 
 #include "closed_loop/verdict/trace.h"
 #include "closed_loop/report/trace_report.h"

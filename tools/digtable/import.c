@@ -1,4 +1,4 @@
-// digtable import: digs that something else measured or computed, into a table of ours.
+// digtable import: stores digs of another program in a table.
 
 #include "core/text.h"
 #include "files/curves_csv.h"

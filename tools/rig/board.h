@@ -1,4 +1,4 @@
-// What the Modbus servers read and the motion writes: one set of registers between the threads.
+// The Modbus registers shared by the threads: the motion writes them, the servers read them.
 
 #ifndef DIG_TOOLS_RIG_BOARD_H
 #define DIG_TOOLS_RIG_BOARD_H

@@ -1,5 +1,4 @@
-// Every bus a run is served on, as one thing: opened together, told one sample at a time, closed
-// together.
+// All buses of a run as one: opened together, sent one sample at a time, closed together.
 
 #ifndef DIG_TOOLS_RIG_BUSES_H
 #define DIG_TOOLS_RIG_BUSES_H

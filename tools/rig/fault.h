@@ -1,4 +1,4 @@
-// What goes wrong on a bus, on purpose and at a given time.
+// Faults injected into a bus, each at a given time.
 //
 //   not-available@5:2   from 5 s on, for 2 s, every signal reads "not available"
 //   nan@5:2             the same: neither bus has another way to say it

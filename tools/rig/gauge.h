@@ -1,7 +1,6 @@
-// Virtual work: what a force sensor that carries the bucket reads of the soil, the bucket's weight
-// and its inertia.
+// The reading of a force sensor that carries the bucket, by virtual work: soil, weight and inertia.
 //
-// Where the sensor yields by a little along its x, along its z, or turns about its origin, the work
+// For a small displacement along the sensor's x, along its z, or a turn about its origin, the work
 // of all forces on the bucket is the work on the sensor:
 //
 //   read . d = soil . d(pin) + M dphi + m (g - a) . d(com) - I alpha dphi

@@ -1,4 +1,4 @@
-// The bucket's way through the air and the soil, at machine scale, before it has a place.
+// The path of the bucket through air and soil at machine scale, before it is placed.
 //
 //   hover - open - curl - approach | dig (the recording) | lift - dump - curl - lower | next, or
 //   home

@@ -1,4 +1,4 @@
-// Where in front of the machine the dig lies: the pin's start that leaves the most room everywhere.
+// Places the dig in front of the machine: the start of the pin with the largest margin.
 
 #ifndef DIG_TOOLS_RIG_PLACEMENT_H
 #define DIG_TOOLS_RIG_PLACEMENT_H

@@ -1,4 +1,4 @@
-// From what is to what a bus could know of it: noise of the sensors and steps of their numbers.
+// Models the sensors: adds their noise and quantises their values.
 
 #ifndef DIG_TOOLS_RIG_SENSORS_H
 #define DIG_TOOLS_RIG_SENSORS_H

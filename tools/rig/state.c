@@ -8,7 +8,8 @@
 
 static const double lever_reserve = 0.1;
 
-static void keep_nearer(struct dig_rig_margin *const nearest, const struct dig_rig_margin candidate)
+static void take_smaller(struct dig_rig_margin *const nearest,
+                         const struct dig_rig_margin  candidate)
 {
     // Negated so that a NaN share is kept and refused later.
     if (!(candidate.share >= nearest->share)) {
@@ -29,9 +30,9 @@ static struct dig_rig_margin in_range(const enum dig_rig_limit limit, const enum
     };
 }
 
-static enum dig_status look_at_linkage(const struct dig_machine *const machine,
-                                       const enum dig_joint joint, const double angle_rad,
-                                       struct dig_rig_margin *const nearest)
+static enum dig_status take_linkage_margins(const struct dig_machine *const machine,
+                                            const enum dig_joint joint, const double angle_rad,
+                                            struct dig_rig_margin *const nearest)
 {
     const struct dig_link *const     link     = &machine->link[joint];
     const struct dig_cylinder *const cylinder = &machine->cylinder[joint];
@@ -46,23 +47,23 @@ static enum dig_status look_at_linkage(const struct dig_machine *const machine,
     }
     const double mean_m =
         (cylinder->max_length_m - cylinder->min_length_m) / (link->max_rad - link->min_rad);
-    keep_nearer(nearest,
-                in_range(DIG_RIG_LIMIT_JOINT, joint, angle_rad, link->min_rad, link->max_rad));
-    keep_nearer(nearest, in_range(DIG_RIG_LIMIT_STROKE, joint, length_m, cylinder->min_length_m,
-                                  cylinder->max_length_m));
-    keep_nearer(nearest, (struct dig_rig_margin){
-                             .share = fabs(lever_m) / mean_m - lever_reserve,
-                             .limit = DIG_RIG_LIMIT_LEVER,
-                             .joint = joint,
-                             .value = fabs(lever_m),
-                             .bound = lever_reserve * mean_m,
-                         });
+    take_smaller(nearest,
+                 in_range(DIG_RIG_LIMIT_JOINT, joint, angle_rad, link->min_rad, link->max_rad));
+    take_smaller(nearest, in_range(DIG_RIG_LIMIT_STROKE, joint, length_m, cylinder->min_length_m,
+                                   cylinder->max_length_m));
+    take_smaller(nearest, (struct dig_rig_margin){
+                              .share = fabs(lever_m) / mean_m - lever_reserve,
+                              .limit = DIG_RIG_LIMIT_LEVER,
+                              .joint = joint,
+                              .value = fabs(lever_m),
+                              .bound = lever_reserve * mean_m,
+                          });
     return DIG_OK;
 }
 
-static void look_at_pressures(const struct dig_machine *const       machine,
-                              const struct dig_rig_pressures *const pressures,
-                              struct dig_rig_margin *const          nearest)
+static void take_pressure_margins(const struct dig_machine *const       machine,
+                                  const struct dig_rig_pressures *const pressures,
+                                  struct dig_rig_margin *const          nearest)
 {
     for (int j = 0; j < DIG_JOINTS; j++) {
         const bool            head   = pressures->head_Pa[j] > pressures->rod_Pa[j];
@@ -76,7 +77,7 @@ static void look_at_pressures(const struct dig_machine *const       machine,
             .bound = bound,
         };
         (void)snprintf(margin.end, sizeof margin.end, "%s", head ? "head" : "rod");
-        keep_nearer(nearest, margin);
+        take_smaller(nearest, margin);
     }
 }
 
@@ -128,30 +129,30 @@ look_at_ground(const struct dig_machine *const machine, const struct dig_rig_joi
     const double hold_front_Nm = machine->weight_N * (machine->tip_front_X_m - machine->weight_X_m);
     const double hold_rear_Nm  = machine->weight_N * (machine->weight_X_m - machine->tip_rear_X_m);
 
-    keep_nearer(nearest, (struct dig_rig_margin){
-                             .share = down_N / weight_N,
-                             .limit = DIG_RIG_LIMIT_LIFT,
-                             .value = weight_N - down_N,
-                             .bound = weight_N,
-                         });
+    take_smaller(nearest, (struct dig_rig_margin){
+                              .share = down_N / weight_N,
+                              .limit = DIG_RIG_LIMIT_LIFT,
+                              .value = weight_N - down_N,
+                              .bound = weight_N,
+                          });
     // Off the ground altogether there is no edge left to speak of.
     if (!(down_N > 0.0)) {
         return;
     }
-    keep_nearer(nearest, (struct dig_rig_margin){
-                             .share = front_Nm / hold_front_Nm,
-                             .limit = DIG_RIG_LIMIT_TIP,
-                             .value = hold_front_Nm - front_Nm,
-                             .bound = hold_front_Nm,
-                             .end   = "front",
-                         });
-    keep_nearer(nearest, (struct dig_rig_margin){
-                             .share = -rear_Nm / hold_rear_Nm,
-                             .limit = DIG_RIG_LIMIT_TIP,
-                             .value = hold_rear_Nm + rear_Nm,
-                             .bound = hold_rear_Nm,
-                             .end   = "rear",
-                         });
+    take_smaller(nearest, (struct dig_rig_margin){
+                              .share = front_Nm / hold_front_Nm,
+                              .limit = DIG_RIG_LIMIT_TIP,
+                              .value = hold_front_Nm - front_Nm,
+                              .bound = hold_front_Nm,
+                              .end   = "front",
+                          });
+    take_smaller(nearest, (struct dig_rig_margin){
+                              .share = -rear_Nm / hold_rear_Nm,
+                              .limit = DIG_RIG_LIMIT_TIP,
+                              .value = hold_rear_Nm + rear_Nm,
+                              .bound = hold_rear_Nm,
+                              .end   = "rear",
+                          });
 }
 
 enum dig_status dig_rig_state_solve(const struct dig_machine *const    machine,
@@ -165,7 +166,8 @@ enum dig_status dig_rig_state_solve(const struct dig_machine *const    machine,
     struct dig_rig_state result = { .nearest = { .share = INFINITY } };
     enum dig_status      status = dig_rig_inverse(machine, pose, &result.joints);
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        status = look_at_linkage(machine, (enum dig_joint)j, result.joints.rad[j], &result.nearest);
+        status =
+            take_linkage_margins(machine, (enum dig_joint)j, result.joints.rad[j], &result.nearest);
     }
     result.mechanical = result.nearest;
 
@@ -177,7 +179,7 @@ enum dig_status dig_rig_state_solve(const struct dig_machine *const    machine,
         return status;
     }
     dig_rig_work_pressures(machine, &pushes, &result.pressures);
-    look_at_pressures(machine, &result.pressures, &result.nearest);
+    take_pressure_margins(machine, &result.pressures, &result.nearest);
     look_at_ground(machine, &result.joints, pose, motion, soil, &result.nearest);
     *state = result;
     return DIG_OK;

@@ -1,4 +1,4 @@
-// What was really there, beside what the sensors read: for tests and plots.
+// Writes the true pose and load beside the sensors' readings, for tests and plots.
 
 #ifndef DIG_TOOLS_RIG_TRUTH_H
 #define DIG_TOOLS_RIG_TRUTH_H

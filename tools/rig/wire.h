@@ -1,6 +1,5 @@
-// What happens to CAN frames between their sender and the bus, when it is asked for: some are lost,
-// doubled, overtaken by the next of their kind, damaged, or held back and sent in bursts. A quiet
-// wire hands every frame through.
+// The wire between a CAN sender and the bus. On request it loses, doubles, reorders or damages some
+// frames, or holds them back and sends them in bursts; otherwise it passes every frame.
 
 #ifndef DIG_TOOLS_RIG_WIRE_H
 #define DIG_TOOLS_RIG_WIRE_H
