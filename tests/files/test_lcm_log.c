@@ -86,11 +86,11 @@ static void count_health(void *const context, const int64_t time_us,
 static void the_example_of_the_formats_is_read(void **state)
 {
     (void)state;
-    static const char               path[] = "tests/data/formats/daemon.lcm";
-    struct counts                   counts = { 0 };
-    const struct dig_lcm_log_reader reader = { &counts, count_estimate, count_any_match,
-                                               count_prediction, count_health };
-    struct dig_machine_recording    r;
+    static const char            path[] = "tests/data/formats/daemon.lcm";
+    struct counts                counts = { 0 };
+    const struct dig_lcm_reader  reader = { &counts, count_estimate, count_any_match,
+                                            count_prediction, count_health };
+    struct dig_machine_recording r;
     assert_int_equal(dig_lcm_log_each(path, &reader, NULL), DIG_OK);
     assert_int_equal(counts.estimates, 20);
     assert_int_equal(counts.matches, 2);
@@ -156,8 +156,8 @@ static void other_messages_are_handed_on_one_by_one(void **state)
     log_match(log, "DIGSIGHT_MATCH", &match);
     lcm_eventlog_destroy(log);
 
-    int                             count  = 0;
-    const struct dig_lcm_log_reader reader = { .context = &count, .match = count_match };
+    int                         count  = 0;
+    const struct dig_lcm_reader reader = { .context = &count, .match = count_match };
     assert_int_equal(dig_lcm_log_each(scratch_path("match.lcm"), &reader, NULL), DIG_OK);
     assert_int_equal(count, 2);
 }

@@ -202,12 +202,12 @@ enum dig_status digreport_run(const struct digreport_options *const options,
                               const struct dig_curve_set *const set, char *const named_log,
                               struct dig_report_run *const run, struct dig_error *const error)
 {
-    char *const                     log       = strchr(named_log, '=') + 1;
-    struct published                published = { .matched = false };
-    const struct dig_lcm_log_reader reader    = { .context    = &published,
-                                                  .match      = take_match,
-                                                  .prediction = take_prediction };
-    enum dig_status                 status    = dig_lcm_log_each(log, &reader, error);
+    char *const                 log       = strchr(named_log, '=') + 1;
+    struct published            published = { .matched = false };
+    const struct dig_lcm_reader reader    = { .context    = &published,
+                                              .match      = take_match,
+                                              .prediction = take_prediction };
+    enum dig_status             status    = dig_lcm_log_each(log, &reader, error);
     if (status != DIG_OK) {
         return status;
     }
