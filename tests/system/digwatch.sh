@@ -31,7 +31,7 @@ trap 'tmux kill-server 2>/dev/null; cleanup' EXIT
 
 make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
-config run "{kind: replay, replay: {file: run.csv, speed: 1}}"
+config run "{kind: replay, replay: {file: run.csv, speed: 1}}" "tick_Hz: 200"
 log run
 run "$work/daemon.log" "$BIN/digsightd" -c "$work/run.yaml"
 read_log run
@@ -74,7 +74,7 @@ for signal in SEGV ABRT; do
     check "a fault ($signal) gives the terminal back, too" eval 'until_shows "^ended 1[0-9][0-9]$" && given_back'
 done
 locale=C begin --log "$work/cut.lcm" --speed 10000
-check "without UTF-8 it is drawn in ASCII" eval 'until_shows "|.*#" && shows "|.*\.\." && ! shown | LC_ALL=C grep -aqP "[^\x20-\x7e]"'
+check "without UTF-8 it is drawn in ASCII" eval 'until_shows "|.*#" && shows "# measured  - predicted  . 90 % of digs" && ! shown | LC_ALL=C grep -aqP "[^\x20-\x7e]"'
 
 # Logs that are damaged, or hold what a daemon does not say.
 { cat "$work/cut.lcm"; head -c 100000 "$work/run.lcm" | tr '\0-\377' '\377\0-\376'; } >"$work/damaged.lcm"
