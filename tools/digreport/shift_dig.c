@@ -23,7 +23,7 @@ static double seconds(const int64_t from_ns, const int64_t to_ns)
 static double step_s(const struct digreport_dig_track *const t, const size_t i)
 {
     const double step = i > 0 ? seconds(t->row[i - 1].time_ns, t->row[i].time_ns) : 0.0;
-    return step > 0.0 && step <= STEP_MOST_s ? step : 0.0;
+    return step <= STEP_MOST_s ? step : 0.0;
 }
 
 // Work on the soil from one row to the next, estimator/predict/peak_energy.h in machine axes: the
@@ -183,7 +183,9 @@ enum dig_status digreport_track_estimate(struct digreport_dig_track *const t, co
     if (e->trajectory[0] != '\0' && dig_name_ok(e->trajectory)) {
         (void)snprintf(t->dig.trajectory, sizeof t->dig.trajectory, "%.31s", e->trajectory);
     }
-    return e->moment_valid != 0 && fabs(e->moment_Nm) <= MOMENT_MOST_Nm && t->rows < ROWS_MAX
+    const bool later = t->rows == 0 || e->time_ns > t->row[t->rows - 1].time_ns;
+    return later && e->moment_valid != 0 && fabs(e->moment_Nm) <= MOMENT_MOST_Nm &&
+                   t->rows < ROWS_MAX
                ? add_row(t, e)
                : DIG_OK;
 }
