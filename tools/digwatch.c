@@ -76,7 +76,7 @@ static void show(const struct watch *const w, const struct digwatch_options *con
     const bool                  ended = digwatch_source_ended(w->source);
     if (options->log != NULL) {
         const char *const slash = strrchr(options->log, '/');
-        (void)snprintf(source, sizeof source, "%.100s, %g times",
+        (void)snprintf(source, sizeof source, "%.100s, %gx",
                        slash != NULL ? slash + 1 : options->log, options->speed);
     } else {
         (void)snprintf(source, sizeof source, "%.150s", options->url);

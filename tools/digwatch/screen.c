@@ -19,8 +19,9 @@ static void put_clock(const struct digwatch_model *const model, struct digwatch_
     const time_t seconds = (time_t)(model->time_us / 1000000);
     struct tm    utc;
     char         text[32] = "";
-    if (model->messages > 0 && seconds >= 0 && gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc);
+    if (model->messages == 0 || seconds < 0 || gmtime_r(&seconds, &utc) == NULL ||
+        strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc) == 0) {
+        text[0] = '\0'; // of no time that people have
     }
     (void)digwatch_grid_put(grid, 0, grid->columns - 31, DIGWATCH_PLAIN, "%.23s", text);
     (void)digwatch_grid_put(grid, 0, grid->columns - 7, DIGWATCH_FAINT, "q: quit");
