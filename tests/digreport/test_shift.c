@@ -18,7 +18,7 @@ LOG_TYPE(health)
 static char no_text[] = "";
 static char actual[]  = "actual";
 static char running[] = "running";
-static char hostile[] = "\033[2J<script>alert('x')</script>\"&\xff /home/somebody/run.csv";
+static char hostile[] = "\033[2J<script>alert('x')<img src=x>\"&\xff /home/somebody/run.csv";
 
 static struct digreport_shift shift;
 

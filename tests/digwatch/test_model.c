@@ -121,6 +121,39 @@ static void what_is_no_message_is_counted_and_changes_nothing(void **state)
     assert_false(model.any_estimate || model.any_match || model.any_prediction || model.any_health);
 }
 
+// Its own lengths are not believed: one byte too many or too few, or any byte of it another.
+static void a_message_that_is_damaged_is_counted_or_taken_and_no_more(void **state)
+{
+    (void)state;
+    const digsight_health_t h    = health_at(1000000000, running_state);
+    const size_t            size = (size_t)digsight_health_t_encoded_size(&h);
+    for (size_t length = 0; length <= size + 1; length++) {
+        uint8_t *const bytes = calloc(size + 1, 1);
+        assert_int_equal(digsight_health_t_encode(bytes, 0, (int)size, &h), size);
+        uint8_t *const exact = malloc(length == 0 ? 1 : length);
+        memcpy(exact, bytes, length);
+        const struct dig_lcm_event event = { .channel = "DIGSIGHT_HEALTH",
+                                             .size    = length,
+                                             .data    = exact };
+        digwatch_model_take(&model, &event);
+        assert_int_equal(model.messages, length >= size ? 1 : 0);
+        free(exact);
+        free(bytes);
+    }
+    assert_int_equal(model.misread, size + 1);
+    for (size_t i = 0; i < size; i++) {
+        uint8_t *const bytes = malloc(size);
+        assert_int_equal(digsight_health_t_encode(bytes, 0, (int)size, &h), size);
+        bytes[i] ^= 0xff;
+        const struct dig_lcm_event event = { .channel = "DIGSIGHT_HEALTH",
+                                             .size    = size,
+                                             .data    = bytes };
+        digwatch_model_take(&model, &event);
+        free(bytes);
+    }
+    assert_int_equal(model.messages + model.misread, 1 + size + 1 + size);
+}
+
 static void numbers_that_are_none_and_names_that_are_none_are_not_taken(void **state)
 {
     (void)state;
@@ -181,6 +214,7 @@ int main(void)
         cmocka_unit_test_setup(the_moment_scrolls_in_slots_of_an_eighth_of_a_second, fresh),
         cmocka_unit_test_setup(a_counter_has_grown_only_since_we_listen, fresh),
         cmocka_unit_test_setup(what_is_no_message_is_counted_and_changes_nothing, fresh),
+        cmocka_unit_test_setup(a_message_that_is_damaged_is_counted_or_taken_and_no_more, fresh),
         cmocka_unit_test_setup(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh),
     };
     return cmocka_run_group_tests_name("digwatch model", tests, NULL, NULL);
