@@ -83,16 +83,16 @@ static digsight_health_t healthy(void)
 static void put_dig(lcm_eventlog_t *const log, const int64_t time_us, const int32_t digs,
                     const double moment_Nm)
 {
-    double moment[DIG_PREDICTION_POINTS];
-    double sigma[DIG_PREDICTION_POINTS];
-    for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
+    double moment[DIG_PREDICTED_POINTS];
+    double sigma[DIG_PREDICTED_POINTS];
+    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
         moment[i] = 10000.0;
         sigma[i]  = 1000.0;
     }
     const digsight_prediction_t p = { .valid           = 1,
                                       .trajectory      = actual,
                                       .to_progress     = 1.0,
-                                      .points          = DIG_PREDICTION_POINTS,
+                                      .points          = DIG_PREDICTED_POINTS,
                                       .moment_Nm       = moment,
                                       .sigma_Nm        = sigma,
                                       .force_x_N       = sigma,

@@ -46,9 +46,9 @@ static bool take(const digsight_estimate_t *const e)
 // Of "actual" from 0 to 1, 2000 N·m throughout with sigma 100.
 static void predict(const int32_t gravel_of_dig)
 {
-    double moment[DIG_PREDICTION_POINTS];
-    double sigma[DIG_PREDICTION_POINTS];
-    for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
+    double moment[DIG_PREDICTED_POINTS];
+    double sigma[DIG_PREDICTED_POINTS];
+    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
         moment[i] = 2000.0;
         sigma[i]  = 100.0;
     }
@@ -56,7 +56,7 @@ static void predict(const int32_t gravel_of_dig)
                                       .trajectory     = actual,
                                       .dig_count      = gravel_of_dig,
                                       .to_progress    = 1.0,
-                                      .points         = DIG_PREDICTION_POINTS,
+                                      .points         = DIG_PREDICTED_POINTS,
                                       .moment_Nm      = moment,
                                       .sigma_Nm       = sigma,
                                       .peak_Nm        = 2100.0,

@@ -54,17 +54,17 @@ static inline digsight_estimate_t estimate_at(const int64_t time_ns, const doubl
 /// Of "actual", from 0 to 1: rising from 0 to 10 kNm, sigma 1 kNm.
 static inline void say_rising_prediction(struct digwatch_model *const model)
 {
-    double moment[DIG_PREDICTION_POINTS];
-    double sigma[DIG_PREDICTION_POINTS];
-    for (int i = 0; i < DIG_PREDICTION_POINTS; i++) {
-        moment[i] = 10000.0 * i / (DIG_PREDICTION_POINTS - 1);
+    double moment[DIG_PREDICTED_POINTS];
+    double sigma[DIG_PREDICTED_POINTS];
+    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
+        moment[i] = 10000.0 * i / (DIG_PREDICTED_POINTS - 1);
         sigma[i]  = 1000.0;
     }
     const digsight_prediction_t p = { .valid           = 1,
                                       .expires_ns      = 60000000000,
                                       .trajectory      = actual,
                                       .to_progress     = 1.0,
-                                      .points          = DIG_PREDICTION_POINTS,
+                                      .points          = DIG_PREDICTED_POINTS,
                                       .moment_Nm       = moment,
                                       .sigma_Nm        = sigma,
                                       .force_x_N       = moment,

@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_MAX       ((size_t)1 << 20) // a quarter of an hour at a kilohertz; the rest is left out
-#define MOMENT_MOST_Nm 1e9               // beyond any machine: somebody else's message
-#define STEP_MOST_s    1.0               // a longer one is a gap: the time within does not count
+#define ROWS_MAX    ((size_t)1 << 20) // a quarter of an hour at a kilohertz; the rest is left out
+#define STEP_MOST_s 1.0               // a longer one is a gap: the time within does not count
 
 static double seconds(const int64_t from_ns, const int64_t to_ns)
 {
@@ -67,23 +66,6 @@ static double smoothed_Nm(const struct digreport_dig_track *const t, struct wind
     return w->sum_Nm / (double)(w->to - w->from);
 }
 
-// What was predicted at this progress, and its sigma; false where nothing was.
-static bool predicted_at(const struct digreport_dig_track *const t, const double progress,
-                         double *const moment_Nm, double *const sigma_Nm)
-{
-    const struct dig_prediction *const p = &t->prediction;
-    const double place = (progress - p->from_progress) / (p->to_progress - p->from_progress) *
-                         (DIG_PREDICTION_POINTS - 1);
-    if (!t->predicted || !(place >= 0.0 && place <= DIG_PREDICTION_POINTS - 1)) {
-        return false;
-    }
-    const size_t i = (size_t)fmin(floor(place), DIG_PREDICTION_POINTS - 2);
-    const double f = place - (double)i;
-    *moment_Nm     = (1.0 - f) * p->moment_Nm[i] + f * p->moment_Nm[i + 1];
-    *sigma_Nm      = (1.0 - f) * p->sigma_Nm[i] + f * p->sigma_Nm[i + 1];
-    return true;
-}
-
 static void score(struct digreport_dig_track *const t)
 {
     struct window w      = { 0 };
@@ -97,7 +79,8 @@ static void score(struct digreport_dig_track *const t)
         double       predicted;
         double       sigma;
         peak = fmax(peak, moment);
-        if (predicted_at(t, t->row[i].progress, &predicted, &sigma)) {
+        if (t->predicted &&
+            dig_predicted_curve_at(&t->prediction, t->row[i].progress, &predicted, &sigma)) {
             wrong2 += dt * (moment - predicted) * (moment - predicted);
             floor2 += dt * sigma * sigma;
             whole2 += dt * moment * moment;
@@ -110,20 +93,20 @@ static void score(struct digreport_dig_track *const t)
 
 static void finish_dig(struct digreport_dig_track *const t, struct digreport_dig *const dig)
 {
-    t->predicted = t->predicted && strcmp(t->predicted_trajectory, t->dig.trajectory) == 0;
+    t->predicted = t->predicted && strcmp(t->prediction.trajectory, t->dig.trajectory) == 0;
     score(t);
     t->dig.energy_J   = energy_J(t);
     t->dig.duration_s = seconds(t->row[0].time_ns, t->row[t->rows - 1].time_ns);
-    const struct dig_prediction        none = { .peak_Nm        = (double)NAN,
-                                                .peak_sigma_Nm  = (double)NAN,
-                                                .energy_J       = (double)NAN,
-                                                .energy_sigma_J = (double)NAN };
-    const struct dig_prediction *const p    = t->predicted ? &t->prediction : &none;
-    t->dig.predicted_peak_Nm                = p->peak_Nm;
-    t->dig.predicted_peak_sigma_Nm          = p->peak_sigma_Nm;
-    t->dig.predicted_energy_J               = p->energy_J;
-    t->dig.predicted_energy_sigma_J         = p->energy_sigma_J;
-    *dig                                    = t->dig;
+    const struct dig_predicted_curve        none = { .peak_Nm        = (double)NAN,
+                                                     .peak_sigma_Nm  = (double)NAN,
+                                                     .energy_J       = (double)NAN,
+                                                     .energy_sigma_J = (double)NAN };
+    const struct dig_predicted_curve *const p    = t->predicted ? &t->prediction : &none;
+    t->dig.predicted_peak_Nm                     = p->peak_Nm;
+    t->dig.predicted_peak_sigma_Nm               = p->peak_sigma_Nm;
+    t->dig.predicted_energy_J                    = p->energy_J;
+    t->dig.predicted_energy_sigma_J              = p->energy_sigma_J;
+    *dig                                         = t->dig;
 }
 
 static enum dig_status add_row(struct digreport_dig_track *const t,
@@ -184,44 +167,21 @@ enum dig_status digreport_track_estimate(struct digreport_dig_track *const t, co
         (void)snprintf(t->dig.trajectory, sizeof t->dig.trajectory, "%.31s", e->trajectory);
     }
     const bool later = t->rows == 0 || e->time_ns > t->row[t->rows - 1].time_ns;
-    return later && e->moment_valid != 0 && fabs(e->moment_Nm) <= MOMENT_MOST_Nm &&
+    return later && e->moment_valid != 0 && fabs(e->moment_Nm) <= DIG_MOMENT_MOST_Nm &&
                    t->rows < ROWS_MAX
                ? add_row(t, e)
                : DIG_OK;
-}
-
-static bool are_moments(const double moment_Nm[DIG_PREDICTION_POINTS])
-{
-    int i = 0;
-    while (i < DIG_PREDICTION_POINTS && fabs(moment_Nm[i]) <= MOMENT_MOST_Nm) {
-        i++;
-    }
-    return i == DIG_PREDICTION_POINTS;
 }
 
 void digreport_track_prediction(struct digreport_dig_track *const  t,
                                 const digsight_prediction_t *const p)
 {
     assert(t != NULL && p != NULL);
-    const bool same = t->predicted && strcmp(t->predicted_trajectory, p->trajectory) == 0;
-    if (!t->open || same || !p->valid || p->dig_count == t->dig.number ||
-        p->points != DIG_PREDICTION_POINTS || !dig_name_ok(p->trajectory) ||
-        !(p->from_progress >= 0.0 && p->from_progress < p->to_progress && p->to_progress <= 1.0) ||
-        !are_moments(p->moment_Nm) || !are_moments(p->sigma_Nm)) {
-        return;
+    const bool same = t->predicted && strcmp(t->prediction.trajectory, p->trajectory) == 0;
+    if (t->open && !same && p->dig_count != t->dig.number &&
+        dig_predicted_curve_take(p, &t->prediction)) {
+        t->predicted = true;
     }
-    t->predicted  = true;
-    t->prediction = (struct dig_prediction){
-        .from_progress  = p->from_progress,
-        .to_progress    = p->to_progress,
-        .peak_Nm        = p->peak_Nm,
-        .peak_sigma_Nm  = p->peak_sigma_Nm,
-        .energy_J       = p->energy_J,
-        .energy_sigma_J = p->energy_sigma_J,
-    };
-    (void)snprintf(t->predicted_trajectory, sizeof t->predicted_trajectory, "%.31s", p->trajectory);
-    memcpy(t->prediction.moment_Nm, p->moment_Nm, sizeof t->prediction.moment_Nm);
-    memcpy(t->prediction.sigma_Nm, p->sigma_Nm, sizeof t->prediction.sigma_Nm);
 }
 
 void digreport_track_finish(struct digreport_dig_track *const track)

@@ -6,8 +6,8 @@
 
 #include "core/curve.h"
 #include "core/error.h"
-#include "estimator/predict/prediction.h"
 #include "files/lcm_message.h"
+#include "files/predicted_curve.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,15 +35,14 @@ struct digreport_row {
 
 /// Zeroed, but for half_s: no dig is in progress.
 struct digreport_dig_track {
-    double                half_s; // of the moving average, machine time: 0.16 s sqrt(lambda)
-    bool                  open;
-    int32_t               dig_count; // digs finished before it
-    struct digreport_dig  dig;
-    size_t                rows, room;
-    struct digreport_row *row;
-    bool                  predicted;
-    char                  predicted_trajectory[DIG_NAME_SIZE];
-    struct dig_prediction prediction;
+    double                     half_s; // of the moving average, machine time: 0.16 s sqrt(lambda)
+    bool                       open;
+    int32_t                    dig_count; // digs finished before it
+    struct digreport_dig       dig;
+    size_t                     rows, room;
+    struct digreport_row      *row;
+    bool                       predicted;
+    struct dig_predicted_curve prediction;
 };
 
 /// Takes an estimate. *finished: whether it ended a dig, then in *dig; a contact that was none is

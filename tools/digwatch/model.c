@@ -16,21 +16,6 @@ static bool is_time(const int64_t time_ns)
     return time_ns >= 0 && time_ns <= (int64_t)1 << 62;
 }
 
-// Beyond any machine: a message of somebody else.
-static bool is_moment(const double moment_Nm)
-{
-    return fabs(moment_Nm) <= 1e9;
-}
-
-static bool are_moments(const double moment_Nm[DIG_PREDICTION_POINTS])
-{
-    int i = 0;
-    while (i < DIG_PREDICTION_POINTS && is_moment(moment_Nm[i])) {
-        i++;
-    }
-    return i == DIG_PREDICTION_POINTS;
-}
-
 static bool are_finite(const int n, const double number[])
 {
     int i = 0;
@@ -62,16 +47,11 @@ static void predict_here(const struct digwatch_model *const m, struct digwatch_e
 {
     const struct digwatch_prediction *const p = &m->prediction;
     e->predicted_Nm = e->predicted_sigma_Nm = (double)NAN;
-    const double place = (e->progress - p->from) / (p->to - p->from) * (DIG_PREDICTION_POINTS - 1);
-    if (!m->any_prediction || !p->valid || e->time_ns > p->expires_ns || e->trajectory[0] == '\0' ||
-        strcmp(e->trajectory, p->trajectory) != 0 ||
-        !(place >= 0.0 && place <= DIG_PREDICTION_POINTS - 1)) {
-        return;
+    if (p->valid && e->time_ns <= p->expires_ns &&
+        strcmp(e->trajectory, p->curve.trajectory) == 0) {
+        (void)dig_predicted_curve_at(&p->curve, e->progress, &e->predicted_Nm,
+                                     &e->predicted_sigma_Nm);
     }
-    const size_t i        = (size_t)fmin(floor(place), DIG_PREDICTION_POINTS - 2);
-    const double f        = place - (double)i;
-    e->predicted_Nm       = (1.0 - f) * p->moment_Nm[i] + f * p->moment_Nm[i + 1];
-    e->predicted_sigma_Nm = (1.0 - f) * p->sigma_Nm[i] + f * p->sigma_Nm[i + 1];
 }
 
 static void clear_slots(struct digwatch_model *const m)
@@ -131,7 +111,7 @@ static void take_estimate(void *const context, const int64_t time_us,
         return;
     }
     struct digwatch_estimate e = {
-        .moment_valid = said->moment_valid != 0 && is_moment(said->moment_Nm),
+        .moment_valid = said->moment_valid != 0 && fabs(said->moment_Nm) <= DIG_MOMENT_MOST_Nm,
         .time_ns      = said->time_ns,
         .moment_Nm    = said->moment_Nm,
         .sigma_Nm     = hypot(said->sigma_moment_Nm, said->geometry_sigma_moment_Nm),
@@ -180,27 +160,12 @@ static void take_prediction(void *const context, const int64_t time_us,
 {
     struct digwatch_model *const m = context;
     (void)time_us;
-    struct digwatch_prediction p = {
-        .valid          = said->valid != 0,
-        .outside        = said->outside != 0,
-        .expires_ns     = said->expires_ns,
-        .from           = said->from_progress,
-        .to             = said->to_progress,
-        .peak_Nm        = said->peak_Nm,
-        .peak_sigma_Nm  = said->peak_sigma_Nm,
-        .energy_J       = said->energy_J,
-        .energy_sigma_J = said->energy_sigma_J,
-    };
-    take_name(p.trajectory, said->trajectory);
+    struct digwatch_prediction p = { .valid      = said->valid != 0,
+                                     .outside    = said->outside != 0,
+                                     .expires_ns = said->expires_ns };
     take_text(p.reason, said->reason);
-    if (p.valid) {
-        if (said->points != DIG_PREDICTION_POINTS || p.trajectory[0] == '\0' ||
-            !(p.from >= 0.0 && p.from < p.to && p.to <= 1.0) || !are_moments(said->moment_Nm) ||
-            !are_moments(said->sigma_Nm)) {
-            return;
-        }
-        memcpy(p.moment_Nm, said->moment_Nm, sizeof p.moment_Nm);
-        memcpy(p.sigma_Nm, said->sigma_Nm, sizeof p.sigma_Nm);
+    if (p.valid && !dig_predicted_curve_take(said, &p.curve)) {
+        return;
     }
     m->prediction     = p;
     m->any_prediction = true;

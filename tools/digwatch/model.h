@@ -6,9 +6,9 @@
 #define DIG_TOOLS_DIGWATCH_MODEL_H
 
 #include "core/curve.h"
-#include "estimator/predict/prediction.h"
 #include "files/health_text.h"
 #include "files/lcm_message.h"
+#include "files/predicted_curve.h"
 
 #include <stdbool.h>
 
@@ -36,12 +36,10 @@ struct digwatch_match {
 };
 
 struct digwatch_prediction {
-    bool    valid, outside;
-    int64_t expires_ns;
-    double  from, to; // progress
-    double  moment_Nm[DIG_PREDICTION_POINTS], sigma_Nm[DIG_PREDICTION_POINTS];
-    double  peak_Nm, peak_sigma_Nm, energy_J, energy_sigma_J;
-    char    trajectory[DIG_NAME_SIZE], reason[DIGWATCH_TEXT];
+    bool                       valid, outside;
+    int64_t                    expires_ns;
+    char                       reason[DIGWATCH_TEXT]; // why there is none
+    struct dig_predicted_curve curve;                 // where it is valid
 };
 
 struct digwatch_health {

@@ -142,11 +142,11 @@ static void put_prediction(const struct digwatch_model *const model, const doubl
         return;
     }
     (void)digwatch_grid_put(grid, row, VALUE_COLUMN, DIGWATCH_PREDICTED,
-                            "%s: peak %.1f +- %.1f %s, energy %.4g +- %.2g %s%s", p->trajectory,
-                            p->peak_Nm / unit_Nm, p->peak_sigma_Nm / unit_Nm,
-                            unit_Nm > 1.0 ? "kNm" : "Nm", p->energy_J / unit_Nm,
-                            p->energy_sigma_J / unit_Nm, unit_Nm > 1.0 ? "kJ" : "J",
-                            p->outside ? " (nearest gravel)" : "");
+                            "%s: peak %.1f +- %.1f %s, energy %.4g +- %.2g %s%s",
+                            p->curve.trajectory, p->curve.peak_Nm / unit_Nm,
+                            p->curve.peak_sigma_Nm / unit_Nm, unit_Nm > 1.0 ? "kNm" : "Nm",
+                            p->curve.energy_J / unit_Nm, p->curve.energy_sigma_J / unit_Nm,
+                            unit_Nm > 1.0 ? "kJ" : "J", p->outside ? " (nearest gravel)" : "");
 }
 
 static void put_gravel(const struct digwatch_model *const model, struct digwatch_grid *const grid,
