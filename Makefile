@@ -154,7 +154,7 @@ $(BUILD)/tables/%.o:        CPPFLAGS += $(call foreign,sqlite3)
 $(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm libcyaml)
 $(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus libcyaml)
 $(BUILD)/tools/rig/%.o:     CPPFLAGS += $(call foreign,libmodbus)
-$(BUILD)/tools/digwatch/%.o: CPPFLAGS += $(call foreign,lcm) $(filter -D%,$(call pkg_cflags,ncursesw))
+$(BUILD)/tools/digwatch/%.o: CPPFLAGS += $(call foreign,lcm)
 $(BUILD)/tests/%.o:         CPPFLAGS += $(call foreign,cmocka lcm libmodbus libcyaml sqlite3 ode)
 
 $(BUILD)/bin/digsightd: $(BUILD)/firmware_host/digsightd.o

@@ -94,7 +94,7 @@ enum dig_status digreport_page_gravels(const struct digreport_page *const page, 
     for (int a = 0; a < DIG_AXES && status == DIG_OK; a++) {
         status = put_gravel_plot(page, to, a, error);
     }
-    (void)fputs("</div>\n<table><tr><th>time, UTC</th>", to);
+    (void)fputs("</div>\n<table class=digs><tr><th>time, UTC</th>", to);
     for (int a = 0; a < DIG_AXES; a++) {
         (void)fprintf(to, "<th>%s (90 %%)</th>", axis_title[a]);
     }
