@@ -146,6 +146,11 @@ static void health_says_what_is_wrong_and_what_to_do(void **state)
     h.missing_signals = no_text;
     say_health(&model, &h);
     assert_contains(screen(24, 80, true, &plain), "good: nothing is wrong");
+    model.misread    = 3; // the last one eleven seconds ago, then nine
+    model.misread_us = model.time_us - 11000000;
+    assert_contains(screen(24, 80, true, &plain), "good: nothing is wrong");
+    model.misread_us = model.time_us - 9000000;
+    assert_contains(screen(24, 80, true, &plain), "3 messages on its channels were not understood");
     const struct digwatch_view silent = { .source = "", .damage = "", .silent_s = 12.3 };
     assert_contains(screen(24, 80, true, &silent), "no message for 12 s");
     const struct digwatch_view damaged = { .source = "",

@@ -27,7 +27,7 @@ given_back() { # the shell's screen is shown again, with its cursor
     shows '^before' && [ "$(tmux display-message -p '#{alternate_on} #{cursor_flag}')" = "0 1" ]
 }
 pid_of() { pgrep -P "$(tmux display-message -p '#{pane_pid}')" digwatch; }
-trap 'tmux kill-server 2>/dev/null; cleanup' EXIT
+trap 'tmux kill-server 2>/dev/null; kill ${prometheus-} ${daemon-} 2>/dev/null; cleanup' EXIT
 
 make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"

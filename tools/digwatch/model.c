@@ -224,6 +224,7 @@ void digwatch_model_take(struct digwatch_model *const      model,
         model->messages++;
     } else {
         model->misread++;
+        model->misread_us = event->time_us;
     }
 }
 

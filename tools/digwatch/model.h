@@ -64,9 +64,10 @@ struct digwatch_error {
 };
 
 struct digwatch_model {
-    int64_t                    time_us;  // wall clock of the last message
-    int64_t                    messages; // that were understood
-    int64_t                    misread;  // on our channels, and not as this build has them
+    int64_t                    time_us;    // wall clock of the last message
+    int64_t                    messages;   // that were understood
+    int64_t                    misread;    // on our channels, and not as this build has them
+    int64_t                    misread_us; // when the last of these came
     bool                       any_estimate, any_match, any_prediction, any_health;
     struct digwatch_estimate   estimate;
     struct digwatch_match      match;

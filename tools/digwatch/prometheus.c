@@ -41,6 +41,8 @@ enum dig_status digwatch_prometheus(const struct digwatch_model *const model, co
     put(to, "up", "gauge", "1 while digsightd is heard", up ? 1.0 : 0.0);
     put(to, "troubles", "gauge", "What is wrong now, as digwatch shows it",
         (double)digwatch_troubles(model, silent_s, trouble));
+    put(to, "misread_total", "counter", "Messages on its channels that were not understood",
+        (double)model->misread);
     if (model->any_health) {
         put(to, "running", "gauge", "1 while fresh samples come",
             up && strcmp(h->state, "running") == 0 ? 1.0 : 0.0);

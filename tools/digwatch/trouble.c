@@ -81,7 +81,9 @@ size_t digwatch_troubles(const struct digwatch_model *const model, const double 
         add(&list, "is digsightd running? `systemctl status digsightd`",
             "no message for %.0f s: what is shown is old", silent_s);
     }
-    if (model->misread > 0) {
+    // Times of messages may be any: their difference need not be an int64_t.
+    const double ago_us = (double)model->time_us - (double)model->misread_us;
+    if (model->misread > 0 && ago_us <= 1e-3 * DIGWATCH_TROUBLE_ns) {
         add(&list, "digwatch and digsightd must be of one version; or somebody else sends",
             "%" PRId64 " messages on its channels were not understood", model->misread);
     }
