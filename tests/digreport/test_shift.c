@@ -298,6 +298,12 @@ static void no_text_of_a_message_is_markup_or_somebodys_path(void **state)
     put_match(log, START_us + 2 * MINUTE, 0.4, false, hostile);
     put_match(log, START_us + 3 * MINUTE, (double)NAN, true, hostile);
     put_match(log, START_us + 3 * MINUTE, 1e300, true, hostile);
+    static const int64_t counts[] = { INT64_MIN, INT64_MAX, -1, 0, INT64_MAX, 7 };
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) { // no step of these is a growth
+        h.timeouts = h.reloads = counts[i];
+        h.digs_whole = h.digs_aborted = i % 2 == 0 ? 0 : 5;
+        log_health(log, "DIGSIGHT_HEALTH", START_us + 4 * MINUTE, &h);
+    }
     const digsight_health_t other = healthy();
     log_health(log, "DIGSIGHT_ESTIMATE", START_us + 4 * MINUTE, &other);
     log_health(log, "DIGSIGHT_HEALTH", INT64_MIN, &h);
@@ -306,6 +312,10 @@ static void no_text_of_a_message_is_markup_or_somebodys_path(void **state)
     read_log("hostile.lcm");
     assert_int_equal(shift.misread, 1);
     assert_int_equal(shift.gravels, 2);
+    assert_int_equal(shift.whole, 15); // three daemons of five digs
+    for (size_t i = 0; i < shift.events; i++) {
+        assert_int_equal(shift.event[i].count, 0);
+    }
     struct dig_model                     model   = { .effects = 1 };
     const struct digreport_shift_subject subject = {
         .title = hostile, .machine = hostile, .scene = hostile, .model = &model, .logs = 1

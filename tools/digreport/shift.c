@@ -11,7 +11,8 @@
 
 #define SAME_EVENT_us 60000000 // signs of one trouble
 #define LOOK_BACK     64       // events among which the same is looked for
-#define MOST          100000   // digs, matches or events of a shift; more are left out
+#define MOST          10000    // digs, matches or events of a shift; more are counted
+#define COUNT_MOST    (INT64_C(1) << 53)
 
 static const struct dig_health_text reloaded = { "reloads", "a new table or model was taken",
                                                  "predictions after it are made with it" };
@@ -24,6 +25,12 @@ static void *with_room(void *const array, const size_t n, const size_t size)
 {
     const bool full = (n & (n + 1)) == 0; // it has room for 1, 3, 7, …
     return full ? realloc(array, (2 * n + 1) * size) : array;
+}
+
+// By how much a counter has grown; a daemon that began anew, or another's message, tells nothing.
+static int64_t growth(const int64_t before, const int64_t now)
+{
+    return before >= 0 && now > before && now <= COUNT_MOST ? now - before : 0;
 }
 
 static void take_text(char text[DIGREPORT_TEXT], const char *const said)
@@ -44,11 +51,12 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
         if (old->text == text && strcmp(old->said, e.said) == 0 &&
             llabs(time_us - old->to_us) <= SAME_EVENT_us) {
             old->to_us = time_us;
-            old->count += count;
+            old->count = old->count < COUNT_MOST ? old->count + count : old->count;
             return;
         }
     }
     if (shift->events == MOST) {
+        shift->left_out++;
         return;
     }
     struct digreport_event *const grown = with_room(shift->event, shift->events, sizeof *grown);
@@ -67,6 +75,7 @@ static void take_estimate(void *const context, const int64_t time_us,
     struct digreport_dig          dig;
     bool                          finished = false;
     shift->status = digreport_track_estimate(&shift->track, time_us, said, &finished, &dig);
+    shift->left_out += finished && shift->digs == MOST ? 1 : 0;
     if (!finished || shift->digs == MOST) {
         return;
     }
@@ -116,8 +125,11 @@ static void take_match(void *const context, const int64_t time_us,
     };
     take_text(g.untold, said->untold);
     take_text(g.wanted, said->wanted);
-    if ((known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) ||
-        shift->gravels == MOST) {
+    if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
+        return;
+    }
+    if (shift->gravels == MOST) {
+        shift->left_out++;
         return;
     }
     struct digreport_gravel *const grown = with_room(shift->gravel, shift->gravels, sizeof *grown);
@@ -151,18 +163,18 @@ static void take_health(void *const context, const int64_t time_us,
         add_event(shift, time_us, NULL, said->note, 0);
     }
     for (size_t i = 0; i < DIG_HEALTH_COUNTERS && shift->any_health; i++) {
-        if (count[i] > shift->count[i]) {
-            add_event(shift, time_us, dig_health_counter_text(i), "", count[i] - shift->count[i]);
+        const int64_t grown = growth(shift->count[i], count[i]);
+        if (grown > 0) {
+            add_event(shift, time_us, dig_health_counter_text(i), "", grown);
         }
     }
-    if (shift->any_health && said->reloads > shift->reloads) {
-        add_event(shift, time_us, &reloaded, "", said->reloads - shift->reloads);
-    }
     if (shift->any_health) {
-        shift->whole +=
-            said->digs_whole > shift->log_whole ? said->digs_whole - shift->log_whole : 0;
-        shift->aborted +=
-            said->digs_aborted > shift->log_aborted ? said->digs_aborted - shift->log_aborted : 0;
+        const int64_t taken = growth(shift->reloads, said->reloads);
+        if (taken > 0) {
+            add_event(shift, time_us, &reloaded, "", taken);
+        }
+        shift->whole += growth(shift->log_whole, said->digs_whole);
+        shift->aborted += growth(shift->log_aborted, said->digs_aborted);
     }
     memcpy(shift->count, count, sizeof shift->count);
     shift->reloads     = said->reloads;

@@ -29,11 +29,12 @@ struct digreport_event {
 
 /// Zeroed, but for lambda and track.half_s: nothing was taken.
 struct digreport_shift {
-    double                     lambda; // tooth length of the machine over the table's
-    int64_t                    first_us, last_us;
-    int64_t                    messages, misread; // misread: on our channels, not understood
-    int32_t                    whole, aborted;    // digs, by how they ended
-    size_t                     digs, gravels, events;
+    double  lambda; // tooth length of the machine over the table's
+    int64_t first_us, last_us;
+    int64_t messages, misread; // misread: on our channels, not understood
+    int64_t whole, aborted;    // digs, by how they ended
+    int64_t left_out;          // digs, matches and events beyond the first ten thousand of each
+    size_t  digs, gravels, events;
     struct digreport_dig      *dig;
     struct digreport_gravel   *gravel;
     struct digreport_event    *event;
@@ -42,7 +43,7 @@ struct digreport_shift {
     // Of the log that is read.
     bool            any_health;
     int64_t         count[DIG_HEALTH_COUNTERS], reloads;
-    int32_t         log_whole, log_aborted;
+    int64_t         log_whole, log_aborted;
     int64_t         match_ns; // time of the last match
     bool            match_known;
     enum dig_status status; // of the last message

@@ -122,9 +122,15 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     dig_html_text(to, page->subject->scene);
     (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
     (void)fprintf(to,
-                  "By the daemon's counts %" PRId32 " digs were dug to their end, %" PRId32
+                  "By the daemon's counts %" PRId64 " digs were dug to their end, %" PRId64
                   " were aborted.</p>\n",
                   shift->whole, shift->aborted);
+    if (shift->left_out > 0) {
+        (void)fprintf(to,
+                      "<p>%" PRId64 " digs, matches or troubles are left out: only the first ten "
+                      "thousand of each are shown.</p>\n",
+                      shift->left_out);
+    }
 }
 
 static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
