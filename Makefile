@@ -154,12 +154,15 @@ $(BUILD)/tables/%.o:        CPPFLAGS += $(call foreign,sqlite3)
 $(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm libcyaml)
 $(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus libcyaml)
 $(BUILD)/tools/rig/%.o:     CPPFLAGS += $(call foreign,libmodbus)
+$(BUILD)/tools/digwatch/%.o: CPPFLAGS += $(call foreign,lcm)
 $(BUILD)/tests/%.o:         CPPFLAGS += $(call foreign,cmocka lcm libmodbus libcyaml sqlite3 ode)
 
 $(BUILD)/bin/digsightd: $(BUILD)/firmware_host/digsightd.o
 $(BUILD)/bin/digrig:    $(BUILD)/tools/rig/digrig.o
 $(patsubst tools/%.c,$(BUILD)/bin/%,$(tool_src)): $(BUILD)/bin/%: $(BUILD)/tools/%.o
 $(foreach t,$(tool_parts),$(eval $(BUILD)/bin/$(notdir $(patsubst %/,%,$(dir $(t)))): $(call objs,$(t))))
+
+$(BUILD)/bin/digwatch:  LIBS += $(call pkg_libs,ncursesw)
 
 # Static libraries are searched in order; the group lets the order be alphabetical.
 link = $(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(1) -o $@
@@ -173,6 +176,10 @@ fixtures = $(call objs,$(filter-out $(test_src) tests/blind/blind.c,$(wildcard t
 $(patsubst %.c,$(BUILD)/%,$(test_src)): %: %.o $(BUILD)/tests/libtests.a $$(call fixtures,$$(notdir $$(@D))) $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(call pkg_libs,cmocka) $(LIBS))
+
+# tests/PROGRAM/test_*.c test the parts of tools/PROGRAM.c.
+$(foreach t,$(tool_parts),$(eval $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(notdir $(patsubst %/,%,$(dir $t)))/test_*.c)): $(call objs,$t)))
+$(BUILD)/tests/digwatch/%: LIBS += $(call pkg_libs,ncursesw)
 
 # What these tests count, or answer themselves, is called in its place.
 comma  := ,

@@ -34,37 +34,47 @@ bool dig_lcm_log_is(const char *const path)
 #define DATA_BYTES    16384
 #define OURS          "DIGSIGHT_"
 
-struct event {
-    uint64_t number;
-    int64_t  time_us;
-    char     channel[CHANNEL_BYTES];
-    int      size;
-    uint8_t  data[DATA_BYTES];
+struct dig_lcm_log {
+    const char          *path;
+    FILE                *file;
+    struct dig_lcm_event event;
+    char                 channel[CHANNEL_BYTES];
+    uint8_t              data[DATA_BYTES];
 };
 
-// A log being read, and where it stands.
-struct reading {
-    const char       *path;
-    struct event      event;
-    struct dig_error *error;
-};
-
-static enum dig_status open_log(const struct reading *const r, FILE **const opened)
+enum dig_status dig_lcm_log_open(const char *const path, struct dig_lcm_log **const opened,
+                                 struct dig_error *const error)
 {
-    FILE *const file = fopen(r->path, "rb");
+    assert(path != NULL && opened != NULL);
+    FILE *const file = fopen(path, "rb");
     if (file == NULL) {
         // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
-        return dig_error_set(r->error, DIG_EIO, "%s: %s", r->path, strerror(errno));
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
     }
-    if (!dig_lcm_log_is(r->path)) {
+    if (!dig_lcm_log_is(path)) {
         (void)fclose(file);
-        (void)dig_error_set(r->error, DIG_EINVAL,
-                            "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
-                            r->path);
-        return DIG_EINVAL;
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",
+                             path);
     }
-    *opened = file;
+    struct dig_lcm_log *const log = malloc(sizeof *log);
+    if (log == NULL) {
+        (void)fclose(file);
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+    }
+    log->path  = path;
+    log->file  = file;
+    log->event = (struct dig_lcm_event){ .channel = log->channel, .data = log->data };
+    *opened    = log;
     return DIG_OK;
+}
+
+void dig_lcm_log_close(struct dig_lcm_log *const log)
+{
+    if (log != NULL) {
+        (void)fclose(log->file);
+        free(log);
+    }
 }
 
 static uint64_t big_endian(const uint8_t bytes[], const size_t count)
@@ -76,62 +86,59 @@ static uint64_t big_endian(const uint8_t bytes[], const size_t count)
     return value;
 }
 
-static enum dig_status refuse_damage(const struct reading *const r, const long at)
+static enum dig_status refuse_damage(const struct dig_lcm_log *const log, const long at,
+                                     struct dig_error *const error)
 {
-    return dig_error_set(r->error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event",
-                         r->path, at);
+    return dig_error_set(error, DIG_EINVAL, "%s: damaged at byte %ld, expected an event", log->path,
+                         at);
 }
 
-// *any becomes false at the end, which may also lie within an event: a logger that was killed.
-static enum dig_status next_event(FILE *const file, struct reading *const r, bool *const any)
+enum dig_status dig_lcm_log_next(struct dig_lcm_log *const          log,
+                                 const struct dig_lcm_event **const next,
+                                 struct dig_error *const            error)
 {
-    struct event *const e  = &r->event;
-    const long          at = ftell(file);
-    uint8_t             header[HEADER_BYTES];
-    if (fread(header, 1, sizeof header, file) < sizeof header) {
-        *any = false;
+    assert(log != NULL && next != NULL);
+    struct dig_lcm_event *const e  = &log->event;
+    const long                  at = ftell(log->file);
+    uint8_t                     header[HEADER_BYTES];
+    if (fread(header, 1, sizeof header, log->file) < sizeof header) {
+        *next = NULL;
         return DIG_OK;
     }
     const uint64_t channel_size = big_endian(header + 20, 4);
     const uint64_t size         = big_endian(header + 24, 4);
     if (memcmp(header, sync_word, sizeof sync_word) != 0 || channel_size < 1 ||
         channel_size >= CHANNEL_BYTES || size > INT32_MAX) {
-        return refuse_damage(r, at);
+        return refuse_damage(log, at, error);
     }
-    if (fread(e->channel, 1, (size_t)channel_size, file) < channel_size) {
-        *any = false;
+    if (fread(log->channel, 1, (size_t)channel_size, log->file) < channel_size) {
+        *next = NULL;
         return DIG_OK;
     }
-    e->channel[channel_size] = '\0';
-    e->number                = big_endian(header + 4, 8);
-    e->time_us               = (int64_t)big_endian(header + 12, 8);
-    e->size                  = (int)size;
-    if (strncmp(e->channel, OURS, strlen(OURS)) != 0) {
-        *any = fseek(file, (long)size, SEEK_CUR) == 0;
+    log->channel[channel_size] = '\0';
+    e->number                  = big_endian(header + 4, 8);
+    e->time_us                 = (int64_t)big_endian(header + 12, 8);
+    e->size                    = 0;
+    if (strncmp(log->channel, OURS, strlen(OURS)) != 0) {
+        *next = fseek(log->file, (long)size, SEEK_CUR) == 0 ? e : NULL;
         return DIG_OK;
     }
     if (size > DATA_BYTES) {
-        return refuse_damage(r, at);
+        return refuse_damage(log, at, error);
     }
-    *any = fread(e->data, 1, (size_t)size, file) == size;
+    e->size = (size_t)size;
+    *next   = fread(log->data, 1, e->size, log->file) == e->size ? e : NULL;
     return DIG_OK;
 }
 
-static enum dig_status refuse_message(const struct reading *const r,
-                                      const struct event *const   event)
+static enum dig_status refuse_message(const struct dig_lcm_log *const log,
+                                      struct dig_error *const         error)
 {
-    return dig_error_set(r->error, DIG_ESCHEMA,
+    return dig_error_set(error, DIG_ESCHEMA,
                          "%s: event %" PRIu64 ": %.40s is of another version of its type, expected "
                          "the one of this build (messages/*.lcm)",
-                         r->path, event->number, event->channel);
+                         log->path, log->event.number, log->channel);
 }
-
-// The fields of messages/*.lcm, in their order; files/lcm_layout.h says what the letters mean.
-static const char sample_layout[]     = "884DB";
-static const char estimate_layout[]   = "881188888888814s888ss1888";
-static const char match_layout[]      = "88114ss4888888888888888818s4DDDs848118888s1s148888";
-static const char prediction_layout[] = "8818s48884DDDD88188ss88DD";
-static const char health_layout[]     = "88sss1188888888888844888888888888884DDss8s444";
 
 #define TIME_MOST_ns ((int64_t)1 << 62) // of which differences can be taken
 #define ROWS_MAX     ((size_t)1 << 25)  // nine hours at a kilohertz
@@ -144,38 +151,39 @@ struct rows {
 // As many as samples had before there were force sensors; what came after is added at the end.
 static const int32_t least_signals = DIG_SIGNAL_TEMPERATURE_degC + 1;
 
-// One DIGSIGHT_SAMPLE as the next row.
-static enum dig_status add_row(const struct reading *const r, const struct event *const event,
-                               struct rows *const rows)
+// The log's event, a DIGSIGHT_SAMPLE, as the next row.
+static enum dig_status add_row(const struct dig_lcm_log *const log, struct rows *const rows,
+                               struct dig_error *const error)
 {
-    digsight_sample_t message;
-    if (!dig_lcm_fits(sample_layout, event->data, (size_t)event->size) ||
-        digsight_sample_t_decode(event->data, 0, event->size, &message) < 0) {
-        return refuse_message(r, event);
+    const struct dig_lcm_event *const event = &log->event;
+    digsight_sample_t                 message;
+    if (!dig_lcm_fits(DIG_LCM_SAMPLE_LAYOUT, event->data, event->size) ||
+        digsight_sample_t_decode(event->data, 0, (int)event->size, &message) < 0) {
+        return refuse_message(log, error);
     }
     enum dig_status status = DIG_OK;
     if (message.signals < least_signals || message.signals > DIG_SIGNALS) {
-        status = dig_error_set(r->error, DIG_EINVAL,
-                               "%s: event %" PRIu64 ": %d signals, expected %d to %d", r->path,
-                               event->number, message.signals, least_signals, DIG_SIGNALS);
+        status =
+            dig_error_set(error, DIG_EINVAL, "%s: event %" PRIu64 ": %d signals, expected %d to %d",
+                          log->path, event->number, message.signals, least_signals, DIG_SIGNALS);
     } else if (message.time_ns < 0 || message.time_ns > TIME_MOST_ns) {
-        status = dig_error_set(r->error, DIG_EINVAL,
+        status = dig_error_set(error, DIG_EINVAL,
                                "%s: event %" PRIu64 ": time_ns %" PRId64 ", expected 0 to 2^62",
-                               r->path, event->number, message.time_ns);
+                               log->path, event->number, message.time_ns);
     } else if (rows->count > 0 && message.time_ns <= rows->row[rows->count - 1].time_ns) {
         // A repetition, or a second daemon's: a recording ascends.
     } else {
         if (rows->count >= ROWS_MAX) {
             digsight_sample_t_decode_cleanup(&message);
-            return dig_error_set(r->error, DIG_EINVAL, "%s: more than %zu samples, expected fewer",
-                                 r->path, ROWS_MAX);
+            return dig_error_set(error, DIG_EINVAL, "%s: more than %zu samples, expected fewer",
+                                 log->path, ROWS_MAX);
         }
         if (rows->count == rows->room) {
             const size_t             room  = rows->room == 0 ? 1024 : 2 * rows->room;
             struct dig_sample *const grown = realloc(rows->row, room * sizeof *grown);
             if (grown == NULL) {
                 digsight_sample_t_decode_cleanup(&message);
-                return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory", r->path);
+                return dig_error_set(error, DIG_ENOMEM, "%s: no memory", log->path);
             }
             rows->row  = grown;
             rows->room = room;
@@ -196,20 +204,23 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
                                  struct dig_error *const             error)
 {
     assert(path != NULL && recording != NULL);
-    struct reading  r      = { .path = path, .error = error };
-    struct rows     rows   = { 0 };
-    FILE           *file   = NULL;
-    enum dig_status status = open_log(&r, &file);
+    struct rows                 rows   = { 0 };
+    struct dig_lcm_log         *log    = NULL;
+    const struct dig_lcm_event *event  = NULL;
+    enum dig_status             status = dig_lcm_log_open(path, &log, error);
     if (status != DIG_OK) {
         return status;
     }
-    for (bool any = true; status == DIG_OK && any;) {
-        status = next_event(file, &r, &any);
-        if (status == DIG_OK && any && strcmp(r.event.channel, "DIGSIGHT_SAMPLE") == 0) {
-            status = add_row(&r, &r.event, &rows);
+    while (status == DIG_OK) {
+        status = dig_lcm_log_next(log, &event, error);
+        if (status != DIG_OK || event == NULL) {
+            break;
+        }
+        if (strcmp(event->channel, "DIGSIGHT_SAMPLE") == 0) {
+            status = add_row(log, &rows, error);
         }
     }
-    (void)fclose(file);
+    dig_lcm_log_close(log);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
@@ -227,68 +238,25 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
     return DIG_OK;
 }
 
-// Decodes an event of one type and calls what wants it.
-#define HAND_ON(type)                                                                              \
-    static enum dig_status hand_on_##type(const struct reading *const            r,                \
-                                          const struct event *const              event,            \
-                                          const struct dig_lcm_log_reader *const reader)           \
-    {                                                                                              \
-        digsight_##type##_t message;                                                               \
-        if (reader->type == NULL) {                                                                \
-            return DIG_OK;                                                                         \
-        }                                                                                          \
-        if (!dig_lcm_fits(type##_layout, event->data, (size_t)event->size) ||                      \
-            digsight_##type##_t_decode(event->data, 0, event->size, &message) < 0) {               \
-            return refuse_message(r, event);                                                       \
-        }                                                                                          \
-        reader->type(reader->context, event->time_us, &message);                                   \
-        digsight_##type##_t_decode_cleanup(&message);                                              \
-        return DIG_OK;                                                                             \
-    }
-
-HAND_ON(estimate)
-HAND_ON(match)
-HAND_ON(prediction)
-HAND_ON(health)
-
-static enum dig_status hand_on(const struct reading *const r, const struct event *const event,
-                               const struct dig_lcm_log_reader *const reader)
-{
-    static const struct {
-        const char *channel;
-        enum dig_status (*hand_on)(const struct reading *, const struct event *,
-                                   const struct dig_lcm_log_reader *);
-    } kinds[] = {
-        { "DIGSIGHT_ESTIMATE", hand_on_estimate },
-        { "DIGSIGHT_MATCH", hand_on_match },
-        { "DIGSIGHT_PREDICTION", hand_on_prediction },
-        { "DIGSIGHT_HEALTH", hand_on_health },
-    };
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if (strcmp(event->channel, kinds[i].channel) == 0) {
-            return kinds[i].hand_on(r, event, reader);
-        }
-    }
-    return DIG_OK;
-}
-
-enum dig_status dig_lcm_log_each(const char *const                      path,
-                                 const struct dig_lcm_log_reader *const reader,
-                                 struct dig_error *const                error)
+enum dig_status dig_lcm_log_each(const char *const path, const struct dig_lcm_reader *const reader,
+                                 struct dig_error *const error)
 {
     assert(path != NULL && reader != NULL);
-    struct reading  r      = { .path = path, .error = error };
-    FILE           *file   = NULL;
-    enum dig_status status = open_log(&r, &file);
+    struct dig_lcm_log         *log    = NULL;
+    const struct dig_lcm_event *event  = NULL;
+    enum dig_status             status = dig_lcm_log_open(path, &log, error);
     if (status != DIG_OK) {
         return status;
     }
-    for (bool any = true; status == DIG_OK && any;) {
-        status = next_event(file, &r, &any);
-        if (status == DIG_OK && any) {
-            status = hand_on(&r, &r.event, reader);
+    while (status == DIG_OK) {
+        status = dig_lcm_log_next(log, &event, error);
+        if (status != DIG_OK || event == NULL) {
+            break;
+        }
+        if (dig_lcm_message_read(event, reader) != DIG_OK) {
+            status = refuse_message(log, error);
         }
     }
-    (void)fclose(file);
+    dig_lcm_log_close(log);
     return status;
 }

@@ -9,11 +9,7 @@
 
 #include "core/error.h"
 #include "core/recording.h"
-
-#include "messages/digsight_estimate_t.h"
-#include "messages/digsight_health_t.h"
-#include "messages/digsight_match_t.h"
-#include "messages/digsight_prediction_t.h"
+#include "files/lcm_message.h"
 
 #include <stdbool.h>
 
@@ -27,20 +23,26 @@ DIG_MUST_CHECK enum dig_status dig_lcm_log_read(const char                   *pa
                                                 struct dig_machine_recording *recording,
                                                 struct dig_error             *error);
 
-/// What to do with each kind of message; NULL: passed over. Messages are valid during the call
-/// only. time_us is the logger's wall clock.
-struct dig_lcm_log_reader {
-    void *context;
-    void (*estimate)(void *context, int64_t time_us, const digsight_estimate_t *message);
-    void (*match)(void *context, int64_t time_us, const digsight_match_t *message);
-    void (*prediction)(void *context, int64_t time_us, const digsight_prediction_t *message);
-    void (*health)(void *context, int64_t time_us, const digsight_health_t *message);
-};
+/// A log being read, event by event.
+struct dig_lcm_log;
+
+/// Close it with dig_lcm_log_close(); path must live as long. DIG_EINVAL: no log; DIG_EIO: it
+/// cannot be opened; DIG_ENOMEM. Writes on success only.
+DIG_MUST_CHECK enum dig_status dig_lcm_log_open(const char *path, struct dig_lcm_log **log,
+                                                struct dig_error *error);
+
+/// The next event, valid until the next call; NULL at the end. Of channels that are not the
+/// daemon's the data are left out. DIG_EINVAL, where the log is damaged: nothing behind it is read.
+DIG_MUST_CHECK enum dig_status dig_lcm_log_next(struct dig_lcm_log          *log,
+                                                const struct dig_lcm_event **event,
+                                                struct dig_error            *error);
+
+/// NULL is allowed.
+void dig_lcm_log_close(struct dig_lcm_log *log);
 
 /// All messages of the daemon's channels in the order they were logged. Errors as above, an empty
 /// log is none.
-DIG_MUST_CHECK enum dig_status dig_lcm_log_each(const char                      *path,
-                                                const struct dig_lcm_log_reader *reader,
-                                                struct dig_error                *error);
+DIG_MUST_CHECK enum dig_status
+dig_lcm_log_each(const char *path, const struct dig_lcm_reader *reader, struct dig_error *error);
 
 #endif // DIG_FILES_LCM_LOG_H

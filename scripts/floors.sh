@@ -20,7 +20,7 @@ list_of() { # LIST FOLDER: what the list says of it
 rooms_in() { # FOLDER: ROOM SOURCE… a line, the top first
     local folder=$1 room reversed=()
     if [ "$folder" = tools ]; then
-        for room in digtable digloop digreport; do
+        for room in digtable digloop digreport digwatch; do
             echo "$room $room $([ ! -d tools/$room ] || sources tools/$room)"
         done
         return

@@ -6,9 +6,11 @@
 #include "tables/load.h"
 #include "tools/digreport/options.h"
 #include "tools/digreport/run.h"
+#include "tools/digreport/shift_command.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static enum dig_status report(const struct digreport_options *const options,
                               struct dig_error *const               error)
@@ -58,15 +60,21 @@ done:
     return status;
 }
 
-int main(const int argc, char *argv[])
+// The whole command line, or the command's.
+static enum dig_status work(const int argc, char *argv[], struct dig_error *const error)
 {
     struct digreport_options options = { 0 };
-    struct dig_error         error   = { "" };
-    if (digreport_parse(argc, argv, &options, &error) != DIG_OK) {
-        (void)fprintf(stderr, "digreport: %s\nTry digreport --help.\n", error.text);
-        return 2;
+    if (argc > 1 && strcmp(argv[1], "shift") == 0) {
+        return digreport_shift_command(argc - 1, argv + 1, error);
     }
-    const enum dig_status status = report(&options, &error);
+    const enum dig_status status = digreport_parse(argc, argv, &options, error);
+    return status == DIG_OK ? report(&options, error) : status;
+}
+
+int main(const int argc, char *argv[])
+{
+    struct dig_error      error  = { "" };
+    const enum dig_status status = work(argc, argv, &error);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);
     }

@@ -3,30 +3,14 @@
 #include "files/lcm_log.h"
 
 #include "messages/digsight_sample_t.h"
+#include "tests/logged.h"
 #include "tests/scratch.h"
 
-#include <lcm/eventlog.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define WITH_TYPE(type)                                                                            \
-    static void log_##type(lcm_eventlog_t *const log, const char *const channel,                   \
-                           const digsight_##type##_t *const message)                               \
-    {                                                                                              \
-        const int            size  = digsight_##type##_t_encoded_size(message);                    \
-        void *const          bytes = malloc((size_t)size);                                         \
-        char                 name[32];                                                             \
-        lcm_eventlog_event_t event = {                                                             \
-            .timestamp = 1, .datalen = size, .channel = name, .data = bytes                        \
-        };                                                                                         \
-        event.channellen = snprintf(name, sizeof name, "%s", channel);                             \
-        assert_int_equal(digsight_##type##_t_encode(bytes, 0, size, message), size);               \
-        assert_int_equal(lcm_eventlog_write_event(log, &event), 0);                                \
-        free(bytes);                                                                               \
-    }
-
-WITH_TYPE(sample)
-WITH_TYPE(match)
+LOG_TYPE(sample)
+LOG_TYPE(match)
 
 static lcm_eventlog_t *begin(const char *const name)
 {
@@ -45,7 +29,7 @@ static void put_sample(lcm_eventlog_t *const log, const int64_t time_ns, const i
     const digsight_sample_t message = {
         .time_ns = time_ns, .signals = signals, .value = value, .valid = valid
     };
-    log_sample(log, "DIGSIGHT_SAMPLE", &message);
+    log_sample(log, "DIGSIGHT_SAMPLE", 1, &message);
 }
 
 struct counts {
@@ -86,11 +70,11 @@ static void count_health(void *const context, const int64_t time_us,
 static void the_example_of_the_formats_is_read(void **state)
 {
     (void)state;
-    static const char               path[] = "tests/data/formats/daemon.lcm";
-    struct counts                   counts = { 0 };
-    const struct dig_lcm_log_reader reader = { &counts, count_estimate, count_any_match,
-                                               count_prediction, count_health };
-    struct dig_machine_recording    r;
+    static const char            path[] = "tests/data/formats/daemon.lcm";
+    struct counts                counts = { 0 };
+    const struct dig_lcm_reader  reader = { &counts, count_estimate, count_any_match,
+                                            count_prediction, count_health };
+    struct dig_machine_recording r;
     assert_int_equal(dig_lcm_log_each(path, &reader, NULL), DIG_OK);
     assert_int_equal(counts.estimates, 20);
     assert_int_equal(counts.matches, 2);
@@ -151,13 +135,13 @@ static void other_messages_are_handed_on_one_by_one(void **state)
         .untold          = table,
     };
     put_sample(log, 1, DIG_SIGNALS);
-    log_match(log, "DIGSIGHT_MATCH", &match);
-    log_match(log, "SOMETHING_ELSE", &match);
-    log_match(log, "DIGSIGHT_MATCH", &match);
+    log_match(log, "DIGSIGHT_MATCH", 1, &match);
+    log_match(log, "SOMETHING_ELSE", 1, &match);
+    log_match(log, "DIGSIGHT_MATCH", 1, &match);
     lcm_eventlog_destroy(log);
 
-    int                             count  = 0;
-    const struct dig_lcm_log_reader reader = { .context = &count, .match = count_match };
+    int                         count  = 0;
+    const struct dig_lcm_reader reader = { .context = &count, .match = count_match };
     assert_int_equal(dig_lcm_log_each(scratch_path("match.lcm"), &reader, NULL), DIG_OK);
     assert_int_equal(count, 2);
 }
@@ -242,7 +226,7 @@ static void defects_are_refused_and_write_nothing(void **state)
          .untold          = text,
     };
     log = begin("version.lcm");
-    log_match(log, "DIGSIGHT_SAMPLE", &match);
+    log_match(log, "DIGSIGHT_SAMPLE", 1, &match);
     lcm_eventlog_destroy(log);
     check_refused("version.lcm", DIG_ESCHEMA, "DIGSIGHT_SAMPLE is of another version of its type");
 
@@ -268,7 +252,7 @@ static void values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken(vo
     lcm_eventlog_t      *log     = begin("nan.lcm");
     for (size_t i = 0; i < 2; i++) {
         message.time_ns = times[i];
-        log_sample(log, "DIGSIGHT_SAMPLE", &message);
+        log_sample(log, "DIGSIGHT_SAMPLE", 1, &message);
     }
     lcm_eventlog_destroy(log);
     struct dig_machine_recording r = { 0 };
@@ -285,7 +269,7 @@ static void values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken(vo
         log = begin("when.lcm");
         put_sample(log, 1, DIG_SIGNALS);
         message.time_ns = absurd[i];
-        log_sample(log, "DIGSIGHT_SAMPLE", &message);
+        log_sample(log, "DIGSIGHT_SAMPLE", 1, &message);
         lcm_eventlog_destroy(log);
         check_refused("when.lcm", DIG_EINVAL, "expected 0 to 2^62");
     }

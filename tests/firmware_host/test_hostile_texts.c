@@ -272,8 +272,8 @@ static void what_the_daemon_publishes_is_printable(void **state)
         assert_int_equal(dig_output_health(output, &health), DIG_OK);
     }
     dig_output_destroy(output);
-    size_t                          seen   = 0;
-    const struct dig_lcm_log_reader reader = { .context = &seen, .health = on_health };
+    size_t                      seen   = 0;
+    const struct dig_lcm_reader reader = { .context = &seen, .health = on_health };
     assert_int_equal(dig_lcm_log_each(scratch_path("health.lcm"), &reader, NULL), DIG_OK);
     assert_int_equal(seen, TEXTS);
 }

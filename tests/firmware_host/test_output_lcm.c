@@ -118,9 +118,8 @@ static void on_health(void *const context, const int64_t time_us, const digsight
 
 static struct seen read_back(const char *const name)
 {
-    struct seen                     seen   = { 0 };
-    const struct dig_lcm_log_reader reader = { &seen, on_estimate, on_match, on_prediction,
-                                               on_health };
+    struct seen                 seen   = { 0 };
+    const struct dig_lcm_reader reader = { &seen, on_estimate, on_match, on_prediction, on_health };
     assert_int_equal(dig_lcm_log_each(scratch_path(name), &reader, NULL), DIG_OK);
     return seen;
 }

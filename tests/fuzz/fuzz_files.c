@@ -115,12 +115,12 @@ IGNORE(health)
 
 static enum dig_status read_log(const char *const path, struct dig_error *const e)
 {
-    const struct dig_lcm_log_reader all    = { .estimate   = ignore_estimate,
-                                               .match      = ignore_match,
-                                               .prediction = ignore_prediction,
-                                               .health     = ignore_health };
-    struct dig_machine_recording    r      = { 0 };
-    const enum dig_status           status = dig_lcm_log_read(path, &r, e);
+    const struct dig_lcm_reader  all    = { .estimate   = ignore_estimate,
+                                            .match      = ignore_match,
+                                            .prediction = ignore_prediction,
+                                            .health     = ignore_health };
+    struct dig_machine_recording r      = { 0 };
+    const enum dig_status        status = dig_lcm_log_read(path, &r, e);
     dig_machine_recording_finish(&r);
     return status == DIG_OK ? dig_lcm_log_each(path, &all, e) : status;
 }

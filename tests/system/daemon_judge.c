@@ -159,8 +159,8 @@ static double sigmas_off(const struct judge *const j, const size_t i, const doub
 
 int main(const int argc, char *argv[])
 {
-    struct judge *const             j      = calloc(1, sizeof *j);
-    const struct dig_lcm_log_reader reader = {
+    struct judge *const         j      = calloc(1, sizeof *j);
+    const struct dig_lcm_reader reader = {
         .context = j, .estimate = estimate, .match = match, .prediction = prediction
     };
     struct dig_error error = { "" };

@@ -111,7 +111,7 @@ int main(const int argc, char *argv[])
         (void)fprintf(stderr, "usage: daemon_log LOG.lcm\n");
         return 2;
     }
-    const struct dig_lcm_log_reader reader = {
+    const struct dig_lcm_reader reader = {
         .estimate = estimate, .match = match, .prediction = prediction, .health = health
     };
     struct dig_error             error = { "" };

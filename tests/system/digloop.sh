@@ -191,7 +191,7 @@ check "a truth that is no gravel is named" refuses "--truth" "expected FRICTION"
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --truth 1,2 "a=b"
 check "a log that is none is named" refuses README.md -- \
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --html "$work/never" "a=README.md"
-for tool in digloop digreport digtable digrig digsightd; do
+for tool in digloop digreport digtable digwatch digrig digsightd; do
     check "$tool has --help with examples" eval '"$BIN/'$tool'" --help | grep -qi example'
     check "$tool has --version" eval '"$BIN/'$tool'" --version | grep -q "0\.1\.0"'
 done

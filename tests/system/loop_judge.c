@@ -122,11 +122,11 @@ static void tell(const char *const what, const struct sum *const sum)
 
 int main(const int argc, char *argv[])
 {
-    struct judge *const             j      = calloc(1, sizeof *j);
-    const struct dig_lcm_log_reader reader = { .context    = j,
-                                               .estimate   = estimate,
-                                               .prediction = prediction };
-    struct dig_error                error  = { "" };
+    struct judge *const         j      = calloc(1, sizeof *j);
+    const struct dig_lcm_reader reader = { .context    = j,
+                                           .estimate   = estimate,
+                                           .prediction = prediction };
+    struct dig_error            error  = { "" };
     if (j == NULL || argc != 4 || read_truth(argv[2], j) != 0) {
         (void)fprintf(stderr, "usage: loop_judge LOG.lcm TRUTH.csv TRAJECTORY\n");
         return 2;

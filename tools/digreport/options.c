@@ -16,6 +16,8 @@ static const char help[] =
     "      NAME is how the run is called in the report (\"Modbus TCP=tcp.lcm\"); up to 4 runs.\n"
     "      The log must hold one simple dig that identified the gravel and one later dig that was\n"
     "      predicted. --recording: a force recording that was fed to the rig, drawn beside.\n"
+    "  digreport shift …\n"
+    "      what a whole shift was like, from its logs: digreport shift --help\n"
     "  digreport --help | --version\n"
     "\n"
     "The table of results goes to standard output, with --json to standard error. Exit codes: 0 "

@@ -5,8 +5,8 @@
 #include "core/name.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
-#include "estimator/predict/prediction.h"
 #include "files/lcm_log.h"
+#include "files/predicted_curve.h"
 #include "files/recording_csv.h"
 
 #include <math.h>
@@ -16,15 +16,12 @@
 
 // What the daemon published, as far as the report needs it.
 struct published {
-    bool              matched, forces;
-    struct dig_gravel gravel, low, high, nearest;
-    double            distance;
-    uint32_t          matched_dig;
-    bool              predicted; // for a dig after the match
-    char              trajectory[DIG_NAME_SIZE];
-    double            from, to;
-    double            moment_Nm[DIG_PREDICTION_POINTS];
-    double            sigma_Nm[DIG_PREDICTION_POINTS];
+    bool                       matched, forces;
+    struct dig_gravel          gravel, low, high, nearest;
+    double                     distance;
+    uint32_t                   matched_dig;
+    bool                       predicted; // for a dig after the match
+    struct dig_predicted_curve curve;
 };
 
 // A log holds what anybody on the network sent.
@@ -69,20 +66,9 @@ static void take_prediction(void *const context, const int64_t time_us,
 {
     (void)time_us;
     struct published *const published = context;
-    if (!published->matched || published->predicted || !p->valid ||
-        p->points != DIG_PREDICTION_POINTS || strncmp(p->trajectory, "simple", 6) == 0 ||
-        !dig_name_ok(p->trajectory) ||
-        !(p->from_progress >= 0.0 && p->from_progress < p->to_progress && p->to_progress <= 1.0) ||
-        !are_finite(DIG_PREDICTION_POINTS, p->moment_Nm) ||
-        !are_finite(DIG_PREDICTION_POINTS, p->sigma_Nm)) {
-        return;
+    if (published->matched && !published->predicted && strncmp(p->trajectory, "simple", 6) != 0) {
+        published->predicted = dig_predicted_curve_take(p, &published->curve);
     }
-    published->predicted = true;
-    (void)snprintf(published->trajectory, sizeof published->trajectory, "%s", p->trajectory);
-    published->from = p->from_progress;
-    published->to   = p->to_progress;
-    memcpy(published->moment_Nm, p->moment_Nm, sizeof published->moment_Nm);
-    memcpy(published->sigma_Nm, p->sigma_Nm, sizeof published->sigma_Nm);
 }
 
 // The digs of a log, measured again from its samples: the same estimator, without a bus.
@@ -111,7 +97,7 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         (void)dig_error_set(error, status, "%s: %s", log, dig_status_str(status));
         goto done;
     }
-    const int want_real   = dig_curve_set_find(set, published->trajectory);
+    const int want_real   = dig_curve_set_find(set, published->curve.trajectory);
     bool      have_simple = false;
     bool      have_real   = false;
     for (size_t i = 0; i < samples.rows; i++) {
@@ -139,21 +125,6 @@ done:
     free(estimator);
     dig_machine_recording_finish(&samples);
     return status;
-}
-
-// A curve of DIG_PREDICTION_POINTS over [from, to], as the daemon published it, on the table's
-// grid.
-static double published_at(const struct published *const published, const double curve[],
-                           const double progress)
-{
-    const double place = (progress - published->from) / (published->to - published->from) *
-                         (DIG_PREDICTION_POINTS - 1);
-    if (!(place >= 0.0)) {
-        return (double)NAN;
-    }
-    const size_t i = (size_t)fmin(floor(place), DIG_PREDICTION_POINTS - 2);
-    const double f = fmin(place - (double)i, 1.0);
-    return (1.0 - f) * curve[i] + f * curve[i + 1];
 }
 
 static enum dig_status add_recordings(const struct digreport_options *const options,
@@ -202,12 +173,12 @@ enum dig_status digreport_run(const struct digreport_options *const options,
                               const struct dig_curve_set *const set, char *const named_log,
                               struct dig_report_run *const run, struct dig_error *const error)
 {
-    char *const                     log       = strchr(named_log, '=') + 1;
-    struct published                published = { .matched = false };
-    const struct dig_lcm_log_reader reader    = { .context    = &published,
-                                                  .match      = take_match,
-                                                  .prediction = take_prediction };
-    enum dig_status                 status    = dig_lcm_log_each(log, &reader, error);
+    char *const                 log       = strchr(named_log, '=') + 1;
+    struct published            published = { .matched = false };
+    const struct dig_lcm_reader reader    = { .context    = &published,
+                                              .match      = take_match,
+                                              .prediction = take_prediction };
+    enum dig_status             status    = dig_lcm_log_each(log, &reader, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -251,13 +222,16 @@ enum dig_status digreport_run(const struct digreport_options *const options,
         const double progress   = (double)k / (DIG_CURVE_POINTS - 1);
         run->simple.model_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
         run->simple.sigma_Nm[k] = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
-        run->real.model_Nm[k]   = to_rig * published_at(&published, published.moment_Nm, progress);
-        run->real.sigma_Nm[k]   = to_rig * published_at(&published, published.sigma_Nm, progress);
+        double predicted_Nm     = (double)NAN;
+        double sigma_Nm         = (double)NAN;
+        (void)dig_predicted_curve_at(&published.curve, progress, &predicted_Nm, &sigma_Nm);
+        run->real.model_Nm[k] = to_rig * predicted_Nm;
+        run->real.sigma_Nm[k] = to_rig * sigma_Nm;
     }
     struct dig_score score = { 0 };
     const int        t     = dig_curve_set_find(set, run->real.trajectory);
     // One grid point in from where the prediction begins: the curve is a gap before it.
-    const double from = fmax(real.first, published.from + 1.0 / (DIG_CURVE_POINTS - 1));
+    const double from = fmax(real.first, published.curve.from + 1.0 / (DIG_CURVE_POINTS - 1));
     dig_score_add(&score, &set->trajectory[t], set->tooth_m, from, real.last, run->real.measured_Nm,
                   run->real.model_Nm, run->real.sigma_Nm);
     run->error       = dig_score_error(&score);

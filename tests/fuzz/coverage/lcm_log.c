@@ -15,14 +15,14 @@ IGNORE(health)
 
 int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
 {
-    const struct dig_lcm_log_reader all       = { .estimate   = ignore_estimate,
-                                                  .match      = ignore_match,
-                                                  .prediction = ignore_prediction,
-                                                  .health     = ignore_health };
-    const char *const               path      = as_file(data, size);
-    struct dig_error                error     = { "" };
-    struct dig_machine_recording    recording = { 0 };
-    const enum dig_status           status    = dig_lcm_log_read(path, &recording, &error);
+    const struct dig_lcm_reader  all       = { .estimate   = ignore_estimate,
+                                               .match      = ignore_match,
+                                               .prediction = ignore_prediction,
+                                               .health     = ignore_health };
+    const char *const            path      = as_file(data, size);
+    struct dig_error             error     = { "" };
+    struct dig_machine_recording recording = { 0 };
+    const enum dig_status        status    = dig_lcm_log_read(path, &recording, &error);
     expect_word(status, &error);
     dig_machine_recording_finish(&recording);
 

@@ -1,0 +1,230 @@
+// Tests for tools/digreport/shift_dig.c: digs whose numbers are worked out by hand.
+
+#include "tools/digreport/shift_dig.h"
+
+#include "tests/testlib.h"
+
+#include <string.h>
+
+static char no_text[] = "";
+static char actual[]  = "actual";
+
+static struct digreport_dig_track track;
+static struct digreport_dig       dig;
+
+static int fresh(void **state)
+{
+    (void)state;
+    digreport_track_finish(&track);
+    track = (struct digreport_dig_track){ .half_s = 0.05 };
+    dig   = (struct digreport_dig){ .number = -1 };
+    return 0;
+}
+
+static digsight_estimate_t estimate_at(const int64_t time_ms, const int8_t phase,
+                                       const double moment_Nm)
+{
+    return (digsight_estimate_t){ .time_ns      = time_ms * 1000000,
+                                  .phase        = phase,
+                                  .moment_valid = 1,
+                                  .force_valid  = 1,
+                                  .moment_Nm    = moment_Nm,
+                                  .progress     = (double)NAN,
+                                  .trajectory   = no_text,
+                                  .missing      = no_text,
+                                  .advice       = no_text };
+}
+
+static bool take(const digsight_estimate_t *const e)
+{
+    bool finished = false;
+    assert_int_equal(digreport_track_estimate(&track, e->time_ns / 1000, e, &finished, &dig),
+                     DIG_OK);
+    return finished;
+}
+
+// Of "actual" from 0 to 1, 2000 N·m throughout with sigma 100.
+static void predict(const int32_t gravel_of_dig)
+{
+    double moment[DIG_PREDICTED_POINTS];
+    double sigma[DIG_PREDICTED_POINTS];
+    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
+        moment[i] = 2000.0;
+        sigma[i]  = 100.0;
+    }
+    const digsight_prediction_t p = { .valid          = 1,
+                                      .trajectory     = actual,
+                                      .dig_count      = gravel_of_dig,
+                                      .to_progress    = 1.0,
+                                      .points         = DIG_PREDICTED_POINTS,
+                                      .moment_Nm      = moment,
+                                      .sigma_Nm       = sigma,
+                                      .peak_Nm        = 2100.0,
+                                      .peak_sigma_Nm  = 90.0,
+                                      .energy_J       = 5000.0,
+                                      .energy_sigma_J = 300.0 };
+    digreport_track_prediction(&track, &p);
+}
+
+// Two seconds at 1000 N·m, every 100 ms, from 1 s on; known as "actual" from 2 s on.
+static bool dig_two_seconds(const int32_t gravel_of_dig)
+{
+    digsight_estimate_t e = estimate_at(900, 0, 0.0);
+    assert_false(take(&e));
+    for (int64_t ms = 1000; ms <= 3000; ms += 100) {
+        e = estimate_at(ms, ms < 1200 ? 1 : 2, 1000.0);
+        if (ms >= 2000) {
+            e.trajectory = actual;
+            e.progress   = (double)(ms - 1000) / 2000.0;
+        }
+        assert_false(take(&e));
+        if (ms == 2000) {
+            predict(gravel_of_dig);
+        }
+    }
+    e = estimate_at(3100, 3, 500.0); // exit: not part of it
+    assert_false(take(&e));
+    e           = estimate_at(3200, 0, 0.0);
+    e.dig_count = 1;
+    return take(&e);
+}
+
+static void a_dig_is_from_contact_to_exit(void **state)
+{
+    (void)state;
+    assert_true(dig_two_seconds(0));
+    assert_int_equal(dig.number, 1);
+    assert_int_equal(dig.time_us, 1000000);
+    assert_close(dig.duration_s, 2.0, 1e-9);
+    assert_string_equal(dig.trajectory, "actual");
+    assert_close(dig.peak_Nm, 1000.0, 1e-9);
+}
+
+// 1000 measured where 2000 +- 100 was predicted: off by 1000 of 1000, floor 100 of 1000.
+static void the_error_is_that_of_the_first_prediction_made_in_the_dig(void **state)
+{
+    (void)state;
+    assert_true(dig_two_seconds(0));
+    assert_close(dig.error, 1.0, 1e-9);
+    assert_close(dig.noise_floor, 0.1, 1e-9);
+    assert_close(dig.predicted_peak_Nm, 2100.0, 0.0);
+    assert_close(dig.predicted_energy_sigma_J, 300.0, 0.0);
+}
+
+static void a_prediction_from_the_dig_itself_does_not_judge_it(void **state)
+{
+    (void)state;
+    assert_true(dig_two_seconds(1)); // this dig will be number 1
+    assert_true(isnan(dig.error) && isnan(dig.noise_floor) && isnan(dig.predicted_peak_Nm) &&
+                isnan(dig.predicted_energy_J));
+}
+
+// The pin goes by 2 m against the soil's 300 N in x, down 1 m against 500 N, and curls by 0.5 rad
+// against 1000 N·m: 600 + 500 + 500 J.
+static void energy_is_the_work_on_the_soil(void **state)
+{
+    (void)state;
+    const int n = 11;
+    for (int i = 0; i < n; i++) {
+        const double        part = i / 10.0;
+        digsight_estimate_t e    = estimate_at(1000 + 100 * i, 2, 1000.0);
+        e.force_x_N              = -300.0; // against the drag towards the cab, which is -X
+        e.force_z_N              = 500.0;
+        e.pin_X_m                = 8.0 - 2.0 * part;
+        e.pin_Z_m                = 1.0 - part;
+        e.bucket_phi_rad         = remainder(3.3 - 0.5 * part, 6.283185307179586); // over the seam
+        assert_false(take(&e));
+    }
+    digsight_estimate_t e = estimate_at(2100, 3, 0.0);
+    e.dig_count           = 1;
+    assert_true(take(&e));
+    assert_close(dig.energy_J, 1600.0, 1e-6);
+
+    // Without a force once there is none.
+    (void)fresh(NULL);
+    e = estimate_at(1000, 2, 1000.0);
+    assert_false(take(&e));
+    e             = estimate_at(1100, 2, 1000.0);
+    e.force_valid = 0;
+    assert_false(take(&e));
+    e           = estimate_at(1200, 3, 0.0);
+    e.dig_count = 1;
+    assert_true(take(&e));
+    assert_true(isnan(dig.energy_J));
+    assert_close(dig.peak_Nm, 1000.0, 1e-9);
+}
+
+// 0, 0, 900, 0, 0 every 40 ms, averaged over +-50 ms: 300 at most.
+static void the_peak_is_that_of_the_moving_average(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 5; i++) {
+        const digsight_estimate_t e = estimate_at(1000 + 40 * i, 2, i == 2 ? 900.0 : 0.0);
+        assert_false(take(&e));
+    }
+    digsight_estimate_t e = estimate_at(1300, 3, 0.0);
+    e.dig_count           = 1;
+    assert_true(take(&e));
+    assert_close(dig.peak_Nm, 300.0, 1e-9);
+}
+
+static void a_contact_that_is_lost_is_no_dig(void **state)
+{
+    (void)state;
+    digsight_estimate_t e = estimate_at(1000, 1, 1000.0);
+    assert_false(take(&e));
+    e = estimate_at(1100, 1, 1000.0);
+    assert_false(take(&e));
+    e = estimate_at(1200, 0, 0.0);
+    assert_false(take(&e));
+    e           = estimate_at(1300, 0, 0.0);
+    e.dig_count = 1; // a dig whose estimates did not come
+    assert_false(take(&e));
+}
+
+static void numbers_and_names_of_others_are_not_taken(void **state)
+{
+    (void)state;
+    static const double moments[] = { (double)NAN, (double)INFINITY, -1e12, 1000.0, 1000.0 };
+    char                name[]    = "<script>";
+    digsight_estimate_t e;
+    for (int i = 0; i < 5; i++) {
+        e            = estimate_at(1000 + 100 * i, 2, moments[i]);
+        e.trajectory = name;
+        e.pin_X_m    = (double)NAN;
+        assert_false(take(&e));
+    }
+    e           = estimate_at(INT64_MIN / 1000000, 3, 0.0);
+    e.dig_count = INT32_MAX;
+    assert_true(take(&e));
+    assert_string_equal(dig.trajectory, "");
+    assert_close(dig.peak_Nm, 1000.0, 1e-9);
+    assert_close(dig.duration_s, 0.1, 1e-9);
+    assert_true(isnan(dig.energy_J));
+    // Times that go back, and as far as they can.
+    static const int64_t times[] = { 5000, 1000, INT64_MIN / 1000000, INT64_MAX / 1000000, 0 };
+    for (int i = 0; i < 5; i++) {
+        e           = estimate_at(times[i], 2, 1000.0);
+        e.dig_count = INT32_MAX;
+        assert_false(take(&e));
+    }
+    e           = estimate_at(0, 0, 0.0);
+    e.dig_count = INT32_MIN;
+    assert_true(take(&e));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(a_dig_is_from_contact_to_exit, fresh),
+        cmocka_unit_test_setup(the_error_is_that_of_the_first_prediction_made_in_the_dig, fresh),
+        cmocka_unit_test_setup(a_prediction_from_the_dig_itself_does_not_judge_it, fresh),
+        cmocka_unit_test_setup(energy_is_the_work_on_the_soil, fresh),
+        cmocka_unit_test_setup(the_peak_is_that_of_the_moving_average, fresh),
+        cmocka_unit_test_setup(a_contact_that_is_lost_is_no_dig, fresh),
+        cmocka_unit_test_setup(numbers_and_names_of_others_are_not_taken, fresh),
+    };
+    const int failed = cmocka_run_group_tests_name("shift_dig", tests, NULL, NULL);
+    digreport_track_finish(&track);
+    return failed;
+}

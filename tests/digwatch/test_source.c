@@ -1,0 +1,85 @@
+// Tests for tools/digwatch/source.c: when the messages of a log are handed on.
+
+#include "tools/digwatch/source.h"
+
+#include "messages/digsight_health_t.h"
+#include "tests/logged.h"
+#include "tests/scratch.h"
+
+LOG_TYPE(health)
+
+static void put(lcm_eventlog_t *const log, const int64_t time_us)
+{
+    char                    empty[] = "";
+    const digsight_health_t h       = { .state           = empty,
+                                        .input           = empty,
+                                        .note            = empty,
+                                        .missing_signals = empty,
+                                        .table           = empty,
+                                        .advice          = empty };
+    log_health(log, "DIGSIGHT_HEALTH", time_us, &h);
+}
+
+static void count(void *const context, const struct dig_lcm_event *const event)
+{
+    assert_string_equal(event->channel, "DIGSIGHT_HEALTH");
+    ++*(int *)context;
+}
+
+// At twice its speed: a second takes half of one, an hour five seconds, a clock set back nothing.
+static void a_log_is_played_at_its_speed_without_its_pauses(void **state)
+{
+    (void)state;
+    static const int64_t  times_us[] = { 5000000, 6000000, 3606000000, 1000, INT64_MIN, INT64_MAX };
+    lcm_eventlog_t *const log        = lcm_eventlog_create(scratch_path("day.lcm"), "w");
+    for (size_t i = 0; i < 6; i++) {
+        put(log, times_us[i]);
+    }
+    lcm_eventlog_destroy(log);
+
+    struct digwatch_source *source = NULL;
+    const char *const       path   = scratch_path("day.lcm");
+    assert_int_equal(digwatch_source_play(path, 2.0, &source, NULL), DIG_OK);
+    assert_int_equal(digwatch_source_fd(source), -1);
+    static const struct {
+        double now_s;
+        int    taken;
+        double due_s;
+    } steps[]                         = { { 100.0, 1, 100.5 },
+                                          { 100.4, 1, 100.5 },
+                                          { 100.5, 2, 105.5 },
+                                          { 105.5, 6, (double)INFINITY } };
+    int                         taken = 0;
+    const struct digwatch_taker taker = { &taken, count };
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        assert_false(digwatch_source_ended(source));
+        assert_int_equal(digwatch_source_read(source, steps[i].now_s, &taker, NULL), DIG_OK);
+        assert_int_equal(taken, steps[i].taken);
+        const double due_s = digwatch_source_due_s(source);
+        assert_true(due_s >= steps[i].due_s - 1e-9 && due_s <= steps[i].due_s + 1e-9);
+    }
+    assert_true(digwatch_source_ended(source));
+    digwatch_source_close(source);
+    digwatch_source_close(NULL);
+}
+
+static void a_source_that_is_none_is_refused_and_writes_nothing(void **state)
+{
+    (void)state;
+    struct digwatch_source *source = NULL;
+    struct dig_error        error  = { "" };
+    assert_int_equal(digwatch_source_play(scratch_path("none.lcm"), 1.0, &source, &error), DIG_EIO);
+    assert_contains(error.text, "none.lcm: No such file");
+    assert_int_equal(digwatch_source_listen("nonsense://", &source, &error), DIG_EIO);
+    assert_contains(error.text, "LCM nonsense://: no such network");
+    assert_null(source);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_log_is_played_at_its_speed_without_its_pauses),
+        cmocka_unit_test(a_source_that_is_none_is_refused_and_writes_nothing),
+    };
+    return cmocka_run_group_tests_name("digwatch source", tests, scratch_setup, scratch_teardown);
+}

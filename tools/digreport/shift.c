@@ -1,0 +1,286 @@
+#include "tools/digreport/shift.h"
+
+#include "core/text.h"
+#include "files/lcm_log.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SAME_EVENT_us 60000000 // signs of one trouble
+#define LOOK_BACK     64       // events among which the same is looked for
+#define MOST          10000    // digs, matches or events of a shift; more are counted
+#define COUNT_MOST    (INT64_C(1) << 53)
+
+static const struct dig_health_text reloaded = { "reloads", "a new table or model was taken",
+                                                 "predictions after it are made with it" };
+static const struct dig_health_text outside  = { "outside",
+                                                 "a simple dig was none of the table's gravels",
+                                                 "do not rely on predictions of that ground" };
+
+// The array with room for one more element; NULL: no memory, and it stays as it is.
+static void *with_room(void *const array, const size_t n, const size_t size)
+{
+    const bool full = (n & (n + 1)) == 0; // it has room for 1, 3, 7, …
+    return full ? realloc(array, (2 * n + 1) * size) : array;
+}
+
+// By how much a counter has grown; a daemon that began anew, or another's message, tells nothing.
+static int64_t growth(const int64_t before, const int64_t now)
+{
+    return before >= 0 && now > before && now <= COUNT_MOST ? now - before : 0;
+}
+
+static void take_text(char text[DIGREPORT_TEXT], const char *const said)
+{
+    (void)snprintf(text, DIGREPORT_TEXT, "%s", said);
+    dig_text_clean(text);
+}
+
+// Extends an event of the same text, or words, or begins one.
+static void add_event(struct digreport_shift *const shift, const int64_t time_us,
+                      const struct dig_health_text *const text, const char *const said,
+                      const int64_t count)
+{
+    struct digreport_event e = { time_us, time_us, count, text, "" };
+    take_text(e.said, said);
+    for (size_t back = 0; back < LOOK_BACK && back < shift->events; back++) {
+        struct digreport_event *const old = &shift->event[shift->events - 1 - back];
+        if (old->text == text && strcmp(old->said, e.said) == 0 &&
+            llabs(time_us - old->to_us) <= SAME_EVENT_us) {
+            old->to_us = time_us;
+            old->count = old->count < COUNT_MOST ? old->count + count : old->count;
+            return;
+        }
+    }
+    if (shift->events == MOST) {
+        shift->left_out++;
+        return;
+    }
+    struct digreport_event *const grown = with_room(shift->event, shift->events, sizeof *grown);
+    if (grown == NULL) {
+        shift->status = DIG_ENOMEM;
+        return;
+    }
+    shift->event                  = grown;
+    shift->event[shift->events++] = e;
+}
+
+static void take_estimate(void *const context, const int64_t time_us,
+                          const digsight_estimate_t *const said)
+{
+    struct digreport_shift *const shift = context;
+    struct digreport_dig          dig;
+    bool                          finished = false;
+    shift->status = digreport_track_estimate(&shift->track, time_us, said, &finished, &dig);
+    shift->left_out += finished && shift->digs == MOST ? 1 : 0;
+    if (!finished || shift->digs == MOST) {
+        return;
+    }
+    struct digreport_dig *const grown = with_room(shift->dig, shift->digs, sizeof *grown);
+    if (grown == NULL) {
+        shift->status = DIG_ENOMEM;
+        return;
+    }
+    shift->dig                = grown;
+    shift->dig[shift->digs++] = dig;
+}
+
+static void take_prediction(void *const context, const int64_t time_us,
+                            const digsight_prediction_t *const said)
+{
+    (void)time_us;
+    digreport_track_prediction(&((struct digreport_shift *)context)->track, said);
+}
+
+static bool is_gravel(const struct dig_gravel *const gravel)
+{
+    int a = 0;
+    while (a < DIG_AXES && isfinite(gravel->value[a]) && fabs(gravel->value[a]) < 1e6) {
+        a++;
+    }
+    return a == DIG_AXES;
+}
+
+// MATCH comes once a second; what is new has another time, or has ended.
+static void take_match(void *const context, const int64_t time_us,
+                       const digsight_match_t *const said)
+{
+    struct digreport_shift *const shift = context;
+    const bool                    known = said->valid != 0;
+    if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
+        return;
+    }
+    struct digreport_gravel g = {
+        .time_us = time_us,
+        .known   = known,
+        .outside = said->outside != 0,
+        .forces  = said->forces != 0,
+        .gravel  = { { said->friction, said->rolling, said->density_kgpm3 } },
+        .low     = { { said->friction_low, said->rolling_low, said->density_low_kgpm3 } },
+        .high    = { { said->friction_high, said->rolling_high, said->density_high_kgpm3 } },
+        .digs    = said->digs,
+    };
+    take_text(g.untold, said->untold);
+    take_text(g.wanted, said->wanted);
+    if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
+        return;
+    }
+    if (shift->gravels == MOST) {
+        shift->left_out++;
+        return;
+    }
+    struct digreport_gravel *const grown = with_room(shift->gravel, shift->gravels, sizeof *grown);
+    if (grown == NULL) {
+        shift->status = DIG_ENOMEM;
+        return;
+    }
+    shift->gravel                   = grown;
+    shift->gravel[shift->gravels++] = g;
+    shift->match_ns                 = said->time_ns;
+    shift->match_known              = known;
+    if (known && g.outside) {
+        add_event(shift, time_us, &outside, "", 0);
+    }
+    if (!known) {
+        add_event(shift, time_us, NULL, g.wanted, 0);
+    }
+}
+
+static void take_health(void *const context, const int64_t time_us,
+                        const digsight_health_t *const said)
+{
+    struct digreport_shift *const       shift = context;
+    const struct dig_health_text *const state = dig_health_state_text(said->state);
+    int64_t                             count[DIG_HEALTH_COUNTERS];
+    dig_health_counts(said, count);
+    if (state != NULL) {
+        add_event(shift, time_us, state, "", 0);
+    }
+    if (said->note[0] != '\0') {
+        add_event(shift, time_us, NULL, said->note, 0);
+    }
+    for (size_t i = 0; i < DIG_HEALTH_COUNTERS && shift->any_health; i++) {
+        const int64_t grown = growth(shift->count[i], count[i]);
+        if (grown > 0) {
+            add_event(shift, time_us, dig_health_counter_text(i), "", grown);
+        }
+    }
+    if (shift->any_health) {
+        const int64_t taken = growth(shift->reloads, said->reloads);
+        if (taken > 0) {
+            add_event(shift, time_us, &reloaded, "", taken);
+        }
+        shift->whole += growth(shift->log_whole, said->digs_whole);
+        shift->aborted += growth(shift->log_aborted, said->digs_aborted);
+    }
+    memcpy(shift->count, count, sizeof shift->count);
+    shift->reloads     = said->reloads;
+    shift->log_whole   = said->digs_whole;
+    shift->log_aborted = said->digs_aborted;
+    shift->any_health  = true;
+}
+
+static enum dig_status take(struct digreport_shift *const     shift,
+                            const struct dig_lcm_event *const event)
+{
+    const struct dig_lcm_reader reader = { .context    = shift,
+                                           .estimate   = take_estimate,
+                                           .match      = take_match,
+                                           .prediction = take_prediction,
+                                           .health     = take_health };
+    shift->status                      = DIG_OK;
+    if (event->size == 0 || event->time_us < 0 || event->time_us > INT64_C(1) << 53) {
+        return DIG_OK; // of another channel, or of no time
+    }
+    if (dig_lcm_message_read(event, &reader) != DIG_OK) {
+        shift->misread++;
+        return DIG_OK;
+    }
+    shift->first_us = shift->messages == 0 ? event->time_us : shift->first_us;
+    shift->last_us  = event->time_us;
+    shift->messages++;
+    return shift->status;
+}
+
+enum dig_status digreport_shift_log(struct digreport_shift *const shift, const char *const log,
+                                    struct dig_error *const error)
+{
+    assert(shift != NULL && log != NULL);
+    struct dig_lcm_log         *reading = NULL;
+    const struct dig_lcm_event *event   = NULL;
+    enum dig_status             status  = dig_lcm_log_open(log, &reading, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    digreport_track_finish(&shift->track);
+    shift->any_health = false;
+    shift->match_ns   = 0;
+    while (status == DIG_OK) {
+        status = dig_lcm_log_next(reading, &event, error);
+        if (status != DIG_OK || event == NULL) {
+            break;
+        }
+        status = take(shift, event);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: out of memory", log);
+        }
+    }
+    dig_lcm_log_close(reading);
+    return status;
+}
+
+const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *const shift,
+                                                         const int64_t time_us)
+{
+    assert(shift != NULL);
+    const struct digreport_gravel *found = NULL;
+    for (size_t i = 0; i < shift->gravels && shift->gravel[i].time_us <= time_us; i++) {
+        found = &shift->gravel[i];
+    }
+    return found != NULL && found->known ? found : NULL;
+}
+
+static int ascending(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return x < y ? -1 : x > y ? 1 : 0;
+}
+
+static double median(const size_t n, double value[])
+{
+    qsort(value, n, sizeof value[0], ascending);
+    return n == 0 ? (double)NAN : 0.5 * (value[(n - 1) / 2] + value[n / 2]);
+}
+
+size_t digreport_shift_error(const struct digreport_shift *const shift, double *const error,
+                             double *const noise_floor)
+{
+    assert(shift != NULL && error != NULL && noise_floor != NULL);
+    double *const both = malloc((2 * shift->digs + 1) * sizeof *both);
+    size_t        n    = 0;
+    for (size_t i = 0; i < shift->digs && both != NULL; i++) {
+        if (isfinite(shift->dig[i].error)) {
+            both[n]                 = shift->dig[i].error;
+            both[shift->digs + n++] = shift->dig[i].noise_floor;
+        }
+    }
+    *error       = n > 0 ? median(n, both) : (double)NAN;
+    *noise_floor = n > 0 ? median(n, both + shift->digs) : (double)NAN;
+    free(both);
+    return n;
+}
+
+void digreport_shift_finish(struct digreport_shift *const shift)
+{
+    if (shift != NULL) {
+        digreport_track_finish(&shift->track);
+        free(shift->dig);
+        free(shift->gravel);
+        free(shift->event);
+        *shift = (struct digreport_shift){ .lambda = shift->lambda };
+    }
+}

@@ -1,0 +1,69 @@
+// What a shift was like, from the daemon's messages: its digs, the gravel over time, the troubles.
+
+#ifndef DIG_TOOLS_DIGREPORT_SHIFT_H
+#define DIG_TOOLS_DIGREPORT_SHIFT_H
+
+#include "core/error.h"
+#include "files/health_text.h"
+#include "files/lcm_message.h"
+#include "tools/digreport/shift_dig.h"
+
+#define DIGREPORT_TEXT 256
+
+/// A match, or the end of one.
+struct digreport_gravel {
+    int64_t           time_us;
+    bool              known, outside, forces;
+    struct dig_gravel gravel, low, high;
+    int32_t           digs;                                           // matched together
+    char              untold[DIGREPORT_TEXT], wanted[DIGREPORT_TEXT]; // as the daemon said them
+};
+
+/// A trouble, from its first to its last sign; signs less than a minute apart are one.
+struct digreport_event {
+    int64_t                       from_us, to_us;
+    int64_t                       count;                // by which its counter grew; 0: no counter
+    const struct dig_health_text *text;                 // NULL: the daemon's own words
+    char                          said[DIGREPORT_TEXT]; // those
+};
+
+/// Zeroed, but for lambda and track.half_s: nothing was taken.
+struct digreport_shift {
+    double  lambda; // tooth length of the machine over the table's
+    int64_t first_us, last_us;
+    int64_t messages, misread; // misread: on our channels, not understood
+    int64_t whole, aborted;    // digs, by how they ended
+    int64_t left_out;          // digs, matches and events beyond the first ten thousand of each
+    size_t  digs, gravels, events;
+    struct digreport_dig      *dig;
+    struct digreport_gravel   *gravel;
+    struct digreport_event    *event;
+    struct digreport_dig_track track;
+
+    // Of the log that is read.
+    bool            any_health;
+    int64_t         count[DIG_HEALTH_COUNTERS], reloads;
+    int64_t         log_whole, log_aborted;
+    int64_t         match_ns; // time of the last match
+    bool            match_known;
+    enum dig_status status; // of the last message
+};
+
+/// Takes all messages of a log. A message that is not understood is counted; a log that is cut off
+/// is read up to there. Fails as dig_lcm_log_open() and dig_lcm_log_next(); DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status digreport_shift_log(struct digreport_shift *shift, const char *log,
+                                                   struct dig_error *error);
+
+/// The gravel known at a time; NULL: none.
+const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *shift,
+                                                         int64_t                       time_us);
+
+/// The median of the digs' errors that are known, and of their noise floors; NaN for none. Returns
+/// how many there are.
+size_t digreport_shift_error(const struct digreport_shift *shift, double *error,
+                             double *noise_floor);
+
+/// Frees what it holds.
+void digreport_shift_finish(struct digreport_shift *shift);
+
+#endif // DIG_TOOLS_DIGREPORT_SHIFT_H

@@ -1,0 +1,174 @@
+#include "tools/digreport/shift_page_parts.h"
+
+#include "closed_loop/report/html.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <time.h>
+
+// A day and a time, or nothing where there is none such.
+static void format_date(const int64_t time_us, const size_t size, char text[])
+{
+    const time_t seconds = (time_t)(time_us / 1000000);
+    struct tm    utc;
+    text[0] = '\0';
+    if (gmtime_r(&seconds, &utc) != NULL) {
+        (void)strftime(text, size, "%Y-%m-%d %H:%M UTC", &utc);
+    }
+}
+
+static void put_effects(const struct dig_model *const model, FILE *const to)
+{
+    (void)fputs("<h2>Effects in the model</h2>\n", to);
+    if (model == NULL) {
+        (void)fputs("<p>No model file was given (<code>--model</code>).</p>\n", to);
+        return;
+    }
+    if (model->effects == 0 && model->unlisted == NULL) {
+        (void)fputs("<p>The model has no effect.</p>\n", to);
+        return;
+    }
+    (void)fputs("<table><tr><th>effect</th><th>parameter</th><th>value</th><th>90 % interval</th>"
+                "</tr>\n",
+                to);
+    for (size_t e = 0; e < model->effects; e++) {
+        const struct dig_model_effect *const effect = &model->effect[e];
+        for (size_t p = 0; p < effect->parameters; p++) {
+            const struct dig_model_parameter *const q = &effect->parameter[p];
+            (void)fprintf(to, "<tr><th>%s</th><td>", dig_effect_name(effect->effect));
+            dig_html_text(to, q->name);
+            (void)fprintf(to, "</td><td>%.4g</td><td>%.4g to %.4g</td></tr>\n", q->value, q->low,
+                          q->high);
+        }
+    }
+    if (model->unlisted != NULL) {
+        (void)fputs("<tr><th>unlisted</th><td>depends on ", to);
+        dig_html_text(to, model->unlisted->depends_on);
+        (void)fputs("</td><td></td><td></td></tr>\n", to);
+    }
+    (void)fputs("</table>\n", to);
+}
+
+// A replay's note may name a file: its folders are somebody's machine.
+static void put_without_folders(FILE *const to, const char *const said)
+{
+    char   text[DIGREPORT_TEXT];
+    size_t n    = 0;
+    size_t word = 0;
+    for (const char *c = said; *c != '\0'; c++) {
+        if (*c == '/' && n > word) {
+            n = word;
+        } else if (*c != '/') {
+            text[n++] = *c;
+        }
+        word = *c == ' ' ? n : word;
+    }
+    text[n] = '\0';
+    dig_html_text(to, text);
+}
+
+static void put_events(const struct digreport_shift *const shift, FILE *const to)
+{
+    (void)fputs("<h2>Health</h2>\n", to);
+    if (shift->misread > 0) {
+        (void)fprintf(to,
+                      "<p>%" PRId64 " messages on the daemon's channels were not understood: they "
+                      "are of another version, or of another sender.</p>\n",
+                      shift->misread);
+    }
+    if (shift->events == 0) {
+        (void)fputs("<p>Nothing was wrong.</p>\n", to);
+        return;
+    }
+    (void)fputs("<table class=words><tr><th>from, UTC</th><th>to</th><th>what</th><th>times</th>"
+                "<th>what to do</th></tr>\n",
+                to);
+    for (size_t i = 0; i < shift->events; i++) {
+        const struct digreport_event *const e = &shift->event[i];
+        (void)fputs("<tr>", to);
+        digreport_page_time_cell(to, e->from_us);
+        digreport_page_time_cell(to, e->to_us);
+        (void)fputs("<td>", to);
+        if (e->text != NULL) {
+            dig_html_text(to, e->text->what);
+        } else {
+            put_without_folders(to, e->said);
+        }
+        if (e->count > 0) {
+            (void)fprintf(to, "</td><td>%" PRId64 "</td><td>", e->count);
+        } else {
+            (void)fputs("</td><td></td><td>", to);
+        }
+        dig_html_text(to, e->text != NULL ? e->text->todo : "");
+        (void)fputs("</td></tr>\n", to);
+    }
+    (void)fputs("</table>\n", to);
+}
+
+static void put_subject(const struct digreport_page *const page, FILE *const to)
+{
+    const struct digreport_shift *const shift = page->shift;
+    char                                from[48];
+    char                                until[48];
+    format_date(shift->first_us, sizeof from, from);
+    format_date(shift->last_us, sizeof until, until);
+    (void)fputs("<p class=result><b>", to);
+    digreport_shift_sentence(shift, to);
+    (void)fprintf(to, "</b></p>\n<p>%s to %s, from %zu log%s. Machine ", from, until,
+                  page->subject->logs, page->subject->logs == 1 ? "" : "s");
+    dig_html_text(to, page->subject->machine);
+    (void)fputs(", table of scene ", to);
+    dig_html_text(to, page->subject->scene);
+    (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
+    (void)fprintf(to,
+                  "By the daemon's counts %" PRId64 " digs were dug to their end, %" PRId64
+                  " were aborted.</p>\n",
+                  shift->whole, shift->aborted);
+    if (shift->left_out > 0) {
+        (void)fprintf(to,
+                      "<p>%" PRId64 " digs, matches or troubles are left out: only the first ten "
+                      "thousand of each are shown.</p>\n",
+                      shift->left_out);
+    }
+}
+
+static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+{
+    const struct digreport_page *const page = context;
+    dig_html_begin(to, page->subject->title);
+    (void)fputs("<style>.words td,.words tr:first-child th{text-align:left}.digs "
+                "tr+tr>*{white-space:nowrap}"
+                ".digs td,.digs th{padding:.25em .4em}</style>\n",
+                to);
+    put_subject(page, to);
+    enum dig_status status = digreport_page_digs(page, to, error);
+    if (status == DIG_OK) {
+        status = digreport_page_gravels(page, to, error);
+    }
+    put_effects(page->subject->model, to);
+    put_events(page->shift, to);
+    (void)fputs("<footer>Error: relative Euclidean norm of the moment, measured minus the first "
+                "prediction made in the dig, over time from there to exit, moving average ±0.16 s "
+                "of rig time. Noise floor: 1 σ of what it would be if the model were complete. "
+                "Predicted: expected of one dig, with the interval that holds 90 % of digs. "
+                "Energy: work of the bucket on the soil, where forces are measured. Predictions "
+                "are advice, not a safety function.</footer>\n",
+                to);
+    dig_html_end(to);
+    return status;
+}
+
+enum dig_status digreport_shift_html(const struct digreport_shift *const         shift,
+                                     const struct digreport_shift_subject *const subject,
+                                     const char *const path, struct dig_error *const error)
+{
+    assert(shift != NULL && subject != NULL && path != NULL);
+    const double          minutes = (double)(shift->last_us - shift->first_us) / 6e7;
+    struct digreport_page page    = { shift, subject, minutes > 180.0 ? 3.6e9 : 6e7, "" };
+    char                  clock[32];
+    format_date(shift->first_us, sizeof clock, clock);
+    (void)snprintf(page.x_label, sizeof page.x_label, "time since %s, %s", clock,
+                   minutes > 180.0 ? "h" : "min");
+    return dig_html_save(path, put_page, &page, error);
+}

@@ -1,0 +1,107 @@
+#include "tools/digreport/shift_page_parts.h"
+
+#include "closed_loop/report/html.h"
+#include "closed_loop/report/plot.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const char *const axis_title[DIG_AXES] = { "friction", "rolling friction",
+                                                  "density, kg/m³" };
+
+// A gravel stands from its match to the next; a gap where none was known.
+static enum dig_status put_gravel_plot(const struct digreport_page *const page, FILE *const to,
+                                       const int axis, struct dig_error *const error)
+{
+    const struct digreport_shift *const shift = page->shift;
+    const size_t                        n     = 3 * shift->gravels;
+    double *const                       all   = calloc(4 * n, sizeof *all);
+    if (all == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    }
+    for (size_t i = 0; i < shift->gravels; i++) {
+        const struct digreport_gravel *const g = &shift->gravel[i];
+        const int64_t                        end_us =
+            i + 1 < shift->gravels ? shift->gravel[i + 1].time_us : shift->last_us;
+        for (size_t end = 0; end < 3; end++) {
+            const size_t at    = 3 * i + end;
+            const bool   shown = g->known && end < 2;
+            all[at]            = digreport_page_time(page, end == 0 ? g->time_us : end_us);
+            all[n + at]        = shown ? g->gravel.value[axis] : (double)NAN;
+            all[2 * n + at]    = shown ? g->low.value[axis] : (double)NAN;
+            all[3 * n + at]    = shown ? g->high.value[axis] : (double)NAN;
+        }
+    }
+    const struct dig_plot plot = {
+        .title   = "",
+        .x_label = page->x_label,
+        .y_label = axis_title[axis],
+        .width   = 480,
+        .height  = 280,
+        .series  = 2,
+        .s       = { { "90 % interval", DIG_PLOT_BAND, DIGREPORT_PREDICTED, n, all, all + 2 * n,
+                       all + 3 * n },
+                     { "identified", DIG_PLOT_LINE, DIGREPORT_PREDICTED, n, all, all + n, NULL } },
+    };
+    enum dig_status status = DIG_OK;
+    if (digreport_page_any(n, all + n)) {
+        (void)fputs("<figure>\n", to);
+        status = dig_plot_svg(&plot, to, error);
+        (void)fputs("</figure>\n", to);
+    }
+    free(all);
+    return status;
+}
+
+static void put_gravel_row(FILE *const to, const struct digreport_gravel *const g)
+{
+    (void)fputs("<tr>", to);
+    digreport_page_time_cell(to, g->time_us);
+    if (!g->known) {
+        (void)fputs("<td colspan=5>not known any more: ", to);
+        dig_html_text(to, g->wanted);
+        (void)fputs("</td></tr>\n", to);
+        return;
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        const int d = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
+        (void)fprintf(to, "<td><b>%.*f</b> (%.*f to %.*f)</td>", d, g->gravel.value[a], d,
+                      g->low.value[a], d, g->high.value[a]);
+    }
+    (void)fprintf(to, "<td>%" PRId32 ", %s</td><td>%s", g->digs,
+                  g->forces ? "with force" : "moment alone",
+                  g->outside ? "outside the table: the nearest" : "");
+    if (g->untold[0] != '\0') {
+        (void)fputs("a family; not told: ", to);
+        dig_html_text(to, g->untold);
+    }
+    (void)fputs("</td></tr>\n", to);
+}
+
+enum dig_status digreport_page_gravels(const struct digreport_page *const page, FILE *const to,
+                                       struct dig_error *const error)
+{
+    const struct digreport_shift *const shift = page->shift;
+    (void)fputs("<h2>Gravel</h2>\n", to);
+    if (shift->gravels == 0) {
+        (void)fputs("<p>No dig identified a gravel.</p>\n", to);
+        return DIG_OK;
+    }
+    enum dig_status status = DIG_OK;
+    (void)fputs("<div class=grid>\n", to);
+    for (int a = 0; a < DIG_AXES && status == DIG_OK; a++) {
+        status = put_gravel_plot(page, to, a, error);
+    }
+    (void)fputs("</div>\n<table class=digs><tr><th>time, UTC</th>", to);
+    for (int a = 0; a < DIG_AXES; a++) {
+        (void)fprintf(to, "<th>%s (90 %%)</th>", axis_title[a]);
+    }
+    (void)fputs("<th>digs</th><th></th></tr>\n", to);
+    for (size_t i = 0; i < shift->gravels; i++) {
+        put_gravel_row(to, &shift->gravel[i]);
+    }
+    (void)fputs("</table>\n", to);
+    return status;
+}

@@ -1,0 +1,171 @@
+// digwatch: what digsightd knows, in a terminal, live or from a log.
+
+#include "tools/digwatch/model.h"
+#include "tools/digwatch/options.h"
+#include "tools/digwatch/prometheus.h"
+#include "tools/digwatch/screen.h"
+#include "tools/digwatch/source.h"
+#include "tools/digwatch/terminal.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define FRAME_s 0.1 // between two pictures
+#define WRITE_s 1.0 // between two files of --prometheus
+
+static volatile sig_atomic_t stopped;
+
+static void stop(const int number)
+{
+    (void)number;
+    stopped = 1;
+}
+
+static double now_s(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// What is watched, and since when nothing was heard.
+struct watch {
+    struct digwatch_source *source;
+    struct digwatch_model   model;
+    double                  heard_s;
+    struct dig_error        damage; // of a log
+};
+
+static void take(void *const context, const struct dig_lcm_event *const event)
+{
+    struct watch *const w = context;
+    digwatch_model_take(&w->model, event);
+    w->heard_s = now_s();
+}
+
+static void read_messages(struct watch *const w)
+{
+    const struct digwatch_taker taker = { w, take };
+    // The screen shows the damage; the log has ended there.
+    const enum dig_status status = digwatch_source_read(w->source, now_s(), &taker, &w->damage);
+    (void)status;
+}
+
+// Sleeps until a key, a message or the time due_s; false when the terminal is gone.
+static bool wait_until(const struct watch *const w, const double due_s, const bool keyboard)
+{
+    struct pollfd fd[] = { { .fd = digwatch_source_fd(w->source), .events = POLLIN },
+                           { .fd = keyboard ? STDIN_FILENO : -1, .events = POLLIN } };
+    const double  left = fmin(due_s, digwatch_source_due_s(w->source)) - now_s();
+    const int     n    = poll(fd, 2, left > 0.0 ? (int)ceil(1e3 * fmin(left, 1e3)) : 0);
+    return n < 0 ? errno == EINTR : (fd[1].revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+}
+
+static void show(const struct watch *const w, const struct digwatch_options *const options,
+                 const bool ascii)
+{
+    static struct digwatch_grid grid;
+    char                        source[160];
+    const bool                  ended = digwatch_source_ended(w->source);
+    if (options->log != NULL) {
+        const char *const slash = strrchr(options->log, '/');
+        (void)snprintf(source, sizeof source, "%.100s, %gx",
+                       slash != NULL ? slash + 1 : options->log, options->speed);
+    } else {
+        (void)snprintf(source, sizeof source, "%.150s", options->url);
+    }
+    const struct digwatch_view view = { .source = source,
+                                        .silent_s =
+                                            options->log != NULL ? 0.0 : now_s() - w->heard_s,
+                                        .ended  = ended,
+                                        .damage = w->damage.text };
+    int                        rows;
+    int                        columns;
+    digwatch_terminal_size(&rows, &columns);
+    digwatch_grid_init(&grid, rows, columns, ascii);
+    digwatch_screen(&w->model, &view, &grid);
+    digwatch_terminal_show(&grid);
+}
+
+static enum dig_status watch(struct watch *const w, const struct digwatch_options *const options,
+                             struct dig_error *const error)
+{
+    bool            utf8   = false;
+    enum dig_status status = digwatch_terminal_open(&utf8, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const bool ascii   = options->ascii || !utf8;
+    double     frame_s = 0.0;
+    while (stopped == 0) {
+        read_messages(w);
+        const int key = digwatch_terminal_key();
+        if (key == 'q') {
+            break;
+        }
+        if (key != 0 || now_s() >= frame_s) {
+            show(w, options, ascii);
+            frame_s = now_s() + FRAME_s;
+        }
+        if (!wait_until(w, frame_s, true)) {
+            break;
+        }
+    }
+    digwatch_terminal_close();
+    return DIG_OK;
+}
+
+static enum dig_status write_health(struct watch *const w, const char *const path,
+                                    struct dig_error *const error)
+{
+    enum dig_status status = DIG_OK;
+    for (double due_s = now_s() + WRITE_s; stopped == 0 && status == DIG_OK;) {
+        read_messages(w);
+        if (now_s() >= due_s) {
+            status = digwatch_prometheus(&w->model, now_s() - w->heard_s, path, error);
+            due_s  = now_s() + WRITE_s;
+        }
+        (void)wait_until(w, due_s, false);
+    }
+    return status;
+}
+
+int main(const int argc, char *argv[])
+{
+    static struct watch     w;
+    struct digwatch_options options = { .url = NULL };
+    struct dig_error        error   = { "" };
+    if (digwatch_parse(argc, argv, &options, &error) != DIG_OK) {
+        (void)fprintf(stderr, "digwatch: %s\nTry digwatch --help.\n", error.text);
+        return 2;
+    }
+    const int              ends[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT };
+    const struct sigaction action = { .sa_handler = stop };
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        (void)sigaction(ends[i], &action, NULL);
+    }
+    digwatch_model_init(&w.model);
+    w.heard_s = now_s();
+
+    enum dig_status status =
+        options.log != NULL ? digwatch_source_play(options.log, options.speed, &w.source, &error)
+                            : digwatch_source_listen(options.url, &w.source, &error);
+    if (status == DIG_OK) {
+        status = options.prometheus != NULL ? write_health(&w, options.prometheus, &error)
+                                            : watch(&w, &options, &error);
+    }
+    digwatch_source_close(w.source);
+    if (status != DIG_OK) {
+        (void)fprintf(stderr, "digwatch: %s\n", error.text);
+    }
+    return status == DIG_OK                                                     ? EXIT_SUCCESS
+           : status == DIG_EINVAL || (options.log != NULL && status == DIG_EIO) ? 2
+                                                                                : EXIT_FAILURE;
+}

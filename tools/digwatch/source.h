@@ -1,0 +1,46 @@
+// Where messages come from: LCM, or a log that is played at a speed.
+
+#ifndef DIG_TOOLS_DIGWATCH_SOURCE_H
+#define DIG_TOOLS_DIGWATCH_SOURCE_H
+
+#include "core/error.h"
+#include "files/lcm_message.h"
+
+#include <stdbool.h>
+
+struct digwatch_source;
+
+/// What to do with each message of the daemon's channels.
+struct digwatch_taker {
+    void *context;
+    void (*take)(void *context, const struct dig_lcm_event *event);
+};
+
+/// Listens on an LCM network, to the daemon's channels alone. DIG_EIO: there is none.
+DIG_MUST_CHECK enum dig_status
+digwatch_source_listen(const char *url, struct digwatch_source **source, struct dig_error *error);
+
+/// Plays a log, speed times as fast as it was written; a pause of more than ten seconds in it takes
+/// ten. path must live as long. Fails as dig_lcm_log_open().
+DIG_MUST_CHECK enum dig_status digwatch_source_play(const char *path, double speed,
+                                                    struct digwatch_source **source,
+                                                    struct dig_error        *error);
+
+/// Hands on what is due at now_s (of a clock that only grows), a bounded number of messages. Fails
+/// where the log is damaged; it has ended then.
+DIG_MUST_CHECK enum dig_status digwatch_source_read(struct digwatch_source *source, double now_s,
+                                                    const struct digwatch_taker *taker,
+                                                    struct dig_error            *error);
+
+/// What to wait on: a descriptor that becomes readable, or -1, and when the next message of a log
+/// is due, or infinity.
+int    digwatch_source_fd(const struct digwatch_source *source);
+double digwatch_source_due_s(const struct digwatch_source *source);
+
+/// True at the end of a log.
+bool digwatch_source_ended(const struct digwatch_source *source);
+
+/// NULL is allowed.
+void digwatch_source_close(struct digwatch_source *source);
+
+#endif // DIG_TOOLS_DIGWATCH_SOURCE_H
