@@ -99,10 +99,9 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
     }
     for (size_t s = 0; s <= sizeof from / sizeof from[0]; s++) {
         double x[DIG_AXES];
-        double normal[DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS];
         double squares = 0.0;
         memcpy(x, s == 0 ? place : from[s - 1], sizeof x);
-        dig_levenberg_run(&l, x, &squares, normal);
+        dig_levenberg_run(&l, x, &squares);
         least = fmin(least, squares);
     }
     return least;

@@ -39,11 +39,9 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
     dig_likelihood_weigh(likelihood, x);
     dig_likelihood_residual(likelihood, x, r);
     memcpy(f->number, x, l->unknowns * sizeof f->number[0]);
-    f->misfit       = dig_likelihood_misfit(likelihood, r, &f->squares);
-    f->observations = 0;
+    f->misfit = dig_likelihood_misfit(likelihood, r, &f->squares);
     for (size_t g = 0; g < likelihood->batch->groups; g++) {
         f->noise[g] = likelihood->error[g].noise;
-        f->observations += likelihood->batch->group[g].features * likelihood->batch->group[g].digs;
     }
     return f->misfit;
 }
@@ -61,7 +59,7 @@ static void fit_from(struct dig_likelihood *const likelihood, struct dig_levenbe
     for (int round = 0; round < ROUNDS; round++) {
         double squares = 0.0;
         dig_likelihood_weigh(likelihood, x);
-        dig_levenberg_run(l, x, &squares, NULL);
+        dig_levenberg_run(l, x, &squares);
         if (misfit_at(likelihood, l, x, &tried) < f->misfit) {
             *f = tried;
         }

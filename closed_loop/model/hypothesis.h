@@ -15,7 +15,6 @@ struct dig_fitted {
     double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
     double                misfit;                    // closed_loop/model/likelihood.h
     double                squares;                   // of it, what is not a logarithm
-    size_t                observations;              // numbers fitted to
     size_t                free;                      // numbers fitted
 };
 

@@ -83,8 +83,3 @@ double dig_chance_gamma_tail(const double mean, const double variance, const dou
     assert(mean > 0.0 && variance > 0.0);
     return fmin(fmax(upper_gamma(mean * mean / variance, x * mean / variance), 0.0), 1.0);
 }
-
-double dig_chance_chi2_tail(const double freedom, const double x)
-{
-    return dig_chance_gamma_tail(freedom, 2.0 * freedom, x);
-}

@@ -19,7 +19,4 @@ size_t dig_chance_index(uint64_t *state, size_t n);
 /// incomplete gamma function by series and continued fraction, relative error below 1e-10.
 double dig_chance_gamma_tail(double mean, double variance, double x);
 
-/// P(X > x) of chi square.
-double dig_chance_chi2_tail(double freedom, double x);
-
 #endif // DIG_CLOSED_LOOP_NUMERIC_CHANCE_H

@@ -111,8 +111,7 @@ static bool take_step(const struct dig_levenberg *const p, const double normal[]
     return true;
 }
 
-void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], double *const squares,
-                       double normal[])
+void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], double *const squares)
 {
     assert(problem->unknowns <= DIG_LEVENBERG_UNKNOWNS);
     double *const r                                = problem->memory;
@@ -140,13 +139,6 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
         if (before - sum < enough) {
             break;
         }
-    }
-    if (better && normal != NULL) {
-        differentiate(problem, x, r, jacobian);
-        normal_equations(problem, x, r, jacobian, product, gradient);
-    }
-    if (normal != NULL) {
-        memcpy(normal, product, problem->unknowns * problem->unknowns * sizeof normal[0]);
     }
     *squares = sum;
 }

@@ -21,9 +21,6 @@ struct dig_levenberg {
 };
 
 /// Improves x, which is put within the bounds first. *squares: the sum of squares at the end.
-/// normal, [unknowns * unknowns] (NULL: not asked for): J'J there, rows and columns of unknowns
-/// held or at a bound that holds them 0.
-void dig_levenberg_run(const struct dig_levenberg *problem, double x[], double *squares,
-                       double normal[]);
+void dig_levenberg_run(const struct dig_levenberg *problem, double x[], double *squares);
 
 #endif // DIG_CLOSED_LOOP_NUMERIC_LEVENBERG_H

@@ -349,37 +349,3 @@ enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
     *observation = seen;
     return DIG_OK;
 }
-
-enum dig_status dig_observe_mean(const size_t n, const struct dig_observation one[],
-                                 struct dig_observation *const mean, struct dig_error *const error)
-{
-    assert(mean != NULL);
-    if (n == 0) {
-        return dig_error_set(error, DIG_EINVAL, "no recording, expected one or more");
-    }
-    struct dig_observation sum = { .dig_count  = one[n - 1].dig_count,
-                                   .trajectory = one[0].trajectory,
-                                   .first      = one[0].first,
-                                   .last       = one[0].last };
-    for (size_t i = 0; i < n; i++) {
-        if (one[i].trajectory != sum.trajectory) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "recordings of different trajectories, expected digs along one");
-        }
-        sum.off_path_m = fmax(sum.off_path_m, one[i].off_path_m);
-        sum.first      = fmax(sum.first, one[i].first);
-        sum.last       = fmin(sum.last, one[i].last);
-    }
-    if (!(sum.last > sum.first)) {
-        return dig_error_set(error, DIG_EINVAL, "the digs have no part of the path in common");
-    }
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double at = (double)k / (DIG_CURVE_POINTS - 1);
-        for (size_t i = 0; i < n && at >= sum.first && at <= sum.last; i++) {
-            sum.moment_Nm[k] += one[i].moment_Nm[k] / (double)n;
-            sum.sigma_Nm[k] = hypot(sum.sigma_Nm[k], one[i].sigma_Nm[k] / (double)n);
-        }
-    }
-    *mean = sum;
-    return DIG_OK;
-}

@@ -57,11 +57,4 @@ DIG_MUST_CHECK enum dig_status dig_observe_recording(const struct dig_curve_set 
                                                      struct dig_observation     *observation,
                                                      struct dig_error           *error);
 
-/// The mean of several observations of one trajectory over the range that all of them have: their
-/// scatter and their sensors' errors average down. DIG_EINVAL when they are of different
-/// trajectories, have no range in common, or there is none.
-DIG_MUST_CHECK enum dig_status dig_observe_mean(size_t n, const struct dig_observation one[],
-                                                struct dig_observation *mean,
-                                                struct dig_error       *error);
-
 #endif // DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_H

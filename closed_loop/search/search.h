@@ -22,7 +22,6 @@ struct dig_search {
     bool              unlisted; // by nothing that has a name
     struct dig_fitted plain, beyond, chosen; // beyond: gravel outside the grid; chosen: in the end
     struct dig_fitted nameless;              // a gravel and something that has no name
-    double            p_fit;                 // of chosen
     double            confirmed;             // dig_cross_validation_gain() of chosen, 0: not asked
     struct dig_unlisted without_name;
     double              unnamed; // share that its probability keeps: 1 until it is weighed

@@ -63,16 +63,15 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
     return any;
 }
 
-// What digs of the chosen hypothesis would show; whether a second effect is significant beside it,
-// if that is asked (more not NULL): most of the work.
-static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const more)
+// Whether a second effect is significant beside the best one: as digs that this made would show.
+// Most of the work.
+static enum dig_status look_for_more(struct dig_search_work *const c, bool *const more)
 {
     struct dig_hypothesis      added[DIG_RIVALS_MAX];
     struct dig_fitted          fitted[DIG_RIVALS_MAX + 1];
     struct dig_statistic       statistic;
     struct dig_null_simulation null;
-    const bool   room = more != NULL && c->s->chosen.hypothesis.effects < DIG_HYPOTHESIS_EFFECTS;
-    const size_t n    = room ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
+    const size_t               n = list_additions(c, &c->s->chosen.hypothesis, added);
     // Digs that differ cost as many times more as there are of them.
     const size_t draws =
         dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
@@ -80,12 +79,8 @@ static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const
                             c->s->chosen.number, DIG_FIT_BARE, fitted, &statistic);
     const enum dig_status status = dig_null_simulation_draw(c->batch, c->soil, &c->s->chosen, n,
                                                             added, draws, &c->seed, &null);
-    if (status == DIG_OK) {
-        c->s->p_fit = dig_null_simulation_p(&null, 0, statistic.misfit);
-        if (more != NULL) {
-            *more = n > 0 && dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
-        }
-    }
+    *more                        = status == DIG_OK && n > 0 &&
+            dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
     return status;
 }
 
@@ -190,14 +185,11 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     const size_t best = dig_search_best_rival(c->s);
     c->s->chosen      = c->s->rival[best];
     bool more         = false;
-    status            = weigh_chosen(c, &more);
+    status            = look_for_more(c, &more);
     struct dig_fitted pair;
     if (status == DIG_OK && more && find_pair(c, &pair)) {
         fit_again(c, best, &pair);
         status = choose_pair(c, best, &pair);
-        if (status == DIG_OK) {
-            status = weigh_chosen(c, NULL);
-        }
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
     if (status == DIG_OK) {

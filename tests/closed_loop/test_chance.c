@@ -11,10 +11,11 @@ static void tails_of_chi_square_are_those_of_the_tables(void **state)
     } known[] = { { 1, 3.8415, 0.05 },  { 1, 6.6349, 0.01 },   { 5, 15.0863, 0.01 },
                   { 10, 18.307, 0.05 }, { 30, 50.8922, 0.01 }, { 100, 149.449, 0.001 } };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        assert_close(dig_chance_chi2_tail(known[i].freedom, known[i].x), known[i].tail, 2e-5);
+        assert_close(dig_chance_gamma_tail(known[i].freedom, 2.0 * known[i].freedom, known[i].x),
+                     known[i].tail, 2e-5);
     }
-    assert_close(dig_chance_chi2_tail(7.0, 0.0), 1.0, 0.0);
-    assert_close(dig_chance_chi2_tail(2.0, 60.0), exp(-30.0), 1e-22); // closed form
+    assert_close(dig_chance_gamma_tail(7.0, 14.0, 0.0), 1.0, 0.0);
+    assert_close(dig_chance_gamma_tail(2.0, 4.0, 60.0), exp(-30.0), 1e-22); // closed form
 }
 
 static void draws_have_the_tail_that_is_claimed(void **state)

@@ -326,36 +326,6 @@ static void what_lies_beyond_the_trajectory_is_left_out(void **state)
     dig_recording_finish(&l);
 }
 
-static void the_mean_is_over_digs_of_one_trajectory_only(void **state)
-{
-    (void)state;
-    struct dig_observation two[2] = { { .trajectory = 1, .first = 0.1, .last = 1.0 },
-                                      { .trajectory = 1, .first = 0.0, .last = 0.9 } };
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        two[0].moment_Nm[k] = k;
-        two[1].moment_Nm[k] = 3.0 * k;
-        two[0].sigma_Nm[k]  = 3.0;
-        two[1].sigma_Nm[k]  = 4.0;
-    }
-    struct dig_observation mean = { .dig_count = 42 };
-    assert_int_equal(dig_observe_mean(2, two, &mean, NULL), DIG_OK);
-    assert_close(mean.moment_Nm[100], 200.0, 1e-9);
-    assert_close(mean.sigma_Nm[100], 2.5, 1e-12);
-    assert_close(mean.moment_Nm[10], 0.0, 0.0); // one lacks it
-    assert_close(mean.moment_Nm[250], 0.0, 0.0);
-    assert_close(mean.first, 0.1, 0.0);
-    assert_close(mean.last, 0.9, 0.0);
-    two[0].first = 0.95;
-    assert_int_equal(dig_observe_mean(2, two, &mean, NULL), DIG_EINVAL);
-    two[0].first = 0.1;
-
-    mean.dig_count    = 42;
-    two[1].trajectory = 0;
-    assert_int_equal(dig_observe_mean(2, two, &mean, NULL), DIG_EINVAL);
-    assert_int_equal(dig_observe_mean(0, two, &mean, NULL), DIG_EINVAL);
-    assert_int_equal(mean.dig_count, 42);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,7 +338,6 @@ int main(void)
         cmocka_unit_test(a_recording_cut_short_tells_what_it_has),
         cmocka_unit_test(rest_before_and_after_is_no_pace),
         cmocka_unit_test(what_lies_beyond_the_trajectory_is_left_out),
-        cmocka_unit_test(the_mean_is_over_digs_of_one_trajectory_only),
     };
     return cmocka_run_group_tests_name("observe", tests, NULL, NULL);
 }
