@@ -16,6 +16,9 @@ static void write_laws(const struct dig_laws *const laws, struct dig_canonical *
     if (laws->adhesion_Jpm3 > 0.0) {
         dig_canonical_add(text, "adhesion_Jpm3=%.17g\n", laws->adhesion_Jpm3);
     }
+    if (laws->bucket_smoothness > 0.0) {
+        dig_canonical_add(text, "bucket_smoothness=%.17g\n", laws->bucket_smoothness);
+    }
 }
 
 static void write_materials(const struct dig_bed_plan *const bed, struct dig_canonical *const text)

@@ -308,6 +308,7 @@ enum dig_status dig_bed_plan_check(const struct dig_scene *const scene,
     const struct range range[] = {
         { "laws.cohesion_Jpm3", scene->laws.cohesion_Jpm3, 0.0, 1e9 },
         { "laws.adhesion_Jpm3", scene->laws.adhesion_Jpm3, 0.0, 1e9 },
+        { "laws.bucket_smoothness", scene->laws.bucket_smoothness, 0.0, 1.0 },
         { "bed.preload_Pa", scene->bed.preload_Pa, 0.0, 1e9 },
     };
     enum dig_status status = check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);

@@ -63,6 +63,9 @@ struct dig_laws {
     enum dig_rolling_law rolling;
     double               cohesion_Jpm3; // SJKR between grains; 0: none
     double               adhesion_Jpm3; // SJKR between grains and bucket; 0: none
+    // Share that is taken off friction and rolling friction of grains with the bucket, be they the
+    // grains' own or a pair's; 0: none, 1: a bucket without friction.
+    double bucket_smoothness;
 };
 
 /// A class of grain size. A log-normal distribution is read into classes of equal mass.

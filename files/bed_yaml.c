@@ -28,6 +28,7 @@ const cyaml_schema_field_t dig_laws_fields[] = {
     CYAML_FIELD_ENUM("rolling", OPTIONAL, struct laws_text, rolling, rolling_laws, 3),
     CYAML_FIELD_FLOAT("cohesion_Jpm3", OPTIONAL, struct laws_text, cohesion_Jpm3),
     CYAML_FIELD_FLOAT("adhesion_Jpm3", OPTIONAL, struct laws_text, adhesion_Jpm3),
+    CYAML_FIELD_FLOAT("bucket_smoothness", OPTIONAL, struct laws_text, bucket_smoothness),
     SOURCE,
     CYAML_FIELD_END,
 };
@@ -251,10 +252,11 @@ enum dig_status dig_bed_convert(const struct laws_text *const laws,
                                 struct dig_error *const error)
 {
     struct dig_bed_plan *const bed = &scene->bed;
-    scene->laws                    = (struct dig_laws){ .normal        = (enum dig_normal_law)laws->normal,
-                                                        .rolling       = (enum dig_rolling_law)laws->rolling,
-                                                        .cohesion_Jpm3 = laws->cohesion_Jpm3,
-                                                        .adhesion_Jpm3 = laws->adhesion_Jpm3 };
+    scene->laws                    = (struct dig_laws){ .normal            = (enum dig_normal_law)laws->normal,
+                                                        .rolling           = (enum dig_rolling_law)laws->rolling,
+                                                        .cohesion_Jpm3     = laws->cohesion_Jpm3,
+                                                        .adhesion_Jpm3     = laws->adhesion_Jpm3,
+                                                        .bucket_smoothness = laws->bucket_smoothness };
     *bed                           = (struct dig_bed_plan){ .surface        = text->surface_m_count,
                                                             .clump.spheres  = text->clump_count,
                                                             .periodic_y     = text->periodic_y,

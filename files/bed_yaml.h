@@ -12,7 +12,7 @@
 
 struct laws_text {
     int    normal, rolling; // enum dig_normal_law, enum dig_rolling_law
-    double cohesion_Jpm3, adhesion_Jpm3;
+    double cohesion_Jpm3, adhesion_Jpm3, bucket_smoothness;
 };
 
 struct size_text {

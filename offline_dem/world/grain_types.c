@@ -59,6 +59,10 @@ struct dig_law_material dig_grain_types_between(const struct dig_scene *const  s
             material.restitution = p->restitution;
         }
     }
+    if (other == DIG_MATERIAL_BUCKET) {
+        material.friction *= 1.0 - scene->laws.bucket_smoothness;
+        material.rolling *= 1.0 - scene->laws.bucket_smoothness;
+    }
     return material;
 }
 

@@ -21,8 +21,9 @@ struct dig_grain_types {
 
 /// Constants of contacts between two materials, bucket and walls among them: the scene's pair if it
 /// has one. Else, between grains, the smaller frictions and the geometric mean of restitution; of
-/// grains with bucket or walls, the grains' own. Grains cohere with each other, adhere to the
-/// bucket, and neither to walls.
+/// grains with bucket or walls, the grains' own. At the bucket either friction is cut by the
+/// scene's bucket_smoothness. Grains cohere with each other, adhere to the bucket, and neither to
+/// walls.
 struct dig_law_material dig_grain_types_between(const struct dig_scene  *scene,
                                                 const struct dig_gravel *gravel, size_t a,
                                                 size_t b);

@@ -16,6 +16,7 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_int_equal(s.laws.rolling, DIG_ROLLING_CDT);
     assert_close(s.laws.cohesion_Jpm3, 2e4, 0.0);
     assert_close(s.laws.adhesion_Jpm3, 1e4, 0.0);
+    assert_close(s.laws.bucket_smoothness, 0.6, 0.0);
     assert_int_equal(bed->sizes, 2);
     assert_close(bed->size[1].diameter_m, 0.07, 0.0);
     assert_close(bed->size[0].mass_fraction, 0.4, 0.0);
@@ -72,6 +73,7 @@ static void whatever_changes_the_bed_changes_the_identity(void **state)
         { "rolling: cdt", "rolling: none" },
         { "cohesion_Jpm3: 2.0e+4", "cohesion_Jpm3: 2.1e+4" },
         { "adhesion_Jpm3: 1.0e+4", "adhesion_Jpm3: 1.1e+4" },
+        { "bucket_smoothness: 0.6", "bucket_smoothness: 0.61" },
         { "{diameter_m: 0.05,", "{diameter_m: 0.051," },
         { "friction: 0.9", "friction: 0.91" },
         { "rolling: 0.8", "rolling: 0.81" },
@@ -109,8 +111,11 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
     static const char *const bad[][3] = {
         { "normal: hertz", "normal: herz", "bad.yaml:31: laws.normal" },
         { "cohesion_Jpm3: 2.0e+4", "cohesion_Jpm3: -1", "bad.yaml:33: laws.cohesion_Jpm3: -1" },
-        { "{diameter_m: 0.05,", "{diameter_m: 0,", "bad.yaml:38: bed.sizes[0].diameter_m: 0" },
-        { "{diameter_m: 0.05,", "{diameter_m: 0.4,", "bad.yaml:38: bed.sizes[0].diameter_m: 0.4" },
+        { "bucket_smoothness: 0.6", "bucket_smoothness: 1.1",
+          "bad.yaml:35: laws.bucket_smoothness: 1.1" },
+        { "bucket_smoothness: 0.6", "bucket_smoothness: -0.1", "laws.bucket_smoothness: -0.1" },
+        { "{diameter_m: 0.05,", "{diameter_m: 0,", "bad.yaml:39: bed.sizes[0].diameter_m: 0" },
+        { "{diameter_m: 0.05,", "{diameter_m: 0.4,", "bad.yaml:39: bed.sizes[0].diameter_m: 0.4" },
         { "mass_fraction: 0.4", "mass_fraction: 0.3", "bed.sizes: mass fractions add up to 0.9" },
         { "friction: 0.9", "friction: -0.9", "bed.materials[0].friction: -0.9" },
         { "restitution: 0.3}", "restitution: 0}", "bed.materials[0].restitution: 0" },

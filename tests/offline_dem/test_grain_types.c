@@ -32,6 +32,36 @@ static void walls_and_bucket_have_the_grains_own_friction(void **state)
     }
 }
 
+// The pair's value, which both materials decide; walls keep the gravel's.
+static void a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off_walls(void **state)
+{
+    (void)state;
+    struct dig_scene scene = {
+        .material = { .restitution = 0.2 },
+        .laws     = { .bucket_smoothness = 0.75 },
+    };
+    const struct dig_law_material bucket =
+        dig_grain_types_between(&scene, &gravel, DIG_MATERIAL_BUCKET, 0);
+    assert_close(bucket.friction, 0.125, 1e-15);
+    assert_close(bucket.rolling, 0.1, 1e-15);
+    assert_close(bucket.restitution, 0.2, 0.0);
+    const size_t rough[] = { 0, DIG_MATERIAL_WALLS };
+    for (size_t i = 0; i < 2; i++) {
+        const struct dig_law_material between =
+            dig_grain_types_between(&scene, &gravel, 0, rough[i]);
+        assert_close(between.friction, 0.5, 0.0);
+        assert_close(between.rolling, 0.4, 0.0);
+    }
+    // Off what a pair says as well: steel that is worn smooth.
+    scene.bed.pairs   = 1;
+    scene.bed.pair[0] = (struct dig_material_pair){ 0, DIG_MATERIAL_BUCKET, 0.4, 0.2, 0.3 };
+    const struct dig_law_material steel =
+        dig_grain_types_between(&scene, &gravel, 0, DIG_MATERIAL_BUCKET);
+    assert_close(steel.friction, 0.1, 1e-15);
+    assert_close(steel.rolling, 0.05, 1e-15);
+    assert_close(steel.restitution, 0.3, 0.0);
+}
+
 // Between two materials of grains the smaller frictions and the geometric mean of restitution.
 static void unlike_grains_share_the_smoother_surface(void **state)
 {
@@ -51,6 +81,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grains_pull_by_cohesion_the_bucket_by_adhesion_walls_not_at_all),
         cmocka_unit_test(walls_and_bucket_have_the_grains_own_friction),
+        cmocka_unit_test(
+            a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off_walls),
         cmocka_unit_test(unlike_grains_share_the_smoother_surface),
     };
     return cmocka_run_group_tests_name("kinds", tests, NULL, NULL);

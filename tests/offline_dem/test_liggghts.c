@@ -1,6 +1,7 @@
 // The engine against LIGGGHTS-PUBLIC 3.8: tests/data/liggghts holds the decks, the script that runs
 // them and what came out.
 
+#include "offline_dem/world/grain_types.h"
 #include "tests/offline_dem/liggghts_fixture.h"
 
 static void two_grains_meet_as_in_liggghts(void **state)
@@ -34,6 +35,33 @@ static void a_grain_meets_a_wall_as_in_liggghts(void **state)
 {
     (void)state;
     meet_wall(0.0, FOLDER "slide.csv", (struct tolerance){ 1e-12, 1e-9, 1e-11 });
+}
+
+// Friction at the plate, a mesh of a material of its own there, is a sixth of that at the wall.
+static void a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts(void **state)
+{
+    (void)state;
+    const struct dig_gravel      gravel  = { { 0.9, 0.0, DENSITY } };
+    struct dig_scene             scene   = dem_small_scene();
+    const double                 x[1][3] = { { 0.0, 0.0, 0.0 } };
+    struct dig_world             world   = dem_world(1, x, dem_material(0.9, 0.0));
+    const struct dig_grain_type  type    = world.grains.type[0];
+    const struct dig_grain_types types   = { .types      = 1,
+                                             .type       = { type },
+                                             .contact_kg = { GRAIN_kg } };
+    scene.bucket                         = (struct dig_bucket){ .points  = 3,
+                                                                .x_m     = { 0.03, -0.03, -0.03 },
+                                                                .z_m     = { -0.0038, -0.0038, -0.03 },
+                                                                .width_m = 0.04 };
+    scene.laws.bucket_smoothness         = 5.0 / 6.0;
+    dig_grain_types_set_laws(&scene, &gravel, &types, &world);
+    struct dig_tool plate = dig_tool_make(&scene.bucket);
+    world.tool            = &plate;
+    dem_add_wall(&world, 0.0, -1.0, 0.0, -0.0038);
+    world.grains.motion[0] =
+        (struct dig_motion){ .v_mps = { 0.2, 0.1, -0.6 }, .w_radps = { 3.0, 5.0, -7.0 } };
+    follow(&world, FOLDER "plate.csv", (struct tolerance){ 1e-12, 1e-9, 1e-11 });
+    dig_world_finish(&world);
 }
 
 // At walls LIGGGHTS turns its rolling spring (1 - delta / 2r) / (1 - delta / r) times as far, up to
@@ -195,6 +223,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_grains_meet_as_in_liggghts),
         cmocka_unit_test(a_grain_meets_a_wall_as_in_liggghts),
+        cmocka_unit_test(a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts),
         cmocka_unit_test(a_grain_rolls_at_a_wall_nearly_as_in_liggghts),
         cmocka_unit_test(a_cluster_falls_apart_as_in_liggghts),
         cmocka_unit_test(a_bed_at_rest_stays_as_in_liggghts),

@@ -15,7 +15,27 @@ series() { # DUMP ID
 }
 columns=step,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm
 
-for deck in pair wall slide; do
+# A plate of two triangles.
+cat > plate.stl <<EOF
+solid plate
+ facet normal 0 0 1
+  outer loop
+   vertex -.03 -.02 -.0038
+   vertex .03 -.02 -.0038
+   vertex .03 .02 -.0038
+  endloop
+ endfacet
+ facet normal 0 0 1
+  outer loop
+   vertex -.03 -.02 -.0038
+   vertex .03 .02 -.0038
+   vertex -.03 .02 -.0038
+  endloop
+ endfacet
+endsolid plate
+EOF
+
+for deck in pair wall slide plate; do
     liggghts -in "$here/in.$deck" > $deck.log
     { echo $columns; series $deck.dump 1; } > "$here/$deck.csv"
 done
