@@ -21,6 +21,7 @@ static const char *const names[DIG_EFFECTS] = {
     [DIG_EFFECT_COMPACTION]        = "compaction",
     [DIG_EFFECT_RATE_DEPENDENCE]   = "rate_dependence",
     [DIG_EFFECT_WEAR]              = "wear",
+    [DIG_EFFECT_BUCKET_FRICTION]   = "bucket_friction",
     [DIG_EFFECT_UNLISTED]          = "unlisted",
 };
 

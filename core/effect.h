@@ -26,6 +26,7 @@ enum dig_effect_id {
     DIG_EFFECT_COMPACTION,
     DIG_EFFECT_RATE_DEPENDENCE,
     DIG_EFFECT_WEAR,
+    DIG_EFFECT_BUCKET_FRICTION,
     // None of the above.
     DIG_EFFECT_UNLISTED,
     DIG_EFFECTS

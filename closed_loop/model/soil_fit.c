@@ -2,6 +2,7 @@
 
 #include "closed_loop/model/soil_terms.h"
 #include "closed_loop/numeric/dense.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -237,9 +238,11 @@ static bool set_range(struct dig_soil *const soil, const struct dig_effect_set *
     if (!(scale > 0.0)) {
         return false;
     }
-    soil->scale[effect] = scale;
-    soil->low[effect]   = beyond * least / scale;
-    soil->high[effect]  = beyond * most / scale;
+    // A bucket has no less than no friction.
+    const struct dig_effect_parameter *const bound = &dig_effect_of(effect)->parameter[0];
+    soil->scale[effect]                            = scale;
+    soil->low[effect]  = fmax(beyond * least, bound->low - soil->absent[effect]) / scale;
+    soil->high[effect] = fmin(beyond * most, bound->high - soil->absent[effect]) / scale;
     return true;
 }
 

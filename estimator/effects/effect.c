@@ -25,6 +25,7 @@ static const struct dig_effect *const list[DIG_EFFECTS] = {
     [DIG_EFFECT_COMPACTION]        = &dig_effect_compaction,
     [DIG_EFFECT_RATE_DEPENDENCE]   = &dig_effect_rate_dependence,
     [DIG_EFFECT_WEAR]              = &dig_effect_wear,
+    [DIG_EFFECT_BUCKET_FRICTION]   = &dig_effect_bucket_friction,
 };
 
 const struct dig_effect *dig_effect_of(const enum dig_effect_id id)

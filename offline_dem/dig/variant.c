@@ -27,6 +27,11 @@ static void set_adhesion(const double magnitude, struct dig_scene *const scene)
     scene->laws.adhesion_Jpm3 = magnitude;
 }
 
+static void set_bucket_smoothness(const double magnitude, struct dig_scene *const scene)
+{
+    scene->laws.bucket_smoothness = magnitude;
+}
+
 // 6, 7.5 and 10 mm at 5/3: the logarithms of both steps keep their ratio.
 static void set_sizes(const double magnitude, struct dig_scene *const scene)
 {
@@ -145,6 +150,7 @@ static const struct effect_change effect_change[] = {
     { DIG_EFFECT_LAYERING, "m", -100.0, 100.0, set_layer },
     { DIG_EFFECT_OBSTACLE, "m", 1e-4, 100.0, set_obstacle },
     { DIG_EFFECT_COMPACTION, "digs", 1.0, DIG_EARLIER_MAX, set_earlier_digs },
+    { DIG_EFFECT_BUCKET_FRICTION, "1", 1e-3, 1.0, set_bucket_smoothness },
 };
 
 static const struct effect_change *find_effect(const enum dig_effect_id effect)

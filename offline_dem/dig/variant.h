@@ -22,6 +22,10 @@
 //                          grains do not
 //   compaction      digs   made before in the same bed, the       0
 //                          ground raked level after each
+//   bucket_friction 1      how much smoother the bucket is than     0
+//                          the scene's: the share of friction and
+//                          rolling friction that grains lack
+//                          there; .4 leaves .3 of .5
 //
 // A slope keeps its height where the teeth start: the ground is the highest plane of that slope
 // above which every trajectory's tooth starts. A time step that is given is shortened with the

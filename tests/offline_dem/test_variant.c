@@ -46,6 +46,7 @@ static void every_effect_of_a_bed_makes_another_scene(void **state)
         { DIG_EFFECT_LAYERING, { 0.04, 0.05 }, "m" },
         { DIG_EFFECT_OBSTACLE, { 0.02, 0.03 }, "m" },
         { DIG_EFFECT_COMPACTION, { 1.0, 2.0 }, "digs" },
+        { DIG_EFFECT_BUCKET_FRICTION, { 0.4, 0.75 }, "1" },
     };
     for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
         char hex[2][65];
@@ -157,7 +158,8 @@ static void what_no_bed_can_hold_is_refused_by_name(void **state)
         { DIG_EFFECT_GROUND_SLOPE, 45.0 },     { DIG_EFFECT_LAYERING, 0.2 },
         { DIG_EFFECT_OBSTACLE, INFINITY },     { DIG_EFFECT_COMPACTION, 1.5 },
         { DIG_EFFECT_COMPACTION, 0.0 },        { DIG_EFFECT_LAYERING, -0.2 },
-        { DIG_EFFECT_LAYERING, 0.0 },
+        { DIG_EFFECT_LAYERING, 0.0 },          { DIG_EFFECT_BUCKET_FRICTION, 0.0 },
+        { DIG_EFFECT_BUCKET_FRICTION, 1.01 },  { DIG_EFFECT_BUCKET_FRICTION, NAN },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_scene varied;
