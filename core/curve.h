@@ -102,6 +102,13 @@ struct dig_covariance {
     double of[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
 };
 
+/// The time step a table's digs were computed with: core/table_step.h.
+struct dig_table_step {
+    double taken_s;        // 0: derived for each gravel, or not known
+    double derived_s;      // dig_contact_step_s() of the table's lightest gravel
+    double lightest_kgpm3; // that gravel
+};
+
 struct dig_approach_set; // core/approach_set.h
 
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
@@ -113,6 +120,7 @@ struct dig_curve_set {
     double                bucket_width_m;
     double                young_Pa;
     double                smooth_half_s; // smoothing already applied to the curves, rig time
+    struct dig_table_step step;
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
     size_t                entries;

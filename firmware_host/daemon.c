@@ -1,5 +1,6 @@
 #include "firmware_host/daemon.h"
 
+#include "core/table_step.h"
 #include "firmware_host/config/load.h"
 #include "firmware_host/publish/publish.h"
 #include "firmware_host/threads/notify.h"
@@ -262,6 +263,7 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
     const struct dig_curve_set *const set = d->fit.table.set;
     char                              line[LINE];
     char                              digs[LINE] = "";
+    char                              trembles[DIG_TABLE_STEP_TEXT_SIZE];
     for (size_t t = 0; t < set->trajectories; t++) {
         const size_t used = strlen(digs);
         (void)snprintf(digs + used, sizeof digs - used, "%s%s%s", used > 0 ? ", " : "",
@@ -272,6 +274,11 @@ void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(con
     (void)snprintf(line, sizeof line, "table %.200s: scene %s (%.12s…), %zu gravels, digs: %.150s",
                    l->config.table.text, set->scene_name, set->scene_hash, set->entries, digs);
     say(line);
+    dig_table_step_text(&set->step, trembles);
+    if (trembles[0] != '\0') {
+        (void)snprintf(line, sizeof line, "table: %s", trembles);
+        say(line);
+    }
     (void)snprintf(line, sizeof line, "machine %s: bucket %.3f m, %.2f times the table's",
                    l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m,
                    l->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);

@@ -57,6 +57,17 @@ static size_t read_pairs(const char *const canonical, const char *const key, con
     return n;
 }
 
+static size_t read_sizes(const char *const canonical, struct dig_size size[const])
+{
+    double       diameter_m[DIG_SIZES_MAX];
+    double       fraction[DIG_SIZES_MAX];
+    const size_t n = read_pairs(canonical, "size", DIG_SIZES_MAX, diameter_m, fraction);
+    for (size_t i = 0; i < n; i++) {
+        size[i] = (struct dig_size){ diameter_m[i], fraction[i] };
+    }
+    return n;
+}
+
 // Rows of a profile's number, x and z, under the y of each profile.
 static void read_profiles(const char *const canonical, struct dig_bed_plan *const bed)
 {
@@ -92,6 +103,7 @@ void dig_scene_from_canonical(const char *const canonical, struct dig_scene *con
     read_first(canonical, "box_m", 6, box);
     read_first(canonical, "material", 5, material);
     read_first(canonical, "gravity_mps2", 1, &scene->gravity_mps2);
+    read_first(canonical, "time_step_s", 1, &scene->time_step_s);
     scene->box = (struct dig_box){ box[0], box[1], box[2], box[3], box[4], box[5] };
     scene->material =
         (struct dig_material){ material[0], material[1], material[2], material[3], material[4] };
@@ -100,6 +112,7 @@ void dig_scene_from_canonical(const char *const canonical, struct dig_scene *con
     bed->surface =
         read_pairs(canonical, "surface_m", DIG_SURFACE_MAX, bed->surface_x_m, bed->surface_z_m);
     read_profiles(canonical, bed);
+    bed->sizes      = read_sizes(canonical, bed->size);
     bed->periodic_y = strstr(canonical, "\nperiodic_y\n") != NULL;
     scene->laws.normal =
         strstr(canonical, "\nnormal=hertz\n") != NULL ? DIG_NORMAL_HERTZ : DIG_NORMAL_HOOKE;

@@ -181,6 +181,7 @@ static enum dig_status check_all(struct dig_store *const        store,
     }
     if (status == DIG_OK && set != NULL) {
         made.holes = count_holes(set);
+        made.step  = dig_grounds_step(&all, &store->head);
         count_entries(&all, &made);
         *report = made;
     }

@@ -1,6 +1,7 @@
 #include "tables/grounds.h"
 
 #include "core/effect.h"
+#include "core/table_step.h"
 #include "tables/derive.h"
 
 #include <math.h>
@@ -225,6 +226,17 @@ enum dig_status dig_grounds_load(sqlite3 *const db, const char *const path,
     }
     *grounds = made;
     return DIG_OK;
+}
+
+struct dig_table_step dig_grounds_step(const struct dig_grounds *const    grounds,
+                                       const struct dig_table_head *const head)
+{
+    double lightest_kgpm3 = INFINITY;
+    for (size_t i = 0; i < grounds->grounds; i++) {
+        lightest_kgpm3 =
+            fmin(lightest_kgpm3, grounds->ground[i].gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    }
+    return dig_table_step_of(&head->finest, head->normal, lightest_kgpm3, head->time_step_s);
 }
 
 void dig_grounds_finish(struct dig_grounds *const grounds)

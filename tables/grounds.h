@@ -46,6 +46,10 @@ void dig_grounds_pool_spread(struct dig_grounds *grounds);
 /// The same with the spread of others' entries added to the pool; their trajectories are the same.
 void dig_grounds_pool_spread_with(const struct dig_grounds *others, struct dig_grounds *grounds);
 
+/// The time step of the head's scene against what the lightest of these gravels bears.
+struct dig_table_step dig_grounds_step(const struct dig_grounds    *grounds,
+                                       const struct dig_table_head *head);
+
 void dig_grounds_finish(struct dig_grounds *grounds);
 
 #endif // DIG_TABLES_GROUNDS_H

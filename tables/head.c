@@ -236,10 +236,17 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     return strncmp(rest, first, strlen(first)) != 0 && strncmp(rest, "phase=", 6) != 0;
 }
 
-static void measure_depths(struct dig_table_head *const head, const char *const canonical)
+static void read_canonical(struct dig_table_head *const head, const char *const canonical)
 {
     struct dig_scene scene = { .trajectories = 0 };
     dig_scene_from_canonical(canonical, &scene);
+
+    head->time_step_s = scene.time_step_s;
+    head->normal      = scene.laws.normal;
+    head->finest      = scene.material;
+    for (size_t i = 0; i < scene.bed.sizes; i++) {
+        head->finest.diameter_m = fmin(head->finest.diameter_m, scene.bed.size[i].diameter_m);
+    }
 
     // Along the length that the table itself gives the bucket.
     scene.bucket = (struct dig_bucket){ .points = 1, .z_m = { -head->tooth_m } };
@@ -271,7 +278,7 @@ enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
             path, "trajectory: the rows differ from scene.canonical, expected the same", error);
     }
     if (status == DIG_OK && canonical != NULL) {
-        measure_depths(&read, canonical);
+        read_canonical(&read, canonical);
     }
     free(canonical);
     if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {

@@ -135,7 +135,8 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
         status = no_memory(path, error);
     } else {
         copy_head(made, head);
-        status = fill(made, &plain, path, error);
+        made->step = dig_grounds_step(&plain, head);
+        status     = fill(made, &plain, path, error);
     }
     dig_grounds_finish(&plain);
     if (status != DIG_OK) {

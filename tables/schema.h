@@ -36,7 +36,10 @@ struct dig_table_head {
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX]; // all of the scene, in its order
     double                depth_m[DIG_TRAJECTORY_MAX];    // dig_approach_depth_m() of each
-    int                   version;                        // of the file
+    double                time_step_s;                    // of the scene
+    struct dig_material   finest; // its smallest grains; of several spheres: of their volume
+    enum dig_normal_law   normal;
+    int                   version; // of the file
 };
 
 /// What a scene's table says of itself.

@@ -113,6 +113,8 @@ struct dig_store_report {
     size_t approaches; // gravels without one, at another depth or attack
     size_t holes;      // grid points between the axes' values that hold no gravel
     size_t incomplete; // entries with fewer packings than most others of their kind have
+
+    struct dig_table_step step; // core/table_step.h
 };
 
 /// Recomputes every entry from its runs and refuses the first that differs (DIG_EINVAL, named).

@@ -1,6 +1,8 @@
 // digloop: which gravel resists like these recordings, what that gravel will resist with, and what
 // the table lacks.
 
+#include "core/table_step.h"
+#include "core/text.h"
 #include "tables/load.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
@@ -30,6 +32,18 @@ static enum dig_status run(const struct digloop_options *const options,
     return digloop_trace(options, set, error);
 }
 
+// Once for every command: all of them go by the table's curves.
+static void note_step(const char *const table, const struct dig_curve_set *const set)
+{
+    char text[DIG_TABLE_STEP_TEXT_SIZE];
+    dig_table_step_text(&set->step, text);
+    if (text[0] != '\0') {
+        (void)fputs("digloop: ", stderr);
+        dig_text_put(stderr, table);
+        (void)fprintf(stderr, ": %s\n", text);
+    }
+}
+
 int main(const int argc, char *argv[])
 {
     struct digloop_options options = { .command = "" };
@@ -41,6 +55,7 @@ int main(const int argc, char *argv[])
     struct dig_curve_set *set    = NULL;
     enum dig_status       status = digloop_input(dig_table_load(options.table, &set, &error));
     if (status == DIG_OK) {
+        note_step(options.table, set);
         status = run(&options, set, &error);
     }
     dig_curve_set_destroy(set);

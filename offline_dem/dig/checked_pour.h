@@ -6,7 +6,7 @@
 
 #include "offline_dem/dig/dig.h"
 
-/// dig_bed_pour(); then, where the scene's step is longer than dig_time_step_limit_s() and it does
+/// dig_bed_pour(); then, where the scene's step is longer than dig_contact_step_s() and it does
 /// not say may_tremble, 0.1 s of a copy of the bed under dig_energy_drift_detect(): some per cent
 /// of the cost of pouring. DIG_EINVAL when the energy drifts; *error names the key, the step and
 /// the longest safe one. *bed is written on success only.

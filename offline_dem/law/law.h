@@ -23,8 +23,8 @@
 #ifndef DIG_OFFLINE_DEM_LAW_LAW_H
 #define DIG_OFFLINE_DEM_LAW_LAW_H
 
+#include "core/contact.h"
 #include "core/scene.h"
-#include "core/units.h"
 #include "offline_dem/law/both.h"
 
 #include <math.h>
@@ -85,55 +85,32 @@ struct dig_contact_force {
     double jx_Nm, jy_Nm, jz_Nm;
 };
 
-/// Hertz and Mindlin: Y* and G* of like bodies, damped to the same restitution at any speed
-/// (law_general.h).
-static inline void dig_law_make_hertz(const struct dig_law_material *const material,
-                                      const double radius_m, const double mass_kg,
-                                      struct dig_law *const law)
-{
-    const double nu       = material->poisson;
-    const double young_Pa = material->young_Pa / (2.0 * (1.0 - nu * nu));
-    const double shear_Pa = material->young_Pa / (4.0 * (2.0 - nu) * (1.0 + nu));
-    const double log_e    = log(material->restitution);
-    const double share    = -log_e / sqrt(log_e * log_e + DIG_PI * DIG_PI);
-    const double damping  = 2.0 * sqrt(5.0 / 6.0) * share;
-    const double root_m   = sqrt(radius_m);
-
-    law->hertz                   = true;
-    law->normal_Npm              = 4.0 / 3.0 * young_Pa * root_m;
-    law->damping_Nspm            = damping * sqrt(2.0 * young_Pa * root_m * mass_kg);
-    law->tangential_Npm          = 8.0 * shear_Pa * root_m;
-    law->tangential_damping_Nspm = damping * sqrt(law->tangential_Npm * mass_kg);
-    law->rolling_Nmprad          = law->tangential_Npm * radius_m * radius_m;
-}
-
 /// Constants for an effective radius and mass; the caller sets reach and levers.
 static inline struct dig_law dig_law_make(const struct dig_law_material *const material,
                                           const double radius_m, const double mass_kg)
 {
-    const double young_Pa =
-        material->young_Pa / (2.0 * (1.0 - material->poisson * material->poisson));
-    const double hertz      = 16.0 / 15.0 * sqrt(radius_m) * young_Pa;
-    const double velocity   = material->characteristic_velocity_mps;
-    const double normal_Npm = hertz * pow(mass_kg * velocity * velocity / hertz, 0.2);
-    const double log_e      = log(material->restitution);
-    const double ratio      = DIG_PI / log_e;
+    const struct dig_material bodies = {
+        .young_Pa                    = material->young_Pa,
+        .poisson                     = material->poisson,
+        .restitution                 = material->restitution,
+        .characteristic_velocity_mps = material->characteristic_velocity_mps,
+    };
+    const struct dig_contact_springs springs =
+        dig_contact_springs(&bodies, material->normal_law, radius_m, mass_kg);
 
     struct dig_law law = {
-        .normal_Npm      = normal_Npm,
-        .damping_Nspm    = sqrt(4.0 * mass_kg * normal_Npm / (1.0 + ratio * ratio)),
-        .rolling_Nmprad  = normal_Npm * radius_m * radius_m,
-        .friction        = material->friction,
-        .rolling_lever_m = material->rolling * radius_m,
-        .epsd2           = material->rolling_law == DIG_ROLLING_EPSD2,
-        .cdt             = material->rolling_law == DIG_ROLLING_CDT,
-        .cohesion_Jpm3   = material->cohesion_Jpm3,
+        .normal_Npm              = springs.normal_Npm,
+        .damping_Nspm            = springs.damping_Nspm,
+        .rolling_Nmprad          = springs.tangential_Npm * radius_m * radius_m,
+        .friction                = material->friction,
+        .rolling_lever_m         = material->rolling * radius_m,
+        .hertz                   = material->normal_law == DIG_NORMAL_HERTZ,
+        .tangential_Npm          = springs.tangential_Npm,
+        .tangential_damping_Nspm = springs.tangential_damping_Nspm,
+        .epsd2                   = material->rolling_law == DIG_ROLLING_EPSD2,
+        .cdt                     = material->rolling_law == DIG_ROLLING_CDT,
+        .cohesion_Jpm3           = material->cohesion_Jpm3,
     };
-    law.tangential_Npm          = law.normal_Npm;
-    law.tangential_damping_Nspm = law.damping_Nspm;
-    if (material->normal_law == DIG_NORMAL_HERTZ) {
-        dig_law_make_hertz(material, radius_m, mass_kg, &law);
-    }
     law.general = law.hertz || !law.epsd2 || law.cohesion_Jpm3 > 0.0;
     return law;
 }

@@ -21,6 +21,7 @@
 #ifndef DIG_OFFLINE_DEM_LAW_LAW_GENERAL_H
 #define DIG_OFFLINE_DEM_LAW_LAW_GENERAL_H
 
+#include "core/units.h"
 #include "offline_dem/law/law.h"
 
 /// Pull of cohesion at the distance d_m.

@@ -1,8 +1,8 @@
 #include "offline_dem/world/grain_types.h"
 
 #include "core/bed_plan.h"
+#include "core/contact.h"
 #include "core/units.h"
-#include "offline_dem/law/time_step.h"
 
 #include <math.h>
 
@@ -222,12 +222,14 @@ double dig_grain_types_time_step_s(const struct dig_scene *const       scene,
     }
     double least_s = INFINITY;
     for (size_t k = 0; k < types->types; k++) {
-        const struct dig_law_material own =
+        const struct dig_law_material between =
             dig_grain_types_between(scene, gravel, types->material[k], types->material[k]);
-        least_s =
-            fmin(least_s,
-                 dig_time_step_limit_s(&own, types->type[k].radius_m,
-                                       own_of(scene, gravel, types->material[k]).density_kgpm3));
+        struct dig_material grain = scene->material;
+        grain.diameter_m          = 2.0 * types->type[k].radius_m;
+        grain.restitution         = between.restitution;
+        least_s                   = fmin(least_s,
+                                         dig_contact_step_s(&grain, scene->laws.normal,
+                                                            own_of(scene, gravel, types->material[k]).density_kgpm3));
     }
     return least_s;
 }

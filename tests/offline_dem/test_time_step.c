@@ -1,6 +1,6 @@
 // The bounds on the time step, against collisions and spins that are stepped through.
 
-#include "offline_dem/law/time_step.h"
+#include "core/contact.h"
 #include "tests/dem_fixture.h"
 
 #include <math.h>
@@ -14,6 +14,14 @@ static const struct dig_law_material *law_of(const int k)
     m.young_Pa    = k / 6 == 0 ? 5e6 : 1.5e8;
     m.restitution = k / 6 == 0 ? 0.9 : 0.2;
     return &m;
+}
+
+static double step_of_s(const struct dig_law_material *const m, const double radius_m,
+                        const double density_kgpm3)
+{
+    const struct dig_material material = { 2.0 * radius_m, m->young_Pa, m->poisson, m->restitution,
+                                           m->characteristic_velocity_mps };
+    return dig_contact_step_s(&material, m->normal_law, density_kgpm3);
 }
 
 // Time two grains touch that meet at the characteristic velocity, found in steps far too short.
@@ -42,7 +50,7 @@ static void a_contact_takes_at_least_twenty_steps(void **state)
     (void)state;
     for (int k = 0; k < 12; k += 5) {
         const struct dig_law_material *const m      = law_of(k);
-        const double                         step_s = dig_time_step_limit_s(m, GRAIN_m, DENSITY);
+        const double                         step_s = step_of_s(m, GRAIN_m, DENSITY);
         assert_true(step_s > 0.0);
         assert_true(contact_s(m) >= 19.5 * step_s); // damping shortens it a little
     }
@@ -87,7 +95,7 @@ static void spin_dies_out_at_the_limit_and_grows_well_above(void **state)
 {
     (void)state;
     const struct dig_law_material m      = dem_material(0.5, 0.3);
-    const double                  step_s = dig_time_step_limit_s(&m, GRAIN_m, DENSITY);
+    const double                  step_s = step_of_s(&m, GRAIN_m, DENSITY);
     assert_true(fabs(spin_after(step_s, 1)) < 0.2);
     assert_true(fabs(spin_after(step_s, 200)) < 0.05);
     // Among grains that are held the limit has a factor of two in hand: beyond that it is over.
@@ -99,11 +107,11 @@ static void stiffer_smaller_and_lighter_grains_ask_for_shorter_steps(void **stat
     (void)state;
     for (int k = 0; k < 2; k++) {
         struct dig_law_material m    = *law_of(k);
-        const double            base = dig_time_step_limit_s(&m, GRAIN_m, DENSITY);
-        assert_true(dig_time_step_limit_s(&m, 0.8 * GRAIN_m, DENSITY) < base);
-        assert_true(dig_time_step_limit_s(&m, GRAIN_m, 0.6 * DENSITY) < base);
+        const double            base = step_of_s(&m, GRAIN_m, DENSITY);
+        assert_true(step_of_s(&m, 0.8 * GRAIN_m, DENSITY) < base);
+        assert_true(step_of_s(&m, GRAIN_m, 0.6 * DENSITY) < base);
         m.young_Pa *= 30.0;
-        assert_true(dig_time_step_limit_s(&m, GRAIN_m, DENSITY) < base);
+        assert_true(step_of_s(&m, GRAIN_m, DENSITY) < base);
     }
 }
 

@@ -25,6 +25,7 @@ refuses() { # WORDS… -- COMMAND…
 "$BIN/digloop" identify "$table" "$reference"__simpleA.csv "$reference"_seed{2,3,4,5}__simpleA.csv --json \
     >"$work/id.json" 2>"$work/err"
 check "digs of LIGGGHTS are identified" [ $? = 0 ]
+check "and the table's too long step is told of" grep -q "gravel of 1500 kg/m3 trembles" "$work/err"
 check "as gravel of the table" grep -q '"outside": false' "$work/id.json"
 check "pooled, by moment and forces" grep -q '"digs": 5, "forces": true' "$work/id.json"
 "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv" >"$work/out" 2>"$work/err"

@@ -42,7 +42,7 @@ check "generate fills a table" eval 'is $code 0 && grep -q "12 of 12 digs" $work
 digtable check "$work/whole.sqlite" --complete
 check "which is sound and complete" eval 'is $code 0 && grep -q "6 points, 6 entries, 12 runs; 0 holes" $work/out'
 digtable check "$work/whole.sqlite" --json
-check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1, \"approaches\": 0}"'
+check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1, \"approaches\": 0, \"trembles\": false}"'
 digtable generate $scene $grid -o "$work/whole.sqlite"
 check "a second time there is nothing to do" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
 

@@ -5,10 +5,14 @@
 table=tables/rig.sqlite
 digtable check $table
 check "$table is sound" is "$code" 0
+check "and says that its light gravel trembled" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
+"$BIN/digsightd" -c config/digsightd.yaml --check >"$work/out"
+check "as digsightd does" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
 digtable check tables/rig_effects.sqlite
 check "tables/rig_effects.sqlite is sound" is "$code" 0
 digtable check tables/product.sqlite
 check "tables/product.sqlite is sound" is "$code" 0
+check "and nothing in it trembled" eval '! grep -q trembles $work/out'
 cp tables/product.sqlite "$work/begun.sqlite"
 digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/begun.sqlite" --time-limit 0
 check "and its digs are those of the product grid" eval 'is $code 0 && grep -q "144 of 144 digs" $work/err'

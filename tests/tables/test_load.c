@@ -2,6 +2,7 @@
 
 #include "tables/load.h"
 
+#include "core/table_step.h"
 #include "files/scene_yaml.h"
 #include "tests/tables_fixture.h"
 
@@ -37,6 +38,34 @@ static void the_head_is_that_of_the_scene(void **state)
         assert_close(a->phase[0].vx_mps, b->phase[0].vx_mps, 0.0);
         assert_close(a->phase[0].duration_s, b->phase[0].duration_s, 0.0);
     }
+    dig_curve_set_destroy(set);
+}
+
+// Out of the text that a table keeps of its scene: the step, the smallest grains, the lightest
+// gravel.
+static void the_step_is_that_of_the_scene_and_its_lightest_gravel(void **state)
+{
+    (void)state;
+    struct dig_scene scene  = fixture_scene();
+    scene.time_step_s       = 5e-5;
+    scene.bed.sizes         = 2;
+    scene.bed.size[0]       = (struct dig_size){ 0.009, 0.5 };
+    scene.bed.size[1]       = (struct dig_size){ 0.006, 0.5 };
+    struct dig_store *store = NULL;
+    assert_int_equal(dig_store_create(scratch_path("tremble.sqlite"), &scene, &store, NULL),
+                     DIG_OK);
+    fixture_put_run(store, fixture_origin(.3, .3, 2500.0, 0, 0), 1.0);
+    fixture_put_run(store, fixture_origin(.3, .3, 1800.0, 0, 0), 1.0);
+    struct dig_store_report report = { .entries = 0 };
+    assert_int_equal(dig_store_check(store, &report, NULL), DIG_OK);
+    dig_store_close(store);
+    struct dig_curve_set *const set = fixture_load("tremble.sqlite");
+
+    struct dig_material finest        = scene.material;
+    finest.diameter_m                 = 0.006;
+    const struct dig_table_step truth = dig_table_step_of(&finest, DIG_NORMAL_HOOKE, 1800.0, 5e-5);
+    assert_memory_equal(&set->step, &truth, sizeof truth);
+    assert_close(report.step.lightest_kgpm3, 1800.0, 0.0);
     dig_curve_set_destroy(set);
 }
 
@@ -348,6 +377,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_head_is_that_of_the_scene),
+        cmocka_unit_test(the_step_is_that_of_the_scene_and_its_lightest_gravel),
         cmocka_unit_test(mean_and_spread_are_those_of_the_packings),
         cmocka_unit_test(the_covariance_is_that_of_the_packings_of_all_gravels),
         cmocka_unit_test(a_curve_runs_along_the_path_not_along_time),

@@ -1,5 +1,6 @@
 // digtable list, check, show and export.
 
+#include "core/table_step.h"
 #include "core/text.h"
 #include "files/whole.h"
 #include "tables/export.h"
@@ -64,12 +65,15 @@ int dig_cli_check(const struct dig_arguments *const a)
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
+    char trembles[DIG_TABLE_STEP_TEXT_SIZE];
+    dig_table_step_text(&report.step, trembles);
     if (a->json) {
-        (void)printf(
-            "{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
-            "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu, \"approaches\": %zu}\n",
-            report.points, report.entries, report.runs, report.holes, report.incomplete,
-            report.effects, report.builds, report.approaches);
+        (void)printf("{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
+                     "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu, \"approaches\": %zu, "
+                     "\"trembles\": %s}\n",
+                     report.points, report.entries, report.runs, report.holes, report.incomplete,
+                     report.effects, report.builds, report.approaches,
+                     trembles[0] != '\0' ? "true" : "false");
     } else {
         dig_text_put(stdout, a->positional[0]);
         (void)printf(": sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
@@ -82,6 +86,9 @@ int dig_cli_check(const struct dig_arguments *const a)
             (void)printf("; %zu points at another depth or attack", report.approaches);
         }
         (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
+        if (trembles[0] != '\0') {
+            (void)printf("  %s\n", trembles);
+        }
     }
     return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
 }
