@@ -236,6 +236,22 @@ static void put_error_line(FILE *const to, const char *const title,
     }
 }
 
+// The coefficients of a smoother bucket in the gravel found.
+static void put_bucket(FILE *const to, const struct dig_trace *const trace)
+{
+    for (size_t e = 0; e < trace->effects && trace->applied; e++) {
+        if (trace->effect[e].effect == DIG_EFFECT_BUCKET_FRICTION) {
+            const double left = 1.0 - trace->effect[e].parameter[0].value;
+            (void)fprintf(
+                to,
+                "  bucket: friction %.3g, rolling %.3g, if the table's is as rough as the "
+                "gravel\n",
+                left * trace->gravel.value[DIG_AXIS_FRICTION],
+                left * trace->gravel.value[DIG_AXIS_ROLLING]);
+        }
+    }
+}
+
 void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
@@ -264,6 +280,7 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
     (void)fprintf(to, "  gravel: friction %.3g, rolling %.3g, density %.4g kg/m3\n",
                   trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
                   trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    put_bucket(to, trace);
     put_error_line(to, "before", &trace->before, trace->holdouts);
     put_error_line(to, "after ", &trace->after, trace->holdouts);
     (void)fprintf(to,

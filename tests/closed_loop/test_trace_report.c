@@ -333,6 +333,34 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     drop(e);
 }
 
+// What a person knows of a bucket is its friction, not what it lacks.
+static void a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found(void **state)
+{
+    (void)state;
+    struct example *const e    = make();
+    const char *const     path = scratch_path("bucket.txt");
+    FILE *const           file = fopen(path, "w");
+    assert_non_null(file);
+    e->trace.gravel    = (struct dig_gravel){ { 0.6, 0.4, 2500.0 } };
+    e->trace.effect[0] = (struct dig_model_effect){
+        .effect     = DIG_EFFECT_BUCKET_FRICTION,
+        .parameters = 1,
+        .parameter  = { { "bucket_smoothness", 0.75, 0.6, 0.9 } },
+    };
+    dig_trace_text(&e->trace, file);
+    // The gravel is then another, refitted without it.
+    e->trace.applied = false;
+    dig_trace_text(&e->trace, file);
+    assert_int_equal(fclose(file), 0);
+    size_t            size  = 0;
+    char *const       text  = scratch_read(path, &size);
+    const char *const first = strstr(text, "bucket: friction 0.15, rolling 0.1, if");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "bucket: friction"));
+    free(text);
+    drop(e);
+}
+
 // A change that was not made is told in every form of the report.
 static void what_is_named_and_not_applied_is_told(void **state)
 {
@@ -455,6 +483,7 @@ int main(void)
         cmocka_unit_test(control_characters_stay_inside_a_json_string),
         cmocka_unit_test(a_sentence_says_the_verdict),
         cmocka_unit_test(the_terminal_gets_parameters_sets_errors_and_advice),
+        cmocka_unit_test(a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found),
         cmocka_unit_test(what_is_named_and_not_applied_is_told),
         cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
         cmocka_unit_test(a_trace_without_holdout_or_findings_has_a_page_too),
