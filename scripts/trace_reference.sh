@@ -1,22 +1,27 @@
 #!/bin/bash
-# What `digloop trace` says of digs of another code in plain gravel: every LIGGGHTS gravel of
-# tests/data/reference as a campaign, its first simple dig to identify, its last real dig held out
-# where it has three beds or more. One line a campaign; the right verdict is none.
-#   BIN=build/bin scripts/trace_reference.sh [TABLE.sqlite]
+# What `digloop trace` says of digs of another code: every LIGGGHTS gravel of a folder as a campaign, its first
+# simple dig to identify, its last real dig held out where it has three beds or more. A line a campaign, intervals of
+# 90 %. The right verdict of plain gravel, and so of tests/data/reference, is none.
+#   BIN=build/bin scripts/trace_reference.sh [TABLE.sqlite [FOLDER]]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite}
+bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=${2:-tests/data/reference}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-here=$(pwd)
+here=$(realpath "$data")
 
-field() { sed -nE "s/.*\"$1\": ($2).*/\1/p" "$work/trace.json" | head -n 1; }
+whole() { tr -d '\n' <"$work/trace.json"; }
+field() { whole | grep -oE "\"$1\": $2" | head -n 1 | sed -E 's/^"[^"]*": //'; }
+interval() { # TEXT: value (low-high) of the first object in it that has them
+    grep -oE '\{"value": [^}]*' <<<"$1" | head -n 1 | tr -d '{,' | awk '{ printf "%.3g (%.3g-%.3g)", $2, $4, $6 }'
+}
+holdout() { field "error_$1" '\{"holdout": [^,]*' | sed -E 's/.* //; s/null/nan/'; }
 
-printf '%-22s %5s  %-14s %9s %9s %6s %6s\n' gravel digs verdict p residual error floor
-for first in tests/data/reference/*0__simpleA.csv; do
-    gravel=$(basename "${first%__simpleA.csv}")
-    beds=("$gravel")
-    for other in tests/data/reference/"$gravel"_seed*__simpleA.csv; do
-        [ -e "$other" ] && beds+=("$(basename "${other%__simpleA.csv}")")
+printf '%-32s %4s  %-19s %-18s %-16s %-16s %-17s %8s %6s %6s %6s\n' gravel digs verdict magnitude friction rolling \
+    kg/m3 residual before after floor
+for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_seed[0-9]+)?__simpleA.csv//' | sort -u); do
+    beds=()
+    for simple in "$here/$gravel"{,_seed*}__simpleA.csv; do
+        [ ! -e "${simple%simpleA.csv}actual.csv" ] || beds+=("${simple%__simpleA.csv}")
     done
     {
         echo "scene: rig"
@@ -25,13 +30,15 @@ for first in tests/data/reference/*0__simpleA.csv; do
         for i in "${!beds[@]}"; do
             held=fit
             [ "${#beds[@]}" -ge 3 ] && [ "$i" = $((${#beds[@]} - 1)) ] && held=holdout
-            echo "  - {file: $here/tests/data/reference/${beds[$i]}__simpleA.csv, trajectory: simpleA, role: $role}"
-            echo "  - {file: $here/tests/data/reference/${beds[$i]}__actual.csv, trajectory: actual, role: $held}"
+            echo "  - {file: ${beds[$i]}__simpleA.csv, trajectory: simpleA, role: $role}"
+            echo "  - {file: ${beds[$i]}__actual.csv, trajectory: actual, role: $held}"
             role=fit
         done
     } >"$work/campaign.yaml"
     "$bin/digloop" trace "$table" "$work" --json "$work/trace.json" 2>"$work/err" || { cat "$work/err"; exit 1; }
-    printf '%-22s %5d  %-14s %9s %9s %6.3f %6.3f\n' "$gravel" $((2 * ${#beds[@]})) "$(field verdict '\[[^]]*\]')" \
-        "$(field p_complete '[0-9.e+-]+')" "$(field soil '[0-9.e+-]+')" \
-        "$(field holdout '[0-9.e+-]+' | grep . || echo nan)" "$(field noise_floor '[0-9.e+-]+')"
+    printf '%-32s %4d  %-19s %-18s %-16s %-16s %-17s %8.3g %6.3f %6.3f %6.3f\n' "$gravel" $((2 * ${#beds[@]})) \
+        "$(field verdict '\[[^]]*\]')" "$(interval "$(whole | sed 's/.*"effects": //; s/"material": .*//')")" \
+        "$(interval "$(field friction '.*')")" "$(interval "$(field rolling '.*')")" \
+        "$(interval "$(field density_kgpm3 '.*')")" "$(field soil '[0-9.e+-]+')" "$(holdout before)" \
+        "$(holdout after)" "$(field noise_floor '[0-9.e+-]+')"
 done

@@ -63,6 +63,19 @@ static inline struct dig_scene dem_short_dig_scene(const double drag_s)
     return scene;
 }
 
+/// Grains of two sizes under Hertz's law that stick to each other and to a bucket smoother than
+/// they.
+static inline void dem_mix_sticky_grains(struct dig_scene *const scene)
+{
+    scene->laws        = (struct dig_laws){ .normal            = DIG_NORMAL_HERTZ,
+                                            .cohesion_Jpm3     = 2e4,
+                                            .adhesion_Jpm3     = 1e4,
+                                            .bucket_smoothness = 0.6 };
+    scene->bed.sizes   = 2;
+    scene->bed.size[0] = (struct dig_size){ 0.006, 0.5 };
+    scene->bed.size[1] = (struct dig_size){ 0.0085, 0.5 };
+}
+
 /// The reference digs' material with these two frictions.
 static inline struct dig_law_material dem_material(const double friction, const double rolling)
 {

@@ -61,13 +61,7 @@ static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **st
 {
     (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.02);
-    scene.laws             = (struct dig_laws){ .normal            = DIG_NORMAL_HERTZ,
-                                                .cohesion_Jpm3     = 2e4,
-                                                .adhesion_Jpm3     = 1e4,
-                                                .bucket_smoothness = 0.6 };
-    scene.bed.sizes        = 2;
-    scene.bed.size[0]      = (struct dig_size){ 0.006, 0.5 };
-    scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
+    dem_mix_sticky_grains(&scene);
     digs_agree(&scene);
 }
 

@@ -3,10 +3,13 @@
 #   ./make.sh GRAVEL SEED [TRAJECTORY...]   the rig scene (config/scenes/rig.yaml), some ten minutes of one core a seed:
 #                                           GRAVEL_seedN__TRAJECTORY.csv beside this file
 #   ./make.sh muF_murR_rhoD SEED            the same of a plain gravel, named by its parameters
+#   ./make.sh muF_murR_rhoD_bucketB SEED    the same with a bucket of its own friction and rolling friction B
 #   ./make.sh GRAVEL SEED scratch           a small scene, seconds: the phases' means and
 #                                           the spheres of the levelled bed on stdout, as small.csv has them
+# OUT=FOLDER: recordings go there.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
+out=$(cd "${OUT:-$here}" && pwd)
 gravel=$1
 seed=$2
 shift 2
@@ -33,6 +36,7 @@ fi
 # What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1 unless said.
 friction=.5 rolling=.5 density=2500
 radii=".00375" shares="1" clump= slope_deg=0 rock=
+bucket= # its friction and rolling friction; none: the grains' own
 normal=hooke roll=epsd2 wall_type=1
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
 case $gravel in
@@ -52,8 +56,9 @@ hertz) normal=hertz roll=cdt ;;
 mu*_mur*_rho*) # a plain gravel by its parameters
     friction=${gravel#mu} friction=${friction%%_*}
     rolling=${gravel#*_mur} rolling=${rolling%%_*}
-    density=${gravel#*_rho} ;;
-*) echo "gravel: $gravel, expected muF_murR_rhoD or one of the case above" >&2; exit 2 ;;
+    density=${gravel#*_rho} density=${density%%_*}
+    case $gravel in *_bucket*) bucket=${gravel#*_bucket} ;; esac ;;
+*) echo "gravel: $gravel, expected muF_murR_rhoD, muF_murR_rhoD_bucketB or one of the case above" >&2; exit 2 ;;
 esac
 
 law="$normal tangential history rolling_friction $roll"
@@ -113,9 +118,9 @@ neigh_modify delay 0 every 1 check yes
 fix m1 all property/global youngsModulus peratomtype 5e6 5e6 5e6 5e6
 fix m2 all property/global poissonsRatio peratomtype .2 .2 .2 .2
 fix m3 all property/global coefficientRestitution peratomtypepair $(pairs .2 .2)
-fix m4 all property/global coefficientFriction peratomtypepair $(pairs $friction $friction)
+fix m4 all property/global coefficientFriction peratomtypepair $(pairs $friction ${bucket:-$friction})
 fix m5 all property/global characteristicVelocity scalar 2
-fix m6 all property/global coefficientRollingFriction peratomtypepair $(pairs $rolling $rolling)
+fix m6 all property/global coefficientRollingFriction peratomtypepair $(pairs $rolling ${bucket:-$rolling})
 fix m7 all property/global cohesionEnergyDensity peratomtypepair $(pairs $pull $stick)
 pair_style gran model $law
 pair_coeff * *
@@ -248,6 +253,6 @@ for trajectory in $trajectories; do
     if [ "$trajectory" = scratch ]; then
         phase_means
     else
-        recording "$trajectory" > "$here/${gravel}_seed${seed}__$trajectory.csv"
+        recording "$trajectory" > "$out/${gravel}_seed${seed}__$trajectory.csv"
     fi
 done
