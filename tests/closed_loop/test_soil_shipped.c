@@ -125,11 +125,41 @@ static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
     }
 }
 
+// A bucket has some friction or none: no fit goes beyond, and the smoother it is the less it
+// resists.
+static void a_smoother_bucket_takes_off_the_moment_down_to_no_friction(void **state)
+{
+    (void)state;
+    const struct dig_gravel  gravel = { { 0.6, 0.4, 2500.0 } };
+    const enum dig_effect_id effect = DIG_EFFECT_BUCKET_FRICTION;
+    assert_close(dig_soil_magnitude(soil, effect, soil->low[effect]), 0.0, 0.0);
+    assert_close(dig_soil_magnitude(soil, effect, soil->high[effect]), 1.0, 1e-12);
+    for (size_t t = 0; t < set->trajectories; t++) {
+        double place[DIG_AXES], plain[DIG_FEATURES], amplitude[DIG_FORCE_CHANNELS];
+        double before = 1.0;
+        dig_response_surface_place(surface, &gravel, place);
+        dig_response_surface_features(surface, t, place, plain, amplitude);
+        assert_true(dig_soil_knows(soil, effect, t));
+        for (double smoothness = 0.4; smoothness < 0.8; smoothness += 0.35) {
+            double with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+            double noise = 0.0;
+            memcpy(with, plain, sizeof with);
+            dig_soil_add(soil, effect, t, place, smoothness / soil->scale[effect], 1.0, plain,
+                         amplitude, with, &noise);
+            dig_features_amplitude(with, NULL, size);
+            const double left = size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm];
+            assert_true(left < before);
+            before = left;
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(templates_follow_the_beds_that_ship),
         cmocka_unit_test(a_hard_layer_adds_and_a_loose_one_takes),
+        cmocka_unit_test(a_smoother_bucket_takes_off_the_moment_down_to_no_friction),
     };
     return cmocka_run_group_tests_name("soil_shipped", tests, load, unload);
 }

@@ -75,5 +75,13 @@ check "... and its ratio to the density, by which it acts, measured to a fifth" 
 trace obstacle
 check "a rock in the way is named" [ "$(verdict obstacle)" = '"obstacle"' ]
 
+# A bucket of friction .15 in gravel of .6; the table's is as rough as the gravel.
+data=$PWD/tests/data/liggghts_bucket
+smooth=mu0.6_mur0.4_rho2500_bucket0.15
+trace $smooth
+check "a smooth bucket is named" [ "$(verdict $smooth)" = '"bucket_friction"' ]
+check "... and what it has of friction measured to a third" within "$(awk -v m="$(number $smooth bucket_smoothness value)" \
+    -v f="$(number $smooth friction value)" 'BEGIN { print (1 - m) * f }')" .1 .2
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
