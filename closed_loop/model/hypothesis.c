@@ -9,8 +9,10 @@
 
 enum {
     MEMORY = DIG_LIKELIHOOD_RESIDUALS * (DIG_HYPOTHESIS_NUMBERS + 2),
-    ROUNDS = 2, // of fitting and of weighing anew
+    ROUNDS = 4, // of fitting and of weighing anew, at most
 };
+
+static const double enough = 1e-3; // a fall of the misfit that is none
 
 static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
 
@@ -46,23 +48,38 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
     return f->misfit;
 }
 
-// Least squares with weights that follow: the best of all rounds, and of the start, is kept.
+// Least squares by the covariance at x; on the way to where they lead, the covariance changes: as
+// far is gone as makes the misfit less.
+static bool improve(struct dig_likelihood *const likelihood, struct dig_levenberg *const l,
+                    struct dig_fitted *const f)
+{
+    double            to[DIG_HYPOTHESIS_NUMBERS];
+    double            squares = 0.0;
+    struct dig_fitted tried   = *f;
+    bool              better  = false;
+    memcpy(to, f->number, sizeof to);
+    dig_likelihood_weigh(likelihood, to);
+    dig_levenberg_run(l, to, &squares);
+    for (double way = 1.0; way > 0.05 && !better; way *= 0.5) {
+        double x[DIG_HYPOTHESIS_NUMBERS];
+        for (size_t j = 0; j < l->unknowns; j++) {
+            x[j] = f->number[j] + way * (to[j] - f->number[j]);
+        }
+        better = misfit_at(likelihood, l, x, &tried) < f->misfit - enough;
+    }
+    *f = better ? tried : *f;
+    return better;
+}
+
 static void fit_from(struct dig_likelihood *const likelihood, struct dig_levenberg *const l,
                      const double start[], struct dig_fitted *const f)
 {
-    double            x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted tried                     = *f;
+    double x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     for (size_t j = 0; j < l->unknowns; j++) {
         x[j] = fmin(fmax(start[j], l->low[j]), l->high[j]);
     }
     (void)misfit_at(likelihood, l, x, f);
-    for (int round = 0; round < ROUNDS; round++) {
-        double squares = 0.0;
-        dig_likelihood_weigh(likelihood, x);
-        dig_levenberg_run(l, x, &squares);
-        if (misfit_at(likelihood, l, x, &tried) < f->misfit) {
-            *f = tried;
-        }
+    for (int round = 0; round < ROUNDS && improve(likelihood, l, f); round++) {
     }
 }
 
