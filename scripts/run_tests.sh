@@ -13,15 +13,6 @@ trap 'rm -rf "$out"' EXIT
 run_one() { # INDEX PROGRAM
     local log=$out/$1.log rc=0 start=$EPOCHREALTIME passed failed skipped
     timeout -k 5 "$limit_s" "$2" >"$log" 2>&1 </dev/null || rc=$?
-    # On CAN in User Mode Linux a test may fail beside others, for a reason not found yet: it is run once more.
-    case $rc:$2 in
-    0:*) ;;
-    *:*/daemon_can*.sh | *:*/rig.sh)
-        printf '  again  %s: %s\n' "$2" "$(grep '^FAIL' "$log" | tr '\n' ';')"
-        rc=0
-        timeout -k 5 "$limit_s" "$2" >"$log" 2>&1 </dev/null || rc=$?
-        ;;
-    esac
     local spent=$(((${EPOCHREALTIME/[.,]/} - ${start/[.,]/}) / 100000))
     passed=$(sed -nE 's/^\[  PASSED  \] ([0-9]+) test.*/\1/p; s/^(.*: )?([0-9]+) passed, ([0-9]+) failed.*/\2/p' "$log" | tail -n 1)
     failed=$(sed -nE 's/^\[  FAILED  \] ([0-9]+) test.*/\1/p; s/^(.*: )?([0-9]+) passed, ([0-9]+) failed.*/\3/p' "$log" | tail -n 1)
