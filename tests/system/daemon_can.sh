@@ -2,18 +2,7 @@
 # SocketCAN inside User Mode Linux, where a bus exists. The rig serves one dig on CAN and on Modbus at
 # once; a daemon on each must find the same.
 . tests/system/daemon_lib.bash
-
-if [ "${1-}" != inside ]; then
-    make_digs
-    DIG_DATA=$work tools/vcan/with-vcan -t 1700 "$0" inside
-    status=$?
-    if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
-        echo "0 passed, 0 failed, 1 skipped (User Mode Linux does not start here)"
-        exit 0
-    fi
-    exit "$status"
-fi
-cp "$DIG_DATA"/* "$work"
+in_uml "$@"
 
 # Two LCM networks: the daemons do not know of each other.
 can=$lcm tcp=${lcm/:2/:4}
@@ -24,7 +13,7 @@ config can "{kind: can, can: {interface: vcan0, dbc: $PWD/config/can/zx200.dbc, 
 sed -i "s|^machine:.*|machine: perfect.yaml|" "$work/can.yaml"
 config absent "{kind: can, can: {interface: vcan7, dbc: $PWD/config/can/zx200.dbc, map: $PWD/config/signals/zx200_can.yaml}}"
 lcm=$tcp
-config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", map: $PWD/config/signals/modbus_default.yaml}}"
+config tcp "$modbus"
 
 # A bus that is not there at first: the interface is made while the daemon waits.
 start "$work/absent.log" "$BIN/digsightd" -c "$work/absent.yaml"
@@ -76,7 +65,7 @@ check "and joined when it comes" wait_for 30 grep -q "publishing on" "$work/nolc
 stop "$nolcm"
 check "all this while the daemon ran on" [ "$status" = 0 ]
 
-speed=1
+speed=2
 echo "time_scale: $speed" | tee -a "$work/tcp.yaml" >>"$work/can.yaml"
 before=$(cat /sys/class/net/vcan0/statistics/tx_packets)
 lcm=$can; log can; logger_can=$logger

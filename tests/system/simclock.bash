@@ -1,9 +1,7 @@
-# The simulated clock (tests/simclock/simclock.h) in a system test. Sourced with the repository's root as working
-# directory and BIN set. Gives $work (a folder that goes away) and the functions below.
+# The simulated clock (tests/simclock/simclock.h) in a system test. Sourced behind tests/system/check.bash.
 #
 # Programs are begun by `start` or `run`. Time passes in `pass`, `ends`, `stop`, `wait_for` and `run` alone, as fast
 # as the programs compute; no program is ever late on a busy machine. All seconds here are of that clock.
-work=$(mktemp -d)
 simclock=$BIN/../tests/simclock/simclock
 preload=$(realpath "$BIN/../tests/simclock/preload.so")
 children=()
