@@ -96,6 +96,9 @@ check "none was malformed" [ "$(last health "$work/can.txt" $h_malformed)" = 0 ]
 # without noise, make no sample.
 paired=$(($(last samples "$work/can.txt" 2) + $(last health "$work/can.txt" $h_stuck)))
 check "pressures and angles are paired as they were sent" within "$paired" $(($(rig ticks) / 2 - 1)) $((($(rig ticks) + 1) / 2))
+check "and dated so, each 10 ms of the machine after the last but for that one stand" awk '
+    $1 == "estimate" { if (n++ && ($2 - last - 0.01) ^ 2 > 1e-4 ^ 2) off++; last = $2 }
+    END { exit !(n > 1000 && off <= 1) }' "$work/can.txt"
 check "the gravel is identified over CAN" identified "$work/can.txt"
 check "and over Modbus" identified "$work/tcp.txt"
 
