@@ -20,6 +20,7 @@
 #include <sys/mman.h>
 #include <sys/select.h>
 #include <sys/signalfd.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <termios.h>
@@ -298,6 +299,18 @@ int sigtimedwait(const sigset_t *const set, siginfo_t *const info,
         info->si_signo = (int)got.ssi_signo;
     }
     return (int)got.ssi_signo;
+}
+
+// The kernel would stamp what it receives in its own time, which goes on while the simulated one
+// stands still. Without stamps a receiver takes the time at which it reads.
+int setsockopt(const int fd, const int level, const int name, const void *const value,
+               const socklen_t size)
+{
+    if (sim != NULL && level == SOL_SOCKET && name == SO_TIMESTAMPNS) {
+        errno = ENOPROTOOPT;
+        return -1;
+    }
+    return (int)syscall(SYS_setsockopt, fd, level, name, value, size);
 }
 
 // A thread that begins is looked for before the clock moves on.

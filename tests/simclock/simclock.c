@@ -240,8 +240,8 @@ static void wait_for_turns(struct watch *const w, const uint32_t wanted, const l
 // Until every thread of every program sleeps and no byte is on its way.
 static void settle(struct watch *const w, const uint32_t turns, const uint32_t woken)
 {
-    // That we run at all says that no program does.
-    if (w->one_cpu) {
+    // That we run at all says that no program does; but a terminal's bytes are carried by others.
+    if (w->one_cpu && atomic_load(&w->sim->flying_bytes) == 0) {
         return;
     }
     const int64_t began_ns = real_ns();

@@ -13,7 +13,11 @@
 //
 // With DIG_SIMCLOCK_ONE_CPU, for a machine that has one and lets its programs run in real time
 // (SCHED_FIFO), nobody is looked at: simclock has an ordinary priority, and runs when all of them
-// sleep. Without the variable DIG_SIMCLOCK, which names the file, preload.so changes nothing.
+// sleep. ksoftirqd, to which a slow machine's kernel leaves frames, must run in real time too, or
+// time passes before they are handed over. Without the variable DIG_SIMCLOCK, which names the file,
+// preload.so changes nothing.
+//
+// The kernel's stamps of arrival are of its own clock; preload.so switches them off.
 //
 // Bytes in flight are seen where the kernel hands them over at once: sockets of this machine and
 // pipes. A terminal's are carried by a kernel thread, so those written and not yet read are

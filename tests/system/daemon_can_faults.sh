@@ -3,22 +3,10 @@
 # counted. One dig a fault; the frames carry a counter and a checksum, as those of a bus have to that is to be believed
 # whatever happens to it.
 . tests/system/daemon_lib.bash
-
-if [ "${1-}" != inside ]; then
-    make_digs
-    DIG_DATA=$work tools/vcan/with-vcan -t 1700 "$0" inside
-    status=$?
-    if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
-        echo "0 passed, 0 failed, 1 skipped (User Mode Linux does not start here)"
-        exit 0
-    fi
-    exit "$status"
-fi
-cp "$DIG_DATA"/* "$work"
+in_uml "$@"
 speed=4
 series 7
-config can "{kind: can, can: {interface: vcan0, dbc: $PWD/tests/data/sealed/zx200_sealed.dbc, map: $PWD/tests/data/sealed/signals.yaml}}" \
-    "time_scale: $speed"
+config can "$sealed_can" "time_scale: $speed"
 
 log can
 start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"

@@ -3,27 +3,10 @@
 # middle of others, an hour forth and two back: nothing wrong is published as good, the dig with the hole is not matched
 # as a whole one, the one after it identifies the gravel, and what did not come is counted.
 . tests/system/daemon_lib.bash
-
-if [ "${1-}" != inside ]; then
-    make_digs
-    DIG_DATA=$work tools/vcan/with-vcan -t 1700 "$0" inside
-    status=$?
-    if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
-        echo "0 passed, 0 failed, 1 skipped (User Mode Linux does not start here)"
-        exit 0
-    fi
-    exit "$status"
-fi
-cp "$DIG_DATA"/* "$work"
+in_uml "$@"
 speed=4
 series 5
-config can "{kind: can, can: {interface: vcan0, dbc: $PWD/tests/data/sealed/zx200_sealed.dbc, map: $PWD/tests/data/sealed/signals.yaml}}" \
-    "time_scale: $speed"
-at() { # DIG SECONDS COMMAND…: runs it when the rig is so long after a dig's contact
-    pass "$(awk -v c="${contacts[$1 - 1]}" -v s="$2" -v speed="$speed" -v began="$began" -v now="$("$simclock" now)" \
-        'BEGIN { print began + (c + s) / speed - now }')"
-    "${@:3}"
-}
+config can "$sealed_can" "time_scale: $speed"
 set_clock() { # CHANGE: says how far the wall clock went beside the other one, in seconds
     local wall up
     wall=$(date +%s)
@@ -31,18 +14,20 @@ set_clock() { # CHANGE: says how far the wall clock went beside the other one, i
     date -s "$1" >/dev/null && echo $(($(date +%s) - wall - $(cut -d. -f1 /proc/uptime) + up))
 }
 trouble() { # a dig takes some 12 s
-    at 2 4 ip link set vcan0 down
+    till 2 4
+    ip link set vcan0 down
     pass 1
     ip link set vcan0 up
-    at 4 4 set_clock "+1 hour"
-    at 5 4 set_clock "-2 hours"
+    till 4 4
+    set_clock "+1 hour"
+    till 5 4
+    set_clock "-2 hours"
 }
 
 log can
 start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
 daemon=$started
 wait_for 5 grep -q "waiting for bus" "$work/can.log"
-began=$("$simclock" now)
 start_series can --can vcan0 --can-sealed
 trouble >"$work/trouble.log" 2>&1
 ends "$rig"

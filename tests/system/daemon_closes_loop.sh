@@ -6,7 +6,6 @@
 
 table=$PWD/tables/rig.sqlite
 speed=4
-input="{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}"
 
 campaign() { # NAME MACHINE DIG…: machine recordings of these digs; those along simpleA identify, the others are fitted to
     local folder=$work/$1 as=$2 n=0 dig trajectory
@@ -30,7 +29,7 @@ trace() { # NAME: into $work/NAME.json and the model $work/NAME.model.json
 run() { # NAME MACHINE MORE DIG…: $estimate and $prediction are its errors
     local name=$1 as=$2 more=$3 rig daemon
     shift 3
-    config "$name" "$input" "time_scale: $speed
+    config "$name" "$modbus" "time_scale: $speed
 $more"
     sed -i "s|^table:.*|table: $table|" "$work/$name.yaml"
     log "$name"
@@ -61,8 +60,7 @@ smaller() { # AFTER BEFORE SHARE
 }
 
 # A bucket 600 kg heavier than its file says.
-awk -v more=600 '/^[a-z]/ { part = $1 }
-    part == "bucket:" && $1 == "mass_kg:" { $0 = "  mass_kg: " $2 + more } { print }' "$machine" >"$work/heavy.yaml"
+heavier 600 "$work/heavy.yaml"
 plain=tests/data/reference/mu0.5_mur0.5_rho2500
 campaign heavy "$work/heavy.yaml" "${plain}__simpleA.csv" "${plain}__actual.csv" "${plain}_seed2__simpleA.csv" "${plain}_seed2__actual.csv"
 trace heavy

@@ -4,8 +4,7 @@
 
 make_digs
 speed=4
-config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
-    "time_scale: $speed"
+config tcp "$modbus" "time_scale: $speed"
 log tcp
 # All in free air, before the dig (which begins at 6.9 s) and after it (13.8 s): the dig itself must come
 # out as if nothing had been.

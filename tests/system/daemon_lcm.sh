@@ -14,8 +14,7 @@ fi
 make_digs
 speed=4
 series 3
-config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
-    "time_scale: $speed"
+config tcp "$modbus" "time_scale: $speed"
 route() { # add|del
     ip route "$1" 239.255.76.67 dev lo
 }

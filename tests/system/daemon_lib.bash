@@ -1,22 +1,19 @@
-# What the daemon's system tests share. Sourced with the repository's root as working directory and BIN
-# set (default build/bin). Gives $work (a folder that goes away), $scene, $machine, $lcm (an LCM network
-# of this test alone), $port (for a Modbus server), and the functions below.
+# What the daemon's system tests share. Sourced from the repository's root. Gives $scene, $machine, $lcm (an LCM network
+# of this test alone), $port (for a Modbus server), the inputs $modbus and $sealed_can (whose frames carry a counter and a
+# checksum), and the functions below.
 #
 # LCM wants a route for its multicast group. Where there is none and none can be added, the test moves
 # into a network namespace of its own, whose loopback carries it; that needs no privilege.
-set -u
-
 . tests/system/check.bash
-BIN=${BIN:-build/bin}
 helpers=$BIN/../tests/system
 scene=config/scenes/rig.yaml
 machine=config/machines/zx200_trench.yaml
-skipped=0
 
 if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     ip link set lo up multicast on 2>/dev/null
     if ! ip route add 239.255.76.67 dev lo 2>/dev/null; then
         [ -z "${DIG_IN_NAMESPACE-}" ] || { echo "no multicast"; echo "0 passed, 1 failed"; exit 1; }
+        rmdir "$work"
         DIG_IN_NAMESPACE=1 exec unshare -Urn "$0" "$@"
     fi
 fi
@@ -24,21 +21,8 @@ fi
 . tests/system/simclock.bash
 lcm="udpm://239.255.76.67:$((20000 + $$ % 10000))?ttl=0"
 port=$((30000 + $$ % 10000))
-finish() {
-    if [ "$failed" -gt 0 ]; then
-        for f in "$work"/*.log "$work"/*.err; do
-            [ -f "$f" ] && { echo "--- $f"; tail -n 30 "$f"; }
-        done
-    fi
-    echo "$passed passed, $failed failed$([ "$skipped" = 0 ] || echo ", $skipped skipped")"
-    [ "$failed" -eq 0 ]
-}
-
-# What this machine does not let a test do, aloud.
-skip_check() { # SENTENCE WHY
-    skipped=$((skipped + 1))
-    echo "SKIP: $1: $2"
-}
+modbus="{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}"
+sealed_can="{kind: can, can: {interface: vcan0, dbc: $PWD/tests/data/sealed/zx200_sealed.dbc, map: $PWD/tests/data/sealed/signals.yaml}}"
 
 config() { # NAME INPUT [MORE]: writes $work/NAME.yaml; INPUT is the input's mapping
     cat >"$work/$1.yaml" <<YAML
@@ -66,6 +50,21 @@ make_digs() { # makes the table and the digs, whose truth is friction 0.5, rolli
     "$helpers/daemon_data" "$scene" "$work" >"$work/data.log" 2>&1
 }
 
+in_uml() { # ARGUMENTS…: what follows runs in User Mode Linux, where SocketCAN exists, with table and digs in $work
+    if [ "${1-}" = inside ]; then
+        cp "$DIG_DATA"/* "$work"
+        return
+    fi
+    make_digs
+    DIG_DATA=$work tools/vcan/with-vcan -t 1700 "$0" inside
+    status=$?
+    if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
+        echo "0 passed, 0 failed, 1 skipped (User Mode Linux does not start here)"
+        status=0
+    fi
+    exit "$status"
+}
+
 last() { # KIND FILE FIELD: a field of the last line of a kind
     awk -v kind="$1" -v field="$3" '$1 == kind { value = $field } END { print value }' "$2"
 }
@@ -87,12 +86,18 @@ fault() { # KIND DIG: --fault's value for all of that dig, counted from 1
     awk -v kind="$1" -v contact="${contacts[$2 - 1]}" 'BEGIN { printf "%s@%.2f:12", kind, contact - 2 }'
 }
 
-# Begins to serve it at $speed times real time; the rig's counts go to $work/NAME.json, its pid to $rig.
+# Begins to serve it at $speed times real time; the rig's counts go to $work/NAME.json, its pid to $rig, the time to $began.
 start_series() { # NAME OPTION…
+    began=$("$simclock" now)
     errors=$work/$1.rig.err start "$work/$1.json" "$BIN/digrig" serve "${digs[@]}" --machine "$machine" \
         --speed "$speed" --json "${@:2}"
     rig=$started
     rig_json=$work/$1.json
+}
+
+till() { # DIG SECONDS: until the rig is so long after a dig's contact
+    pass "$(awk -v c="${contacts[$1 - 1]}" -v s="$2" -v speed="$speed" -v began="$began" -v now="$("$simclock" now)" \
+        'BEGIN { print began + (c + s) / speed - now }')"
 }
 
 serve_series() { # NAME OPTION…: to its end

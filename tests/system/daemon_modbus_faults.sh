@@ -7,8 +7,7 @@ make_digs
 "$helpers/daemon_data" "$scene" "$work" other >>"$work/data.log" 2>&1
 speed=4
 series 6
-config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
-    "time_scale: $speed
+config tcp "$modbus" "time_scale: $speed
 match: {state: full/match.json}"
 mkdir "$work/full" # where nothing can be written: a disk without room, as far as the daemon can tell
 mkdir "$work/full/match.json.part"

@@ -6,8 +6,7 @@
 make_digs
 speed=4
 series 6
-config tcp "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}" \
-    "time_scale: $speed"
+config tcp "$modbus" "time_scale: $speed"
 log tcp
 start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started

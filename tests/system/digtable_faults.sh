@@ -5,7 +5,6 @@
 
 grid=tests/data/formats/grid.yaml # 6 points x 2 packings x 1 trajectory
 
-runs() { sqlite3 "$1" 'SELECT count(*) FROM run' 2>/dev/null | grep . || echo 0; }
 made() { sqlite3 "$1" "SELECT group_concat(key || ' ' || made_utc || ' ' || wall_s) FROM (SELECT ground || '/' || packing AS key, made_utc, wall_s FROM run ORDER BY id LIMIT $2)"; }
 
 digtable generate $scene $grid -o "$work/whole.sqlite"

@@ -1,15 +1,15 @@
-// Stops one thread of a program for some seconds, and no other: hold_thread PID INDEX SECONDS,
-// INDEX 0 being the first thread. 75 where this system does not let it be traced.
+// Stops one thread of a program, and no other, until SIGTERM: hold_thread PID INDEX, INDEX 0 being
+// the first thread. Says "held" when it stands. 75 where this system does not let it be traced.
 
 // ptrace() is Linux', not POSIX'.
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
 
 #include <dirent.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
-#include <time.h>
 
 #define THREADS_MAX 64
 
@@ -43,18 +43,24 @@ static int thread_of(const char *const pid, const long index)
 
 int main(const int argc, char *argv[])
 {
-    if (argc != 4) {
-        (void)fprintf(stderr, "usage: hold_thread PID INDEX SECONDS\n");
+    if (argc != 3) {
+        (void)fprintf(stderr, "usage: hold_thread PID INDEX\n");
         return EXIT_USAGE;
     }
-    const int             thread = thread_of(argv[1], strtol(argv[2], NULL, 10));
-    const struct timespec pause  = { .tv_sec = strtol(argv[3], NULL, 10) };
+    const int thread = thread_of(argv[1], strtol(argv[2], NULL, 10));
+    int       signal = 0;
+    sigset_t  end;
+    (void)sigemptyset(&end);
+    (void)sigaddset(&end, SIGTERM);
+    (void)sigprocmask(SIG_BLOCK, &end, NULL);
     if (thread == 0 || ptrace(PTRACE_SEIZE, thread, NULL, NULL) != 0 ||
         ptrace(PTRACE_INTERRUPT, thread, NULL, NULL) != 0) {
         perror("hold_thread");
         return EXIT_NOT_ALLOWED;
     }
     (void)waitpid(thread, NULL, __WALL);
-    (void)nanosleep(&pause, NULL);
+    (void)puts("held");
+    (void)fflush(stdout);
+    (void)sigwait(&end, &signal);
     return ptrace(PTRACE_DETACH, thread, NULL, NULL) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,10 +1,7 @@
 #!/bin/bash
 # make without one of the libraries: the Debian package is named before anything is compiled, and what compiles
 # nothing works all the same.
-set -u
 . tests/system/check.bash
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 # A pkg-config that finds everything but what $WITHOUT names.
 mkdir "$work/pc"
@@ -35,5 +32,4 @@ check "by the name of its package" named libcmocka-dev
 check "which programs do not need" without cmocka -n all
 check "help needs no library" without sqlite3 help
 check "nor does clean" without sqlite3 clean
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish

@@ -1,9 +1,7 @@
 #!/bin/bash
 # digrig as a user meets it: options, files, exit codes, a real Modbus server and, in User Mode Linux,
 # a real CAN interface. Run from the repository's root; BIN is where the programs are.
-set -u
 . tests/system/check.bash
-BIN=${BIN:-build/bin}
 rig=$BIN/digrig
 simple=tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv
 actual=tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv
@@ -103,19 +101,17 @@ check "and is named" says "nocan9"
 
 if ! command -v linux.uml >/dev/null || ! command -v candump >/dev/null ||
     ! command -v socat >/dev/null; then
-    [ -z "${DIG_NO_SKIP-}" ] || { echo "$passed passed, $((failed + 1)) failed: CAN may not be skipped here"; exit 1; }
-    echo "SKIP: CAN needs user-mode-linux, can-utils and socat"
-    echo "$passed passed, $failed failed, 7 skipped"
-    [ "$failed" -eq 0 ]
-    exit
+    check "CAN is skipped where it may be" [ -z "${DIG_NO_SKIP-}" ]
+    skip_check "three buses at once" "they need user-mode-linux, can-utils and socat"
+    finish
 fi
 # All three buses at once, from one motion. A serial line is two pseudo terminals back to back.
 cat >"$work/can.sh" <<INNER
-set -u
+. tests/system/check.bash
 . tests/system/simclock.bash
 export DIG_SIMCLOCK_TERMINALS=1
-candump -r 16777216 -L vcan0 >"$work/dump" &
-dump=\$!
+start "$work/dump" candump -r 16777216 -L vcan0
+dump=\$started
 start "$work/socat" socat PTY,raw,echo=0,link=$work/a PTY,raw,echo=0,link=$work/b
 until [ -e $work/a ] && [ -e $work/b ]; do sleep 0.05; done
 errors=$work/serve start "$work/json" $rig serve $simple --machine $machine --no-noise --can vcan0 \\
@@ -125,9 +121,9 @@ wait_for 5 grep -q RTU "$work/serve"
 start "$work/polls_tcp" $BIN/../tests/system/rig_poll 1502 5
 start "$work/polls_rtu" $BIN/../tests/system/rig_poll $work/b 5
 ends \$rig
-sleep 0.5
-kill \$dump
-exit \$status
+served=\$status
+stop \$dump
+exit \$served
 INNER
 check "one motion is served on CAN, Modbus TCP and Modbus RTU at once" \
     exits 0 env DIG_DATA="$work" tools/vcan/with-vcan -t 1700 bash "$work/can.sh"
@@ -168,5 +164,4 @@ check "alive counter goes up by one each time" awk '
     p[1] == "18FF84E8" { c = substr(p[2], 15, 2); if (c == last) same++; last = c; n++ }
     END { exit !(n > 100 && same == 0) }' "$work/dump"
 
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+finish

@@ -1,11 +1,8 @@
 #!/bin/bash
 # The systemd unit: systemd finds no fault in it, thinks well of its sandbox, and it says what the daemon and
 # the documents promise.
-set -u
 . tests/system/check.bash
 unit=config/systemd/digsightd.service
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
 says() { # LINE
     grep -qxF "$1" "$unit"
@@ -39,24 +36,28 @@ YAML
     tools/vcan/with-vcan bash -c '
         ip link set lo up multicast on
         ip route add 239.255.76.67 dev lo
-        timeout -s TERM 4 prlimit --rtprio="$2:$2" --memlock=unlimited:unlimited \
+        prlimit --rtprio="$2:$2" --memlock=unlimited:unlimited \
             setpriv --reuid=65534 --regid=65534 --clear-groups --inh-caps=-all --bounding-set=-all --no-new-privs \
-            unshare -U --map-user=65534 --map-group=65534 "$1/digsightd" -c "$1/can.yaml"' - "$work" "$1" >"$work/said" 2>&1
-    cp "$work/said" "$work/err"
+            unshare -U --map-user=65534 --map-group=65534 "$1/digsightd" -c "$1/can.yaml" >"$1/said" 2>&1 &
+        for ((i = 0; i < 600; i++)); do
+            grep -q "waiting for bus" "$1/said" && grep -qsw raw /proc/net/can/rcvlist_eff && break
+            sleep 0.1
+        done
+        cat /proc/net/can/rcvlist_eff >"$1/sockets"
+        kill %1' - "$work" "$1" >"$work/err" 2>&1
+    cat "$work/said" >>"$work/err"
 }
 if command -v linux.uml >/dev/null; then
     check "with the unit's limits and no capability" eval 'rights "$(number LimitRTPRIO)"; grep -q "waiting for bus" "$work/said"'
     check "real time is granted, and locked memory" grep -q "SCHED_FIFO 80 granted, memory locked" "$work/said"
-    check "and the CAN bus is open" eval '! grep -q "cannot be" "$work/said"'
+    check "and the CAN bus is open" grep -q "vcan0 .* raw$" "$work/sockets"
 else
-    echo "SKIP: no User Mode Linux here, whose root may set limits"
+    skip_check "the unit's limits" "no User Mode Linux here, whose root may set some"
 fi
 
 if ! command -v systemd-analyze >/dev/null; then
-    echo "SKIP: no systemd-analyze here to read the unit"
-    echo "$passed passed, $failed failed, 1 skipped"
-    [ "$failed" = 0 ]
-    exit
+    skip_check "what systemd thinks of the unit" "no systemd-analyze here"
+    finish
 fi
 # The program need not be installed where the unit expects it.
 sed "s|/usr/local/bin/digsightd|$(realpath "${BIN:-build/bin}/digsightd")|" "$unit" >"$work/digsightd.service"
@@ -81,5 +82,4 @@ if systemd-analyze security --help >/dev/null 2>&1 && systemd-analyze --help | g
     check "a unit more open than that fails" \
         eval '! systemd-analyze security --offline=yes --threshold=20 --no-pager "$work/open.service" >"$work/err" 2>&1'
 fi
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish
