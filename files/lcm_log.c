@@ -1,10 +1,10 @@
 #include "files/lcm_log.h"
 
+#include "core/regular.h"
 #include "files/lcm_layout.h"
 #include "messages/digsight_sample_t.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,8 +17,8 @@ bool dig_lcm_log_is(const char *const path)
 {
     assert(path != NULL);
     unsigned char begin[sizeof sync_word];
-    FILE *const   file = fopen(path, "rb");
-    if (file == NULL) {
+    FILE         *file = NULL;
+    if (dig_regular_open(path, &file, NULL) != DIG_OK) {
         return false;
     }
     const bool is =
@@ -46,10 +46,10 @@ enum dig_status dig_lcm_log_open(const char *const path, struct dig_lcm_log **co
                                  struct dig_error *const error)
 {
     assert(path != NULL && opened != NULL);
-    FILE *const file = fopen(path, "rb");
-    if (file == NULL) {
-        // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    FILE                 *file   = NULL;
+    const enum dig_status status = dig_regular_open(path, &file, error);
+    if (status != DIG_OK) {
+        return status;
     }
     if (!dig_lcm_log_is(path)) {
         (void)fclose(file);

@@ -4,6 +4,7 @@
 #include "files/whole.h"
 
 #include "core/part.h"
+#include "core/regular.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -64,14 +65,15 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
 {
     assert(path != NULL && text != NULL && size != NULL);
 
-    FILE *const file = fopen(path, "rb");
-    if (file == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    FILE           *file   = NULL;
+    char           *all    = NULL;
+    size_t          used   = 0;
+    enum dig_status status = dig_regular_open(path, &file, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    char                 *all    = NULL;
-    size_t                used   = 0;
-    const enum dig_status status = read_stream(file, &all, &used);
-    const int             why    = errno;
+    status        = read_stream(file, &all, &used);
+    const int why = errno;
     (void)fclose(file);
     if (status == DIG_EINVAL) {
         return dig_error_set(error, status, "%s: larger than 256 MiB, expected less", path);
