@@ -8,6 +8,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,6 +109,17 @@ static FILE *open_stdout(void)
     return fd >= 0 ? fdopen(fd, "wb") : NULL;
 }
 
+// A pipe or a device. A pipe that nobody reads is not waited for.
+static FILE *open_special(const char *const path)
+{
+    const int   fd   = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    FILE *const file = fd >= 0 && fcntl(fd, F_SETFL, O_WRONLY) == 0 ? fdopen(fd, "wb") : NULL;
+    if (file == NULL && fd >= 0) {
+        (void)close(fd);
+    }
+    return file;
+}
+
 enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
                              struct dig_error *const error)
 {
@@ -128,7 +140,7 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
     if (is_stdout(path)) {
         out->file = open_stdout();
     } else if (there && !S_ISREG(target.st_mode)) {
-        out->file = fopen(out->path, "wb");
+        out->file = open_special(out->path);
     } else {
         memcpy(out->part, out->path, (size_t)length);
         memcpy(out->part + length, ".part", sizeof ".part");
