@@ -179,12 +179,12 @@ static int ask_serial(const struct modbus_source *const s, const struct dig_map_
     return read == count ? 0 : -1;
 }
 
-// How long a good answer takes at most: on a serial line also the time of its bytes, of 11 bits,
-// and of the request's, twice.
+// How long a good answer takes at most: on a serial line also twice the time of its bytes and the
+// request's, of 11 bits each.
 static int64_t longest_ns(const struct modbus_source *const s,
                           const struct dig_map_group *const group)
 {
-    const int64_t bits = 2 * 11 * (8 + 5 + 2 * (int64_t)group->registers);
+    const int64_t bits = 22 * (8 + 5 + 2 * (int64_t)group->registers);
     return RESPONSE_us * 1000LL +
            (s->address.host[0] != '\0' ? 0 : bits * NS_PER_S / s->address.baud);
 }

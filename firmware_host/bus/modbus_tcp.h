@@ -1,5 +1,5 @@
 // One request for registers over Modbus TCP and its answer. libmodbus carries both and knows where
-// an answer ends; its own call does not compare the header's length with the answer.
+// an answer ends; its own call looks at no protocol, length or unit in an answer's header.
 
 #ifndef DIG_FIRMWARE_HOST_BUS_MODBUS_TCP_H
 #define DIG_FIRMWARE_HOST_BUS_MODBUS_TCP_H
