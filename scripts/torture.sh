@@ -13,7 +13,7 @@ for script in "$@"; do
     # What hangs has failed; preparations and a slow machine have half an hour. So has what was not run at all.
     : >"$said"
     timeout -k 10 $((3 * TORTURE_S + 1800)) "$script" 2>&1 </dev/null | tee "$said"
-    [ "${PIPESTATUS[0]}" = 0 ] && ! grep "$script: line .*: command not found" "$said" || { failed=$((failed + 1)); echo "FAILED: $script"; }
+    [ "${PIPESTATUS[0]}" = 0 ] && ! grep ": line [0-9]*: .*: command not found" "$said" || { failed=$((failed + 1)); echo "FAILED: $script"; }
     cat "$said" >>"$log"
     echo "seconds $((SECONDS - began))" >>"$log"
 done
