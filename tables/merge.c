@@ -54,12 +54,10 @@ static enum dig_status copy(sqlite3 *const from, const char *const input, const 
 {
     sqlite3_stmt   *row    = NULL;
     sqlite3_stmt   *into   = NULL;
-    enum dig_status status = DIG_OK;
     int             step   = SQLITE_ERROR;
-    if (sqlite3_prepare_v2(from, select, -1, &row, NULL) != SQLITE_OK) {
-        status = dig_sql_refuse(from, input, error);
-    } else if (sqlite3_prepare_v2(to->db, insert, -1, &into, NULL) != SQLITE_OK) {
-        status = dig_sql_refuse(to->db, to->path, error);
+    enum dig_status status = dig_sql_prepare(from, input, select, &row, error);
+    if (status == DIG_OK) {
+        status = dig_sql_prepare(to->db, to->path, insert, &into, error);
     }
     while (status == DIG_OK && (step = sqlite3_step(row)) == SQLITE_ROW) {
         for (int i = 0; i < sqlite3_column_count(row); i++) {
