@@ -112,17 +112,17 @@ static enum dig_status check_conflict(const struct dig_store *const store, const
 
 // Of the first input the store becomes a table of its scene; of any other it has to be that.
 static enum dig_status take_head(struct dig_store *const store, sqlite3 *const from,
-                                 const char *const input, const char *const first,
+                                 const char *const input[const], const size_t at,
                                  const struct dig_table_head *const head,
                                  struct dig_error *const            error)
 {
-    if (input != first) {
+    if (at > 0) {
         return strcmp(head->scene_hash, store->head.scene_hash) == 0
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL,
                                    "%s: scene: holds \"%s\" (%.12s…), expected that of %s, \"%s\" "
                                    "(%.12s…)",
-                                   input, head->scene_name, head->scene_hash, first,
+                                   input[at], head->scene_name, head->scene_hash, input[0],
                                    store->head.scene_name, store->head.scene_hash);
     }
     static const char *const copies[][2] = {
@@ -132,7 +132,7 @@ static enum dig_status take_head(struct dig_store *const store, sqlite3 *const f
     };
     enum dig_status status = DIG_OK;
     for (size_t i = 0; status == DIG_OK && i < sizeof copies / sizeof copies[0]; i++) {
-        status = copy(from, input, copies[i][0], store, copies[i][1], error);
+        status = copy(from, input[0], copies[i][0], store, copies[i][1], error);
     }
     store->head = *head;
     return status;
@@ -140,25 +140,25 @@ static enum dig_status take_head(struct dig_store *const store, sqlite3 *const f
 
 // An input's head and runs, in the transaction in which it was found sound: by its name it could be
 // another file a moment later.
-static enum dig_status take(struct dig_store *const store, const char *const input,
-                            const char *const first, struct dig_error *const error)
+static enum dig_status take(struct dig_store *const store, const char *const input[const],
+                            const size_t at, struct dig_error *const error)
 {
     sqlite3              *from   = NULL;
     struct dig_table_head head   = { .trajectories = 0 };
-    enum dig_status       status = dig_sql_open_read(input, &from, &head, error);
+    enum dig_status       status = dig_sql_open_read(input[at], &from, &head, error);
     if (status == DIG_OK) {
-        status = take_head(store, from, input, first, &head, error);
+        status = take_head(store, from, input, at, &head, error);
     }
     if (status == DIG_OK) {
         status =
-            copy(from, input, runs_sql, store,
+            copy(from, input[at], runs_sql, store,
                  "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
                  "?)",
                  error);
     }
     (void)sqlite3_close(from);
     if (status == DIG_OK) {
-        status = check_conflict(store, input, error);
+        status = check_conflict(store, input[at], error);
     }
     return status == DIG_OK ? run(store, take_sql, error) : status;
 }
@@ -191,7 +191,7 @@ static enum dig_status fill(struct dig_store *const store, const size_t inputs,
         status = run(store, "BEGIN", error);
     }
     for (size_t i = 0; status == DIG_OK && i < inputs; i++) {
-        status = take(store, input[i], input[0], error);
+        status = take(store, input, i, error);
     }
     if (status == DIG_OK) {
         status = run(store, write_sql, error);

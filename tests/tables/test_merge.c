@@ -127,6 +127,10 @@ static void what_is_there_already_is_not_there_twice(void **state)
     assert_memory_equal(first, second, size);
     free(first);
     free(second);
+
+    const char *const one     = scratch_path("first.sqlite");
+    const char *const twice[] = { one, one };
+    assert_int_equal(dig_store_merge(scratch_path("third.sqlite"), 2, twice, NULL), DIG_OK);
 }
 
 static void refuse(const char *const second, const enum dig_status status, const char *const says)
