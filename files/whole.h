@@ -11,8 +11,8 @@
 #include <stdio.h>
 
 /// Reads all of path into *text (malloc, with a NUL behind *size bytes). DIG_EIO with errno's words
-/// when it cannot be read, DIG_EINVAL when it is no regular file, is larger than 256 MiB, or holds a
-/// NUL byte, which no text does.
+/// when it cannot be read, DIG_EINVAL when it is no regular file, is larger than 256 MiB, or holds
+/// a NUL byte, which no text does.
 DIG_MUST_CHECK enum dig_status dig_file_read(const char *path, char **text, size_t *size,
                                              struct dig_error *error);
 
