@@ -256,7 +256,7 @@ $(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
 FUZZ_SECONDS ?= 60
 FUZZ_TARGETS ?= $(patsubst tests/fuzz/coverage/%.c,%,$(wildcard tests/fuzz/coverage/*.c))
 FUZZ_FLAGS   := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
-fuzz-coverage: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS each
+fuzz-coverage: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS of processor time each
 	$(Q)scripts/setup.sh fuzz
 	$(Q)$(MAKE) --no-print-directory $(FUZZ_TARGETS:%=$(BUILD)/libfuzzer/tests/fuzz/coverage/%) \
 	    BUILD=$(BUILD)/libfuzzer CC=clang WARN=-w CFLAGS="$(FUZZ_FLAGS)"
@@ -316,11 +316,14 @@ coverage: ## Line and branch coverage per source file
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/cov CFLAGS="-O0 -g --coverage"
 	$(Q)gcov -b -r -n $$(find $(BUILD)/cov -name '*.gcda' -not -path '*/tests/*' -not -path '*/messages/*')
 
-# The analyzer reads what ships; tests are run under sanitizers instead.
+# The analyzer reads what ships; tests are run under sanitizers instead. What no other step of continuous integration
+# compiles must not fall behind what it tests.
+seldom_src := $(wildcard tests/fuzz/*.c tests/fuzz/coverage/*.c tests/torture/*.c)
 lint: lint-compiler lint-tidy ## Layering, documents, the compiler's analyzer, clang-tidy
 lint-compiler: layers docs-check $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \
 	    $(CC) $(STD) $(WARN) -Werror -O1 -fanalyzer $(lint_flags) -c {} -o /dev/null
+	$(Q)printf '%s\n' $(seldom_src) | xargs -P $(JOBS) -I{} $(CC) $(STD) $(WARN) -Werror $(lint_flags) -fsyntax-only {}
 # A third of the nodes that clang's analyzer may visit in a function, twice what any of its findings here took; a
 # function whose loops it cannot end costs a second instead of three.
 tidy_flags := $(foreach word,-analyzer-config max-nodes=75000,--extra-arg=-Xclang --extra-arg=$(word))

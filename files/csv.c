@@ -1,5 +1,6 @@
 #include "files/csv.h"
 
+#include "core/regular.h"
 #include "files/whole.h"
 
 #include <assert.h>
@@ -253,12 +254,12 @@ enum dig_status dig_csv_read(const char *const path, const size_t columns,
 bool dig_csv_has(const char *const path, const char *const column)
 {
     assert(path != NULL && column != NULL);
-    FILE *const file = fopen(path, "r");
-    if (file == NULL) {
-        return false;
-    }
+    FILE *file   = NULL;
     char *line   = NULL;
     char *header = NULL;
+    if (dig_regular_open(path, &file, NULL) != DIG_OK) {
+        return false;
+    }
     for (size_t room = 0; header == NULL && getline(&line, &room, file) > 0;) {
         char *const text            = strncmp(line, byte_order_mark, 3) == 0 ? line + 3 : line;
         text[strcspn(text, "\r\n")] = '\0';

@@ -1,10 +1,10 @@
 #include "files/lcm_log.h"
 
+#include "core/regular.h"
 #include "files/lcm_layout.h"
 #include "messages/digsight_sample_t.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,16 +13,22 @@
 
 static const unsigned char sync_word[4] = { 0xED, 0xA1, 0xDA, 0x01 };
 
+// Reads its first bytes.
+static bool begins_as_log(FILE *const file)
+{
+    unsigned char begin[sizeof sync_word];
+    return fread(begin, sizeof begin, 1, file) == 1 &&
+           memcmp(begin, sync_word, sizeof sync_word) == 0;
+}
+
 bool dig_lcm_log_is(const char *const path)
 {
     assert(path != NULL);
-    unsigned char begin[sizeof sync_word];
-    FILE *const   file = fopen(path, "rb");
-    if (file == NULL) {
+    FILE *file = NULL;
+    if (dig_regular_open(path, &file, NULL) != DIG_OK) {
         return false;
     }
-    const bool is =
-        fread(begin, sizeof begin, 1, file) == 1 && memcmp(begin, sync_word, sizeof sync_word) == 0;
+    const bool is = begins_as_log(file);
     (void)fclose(file);
     return is;
 }
@@ -46,12 +52,12 @@ enum dig_status dig_lcm_log_open(const char *const path, struct dig_lcm_log **co
                                  struct dig_error *const error)
 {
     assert(path != NULL && opened != NULL);
-    FILE *const file = fopen(path, "rb");
-    if (file == NULL) {
-        // NOLINTNEXTLINE(concurrency-mt-unsafe): messages for people, one thread
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    FILE                 *file   = NULL;
+    const enum dig_status status = dig_regular_open(path, &file, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (!dig_lcm_log_is(path)) {
+    if (!begins_as_log(file) || fseek(file, 0, SEEK_SET) != 0) {
         (void)fclose(file);
         return dig_error_set(error, DIG_EINVAL,
                              "%s:1: does not begin with ED A1 DA 01, expected an LCM event log",

@@ -9,7 +9,7 @@
 static const char estimate_layout[]   = "881188888888814s888ss1888";
 static const char match_layout[]      = "88114ss4888888888888888818s4DDDs848118888s1s148888";
 static const char prediction_layout[] = "8818s48884DDDD88188ss88DD";
-static const char health_layout[]     = "88sss1188888888888844888888888888884DDss8s444";
+static const char health_layout[]     = "88sss1188888888888844888888888888884DDss8s4448";
 
 // Decodes an event of one type and calls what wants it.
 #define HAND_ON(type)                                                                              \

@@ -4,9 +4,11 @@
 #include "files/whole.h"
 
 #include "core/part.h"
+#include "core/regular.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,14 +66,15 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
 {
     assert(path != NULL && text != NULL && size != NULL);
 
-    FILE *const file = fopen(path, "rb");
-    if (file == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    FILE           *file   = NULL;
+    char           *all    = NULL;
+    size_t          used   = 0;
+    enum dig_status status = dig_regular_open(path, &file, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    char                 *all    = NULL;
-    size_t                used   = 0;
-    const enum dig_status status = read_stream(file, &all, &used);
-    const int             why    = errno;
+    status        = read_stream(file, &all, &used);
+    const int why = errno;
     (void)fclose(file);
     if (status == DIG_EINVAL) {
         return dig_error_set(error, status, "%s: larger than 256 MiB, expected less", path);
@@ -106,6 +109,17 @@ static FILE *open_stdout(void)
     return fd >= 0 ? fdopen(fd, "wb") : NULL;
 }
 
+// A pipe or a device. A pipe that nobody reads is not waited for.
+static FILE *open_special(const char *const path)
+{
+    const int   fd   = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    FILE *const file = fd >= 0 && fcntl(fd, F_SETFL, O_WRONLY) == 0 ? fdopen(fd, "wb") : NULL;
+    if (file == NULL && fd >= 0) {
+        (void)close(fd);
+    }
+    return file;
+}
+
 enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
                              struct dig_error *const error)
 {
@@ -126,7 +140,7 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
     if (is_stdout(path)) {
         out->file = open_stdout();
     } else if (there && !S_ISREG(target.st_mode)) {
-        out->file = fopen(out->path, "wb");
+        out->file = open_special(out->path);
     } else {
         memcpy(out->part, out->path, (size_t)length);
         memcpy(out->part + length, ".part", sizeof ".part");

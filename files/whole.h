@@ -11,15 +11,15 @@
 #include <stdio.h>
 
 /// Reads all of path into *text (malloc, with a NUL behind *size bytes). DIG_EIO with errno's words
-/// when it cannot be read, DIG_EINVAL when it is larger than 256 MiB or holds a NUL byte, which no
-/// text does.
+/// when it cannot be read, DIG_EINVAL when it is no regular file, is larger than 256 MiB, or holds
+/// a NUL byte, which no text does.
 DIG_MUST_CHECK enum dig_status dig_file_read(const char *path, char **text, size_t *size,
                                              struct dig_error *error);
 
 /// A file being written. It stands beside the target as PATH.part until dig_out_commit(), so that
 /// no half file is ever taken for a whole one. "-" and /dev/stdout are the program's output;
-/// another target that is no regular file (a pipe, a device) is written directly; a link is
-/// followed.
+/// another target that is no regular file (a pipe that somebody reads, a device) is written
+/// directly; a link is followed.
 struct dig_out {
     FILE *file;
     char  path[PATH_MAX]; // of the file itself, links followed

@@ -29,7 +29,7 @@ firmware_host threads bus config tick matching publish
 # A foreign library is included only where it is wrapped: one file, or one folder (by its prefix).
 owners='
 nlopt.h      estimator/match/fit_nlopt.c
-modbus       firmware_host/bus/input_modbus.c tools/rig/
+modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tools/rig/
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
 lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c tools/digwatch/source.c
 curses.h     tools/digwatch/terminal.c

@@ -255,6 +255,11 @@ static void read_canonical(struct dig_table_head *const head, const char *const 
     }
 }
 
+// A dig of a version without depth and attack is plain.
+static const char plain_ground_sql[] =
+    "CREATE TEMP VIEW ground AS SELECT id, friction, rolling, density_kgpm3, effect, magnitude, "
+    "1.0 AS depth, 0.0 AS attack_rad FROM main.ground";
+
 enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
                                  struct dig_table_head *const head, struct dig_error *const error)
 {
@@ -282,7 +287,7 @@ enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
     }
     free(canonical);
     if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {
-        status = dig_schema_view(db, path, "main", "ground", error);
+        status = dig_sql_run(db, path, plain_ground_sql, error);
     }
     if (status == DIG_OK && read.version >= DIG_TABLE_VERSION) {
         status = dig_seal_check(db, path, error);

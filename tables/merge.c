@@ -14,27 +14,25 @@
 #define KEY  DUG ", trajectory, packing"
 #define DATA "seed, engine, version, grains, windows, first_s, step_s, curve"
 
-// Runs of all inputs, by key. Temporary: the table itself is written once, in order.
+// Runs by key, and those of the input at hand. Temporary: the table itself is written once, in
+// order.
 static const char gather_sql[] =
-    "CREATE TEMP TABLE gather (" KEY ", " DATA ", made_utc, wall_s, UNIQUE (" KEY "))";
+    "CREATE TEMP TABLE gather (" KEY ", " DATA ", made_utc, wall_s, UNIQUE (" KEY "));"
+    "CREATE TEMP TABLE came (" KEY ", " DATA ", made_utc, wall_s);";
+
+static const char runs_sql[] = "SELECT " KEY ", " DATA ", made_utc, wall_s FROM run JOIN ground g "
+                               "ON g.id = run.ground";
 
 static const char conflict_sql[] =
-    "SELECT g.friction, g.rolling, g.density_kgpm3, g.effect, a.trajectory, a.packing, g.depth, "
-    "g.attack_rad FROM src.run r JOIN src_ground g ON g.id = r.ground JOIN gather a ON "
-    "(a.friction, a.rolling, a.density_kgpm3, a.effect, a.magnitude, a.depth, a.attack_rad, "
-    "a.trajectory, a.packing) = (g.friction, g.rolling, g.density_kgpm3, g.effect, g.magnitude, "
-    "g.depth, g.attack_rad, r.trajectory, r.packing) WHERE (r.seed, r.engine, "
-    "r.version, r.grains, r.windows, r.first_s, r.step_s, r.curve) <> (a.seed, a.engine, "
-    "a.version, a.grains, a.windows, a.first_s, a.step_s, a.curve) LIMIT 1";
+    "SELECT friction, rolling, density_kgpm3, effect, trajectory, packing, depth, attack_rad FROM "
+    "came c JOIN gather a USING (" KEY ") WHERE (c.seed, c.engine, c.version, c.grains, c.windows, "
+    "c.first_s, c.step_s, c.curve) <> (a.seed, a.engine, a.version, a.grains, a.windows, "
+    "a.first_s, a.step_s, a.curve) LIMIT 1";
 
 static const char take_sql[] =
-    "INSERT INTO gather SELECT " KEY ", " DATA ", made_utc, wall_s FROM src.run JOIN src_ground g "
-    "ON g.id = run.ground WHERE true ON CONFLICT DO UPDATE SET made_utc = excluded.made_utc, "
-    "wall_s = excluded.wall_s WHERE (excluded.made_utc, excluded.wall_s) < (made_utc, wall_s)";
-
-static const char head_sql[] = "INSERT INTO main.scene SELECT * FROM src.scene;"
-                               "INSERT INTO main.trajectory SELECT * FROM src.trajectory;"
-                               "INSERT INTO main.phase SELECT * FROM src.phase ORDER BY 1, 2;";
+    "INSERT INTO gather SELECT * FROM came WHERE true ON CONFLICT DO UPDATE SET made_utc = "
+    "excluded.made_utc, wall_s = excluded.wall_s WHERE (excluded.made_utc, excluded.wall_s) < "
+    "(made_utc, wall_s); DELETE FROM came;";
 
 static const char write_sql[] =
     "INSERT INTO ground (" DUG ") SELECT DISTINCT " DUG " FROM gather ORDER BY 1, 2, 3, 4, 5, 6, 7;"
@@ -49,43 +47,36 @@ static enum dig_status run(struct dig_store *const store, const char *const sql,
     return dig_sql_run(store->db, store->path, sql, error);
 }
 
-#define URI_SIZE ((size_t)3 * PATH_MAX + 32)
-
-// "file:PATH?mode=MODE", every byte that means something in it as %XX. What is longer no system
-// opens.
-static void uri_of(const char *const path, const char *const mode, char uri[const URI_SIZE])
+// Every row that a statement gives of one database becomes one of another's table.
+static enum dig_status copy(sqlite3 *const from, const char *const input, const char *const select,
+                            const struct dig_store *const to, const char *const insert,
+                            struct dig_error *const error)
 {
-    static const char plain[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
-    size_t used = strlen(path[0] == '/' ? "file://" : "file:./");
-    memcpy(uri, path[0] == '/' ? "file://" : "file:./", used + 1);
-    for (size_t i = 0; path[i] != '\0' && i < PATH_MAX; i++) {
-        if (strchr(plain, path[i]) != NULL) {
-            uri[used++] = path[i];
-        } else {
-            used += (size_t)snprintf(uri + used, URI_SIZE - used, "%%%02X", (unsigned char)path[i]);
+    sqlite3_stmt   *row    = NULL;
+    sqlite3_stmt   *into   = NULL;
+    int             step   = SQLITE_ERROR;
+    enum dig_status status = dig_sql_prepare(from, input, select, &row, error);
+    if (status == DIG_OK) {
+        status = dig_sql_prepare(to->db, to->path, insert, &into, error);
+    }
+    while (status == DIG_OK && (step = sqlite3_step(row)) == SQLITE_ROW) {
+        for (int i = 0; i < sqlite3_column_count(row); i++) {
+            (void)sqlite3_bind_value(into, i + 1, sqlite3_column_value(row, i));
         }
+        if (sqlite3_step(into) != SQLITE_DONE) {
+            status = dig_sql_refuse(to->db, to->path, error);
+        }
+        (void)sqlite3_reset(into);
     }
-    (void)snprintf(uri + used, URI_SIZE - used, "?mode=%s", mode);
-}
-
-static enum dig_status attach(struct dig_store *const store, const char *const input,
-                              struct dig_error *const error)
-{
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(store->db, "ATTACH ?1 AS src", -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(store->db, store->path, error);
+    if (status == DIG_OK && step != SQLITE_DONE) {
+        status = dig_sql_refuse(from, input, error);
     }
-    char uri[URI_SIZE];
-    uri_of(input, "ro", uri);
-    (void)sqlite3_bind_text(s, 1, uri, -1, SQLITE_STATIC);
-    const enum dig_status status =
-        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, input, error);
-    (void)sqlite3_finalize(s);
+    (void)sqlite3_finalize(row);
+    (void)sqlite3_finalize(into);
     return status;
 }
 
-// A run that is gathered already and differs in the attached input.
+// A run that is gathered already and differs in the input at hand.
 static enum dig_status check_conflict(const struct dig_store *const store, const char *const input,
                                       struct dig_error *const error)
 {
@@ -119,29 +110,57 @@ static enum dig_status check_conflict(const struct dig_store *const store, const
     return status;
 }
 
-// The attached input's head, for the first, and its runs.
-static enum dig_status take(struct dig_store *const store, const char *const input,
-                            const bool is_first, struct dig_error *const error)
+// Of the first input the store becomes a table of its scene; of any other it has to be that.
+static enum dig_status take_head(struct dig_store *const store, sqlite3 *const from,
+                                 const char *const input[const], const size_t at,
+                                 const struct dig_table_head *const head,
+                                 struct dig_error *const            error)
 {
-    enum dig_status status = attach(store, input, error);
-    if (status != DIG_OK) {
-        return status;
+    if (at > 0) {
+        return strcmp(head->scene_hash, store->head.scene_hash) == 0
+                   ? DIG_OK
+                   : dig_error_set(error, DIG_EINVAL,
+                                   "%s: scene: holds \"%s\" (%.12s…), expected that of %s, \"%s\" "
+                                   "(%.12s…)",
+                                   input[at], head->scene_name, head->scene_hash, input[0],
+                                   store->head.scene_name, store->head.scene_hash);
     }
-    if (is_first) {
-        status = run(store, head_sql, error);
+    static const char *const copies[][2] = {
+        { "SELECT * FROM scene", "INSERT INTO scene VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)" },
+        { "SELECT * FROM trajectory", "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)" },
+        { "SELECT * FROM phase ORDER BY 1, 2", "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)" },
+    };
+    enum dig_status status = DIG_OK;
+    for (size_t i = 0; status == DIG_OK && i < sizeof copies / sizeof copies[0]; i++) {
+        status = copy(from, input[0], copies[i][0], store, copies[i][1], error);
     }
-    if (status == DIG_OK) {
-        status = dig_schema_view(store->db, input, "src", "src_ground", error);
-    }
-    if (status == DIG_OK) {
-        status = check_conflict(store, input, error);
-    }
-    if (status == DIG_OK) {
-        status = run(store, take_sql, error);
-    }
-    (void)sqlite3_exec(store->db, "DROP VIEW IF EXISTS temp.src_ground; DETACH src", NULL, NULL,
-                       NULL);
+    store->head = *head;
     return status;
+}
+
+// An input's head and runs, in the transaction in which it was found sound: by its name it could be
+// another file a moment later.
+static enum dig_status take(struct dig_store *const store, const char *const input[const],
+                            const size_t at, struct dig_error *const error)
+{
+    sqlite3              *from   = NULL;
+    struct dig_table_head head   = { .trajectories = 0 };
+    enum dig_status       status = dig_sql_open_read(input[at], &from, &head, error);
+    if (status == DIG_OK) {
+        status = take_head(store, from, input, at, &head, error);
+    }
+    if (status == DIG_OK) {
+        status =
+            copy(from, input[at], runs_sql, store,
+                 "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+                 "?)",
+                 error);
+    }
+    (void)sqlite3_close(from);
+    if (status == DIG_OK) {
+        status = check_conflict(store, input[at], error);
+    }
+    return status == DIG_OK ? run(store, take_sql, error) : status;
 }
 
 static enum dig_status refresh_entries(struct dig_store *const store, struct dig_error *const error)
@@ -168,12 +187,14 @@ static enum dig_status fill(struct dig_store *const store, const size_t inputs,
                             const char *const input[const], struct dig_error *const error)
 {
     enum dig_status status = run(store, gather_sql, error);
-    for (size_t i = 0; status == DIG_OK && i < inputs; i++) {
-        status = take(store, input[i], i == 0, error);
+    if (status == DIG_OK) {
+        status = run(store, "BEGIN", error);
     }
-    static const char *const rest[] = { "BEGIN", write_sql };
-    for (size_t i = 0; status == DIG_OK && i < sizeof rest / sizeof rest[0]; i++) {
-        status = run(store, rest[i], error);
+    for (size_t i = 0; status == DIG_OK && i < inputs; i++) {
+        status = take(store, input, i, error);
+    }
+    if (status == DIG_OK) {
+        status = run(store, write_sql, error);
     }
     if (status == DIG_OK) {
         status = refresh_entries(store, error);
@@ -184,31 +205,6 @@ static enum dig_status fill(struct dig_store *const store, const size_t inputs,
     return status == DIG_OK ? run(store, "VACUUM", error) : status;
 }
 
-// Every input a sound table of one scene; its head is the store's.
-static enum dig_status check_inputs(struct dig_store *const store, const size_t inputs,
-                                    const char *const input[const], struct dig_error *const error)
-{
-    for (size_t i = 0; i < inputs; i++) {
-        sqlite3              *db     = NULL;
-        struct dig_table_head head   = { .trajectories = 0 };
-        const enum dig_status status = dig_sql_open_read(input[i], &db, &head, error);
-        if (status != DIG_OK) {
-            return status;
-        }
-        (void)sqlite3_close(db);
-        if (i == 0) {
-            store->head = head;
-        } else if (strcmp(head.scene_hash, store->head.scene_hash) != 0) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s: scene: holds \"%s\" (%.12s…), expected that of %s, \"%s\" "
-                                 "(%.12s…)",
-                                 input[i], head.scene_name, head.scene_hash, input[0],
-                                 store->head.scene_name, store->head.scene_hash);
-        }
-    }
-    return DIG_OK;
-}
-
 static enum dig_status merge_into(struct dig_store *const store, const size_t inputs,
                                   const char *const input[const], struct dig_error *const error)
 {
@@ -216,10 +212,7 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     if (made == NULL || fclose(made) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    char uri[URI_SIZE];
-    uri_of(store->path, "rw", uri);
-    if (sqlite3_open_v2(uri, &store->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_URI, NULL) !=
-        SQLITE_OK) {
+    if (sqlite3_open_v2(store->path, &store->db, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path,
                              store->db != NULL ? sqlite3_errmsg(store->db) : "no memory");
     }
@@ -250,18 +243,13 @@ enum dig_status dig_store_merge(const char *const path, const size_t inputs,
         free(store);
         return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
-    enum dig_status status = check_inputs(store, inputs, input, error);
-    if (status == DIG_OK) {
-        status = merge_into(store, inputs, input, error);
-        (void)sqlite3_close(store->db);
-        store->db = NULL;
-        if (status == DIG_OK && rename(store->path, path) != 0) {
-            status =
-                dig_error_set(error, DIG_EIO, "%s: cannot be renamed to %s", store->path, path);
-        }
-        if (status != DIG_OK) {
-            (void)unlink(store->path);
-        }
+    enum dig_status status = merge_into(store, inputs, input, error);
+    (void)sqlite3_close(store->db);
+    if (status == DIG_OK && rename(store->path, path) != 0) {
+        status = dig_error_set(error, DIG_EIO, "%s: cannot be renamed to %s", store->path, path);
+    }
+    if (status != DIG_OK) {
+        (void)unlink(store->path);
     }
     free(store);
     return status;

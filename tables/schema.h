@@ -92,11 +92,6 @@ DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
                                                 struct dig_table_head *head,
                                                 struct dig_error      *error);
 
-/// Makes the temporary view that shows database.ground with depth and attack_rad, whatever the
-/// version of its file: a dig of DIG_TABLE_VERSION_PLAIN is plain.
-DIG_MUST_CHECK enum dig_status dig_schema_view(sqlite3 *db, const char *path, const char *database,
-                                               const char *view, struct dig_error *error);
-
 /// Makes a table of an older version one of ours: digs without an approach become plain, entries
 /// are sealed. In no transaction; all or nothing.
 DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path, int version,

@@ -142,9 +142,13 @@ static enum dig_status lock(struct dig_store *const store, bool *const created,
         (void)nanosleep(&pause, NULL);
     }
 
-    // Not ours to remove if another writer filled it while we waited.
     struct stat file;
-    *created = absent && fstat(store->lock_fd, &file) == 0 && file.st_size == 0;
+    if (fstat(store->lock_fd, &file) != 0 || !S_ISREG(file.st_mode)) {
+        return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
+                             store->path);
+    }
+    // Not ours to remove if another writer filled it while we waited.
+    *created = absent && file.st_size == 0;
     return DIG_OK;
 }
 

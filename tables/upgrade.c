@@ -1,33 +1,10 @@
-// Tables from before digs had a depth and an attack angle, or entries a seal: read as they are, and
-// made today's in place when the first run is added.
+// Tables from before digs had a depth and an attack angle, or entries a seal, made today's in place
+// when the first run is added.
 
 #include "tables/schema.h"
 #include "tables/seal.h"
 
 #include <stdio.h>
-
-enum dig_status dig_schema_view(sqlite3 *const db, const char *const path,
-                                const char *const database, const char *const view,
-                                struct dig_error *const error)
-{
-    char            sql[256];
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = DIG_OK;
-    (void)snprintf(sql, sizeof sql, "PRAGMA %s.user_version", database);
-    if (sqlite3_prepare_v2(db, sql, -1, &s, NULL) != SQLITE_OK || sqlite3_step(s) != SQLITE_ROW) {
-        status = dig_sql_refuse(db, path, error);
-    }
-    const bool plain = status == DIG_OK && sqlite3_column_int(s, 0) == DIG_TABLE_VERSION_PLAIN;
-    (void)sqlite3_finalize(s);
-    if (status != DIG_OK) {
-        return status;
-    }
-    (void)snprintf(sql, sizeof sql,
-                   "CREATE TEMP VIEW %s AS SELECT id, friction, rolling, "
-                   "density_kgpm3, effect, magnitude, %s FROM %s.ground",
-                   view, plain ? "1.0 AS depth, 0.0 AS attack_rad" : "depth, attack_rad", database);
-    return dig_sql_run(db, path, sql, error);
-}
 
 // The key over more columns wants the table made anew; rows keep their ids, and what refers to
 // them its sense.

@@ -2,10 +2,13 @@
 // own rate, one request at a time: the one that is due longest. Only functions 3 and 4, which read;
 // no call of this file can write.
 //
-// A block that does not answer delays the others by RESPONSE_us each time. A dispensable one that
+// A block that does not answer delays the others by RESPONSE_us each time. An answer is not taken
+// for the present when its last byte came later than that, whether the server was slow or this
+// program did not run. A dispensable one that
 // is silent while the others answer is polled only now and then.
 
 #include "firmware_host/bus/input.h"
+#include "firmware_host/bus/modbus_tcp.h"
 #include "firmware_host/bus/signal_map.h"
 
 #include <assert.h>
@@ -13,7 +16,6 @@
 #include <modbus/modbus.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/socket.h>
 
 #define NS_PER_S           1000000000LL
 #define RESPONSE_us        200000 // a server that is slower than this is taken for gone
@@ -26,7 +28,8 @@ struct modbus_source {
     struct dig_modbus_address    address;
     const struct dig_signal_map *map;
     modbus_t                    *bus;
-    bool                         resync; // serial: the next answer may be a late one
+    bool                         resync;      // serial: the next answer may be a late one
+    uint16_t                     transaction; // TCP: of the last request
     // of each block
     int64_t next_ns[DIG_GROUPS_MAX];  // when the next poll is due
     int     failures[DIG_GROUPS_MAX]; // in a row
@@ -53,7 +56,9 @@ static enum dig_status open_modbus(struct dig_input *const input, struct dig_err
         return refuse(input, "cannot be opened", error);
     }
     if (modbus_set_slave(s->bus, a->unit) != 0 ||
-        modbus_set_response_timeout(s->bus, 0, RESPONSE_us) != 0 || modbus_connect(s->bus) != 0) {
+        modbus_set_response_timeout(s->bus, 0, RESPONSE_us) != 0 ||
+        (a->host[0] != '\0' && modbus_set_byte_timeout(s->bus, 0, 0) != 0) || // of all bytes
+        modbus_connect(s->bus) != 0) {
         const enum dig_status status = refuse(input, "cannot be opened", error);
         modbus_free(s->bus);
         s->bus = NULL;
@@ -150,19 +155,53 @@ static size_t due(const struct modbus_source *const s)
     return block;
 }
 
-// Discards what is on a serial line before a request: it cannot be its answer. Over TCP an answer
-// carries the number of its request.
-static int ask(const struct modbus_source *const s, const size_t block,
-               uint16_t registers[const DIG_REGISTERS_MAX])
+static int ask_tcp(struct modbus_source *const s, const struct dig_map_group *const group,
+                   uint16_t registers[const DIG_REGISTERS_MAX])
 {
-    const struct dig_map_group *const group = &s->map->group[block];
-    if (s->address.host[0] == '\0') {
-        (void)modbus_flush(s->bus);
-    }
+    const struct dig_modbus_request request = { .transaction = ++s->transaction,
+                                                .unit        = (uint8_t)s->address.unit,
+                                                .function    = (uint8_t)group->function,
+                                                .first       = (uint16_t)group->first_register,
+                                                .count       = (uint16_t)group->registers };
+    return dig_modbus_tcp_read(s->bus, &request, registers);
+}
+
+// Discards what is on a serial line before a request: it cannot be its answer.
+static int ask_serial(const struct modbus_source *const s, const struct dig_map_group *const group,
+                      uint16_t registers[const DIG_REGISTERS_MAX])
+{
+    (void)modbus_flush(s->bus);
     const int first = (int)group->first_register;
     const int count = (int)group->registers;
-    return group->function == 3 ? modbus_read_registers(s->bus, first, count, registers)
-                                : modbus_read_input_registers(s->bus, first, count, registers);
+    const int read  = group->function == 3
+                          ? modbus_read_registers(s->bus, first, count, registers)
+                          : modbus_read_input_registers(s->bus, first, count, registers);
+    return read == count ? 0 : -1;
+}
+
+// How long a good answer takes at most: on a serial line also twice the time of its bytes and the
+// request's, of 11 bits each.
+static int64_t longest_ns(const struct modbus_source *const s,
+                          const struct dig_map_group *const group)
+{
+    const int64_t bits = 22 * (8 + 5 + 2 * (int64_t)group->registers);
+    return RESPONSE_us * 1000LL +
+           (s->address.host[0] != '\0' ? 0 : bits * NS_PER_S / s->address.baud);
+}
+
+// 0, or -1 with errno.
+static int ask(struct modbus_source *const s, const size_t block,
+               uint16_t registers[const DIG_REGISTERS_MAX])
+{
+    const struct dig_map_group *const group    = &s->map->group[block];
+    const int64_t                     asked_ns = dig_input_now_ns();
+    const int                         failed =
+        s->address.host[0] != '\0' ? ask_tcp(s, group, registers) : ask_serial(s, group, registers);
+    if (failed == 0 && dig_input_now_ns() - asked_ns > longest_ns(s, group)) {
+        errno = ETIMEDOUT;
+        return -1;
+    }
+    return failed;
 }
 
 static enum dig_status read_modbus(struct dig_input *const input, struct dig_error *const error)
@@ -181,7 +220,7 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     *next                   = (now_ns > *next + period_ns ? now_ns : *next) + period_ns;
 
     uint16_t registers[DIG_REGISTERS_MAX];
-    if (ask(s, block, registers) != (int)group->registers) {
+    if (ask(s, block, registers) != 0) {
         return bear(input, block, error);
     }
     // A serial answer does not carry the number of its request: after a failed one it may belong to

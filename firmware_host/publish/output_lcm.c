@@ -346,6 +346,7 @@ enum dig_status dig_output_health(struct dig_output *const       output,
                     .digs_whole            = health->whole,
                     .digs_aborted          = health->aborted,
                     .digs_unknown          = health->unknown,
+                    .worst_late_us         = tick->worst_late_us,
     };
     return sent(digsight_health_t_publish(output->lcm, "DIGSIGHT_HEALTH", &message));
 }

@@ -237,10 +237,12 @@ void dig_loop_run(struct dig_loop *const loop, const atomic_bool *const stop)
     while (!atomic_load_explicit(stop, memory_order_relaxed)) {
         const int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
         const int64_t cpu_ns   = clock_ns(CLOCK_THREAD_CPUTIME_ID);
+        const double  late_us  = (double)(start_ns - due_ns) * 1e-3;
         if (start_ns - due_ns >= period_ns) {
             loop->tick_status.overruns++;
             due_ns = start_ns;
         }
+        loop->tick_status.worst_late_us = fmax(loop->tick_status.worst_late_us, late_us);
         dig_loop_tick(loop, start_ns);
         const double took_us = (double)(clock_ns(CLOCK_MONOTONIC) - start_ns) * 1e-3;
         const double cpu_us  = (double)(clock_ns(CLOCK_THREAD_CPUTIME_ID) - cpu_ns) * 1e-3;

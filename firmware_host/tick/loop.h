@@ -69,6 +69,7 @@ struct dig_tick_status {
     int64_t          time_ns; // CLOCK_MONOTONIC
     int64_t          ticks, overruns, missing;
     double           worst_tick_us, worst_tick_cpu_us;
+    double           worst_late_us; // after its time, the tick that began latest
     struct dig_drops drops;
     int64_t          lost, lost_digs; // records and digs for which there was no room
     int64_t          generation;      // of the table in use

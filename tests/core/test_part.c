@@ -6,6 +6,7 @@
 #include "tables/merge.h"
 #include "tests/tables_fixture.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 
 static void assert_kept(void)
@@ -77,6 +78,26 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     return fputs("page", to) >= 0 ? DIG_OK : DIG_EIO;
 }
 
+static void a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise(void **state)
+{
+    (void)state;
+    struct dig_out   out   = { 0 };
+    struct dig_error error = { "" };
+    assert_int_equal(mkfifo(scratch_path("pipe"), 0600), 0);
+    (void)alarm(5); // ends who waits
+    assert_int_equal(dig_out_open(&out, scratch_path("pipe"), &error), DIG_EIO);
+    (void)alarm(0);
+    assert_contains(error.text, "pipe: ");
+
+    const int fd = open(scratch_path("pipe"), O_RDONLY | O_NONBLOCK);
+    char      read_back[8];
+    assert_int_equal(dig_out_open(&out, scratch_path("pipe"), &error), DIG_OK);
+    assert_true(fputs("new", out.file) >= 0);
+    assert_int_equal(dig_out_commit(&out, &error), DIG_OK);
+    assert_int_equal(read(fd, read_back, sizeof read_back), 3);
+    assert_int_equal(close(fd), 0);
+}
+
 static void nor_does_a_page(void **state)
 {
     (void)state;
@@ -112,6 +133,7 @@ int main(void)
         cmocka_unit_test(an_output_file_does_not_write_through_a_link_at_its_part),
         cmocka_unit_test(nor_does_a_page),
         cmocka_unit_test(nor_does_a_merged_table),
+        cmocka_unit_test(a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise),
     };
     return cmocka_run_group_tests_name("part", tests, scratch_setup, scratch_teardown);
 }

@@ -31,10 +31,26 @@ struct server {
     atomic_int        refuse;           // answer so many requests with an exception
     atomic_int        refused;          // requests for this register get an exception; 0: none
     atomic_int        muted;            // requests for this register get no answer; 0: none
+    atomic_int        slow_ms;          // before each byte of an answer; 0: at once
     atomic_int        first, registers; // of the last request
     atomic_int        reads, writes, connections, unanswered;
     pthread_t         thread;
 };
+
+// The registers, byte by byte.
+static void answer_slowly(struct server *const s, modbus_t *const bus, const uint8_t query[])
+{
+    uint8_t reply[9 + 24] = { query[0], query[1], 0, 0, 0, 27, query[6], query[7], 24 };
+    for (size_t i = 0; i < 12; i++) {
+        reply[9 + 2 * i]  = (uint8_t)(s->mapping->tab_input_registers[i] >> 8);
+        reply[10 + 2 * i] = (uint8_t)s->mapping->tab_input_registers[i];
+    }
+    for (size_t i = 0; i < sizeof reply; i++) {
+        const struct timespec pause = { .tv_nsec = atomic_load(&s->slow_ms) * MS };
+        (void)nanosleep(&pause, NULL);
+        (void)send(modbus_get_socket(bus), reply + i, 1, MSG_NOSIGNAL);
+    }
+}
 
 static void answer(struct server *const s, modbus_t *const bus)
 {
@@ -62,6 +78,10 @@ static void answer(struct server *const s, modbus_t *const bus)
             (void)modbus_reply_exception(bus, query, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
         } else {
             s->mapping->tab_input_registers[0]++;
+            if (atomic_load(&s->slow_ms) > 0) {
+                answer_slowly(s, bus, query);
+                continue;
+            }
             (void)modbus_reply(bus, query, size, s->mapping);
         }
     }
@@ -275,6 +295,23 @@ static void a_connection_that_breaks_is_made_anew(void **state)
     assert_true(atomic_load(&c.input.reconnects) >= 1);
 }
 
+// Each byte comes in time, the last of them when the first registers are long past.
+static void an_answer_that_dawdles_is_not_taken_for_the_present(void **state)
+{
+    (void)state;
+    struct server s = { .slow_ms = 10 }; // a third of a second in all
+    server_open(&s);
+    static struct client c;
+    client_start(&c, s.port);
+    while (atomic_load(&c.input.timeouts) == 0 && atomic_load(&c.input.frames) == 0) {
+        pause_ms();
+    }
+    client_stop(&c);
+    assert_true(atomic_load(&c.input.timeouts) > 0);
+    assert_int_equal(atomic_load(&c.input.frames), 0);
+    server_stop(&s);
+}
+
 static void a_refusal_is_counted_and_borne(void **state)
 {
     (void)state;
@@ -480,6 +517,7 @@ int main(void)
         cmocka_unit_test(the_block_is_polled_and_decoded_with_reads_only),
         cmocka_unit_test(a_server_that_comes_late_is_found_and_said),
         cmocka_unit_test(a_connection_that_breaks_is_made_anew),
+        cmocka_unit_test(an_answer_that_dawdles_is_not_taken_for_the_present),
         cmocka_unit_test(a_refusal_is_counted_and_borne),
         cmocka_unit_test(blocks_that_lie_apart_are_asked_for_each_at_its_rate),
         cmocka_unit_test(a_block_that_is_refused_is_done_without_or_ends_the_connection),

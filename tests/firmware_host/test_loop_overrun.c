@@ -87,6 +87,7 @@ static void ticks_that_come_in_time_keep_the_beat(void **state)
     run();
     assert_int_equal(bench->loop.tick_status.ticks, BEATS);
     assert_int_equal(bench->loop.tick_status.overruns, 0);
+    assert_close(bench->loop.tick_status.worst_late_us, 0.0, 0.0);
     for (int i = 0; i < BEATS; i++) {
         assert_int_equal(fake.deadline_ns[i], 1000 * MS + (i + 1) * PERIOD);
     }
@@ -99,8 +100,10 @@ a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other(void
     (void)state;
     set_up();
     fake.late_ns[10] = PERIOD - 1;
+    fake.late_ns[12] = PERIOD / 2;
     run();
     assert_int_equal(bench->loop.tick_status.overruns, 0);
+    assert_close(bench->loop.tick_status.worst_late_us, 4999.999, 1e-9);
     for (int i = 0; i < BEATS; i++) {
         assert_int_equal(fake.deadline_ns[i], 1000 * MS + (i + 1) * PERIOD);
     }
@@ -116,6 +119,7 @@ static void a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped(void 
     run();
     assert_int_equal(bench->loop.tick_status.overruns, 2);
     assert_int_equal(bench->loop.tick_status.ticks, BEATS);
+    assert_close(bench->loop.tick_status.worst_late_us, 37500.0, 1e-9);
 
     // One tick for all that were missed, and a whole period after it the next.
     assert_int_equal(fake.deadline_ns[10], fake.start_ns[10] + PERIOD);
@@ -134,6 +138,7 @@ static void a_tick_that_takes_too_long_makes_the_next_an_overrun_and_is_told(voi
     run();
     assert_int_equal(bench->loop.tick_status.overruns, 1);
     assert_close(bench->loop.tick_status.worst_tick_us, 11000.0, 1e-9);
+    assert_close(bench->loop.tick_status.worst_late_us, 6000.0, 1e-9); // it should begin after 5 ms
     assert_int_equal(fake.start_ns[11], fake.start_ns[10] + 2 * PERIOD + MS);
     assert_int_equal(fake.deadline_ns[11], fake.start_ns[11] + PERIOD);
     bench_destroy(bench);

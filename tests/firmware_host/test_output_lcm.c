@@ -356,6 +356,7 @@ static void health_carries_every_counter(void **state)
                               .missing           = 3,
                               .worst_tick_us     = 4.5,
                               .worst_tick_cpu_us = 3.5,
+                              .worst_late_us     = 2.5,
                               .drops             = { .nan           = 5,
                                                      .not_available = 6,
                                                      .out_of_range  = 7,
@@ -401,6 +402,7 @@ static void health_carries_every_counter(void **state)
     assert_true(m.realtime == 1 && m.memory_locked == 0);
     assert_true(m.ticks == 1 && m.overruns == 2 && m.missing == 3);
     assert_close(m.worst_tick_us, 4.5, 0.0);
+    assert_close(m.worst_late_us, 2.5, 0.0);
     assert_true(m.dropped_nan == 5 && m.dropped_not_available == 6 && m.dropped_out_of_range == 7);
     assert_true(m.dropped_frozen == 8 && m.dropped_malformed == 11 && m.digs == 9);
     assert_true(m.digs_whole == 27 && m.digs_aborted == 28 && m.digs_unknown == 29);

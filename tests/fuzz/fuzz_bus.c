@@ -206,7 +206,7 @@ static void fuzz_modbus(const time_t end)
     }
     static struct dig_signal_map    map;
     static struct dig_reading       memory[64];
-    static struct dig_log_line      notes[3];
+    static struct dig_log_line      lines[3];
     struct dig_ring                 readings;
     struct dig_latest               latest;
     struct dig_input                input = { 0 };
@@ -215,13 +215,13 @@ static void fuzz_modbus(const time_t end)
         .host = "127.0.0.1", .port = ntohs(address.sin_port), .unit = 1, .poll_s = 1e-5
     };
     dig_ring_init(&readings, sizeof memory[0], 64, memory);
-    dig_latest_init(&latest, sizeof notes[0], notes);
+    dig_latest_init(&latest, sizeof lines[0], lines);
     if (dig_signal_map_read("config/signals/modbus_default.yaml", NULL, &map, NULL) != DIG_OK ||
         dig_input_modbus_create(&input, &where, &map) != DIG_OK) {
         exit(2);
     }
     input.readings = &readings;
-    input.notes    = &latest;
+    input.log      = &latest;
     input.stop     = &stop;
     long opened    = 0;
     while (time(NULL) < end) {

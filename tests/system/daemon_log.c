@@ -13,9 +13,10 @@
 //          ERROR_FRAMES BUS_OFFS TIMEOUTS UNSENT RELOADS RELOADS_REFUSED WORST_CPU_us P99_us
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   endings WHOLE ABORTED UNKNOWN
+//   late WORST_LATE_us
 //   samples N DURATION_s MAX_GAP_s
-// family and weighted are of the match before them, spread of the prediction, endings of the
-// health.
+// family and weighted are of the match before them, spread of the prediction, endings and
+// late of the health.
 
 #include "core/units.h"
 #include "files/lcm_log.h"
@@ -103,6 +104,7 @@ static void health(void *const context, const int64_t time_us, const digsight_he
     (void)printf(" %.1f %.1f %" PRId64 " \"%s\" \"%s\" \"%s\"\n", m->worst_tick_cpu_us,
                  m->latency_p99_us, m->without_force, m->input, m->note, m->missing_signals);
     (void)printf("endings %d %d %d\n", m->digs_whole, m->digs_aborted, m->digs_unknown);
+    (void)printf("late %.1f\n", m->worst_late_us);
 }
 
 int main(const int argc, char *argv[])

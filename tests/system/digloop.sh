@@ -141,7 +141,7 @@ check "... identity" refuses none.json "No such file" -- "$BIN/digloop" predict 
 check "... dig to compare with" refuses none.csv "No such file" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --measured "$work/none.csv"
 check "... table of effects" refuses none.sqlite "No such file" -- "$BIN/digloop" design "$table" --effects "$work/none.sqlite"
-check "a folder is no recording" refuses "$work: Is a directory" -- "$BIN/digloop" identify "$table" "$work"
+check "a folder is no recording" refuses "$work: no regular file" -- "$BIN/digloop" identify "$table" "$work"
 "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/no/folder.csv" >"$work/out" 2>"$work/err"
 check "a file that cannot be written is a failure of the work" eval '[ $? = 1 ] && grep -q "no/folder.csv" "$work/err"'
 sed '3s/[^,]*$/x/' "$reference"__simpleA.csv >"$work/bad.csv"

@@ -50,7 +50,7 @@ refused "an engine that is not built in" "--engine edem: expected kernel, ode or
 refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
 refused "a scene that is not there" "absent.yaml: No such file" dig "$work/absent.yaml" "${dig[@]}" -o "$out"
 refused "a grid that is not there" "absent.yaml: No such file" generate $scene "$work/absent.yaml" -o "$out"
-refused "a scene that is a folder" "directory" dig "$work" "${dig[@]}" -o "$out"
+refused "a scene that is a folder" "no regular file" dig "$work" "${dig[@]}" -o "$out"
 
 # Scenes: every line of the good one in turn is spoiled; each is told by its line.
 lines=$(wc -l <$scene)

@@ -5,6 +5,8 @@
 #include "tables/export.h"
 #include "tests/tables_fixture.h"
 
+#include <sqlite3.h>
+
 enum { RUNS = 24, PARTS = 3 };
 
 // The i-th run of a table: gravels, effects, packings and trajectories all vary.
@@ -125,6 +127,10 @@ static void what_is_there_already_is_not_there_twice(void **state)
     assert_memory_equal(first, second, size);
     free(first);
     free(second);
+
+    const char *const one     = scratch_path("first.sqlite");
+    const char *const twice[] = { one, one };
+    assert_int_equal(dig_store_merge(scratch_path("third.sqlite"), 2, twice, NULL), DIG_OK);
 }
 
 static void refuse(const char *const second, const enum dig_status status, const char *const says)
@@ -139,6 +145,45 @@ static void refuse(const char *const second, const enum dig_status status, const
     assert_contains(error.text, says);
     assert_false(scratch_exists("refused.sqlite"));
     assert_false(scratch_exists("refused.sqlite.part"));
+}
+
+// SQLite opens files by this. Another takes the place of "a.sqlite" before that is opened again.
+static sqlite3_vfs swapper;
+static int (*open_as_ever)(sqlite3_vfs *, const char *, sqlite3_file *, int, int *);
+static int  opened;
+static char watched[512], usurper[512];
+
+static int open_and_swap(sqlite3_vfs *const vfs, const char *const path, sqlite3_file *const file,
+                         const int flags, int *const got)
+{
+    if (path != NULL && strcmp(path, watched) == 0 && ++opened == 2) {
+        assert_int_equal(rename(usurper, watched), 0);
+    }
+    return open_as_ever(vfs, path, file, flags, got);
+}
+
+static void a_table_is_merged_as_it_was_checked_whoever_takes_its_name(void **state)
+{
+    (void)state;
+    make_tables();
+    static const char *const a[]  = { "a.sqlite" };
+    size_t                   size = 0, again = 0;
+    char *const              before = merged("before.sqlite", 1, a, &size);
+    sqlite3_vfs *const       ours   = sqlite3_vfs_find(NULL);
+    (void)snprintf(watched, sizeof watched, "%s", scratch_path("a.sqlite"));
+    (void)snprintf(usurper, sizeof usurper, "%s", scratch_path("b.sqlite"));
+    swapper       = *ours;
+    swapper.zName = "swapper";
+    open_as_ever  = ours->xOpen;
+    swapper.xOpen = open_and_swap;
+    assert_int_equal(sqlite3_vfs_register(&swapper, 1), SQLITE_OK);
+    char *const after = merged("after.sqlite", 1, a, &again);
+    assert_int_equal(sqlite3_vfs_unregister(&swapper), SQLITE_OK);
+    assert_true(opened > 0);
+    assert_int_equal(again, size);
+    assert_memory_equal(after, before, size);
+    free(before);
+    free(after);
 }
 
 static void what_differs_or_does_not_belong_is_refused(void **state)
@@ -176,6 +221,8 @@ int main(void)
                                         scratch_setup, scratch_teardown),
         cmocka_unit_test_setup_teardown(what_is_there_already_is_not_there_twice, scratch_setup,
                                         scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_table_is_merged_as_it_was_checked_whoever_takes_its_name,
+                                        scratch_setup, scratch_teardown),
         cmocka_unit_test_setup_teardown(what_differs_or_does_not_belong_is_refused, scratch_setup,
                                         scratch_teardown),
     };

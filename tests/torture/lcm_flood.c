@@ -1,8 +1,10 @@
 // Floods an LCM multicast group with what is no message of ours: lcm_flood GROUP PORT SECONDS SEED
+// [RATE]
 //
 // In turn: noise of any length; the magic of a short message with a channel without end, or one of
 // our channels and noise behind it; fragments of a long message that never comes whole, with
-// numbers and sizes that lie. Prints how many datagrams it sent.
+// numbers and sizes that lie. RATE datagrams a second, or as fast as it can. Prints how many it
+// sent.
 
 #include "tests/fuzz/random.h"
 
@@ -70,8 +72,8 @@ static size_t make(uint8_t datagram[BYTES])
 
 int main(const int argc, char *argv[])
 {
-    if (argc != 5) {
-        (void)fprintf(stderr, "usage: lcm_flood GROUP PORT SECONDS SEED\n");
+    if (argc != 5 && argc != 6) {
+        (void)fprintf(stderr, "usage: lcm_flood GROUP PORT SECONDS SEED [RATE]\n");
         return 2;
     }
     state                        = strtoull(argv[4], NULL, 0);
@@ -81,13 +83,17 @@ int main(const int argc, char *argv[])
     const unsigned char      ttl = 0;
     const int                fd  = socket(AF_INET, SOCK_DGRAM, 0);
     (void)setsockopt(fd, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
-    long         sent = 0;
-    const time_t end  = time(NULL) + atoi(argv[3]);
+    const struct timespec pause = { .tv_nsec = argc == 6 ? 999999999L / atoi(argv[5]) : 0 };
+    long                  sent  = 0;
+    const time_t          end   = time(NULL) + atoi(argv[3]);
     while (sent % BETWEEN_CLOCKS != 0 || time(NULL) < end) {
         uint8_t      datagram[BYTES];
         const size_t size = make(datagram);
         (void)sendto(fd, datagram, size, 0, (const struct sockaddr *)&to, sizeof to);
         sent++;
+        if (pause.tv_nsec > 0) {
+            (void)nanosleep(&pause, NULL);
+        }
     }
     (void)printf("%ld\n", sent);
     return 0;

@@ -4,6 +4,31 @@
 # digtable_lib.bash or daemon_lib.bash.
 TORTURE_S=${TORTURE_S:-30}
 
+# On the machine's own clock: what is tried is how programs live with it. SIMULATED=yes, set before, leaves the simulated
+# clock of daemon_lib.bash.
+if [ -z "${SIMULATED-}" ]; then
+    export -n DIG_SIMCLOCK 2>/dev/null
+    children=()
+
+    pass() { # SECONDS
+        sleep "$1"
+    }
+
+    start() { # OUTPUT COMMAND…
+        "${@:2}" >"$1" 2>"${errors:-/dev/stdout}" </dev/null &
+        started=$!
+        children+=("$started")
+    }
+
+    ends() { # PID [SECONDS]: waits until a process we started has ended; its exit status is kept in $status
+        local waited=0
+        until ! kill -0 "$1" 2>/dev/null || [ $((waited++)) -ge $((${2:-1000} * 20)) ]; do sleep 0.05; done
+        kill -KILL "$1" 2>/dev/null
+        wait "$1" 2>/dev/null
+        status=$?
+    }
+fi
+
 told() { # NUMBER WHAT
     echo "count $1 $2"
 }

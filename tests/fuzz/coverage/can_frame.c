@@ -37,9 +37,9 @@ static void load(const size_t m, const char *const dbc_path, const char *const m
         .groups     = (unsigned)map[m].groups,
     };
     for (size_t g = 0; g < map[m].groups; g++) {
-        settings[m].needed[g] = map[m].group[g].needed;
-        settings[m].spared[g] = map[m].group[g].spared;
-        settings[m].frame[g]  = map[m].group[g].frame;
+        settings[m].needed[g]      = map[m].group[g].needed;
+        settings[m].dispensable[g] = map[m].group[g].dispensable;
+        settings[m].frame[g]       = map[m].group[g].frame;
     }
     for (size_t i = 0; i < DIG_SIGNALS; i++) {
         settings[m].max_rate[i] = map[m].entry[i].max_rate;

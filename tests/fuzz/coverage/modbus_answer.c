@@ -36,9 +36,9 @@ static struct {
 static struct dig_signal_map map;
 static struct dig_input      input;
 static struct dig_reading    memory[64];
-static struct dig_note       notes[3];
+static struct dig_log_line   log_lines[3];
 static struct dig_ring       readings;
-static struct dig_latest     latest;
+static struct dig_latest     last_line;
 static atomic_bool           stop;
 
 static void answer(const int client, const uint8_t *data, size_t size)
@@ -98,13 +98,13 @@ static void start(void)
         .host = "127.0.0.1", .port = ntohs(address.sin_port), .unit = 1, .poll_s = 1e-6
     };
     dig_ring_init(&readings, sizeof memory[0], sizeof memory / sizeof memory[0], memory);
-    dig_latest_init(&latest, sizeof notes[0], notes);
+    dig_latest_init(&last_line, sizeof log_lines[0], log_lines);
     if (dig_signal_map_read("config/signals/modbus_default.yaml", NULL, &map, NULL) != DIG_OK ||
         dig_input_modbus_create(&input, &where, &map) != DIG_OK) {
         exit(2);
     }
     input.readings = &readings;
-    input.notes    = &latest;
+    input.log      = &last_line;
     input.stop     = &stop;
 }
 

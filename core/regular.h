@@ -1,0 +1,16 @@
+// What is read is a regular file: a pipe without a writer or a device would be waited for, or never
+// end.
+
+#ifndef DIG_CORE_REGULAR_H
+#define DIG_CORE_REGULAR_H
+
+#include "core/error.h"
+
+#include <stdio.h>
+
+/// Opens path for reading; *file is closed by the caller. DIG_EIO with errno's words when it cannot
+/// be opened, DIG_EINVAL at once when it is a folder, a pipe, a socket or a device.
+DIG_MUST_CHECK enum dig_status dig_regular_open(const char *path, FILE **file,
+                                                struct dig_error *error);
+
+#endif // DIG_CORE_REGULAR_H
