@@ -1,10 +1,8 @@
 // The search for what is missing of the machine: effects join one after the other, and after each
 // the equations are made linear again where it has led.
 
-#include "closed_loop/machine/machine_drift.h"
-#include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_noise.h"
-#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
 #include "closed_loop/numeric/dense.h"
 #include "estimator/effects/effect.h"
@@ -16,9 +14,6 @@
 
 enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
 
-// Air that leaves more than this of a row's variance is not understood.
-static const double unclear_rest2 = 1.2;
-
 // Nor is air whose means over segments leave this much more than chi-squared should, in its sigmas.
 static const double unclear_sigmas = 5.0;
 
@@ -26,31 +21,7 @@ static const double unclear_sigmas = 5.0;
 // blocks, and may still move from one to the next.
 static const double own_noise = 1.4;
 
-// Two sets of effects whose log evidence differs by less cannot be told apart.
-static const double tie = 5.0;
-
-// 5 % and 95 % of a normal distribution, in its sigmas.
-static const double ninety = 1.645;
-
-// In a parameter's scale squared: as good as none.
-static const double least_variance = 1e-10;
-
-struct search {
-    struct dig_air           air;
-    struct dig_lines         lines;
-    struct dig_fit           fit;
-    double                  *at, *sigma, *covariance;
-    unsigned                 set;
-    double                   noise2;     // variance that rows may have without being unclear
-    double                   least;      // log evidence that an effect must bring
-    double                   rest2_none; // without any effect, not linear
-    double                   rest2; // with the set, not linear, rows as far as they are trusted
-    double                   slow;  // of it, in the means of segments: chi-squared
-    double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
-    struct dig_machine_drift drift;                     // that explains as much as the set, or none
-};
-
-static void search_finish(struct search *const s)
+static void search_finish(struct dig_machine_search *const s)
 {
     dig_fit_finish(&s->fit);
     dig_lines_finish(&s->lines);
@@ -61,7 +32,7 @@ static void search_finish(struct search *const s)
 }
 
 static enum dig_status search_make(const struct dig_machine_side *const side,
-                                   struct search *const                 s)
+                                   struct dig_machine_search *const     s)
 {
     enum dig_status status =
         dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
@@ -80,7 +51,7 @@ static enum dig_status search_make(const struct dig_machine_side *const side,
     return status;
 }
 
-static void sum_all(struct search *const s)
+static void sum_all(struct dig_machine_search *const s)
 {
     double weight[DIG_MEASURED_MAX];
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
@@ -89,7 +60,8 @@ static void sum_all(struct search *const s)
     dig_fit_sum(&s->fit, weight);
 }
 
-static double penalty(const struct search *const s, const double at[], const double width)
+static double penalty(const struct dig_machine_search *const s, const double at[],
+                      const double width)
 {
     double sum = 0.0;
     for (size_t c = 0; c < s->lines.columns; c++) {
@@ -99,7 +71,7 @@ static double penalty(const struct search *const s, const double at[], const dou
 }
 
 // Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
-static enum dig_status refine(struct search *const s)
+static enum dig_status refine(struct dig_machine_search *const s)
 {
     const size_t n = s->lines.columns;
     for (int i = 0; i < REFINEMENTS; i++) {
@@ -145,7 +117,7 @@ static enum dig_status refine(struct search *const s)
 }
 
 // The equations without any effect, rows as far as their own scatter lets them be known.
-static enum dig_status begin(struct search *const s)
+static enum dig_status begin(struct dig_machine_search *const s)
 {
     bool            widened = false;
     enum dig_status status  = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
@@ -164,7 +136,7 @@ static enum dig_status begin(struct search *const s)
 }
 
 // What is left of the rows of each dig where the lines stand, for a report.
-static enum dig_status rest_by_dig(struct search *const s)
+static enum dig_status rest_by_dig(struct dig_machine_search *const s)
 {
     double *const   rest                    = malloc((s->air.rows + 1) * sizeof *rest);
     double          count[DIG_MEASURED_MAX] = { 0.0 };
@@ -184,7 +156,7 @@ static enum dig_status rest_by_dig(struct search *const s)
 }
 
 // In scales.
-static double common_payload(const struct search *const s)
+static double common_payload(const struct dig_machine_search *const s)
 {
     double payload = 0.0;
     for (size_t c = 0; c < s->lines.columns; c++) {
@@ -198,7 +170,7 @@ static double common_payload(const struct search *const s)
 
 // A first dig that carried more than the others looks like a bucket that is heavier and carries
 // less than nothing.
-static enum dig_status take_weight_for_payload(struct search *const s)
+static enum dig_status take_weight_for_payload(struct dig_machine_search *const s)
 {
     static const unsigned weighs = 1U << DIG_EFFECT_BUCKET_WEIGHT;
     if ((s->set & weighs) == 0 || !(common_payload(s) < 0.0)) {
@@ -214,7 +186,7 @@ static enum dig_status take_weight_for_payload(struct search *const s)
 }
 
 // Effects join until none earns its place.
-static enum dig_status select_effects(struct search *const s)
+static enum dig_status select_effects(struct dig_machine_search *const s)
 {
     static const unsigned rubs   = 1U << DIG_EFFECT_CYLINDER_FRICTION;
     enum dig_status       status = begin(s);
@@ -255,7 +227,8 @@ static uint64_t next(uint64_t *const state)
 }
 
 // How often each effect is chosen when the digs are drawn anew.
-static void bootstrap(struct search *const s, uint64_t seed, double inclusion[DIG_MACHINE_EFFECTS])
+static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
+                      double inclusion[DIG_MACHINE_EFFECTS])
 {
     memset(inclusion, 0, DIG_MACHINE_EFFECTS * sizeof inclusion[0]);
     for (int b = 0; b < BOOTSTRAPS; b++) {
@@ -272,204 +245,9 @@ static void bootstrap(struct search *const s, uint64_t seed, double inclusion[DI
     sum_all(s);
 }
 
-static size_t write_parameters(const struct search *const s, const enum dig_effect_id id,
-                               struct dig_model_parameter parameter[])
-{
-    const struct dig_effect *const effect = dig_effect_of(id);
-    size_t                         n      = 0;
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
-        if (column->effect != id || column->segment >= 0) {
-            continue;
-        }
-        const struct dig_effect_parameter *const of = &effect->parameter[column->parameter];
-
-        const double                      value = of->absent + of->scale * s->at[c];
-        const double                      wide  = ninety * of->scale * s->sigma[c];
-        struct dig_model_parameter *const p     = &parameter[n++];
-        memcpy(p->name, of->name, strlen(of->name) + 1);
-        p->value = fmin(fmax(value, of->low), of->high);
-        p->low   = value - wide;
-        p->high  = value + wide;
-    }
-    return n;
-}
-
-// One answer: its values as write_parameters() has them, and a square root of the covariance of
-// its parameters.
-static void write_answer(struct search *const s, const size_t effects,
-                         const struct dig_model_effect effect[], const double log_evidence,
-                         struct dig_machine_answer *const answer)
-{
-    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
-    size_t                column[DIG_MACHINE_NUMBERS];
-    double                scale[DIG_MACHINE_NUMBERS];
-    double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
-    size_t                n   = 0;
-    unsigned              set = 0;
-    *answer = (struct dig_machine_answer){ .effects = effects, .log_evidence = log_evidence };
-    for (size_t e = 0; e < effects; e++) {
-        answer->effect[e] = effect[e];
-        set |= 1U << (unsigned)effect[e].effect;
-    }
-    memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
-    dig_fit_solve_wide(&s->fit, set, &solved);
-    for (size_t e = 0; e < effects; e++) {
-        for (size_t c = 0; c < s->lines.columns; c++) {
-            const struct dig_lines_column *const of = &s->lines.column[c];
-            if (of->effect == effect[e].effect && of->segment < 0) {
-                scale[n]         = of->scale;
-                answer->value[n] = dig_effect_of(of->effect)->parameter[of->parameter].absent +
-                                   of->scale * s->at[c];
-                column[n++] = c;
-            }
-        }
-    }
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            lower[i * n + j] = s->covariance[column[i] * s->lines.columns + column[j]];
-        }
-        lower[i * n + i] += least_variance; // of one that is not fitted
-    }
-    if (dig_cholesky(n, lower) != DIG_OK) {
-        return;
-    }
-    answer->numbers           = n;
-    answer->log_evidence_wide = solved.log_evidence;
-    for (size_t k = 0; k < n; k++) {
-        for (size_t i = k; i < n; i++) {
-            answer->step[k][i] = scale[i] * lower[i * n + k];
-        }
-    }
-}
-
-// The set found, where it is of several, and every candidate alone.
-static void write_answers(struct search *const s, struct dig_machine_finding *const finding)
-{
-    finding->answers = 0;
-    if (finding->effects > 1) {
-        write_answer(s, finding->effects, finding->effect, dig_fit_evidence(&s->fit, s->set),
-                     &finding->answer[finding->answers++]);
-    }
-    for (size_t i = 0; i < finding->candidates; i++) {
-        const struct dig_candidate *const c     = &finding->candidate[i];
-        struct dig_model_effect           alone = { .effect      = c->effect,
-                                                    .probability = c->inclusion,
-                                                    .parameters  = c->parameters };
-        memcpy(alone.parameter, c->parameter, sizeof alone.parameter);
-        if (finding->effects == 1 && finding->effect[0].effect == c->effect) {
-            alone = finding->effect[0];
-        }
-        write_answer(s, 1, &alone, c->log_evidence, &finding->answer[finding->answers++]);
-    }
-}
-
-// Every effect as it competed: by itself, or in the set found.
-static void write_candidates(struct search *const s, const double inclusion[],
-                             struct dig_machine_finding *const finding)
-{
-    finding->candidates = 0;
-    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
-        struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
-        memset(s->sigma, 0, s->lines.columns * sizeof(double));
-        dig_fit_solve(&s->fit, 1U << e, &answer);
-        *out = (struct dig_candidate){
-            .effect       = (enum dig_effect_id)e,
-            .log_evidence = answer.log_evidence,
-            .p_fit        = answer.rest2 > s->noise2 * unclear_rest2 * s->fit.rows ? 0.0 : 1.0,
-            .inclusion    = inclusion[e],
-            .error        = (double)NAN,
-            .seen_in      = DIG_PART_AIR,
-        };
-        out->parameters = write_parameters(s, out->effect, out->parameter);
-    }
-    for (size_t i = 1; i < finding->candidates; i++) {
-        const struct dig_candidate moved = finding->candidate[i];
-        size_t                     to    = i;
-        for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
-            finding->candidate[to] = finding->candidate[to - 1];
-        }
-        finding->candidate[to] = moved;
-    }
-}
-
-static void write_effects(struct search *const s, const double inclusion[],
-                          struct dig_machine_finding *const finding)
-{
-    struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
-    memset(s->sigma, 0, s->lines.columns * sizeof(double));
-    dig_fit_solve(&s->fit, s->set, &answer);
-    memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
-    finding->effects = 0;
-    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        if (((s->set >> e) & 1U) == 0) {
-            continue;
-        }
-        size_t to = finding->effects++;
-        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
-            finding->effect[to] = finding->effect[to - 1];
-        }
-        finding->effect[to] = (struct dig_model_effect){
-            .effect      = (enum dig_effect_id)e,
-            .probability = inclusion[e],
-        };
-        finding->effect[to].parameters =
-            write_parameters(s, (enum dig_effect_id)e, finding->effect[to].parameter);
-    }
-}
-
-// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
-// by the air before it. With payload alone where the set has none.
-static void write_own_payload(struct search *const s, double own_kg[DIG_MEASURED_MAX])
-{
-    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
-    struct dig_fit_answer alone   = { .at = s->at };
-    if ((s->set & carries) != 0) {
-        memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
-    } else {
-        dig_fit_solve(&s->fit, carries, &alone);
-    }
-    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        own_kg[d] = 0.0;
-    }
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
-        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
-            own_kg[s->air.segment[column->segment].dig] = column->scale * s->at[c];
-        }
-    }
-}
-
-// Effects that would do in the place of one of the set.
-static void write_sets(const struct search *const s, struct dig_machine_finding *const finding)
-{
-    struct dig_fit_answer found = { .at = NULL };
-    dig_fit_solve(&s->fit, s->set, &found);
-    finding->sets = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
-            continue;
-        }
-        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
-        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
-            struct dig_fit_answer other = { .at = NULL };
-            if (((s->set >> f) & 1U) == 0) {
-                dig_fit_solve(&s->fit, (s->set & ~(1U << e)) | (1U << f), &other);
-                if (other.log_evidence > found.log_evidence - tie) {
-                    like.effect[like.effects++] = (enum dig_effect_id)f;
-                }
-            }
-        }
-        if (like.effects > 1) {
-            finding->set[finding->sets++] = like;
-        }
-    }
-}
-
 // More effects than one trusts to be there at once share out the form of a cause that has none of
 // theirs; so does a payload that weighs less than nothing.
-static bool is_makeshift(const struct search *const s)
+static bool is_makeshift(const struct dig_machine_search *const s)
 {
     int effects = 0;
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
@@ -479,10 +257,10 @@ static bool is_makeshift(const struct search *const s)
 }
 
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
-static enum dig_status doubt_names(struct search *const s)
+static enum dig_status doubt_names(struct dig_machine_search *const s)
 {
     const enum dig_status status = dig_machine_drift_ask(&s->lines, s->fit.s2, &s->drift);
-    if (s->set == 0 || !(s->drift.log_lead > tie) ||
+    if (s->set == 0 || !(s->drift.log_lead > DIG_MACHINE_TIE) ||
         s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
         s->drift.follows = NULL;
     }
@@ -494,8 +272,8 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
                                        struct dig_machine_finding *const finding)
 {
     assert(side != NULL && finding != NULL && false_alarm > 0.0);
-    struct search   s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
-    enum dig_status status = search_make(side, &s);
+    struct dig_machine_search s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
+    enum dig_status           status = search_make(side, &s);
     if (status == DIG_OK && s.air.rows == 0) {
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
                                                  .no_air       = true,
@@ -515,8 +293,8 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
     if (status == DIG_OK) {
         const double rows    = (double)s.air.rows;
         const double means   = (double)(DIG_JOINTS * s.air.segments);
-        const bool   unclear = s.rest2 > s.noise2 * unclear_rest2 * rows || is_makeshift(&s) ||
-                             s.drift.follows != NULL ||
+        const bool   unclear = s.rest2 > s.noise2 * DIG_MACHINE_UNCLEAR_REST2 * rows ||
+                             is_makeshift(&s) || s.drift.follows != NULL ||
                              s.slow > s.noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
         double inclusion[DIG_MACHINE_EFFECTS];
 
@@ -526,12 +304,12 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
         memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
         finding->significant = s.set != 0 || unclear;
         bootstrap(&s, seed, inclusion);
-        write_candidates(&s, inclusion, finding);
-        write_own_payload(&s, side->own_payload_kg);
+        dig_machine_write_candidates(&s, inclusion, finding);
+        dig_machine_write_own_payload(&s, side->own_payload_kg);
         if (!unclear) {
-            write_effects(&s, inclusion, finding);
-            write_sets(&s, finding);
-            write_answers(&s, finding);
+            dig_machine_write_effects(&s, inclusion, finding);
+            dig_machine_write_sets(&s, finding);
+            dig_machine_write_answers(&s, finding);
         }
         finding->p_complete =
             fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));

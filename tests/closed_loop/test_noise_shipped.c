@@ -117,22 +117,30 @@ static void what_the_digs_leave_of_the_table_is_as_large_as_expected(void **stat
     (void)state;
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
-    double                          means = 0.0, features = 0.0, about = 0.0, freedom = 0.0;
+    double means = 0.0, features = 0.0, about = 0.0, freedom = 0.0, misfit = 0.0;
     for (size_t i = 0; i < grounds; i++) {
         double place[DIG_AXES];
         make_batch(&ground[i], place, &batch);
         dig_likelihood_init(&likelihood, &batch, soil, &plain);
         dig_likelihood_weigh(&likelihood, place);
-        means += dig_likelihood_means(&likelihood, place);
+        const double of_means = dig_likelihood_means(&likelihood, place);
+        means += of_means;
+        misfit += of_means;
         for (size_t g = 0; g < batch.groups; g++) {
             const double n = (double)batch.group[g].features;
+            misfit += batch.group[g].about + likelihood.error[g].log_det;
+            for (size_t k = 0; k < batch.group[g].features; k++) {
+                // In units of the digs, not of their scatter: so that it may be compared.
+                misfit -= 2.0 * (double)batch.group[g].digs * log(batch.group[g].whiten[k][k]);
+            }
             features += n;
             about += batch.group[g].about;
             freedom += n * (double)(batch.group[g].digs - 1);
         }
     }
-    print_message("squares over expected: means %.2f of %.0f, digs about them %.2f of %.0f\n",
-                  means / features, features, about / freedom, freedom);
+    print_message("squares over expected: means %.2f of %.0f, digs about them %.2f of %.0f; log "
+                  "likelihood %.0f\n",
+                  means / features, features, about / freedom, freedom, -0.5 * misfit);
     assert_true(means / features > 0.5 && means / features < 1.0);
     assert_true(about / freedom > 0.6 && about / freedom < 1.1);
 }

@@ -1,0 +1,212 @@
+#include "closed_loop/machine/machine_search.h"
+
+#include "closed_loop/numeric/dense.h"
+#include "estimator/effects/effect.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// 5 % and 95 % of a normal distribution, in its sigmas.
+static const double ninety = 1.645;
+
+// In a parameter's scale squared: as good as none.
+static const double least_variance = 1e-10;
+
+static size_t write_parameters(const struct dig_machine_search *const s,
+                               const enum dig_effect_id id, struct dig_model_parameter parameter[])
+{
+    const struct dig_effect *const effect = dig_effect_of(id);
+    size_t                         n      = 0;
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->effect != id || column->segment >= 0) {
+            continue;
+        }
+        const struct dig_effect_parameter *const of = &effect->parameter[column->parameter];
+
+        const double                      value = of->absent + of->scale * s->at[c];
+        const double                      wide  = ninety * of->scale * s->sigma[c];
+        struct dig_model_parameter *const p     = &parameter[n++];
+        memcpy(p->name, of->name, strlen(of->name) + 1);
+        p->value = fmin(fmax(value, of->low), of->high);
+        p->low   = value - wide;
+        p->high  = value + wide;
+    }
+    return n;
+}
+
+// One answer: its values as write_parameters() has them, and a square root of the covariance of
+// its parameters.
+static void write_answer(struct dig_machine_search *const s, const size_t effects,
+                         const struct dig_model_effect effect[], const double log_evidence,
+                         struct dig_machine_answer *const answer)
+{
+    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
+    size_t                column[DIG_MACHINE_NUMBERS];
+    double                scale[DIG_MACHINE_NUMBERS];
+    double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
+    size_t                n   = 0;
+    unsigned              set = 0;
+    *answer = (struct dig_machine_answer){ .effects = effects, .log_evidence = log_evidence };
+    for (size_t e = 0; e < effects; e++) {
+        answer->effect[e] = effect[e];
+        set |= 1U << (unsigned)effect[e].effect;
+    }
+    memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
+    dig_fit_solve_wide(&s->fit, set, &solved);
+    for (size_t e = 0; e < effects; e++) {
+        for (size_t c = 0; c < s->lines.columns; c++) {
+            const struct dig_lines_column *const of = &s->lines.column[c];
+            if (of->effect == effect[e].effect && of->segment < 0) {
+                scale[n]         = of->scale;
+                answer->value[n] = dig_effect_of(of->effect)->parameter[of->parameter].absent +
+                                   of->scale * s->at[c];
+                column[n++] = c;
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            lower[i * n + j] = s->covariance[column[i] * s->lines.columns + column[j]];
+        }
+        lower[i * n + i] += least_variance; // of one that is not fitted
+    }
+    if (dig_cholesky(n, lower) != DIG_OK) {
+        return;
+    }
+    answer->numbers           = n;
+    answer->log_evidence_wide = solved.log_evidence;
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = k; i < n; i++) {
+            answer->step[k][i] = scale[i] * lower[i * n + k];
+        }
+    }
+}
+
+// The set found, where it is of several, and every candidate alone.
+void dig_machine_write_answers(struct dig_machine_search *const  s,
+                               struct dig_machine_finding *const finding)
+{
+    finding->answers = 0;
+    if (finding->effects > 1) {
+        write_answer(s, finding->effects, finding->effect, dig_fit_evidence(&s->fit, s->set),
+                     &finding->answer[finding->answers++]);
+    }
+    for (size_t i = 0; i < finding->candidates; i++) {
+        const struct dig_candidate *const c     = &finding->candidate[i];
+        struct dig_model_effect           alone = { .effect      = c->effect,
+                                                    .probability = c->inclusion,
+                                                    .parameters  = c->parameters };
+        memcpy(alone.parameter, c->parameter, sizeof alone.parameter);
+        if (finding->effects == 1 && finding->effect[0].effect == c->effect) {
+            alone = finding->effect[0];
+        }
+        write_answer(s, 1, &alone, c->log_evidence, &finding->answer[finding->answers++]);
+    }
+}
+
+// Every effect as it competed: by itself, or in the set found.
+void dig_machine_write_candidates(struct dig_machine_search *const s, const double inclusion[],
+                                  struct dig_machine_finding *const finding)
+{
+    finding->candidates = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
+        struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
+        memset(s->sigma, 0, s->lines.columns * sizeof(double));
+        dig_fit_solve(&s->fit, 1U << e, &answer);
+        *out = (struct dig_candidate){
+            .effect       = (enum dig_effect_id)e,
+            .log_evidence = answer.log_evidence,
+            .p_fit = answer.rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * s->fit.rows ? 0.0 : 1.0,
+            .inclusion = inclusion[e],
+            .error     = (double)NAN,
+            .seen_in   = DIG_PART_AIR,
+        };
+        out->parameters = write_parameters(s, out->effect, out->parameter);
+    }
+    for (size_t i = 1; i < finding->candidates; i++) {
+        const struct dig_candidate moved = finding->candidate[i];
+        size_t                     to    = i;
+        for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
+            finding->candidate[to] = finding->candidate[to - 1];
+        }
+        finding->candidate[to] = moved;
+    }
+}
+
+void dig_machine_write_effects(struct dig_machine_search *const s, const double inclusion[],
+                               struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+    memset(s->sigma, 0, s->lines.columns * sizeof(double));
+    dig_fit_solve(&s->fit, s->set, &answer);
+    memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    finding->effects = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0) {
+            continue;
+        }
+        size_t to = finding->effects++;
+        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
+            finding->effect[to] = finding->effect[to - 1];
+        }
+        finding->effect[to] = (struct dig_model_effect){
+            .effect      = (enum dig_effect_id)e,
+            .probability = inclusion[e],
+        };
+        finding->effect[to].parameters =
+            write_parameters(s, (enum dig_effect_id)e, finding->effect[to].parameter);
+    }
+}
+
+// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
+// by the air before it. With payload alone where the set has none.
+void dig_machine_write_own_payload(struct dig_machine_search *const s,
+                                   double                           own_kg[DIG_MEASURED_MAX])
+{
+    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
+    struct dig_fit_answer alone   = { .at = s->at };
+    if ((s->set & carries) != 0) {
+        memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    } else {
+        dig_fit_solve(&s->fit, carries, &alone);
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        own_kg[d] = 0.0;
+    }
+    for (size_t c = 0; c < s->lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->lines.column[c];
+        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
+            own_kg[s->air.segment[column->segment].dig] = column->scale * s->at[c];
+        }
+    }
+}
+
+// Effects that would do in the place of one of the set.
+void dig_machine_write_sets(const struct dig_machine_search *const s,
+                            struct dig_machine_finding *const      finding)
+{
+    struct dig_fit_answer found = { .at = NULL };
+    dig_fit_solve(&s->fit, s->set, &found);
+    finding->sets = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
+            continue;
+        }
+        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
+        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
+            struct dig_fit_answer other = { .at = NULL };
+            if (((s->set >> f) & 1U) == 0) {
+                dig_fit_solve(&s->fit, (s->set & ~(1U << e)) | (1U << f), &other);
+                if (other.log_evidence > found.log_evidence - DIG_MACHINE_TIE) {
+                    like.effect[like.effects++] = (enum dig_effect_id)f;
+                }
+            }
+        }
+        if (like.effects > 1) {
+            finding->set[finding->sets++] = like;
+        }
+    }
+}
