@@ -2,10 +2,12 @@
 # V=1 shows the commands.
 
 PREFIX     ?= /usr/local
+SYSCONFDIR ?= $(PREFIX)/etc
+LIBDIR     ?= $(PREFIX)/lib
+UNITDIR    ?= $(PREFIX)/lib/systemd/system
 DESTDIR    ?=
 BUILD      ?= build
 CC         ?= cc
-INSTALL    ?= install
 PKG_CONFIG ?= pkg-config
 LCM_GEN    ?= lcm-gen
 NVCC       ?= nvcc
@@ -29,6 +31,7 @@ LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml) -lyaml -
 compile_nothing := setup demo test help clean format format-check layers uninstall arm64 spy
 ifneq ($(filter-out $(compile_nothing),$(or $(MAKECMDGOALS),all)),)
 missing := $(if $(shell command -v $(LCM_GEN)),,liblcm-bin) \
+           $(if $(filter install,$(MAKECMDGOALS)),$(if $(shell command -v help2man),,help2man)) \
            $(shell PKG_CONFIG='$(PKG_CONFIG)' scripts/missing_packages.sh build \
                    $(if $(filter check% coverage,$(MAKECMDGOALS)),test))
 ifneq ($(strip $(missing)),)
@@ -343,17 +346,17 @@ format: ## Rewrite the sources with clang-format
 format-check: ## Fail on a source clang-format would change
 	$(Q)clang-format --dry-run --Werror $$(git ls-files '*.[ch]')
 
-install: all ## Install under $(DESTDIR)$(PREFIX)
-	$(Q)$(INSTALL) -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/share/digsight/tables'
-	$(Q)$(INSTALL) -m 755 $(bins) '$(DESTDIR)$(PREFIX)/bin'
-	$(Q)! [ -e $(BUILD)/libdig_cuda.so ] || $(INSTALL) -D -m 755 $(BUILD)/libdig_cuda.so '$(DESTDIR)$(PREFIX)/lib/libdig_cuda.so'
-	$(Q)cp -R config messages '$(DESTDIR)$(PREFIX)/share/digsight/'
-	$(Q)$(INSTALL) -m 644 $(wildcard tables/*.sqlite) '$(DESTDIR)$(PREFIX)/share/digsight/tables'
+install_sh = PREFIX='$(PREFIX)' SYSCONFDIR='$(SYSCONFDIR)' LIBDIR='$(LIBDIR)' UNITDIR='$(UNITDIR)' \
+             DESTDIR='$(DESTDIR)' BUILD='$(BUILD)' VERSION=$(VERSION) scripts/install.sh
+install: all $(BUILD)/man/.made ## Install under $(DESTDIR)$(PREFIX), the daemon's configuration under $(SYSCONFDIR)
+	$(Q)$(install_sh) install $(bins)
 
-uninstall: ## Remove what install put there
-	$(Q)rm -f $(patsubst $(BUILD)/bin/%,'$(DESTDIR)$(PREFIX)/bin/%',$(bins))
-	$(Q)rm -f '$(DESTDIR)$(PREFIX)/lib/libdig_cuda.so'
-	$(Q)rm -rf '$(DESTDIR)$(PREFIX)/share/digsight'
+uninstall: ## Remove what install put there, but for a configuration that was changed
+	$(Q)$(install_sh) uninstall $(bins)
+
+$(BUILD)/man/.made: $(bins) scripts/man_pages.sh
+	$(call say,MAN,$(@D))
+	$(Q)rm -rf $(@D) && scripts/man_pages.sh $(@D) $(bins) && touch $@
 
 lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -DDIG_NUMERICS='"lint"' -fopenmp-simd \
              $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml)

@@ -1,6 +1,6 @@
 // The command line of a program: its commands and options, each told once, in a table. getopt_long
 // reads by it, --help (core/help.h) prints it, and what --help prints becomes manual pages
-// (scripts/man_pages.sh) and bash completion (config/completion/digsight.bash).
+// (scripts/man_pages.sh) and bash completion (scripts/completion.bash).
 
 #ifndef DIG_CORE_COMMAND_LINE_H
 #define DIG_CORE_COMMAND_LINE_H
