@@ -37,4 +37,4 @@ _digsight()
         ;;
     esac
 } &&
-    complete -F _digsight digtable digloop digreport digrig digsightd
+    complete -F _digsight digtable digloop digreport digrig digsightd digwatch
