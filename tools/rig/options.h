@@ -33,6 +33,7 @@ struct dig_rig_options {
     struct dig_rig_track_options track;
     uint64_t                     seed;
     bool                         noise;
+    bool                         quiet; // no progress
     // record
     bool        quantise;
     const char *out;
@@ -46,7 +47,6 @@ struct dig_rig_options {
     bool                 loop;
     bool                 json;
     double               start_delay_s;
-    bool                 quiet; // serve and record
     size_t               faults;
     struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
 };
