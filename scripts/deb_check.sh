@@ -83,7 +83,7 @@ next() { # the packages as of a later version
         rm -rf "$tree"
         dpkg-deb -R "$deb" "$tree" || return 1
         sed -i "s/^Version: .*/Version: $version+next/; s/(= $version)/(= $version+next)/" "$tree/DEBIAN/control"
-        dpkg-deb --root-owner-group -b "$tree" "$root/next/${deb##*/}" >/dev/null || return 1
+        dpkg-deb -Znone --root-owner-group -b "$tree" "$root/next/${deb##*/}" >/dev/null || return 1
     done
 }
 check "a later version is there" next
@@ -93,7 +93,7 @@ check "it keeps tables, models, configuration and state" kept $mine $state
 check "removal does" inside apt-get remove -y $packages
 check "and takes the programs" eval '[ ! -e "$root/usr/bin/digsightd" ] && [ ! -e "$root/usr/share/digsight" ]'
 check "it keeps tables, models, configuration and state, too" kept $mine $state
-check "purge does" inside apt-get purge -y $packages
+check "purge does" inside dpkg --purge $packages
 check "and takes configuration and state" eval '[ ! -e "$root/etc/digsight/digsightd.yaml" ] && [ ! -e "$root${state%/*}" ]'
 check "but no file that is the user's own" kept /etc/digsight/site.sqlite /etc/digsight/model.json
 rm -rf "$root/etc/digsight"
