@@ -75,6 +75,19 @@ static void what_is_wrong_is_said_with_what_was_meant(void **state)
     }
 }
 
+static void some_programs_are_called_without_command_too(void **state)
+{
+    (void)state;
+    struct dig_program both   = coffee;
+    char               name[] = "coffee";
+    char              *argv[] = { name, NULL };
+    struct dig_error   error  = { "" };
+    both.alone                = true;
+    optind                    = 0;
+    assert_int_equal(dig_option_next(&both, &both.self, 1, argv, &error), DIG_OPTION_END);
+    assert_string_equal(error.text, "");
+}
+
 static void a_number_is_all_of_its_text_and_in_range(void **state)
 {
     (void)state;
@@ -93,6 +106,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(options_are_those_of_the_command),
         cmocka_unit_test(what_is_wrong_is_said_with_what_was_meant),
+        cmocka_unit_test(some_programs_are_called_without_command_too),
         cmocka_unit_test(a_number_is_all_of_its_text_and_in_range),
     };
     return cmocka_run_group_tests_name("command line", tests, NULL, NULL);

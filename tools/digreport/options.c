@@ -15,7 +15,7 @@ static const struct dig_command commands[] = {
       "Logs "
       "in the order in which they were written. One sentence goes to standard output.",
       "digreport shift --table tables/rig.sqlite --html shift.html --csv shift.csv \\\n"
-      "          --machine config/machines/zx200_trench.yaml morning.lcm afternoon.lcm\n" },
+      "          --machine config/machines/zx200_trench.yaml early.lcm late.lcm\n" },
 };
 
 static const struct dig_option known[] = {

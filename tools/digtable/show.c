@@ -1,7 +1,7 @@
 // digtable list, check, show and export.
 
-#include "core/table_step.h"
 #include "core/did_you_mean.h"
+#include "core/table_step.h"
 #include "core/text.h"
 #include "files/whole.h"
 #include "tables/export.h"
