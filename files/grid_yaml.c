@@ -1,5 +1,6 @@
 #include "files/grid_yaml.h"
 
+#include "core/did_you_mean.h"
 #include "core/units.h"
 #include "files/yaml.h"
 
@@ -288,8 +289,13 @@ static enum dig_status convert_effects(const char *const path, const struct grid
             dig_effect_is_of_machine((enum dig_effect_id)found)) {
             char key[64];
             (void)snprintf(key, sizeof key, "effects[%zu].name", i);
-            return dig_yaml_refuse(path, key, error, "\"%s\", expected an effect of the soil",
-                                   from->name);
+            char             best[DIG_GUESS_SIZE];
+            struct dig_guess guess = dig_guess(from->name);
+            for (int e = DIG_EFFECT_COHESION; e < DIG_EFFECT_UNLISTED; e++) {
+                dig_guess_try(&guess, dig_effect_name((enum dig_effect_id)e));
+            }
+            return dig_yaml_refuse(path, key, error, "\"%s\", expected an effect of the soil%s",
+                                   from->name, dig_guess_text(&guess, "", best));
         }
         struct dig_grid_effect *const to = &grid->effect[i];
         to->effect                       = (enum dig_effect_id)found;

@@ -2,6 +2,7 @@
 
 #include "files/yaml_tree.h"
 
+#include "core/did_you_mean.h"
 #include "core/text.h"
 
 #include <ctype.h>
@@ -276,8 +277,13 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
         const struct key                  key   = member_of(at, dig_yaml_text_of(name));
         const cyaml_schema_field_t *const field = field_of(schema, dig_yaml_text_of(name));
         if (field == NULL) {
-            return refuse(check, dig_yaml_line_of(name), &key, "unknown key, expected one of %s",
-                          keys_of(schema, sizeof list, list));
+            char             text[DIG_GUESS_SIZE];
+            struct dig_guess guess = dig_guess(dig_yaml_text_of(name));
+            for (const cyaml_schema_field_t *f = schema->mapping.fields; f->key != NULL; f++) {
+                dig_guess_try(&guess, f->key);
+            }
+            return refuse(check, dig_yaml_line_of(name), &key, "unknown key, expected one of %s%s",
+                          keys_of(schema, sizeof list, list), dig_guess_text(&guess, "", text));
         }
         const int before = line_before(check, map, pair);
         if (before != 0) {

@@ -1,7 +1,6 @@
 #include "firmware_host/daemon.h"
 
-#include "core/table_step.h"
-#include "firmware_host/config/load.h"
+#include "firmware_host/config/describe.h"
 #include "firmware_host/publish/publish.h"
 #include "firmware_host/threads/notify.h"
 
@@ -258,41 +257,14 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
 
 void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(const char *line))
 {
-    assert(d != NULL && say != NULL);
-    const struct dig_loaded *const    l   = &d->loaded;
-    const struct dig_curve_set *const set = d->fit.table.set;
-    char                              line[LINE];
-    char                              digs[LINE] = "";
-    char                              trembles[DIG_TABLE_STEP_TEXT_SIZE];
-    for (size_t t = 0; t < set->trajectories; t++) {
-        const size_t used = strlen(digs);
-        (void)snprintf(digs + used, sizeof digs - used, "%s%s%s", used > 0 ? ", " : "",
-                       set->trajectory[t].name,
-                       dig_config_identifies(&l->config, set->trajectory[t].name) ? " (identifies)"
-                                                                                  : "");
-    }
-    (void)snprintf(line, sizeof line, "table %.200s: scene %s (%.12s…), %zu gravels, digs: %.150s",
-                   l->config.table.text, set->scene_name, set->scene_hash, set->entries, digs);
-    say(line);
-    dig_table_step_text(&set->step, trembles);
-    if (trembles[0] != '\0') {
-        (void)snprintf(line, sizeof line, "table: %s", trembles);
-        say(line);
-    }
-    (void)snprintf(line, sizeof line, "machine %s: bucket %.3f m, %.2f times the table's",
-                   l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m,
-                   l->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
-    say(line);
-    (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", d->input.name,
-                   1.0 / l->config.tick_s, l->config.lcm_url);
-    say(line);
-    char missing[DIG_SIGNAL_NAMES_SIZE];
-    dig_signal_name_missing(l->measured, sizeof missing, missing);
-    if (missing[0] != '\0') {
-        (void)snprintf(line, sizeof line, "not measured: %s; the moment is told, the force is not",
-                       missing);
-        say(line);
-    }
+    assert(d != NULL);
+    dig_describe(&d->loaded, d->fit.table.set, d->input.name, say);
+}
+
+void dig_daemon_describe_json(const struct dig_daemon *const d, FILE *const file)
+{
+    assert(d != NULL);
+    dig_describe_json(&d->loaded, d->fit.table.set, d->input.name, file);
 }
 
 // The input's and the publisher's threads stand a little below the tick: a sample is of use only

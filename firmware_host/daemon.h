@@ -12,6 +12,8 @@
 #include "firmware_host/config/config.h"
 #include "firmware_host/publish/publish.h"
 
+#include <stdio.h>
+
 struct dig_daemon;
 
 /// Reads the configuration and everything it names: table, machine, DBC, map, recording.
@@ -23,8 +25,9 @@ DIG_MUST_CHECK enum dig_status dig_daemon_create(const char *config, struct dig_
 /// NULL is allowed.
 void dig_daemon_destroy(struct dig_daemon *daemon);
 
-/// Describes what was loaded, line by line through say.
+/// Describes what was loaded, line by line through say, or as a JSON object.
 void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char *line));
+void dig_daemon_describe_json(const struct dig_daemon *daemon, FILE *file);
 
 /// Runs until SIGTERM or SIGINT (SIGHUP exchanges the table), or until a replay has ended and all
 /// of it is published. DIG_EIO: a thread could not be started.

@@ -1,5 +1,6 @@
 // digsightd: reads a machine's bus, identifies the gravel, publishes what it will resist with.
 
+#include "core/help.h"
 #include "core/text.h"
 #include "firmware_host/daemon.h"
 
@@ -10,29 +11,35 @@
 
 enum { EXIT_DONE, EXIT_FAILED, EXIT_USAGE };
 
-static const char help[] =
-    "Usage: digsightd -c CONFIG.yaml [--check]\n"
-    "\n"
-    "Reads cylinder pressures and joint angles from CAN or Modbus (or plays a recording),\n"
-    "computes the soil's moment on the bucket, identifies the gravel from a simple dig, and\n"
-    "publishes the predicted resistance of the digs that follow over LCM. It only listens: no\n"
-    "CAN frame is sent, and of Modbus only the read functions 3 and 4 are used. Its output is\n"
-    "advice.\n"
-    "\n"
-    "  -c, --config FILE  the configuration (docs/formats.md)\n"
-    "      --check        load everything the configuration names, say what was found, exit\n"
-    "  -h, --help\n"
-    "      --version\n"
-    "\n"
-    "Channels: DIGSIGHT_SAMPLE, DIGSIGHT_ESTIMATE, DIGSIGHT_MATCH, DIGSIGHT_PREDICTION,\n"
-    "DIGSIGHT_HEALTH. SIGTERM and SIGINT end it cleanly; SIGHUP takes the table that the\n"
-    "configuration names then, between two digs.\n"
-    "Exit status: 0 done, 1 the work failed, 2 bad usage or a file that is not as it should be.\n"
-    "\n"
-    "Examples:\n"
-    "  digsightd -c config/digsightd.yaml --check\n"
-    "  digsightd -c config/digsightd_can.yaml\n"
-    "  lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm    # record it\n";
+enum { CHECK = 256, JSON };
+
+static const struct dig_option options[] = {
+    { "config", 'c', "FILE", NULL, "the configuration, YAML" },
+    { "check", CHECK, NULL, NULL,
+      "load everything the configuration names, say what was found, exit" },
+    { "json", JSON, NULL, NULL, "say that as JSON; with --check" },
+    { "quiet", 'q', NULL, NULL, "no status line on a terminal" },
+};
+
+static const struct dig_program program = {
+    .self        = { "digsightd", "-c CONFIG.yaml [OPTION]...",
+                     "Predicts what the ground will resist an excavator's next dig with.",
+                     "Reads cylinder pressures and joint angles from CAN or Modbus (or plays a "
+                            "recording), computes the soil's moment on the bucket, identifies the gravel from "
+                            "a simple dig, and publishes the predicted resistance of the digs that follow over "
+                            "LCM. It only listens: no CAN frame is sent, and of Modbus only the read functions "
+                            "3 and 4 are used. Its output is advice.\n\n"
+                            "Channels: DIGSIGHT_SAMPLE, DIGSIGHT_ESTIMATE, DIGSIGHT_MATCH, "
+                            "DIGSIGHT_PREDICTION, DIGSIGHT_HEALTH. SIGTERM and SIGINT end it cleanly; SIGHUP "
+                            "takes the table that the configuration names then, between two digs.",
+                     "digsightd -c config/digsightd.yaml --check\n"
+                            "digsightd -c config/digsightd_can.yaml\n"
+                            "lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm\n" },
+    .exit_status = "0  done\n1  the work failed\n"
+                   "2  bad usage, or a file that is not as it should be\n",
+    .options     = sizeof options / sizeof options[0],
+    .option      = options,
+};
 
 // Lines name files and what stands in them: nothing of that may command a terminal.
 static void put(FILE *const to, const char *const before, const char *const line,
@@ -70,42 +77,49 @@ static int fail(const enum dig_status status, const struct dig_error *const erro
     return status == DIG_ENOMEM ? EXIT_FAILED : EXIT_USAGE;
 }
 
+static int bad_usage(const char *const what)
+{
+    say(what);
+    (void)fputs("Try digsightd --help.\n", stderr);
+    return EXIT_USAGE;
+}
+
 int main(const int argc, char *argv[])
 {
-    enum { CHECK = 256, VERSION };
-    static const struct option options[] = {
-        { "config", required_argument, NULL, 'c' },
-        { "check", no_argument, NULL, CHECK },
-        { "help", no_argument, NULL, 'h' },
-        { "version", no_argument, NULL, VERSION },
-        { NULL, 0, NULL, 0 },
-    };
-    const char *config = NULL;
-    int         check  = 0;
-    for (int option = 0; (option = getopt_long(argc, argv, "c:h", options, NULL)) != -1;) {
+    struct dig_error error  = { "" };
+    const char      *config = NULL;
+    bool             check  = false;
+    bool             json   = false;
+    bool             quiet  = false;
+    for (int option; (option = dig_option_next(&program, &program.self, argc, argv, &error)) !=
+                     DIG_OPTION_END;) {
         switch (option) {
         case 'c': config = optarg; break;
-        case CHECK: check = 1; break;
-        case 'h': (void)fputs(help, stdout); return EXIT_DONE;
-        case VERSION: (void)puts("digsightd " DIG_VERSION); return EXIT_DONE;
-        default: (void)fputs("Try digsightd --help.\n", stderr); return EXIT_USAGE;
+        case CHECK: check = true; break;
+        case JSON: json = true; break;
+        case 'q': quiet = true; break;
+        case DIG_OPTION_HELP: dig_help_print(&program, &program.self, stdout); return EXIT_DONE;
+        case DIG_OPTION_VERSION: (void)puts("digsightd " DIG_VERSION); return EXIT_DONE;
+        default: return bad_usage(error.text);
         }
     }
-    if (config == NULL || optind < argc) {
-        (void)fprintf(stderr, "digsightd: %s\nTry digsightd --help.\n",
-                      config == NULL ? "no configuration, expected -c CONFIG.yaml"
-                                     : "unknown argument");
-        return EXIT_USAGE;
+    if (config == NULL || optind < argc || (json && !check)) {
+        return bad_usage(config == NULL  ? "no configuration, expected -c CONFIG.yaml"
+                         : optind < argc ? "unknown argument"
+                                         : "--json: expected with --check only");
     }
     struct dig_daemon *daemon = NULL;
-    struct dig_error   error  = { "" };
     enum dig_status    status = dig_daemon_create(config, &daemon, &error);
     if (status != DIG_OK) {
         return fail(status, &error);
     }
-    dig_daemon_describe(daemon, check ? print : say);
+    if (json) {
+        dig_daemon_describe_json(daemon, stdout);
+    } else {
+        dig_daemon_describe(daemon, check ? print : say);
+    }
     if (!check) {
-        const bool               terminal = isatty(STDERR_FILENO) != 0;
+        const bool               terminal = !quiet && isatty(STDERR_FILENO) != 0;
         const struct dig_console console  = { .say  = terminal ? say_above : say,
                                               .show = terminal ? show : NULL };
         status                            = dig_daemon_run(daemon, &console, &error);

@@ -65,7 +65,7 @@ static enum dig_status work(const int argc, char *argv[], struct dig_error *cons
 {
     struct digreport_options options = { 0 };
     if (argc > 1 && strcmp(argv[1], "shift") == 0) {
-        return digreport_shift_command(argc - 1, argv + 1, error);
+        return digreport_shift_command(argc, argv, error);
     }
     const enum dig_status status = digreport_parse(argc, argv, &options, error);
     return status == DIG_OK ? report(&options, error) : status;

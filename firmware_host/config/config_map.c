@@ -1,5 +1,6 @@
 // Reads and checks the signal map's YAML.
 
+#include "core/did_you_mean.h"
 #include "files/yaml.h"
 #include "firmware_host/bus/register_plan.h"
 #include "firmware_host/bus/signal_map.h"
@@ -35,9 +36,14 @@ static enum dig_status read_signal(const struct dig_config_map_work *const work,
     const struct dig_config_map_key name_key = dig_config_map_key_of(at.text, "name");
     const int                       signal   = dig_signal_find(text->name);
     if (signal < 0) {
+        char             best[DIG_GUESS_SIZE];
+        struct dig_guess guess = dig_guess(text->name);
+        for (int s = 0; s < DIG_SIGNALS; s++) {
+            dig_guess_try(&guess, dig_signal_name((enum dig_signal)s));
+        }
         return dig_yaml_refuse(work->path, name_key.text, work->error,
-                               "\"%s\", expected a column of a machine recording (boom_rad, …)",
-                               text->name);
+                               "\"%s\", expected a column of a machine recording (boom_rad, …)%s",
+                               text->name, dig_guess_text(&guess, "", best));
     }
     if (work->map->entry[signal].used) {
         return dig_yaml_refuse(work->path, name_key.text, work->error,

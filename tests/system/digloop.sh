@@ -152,6 +152,8 @@ check "recordings of two trajectories are not pooled" \
 awk -F, -v OFS=, 'NR > 1 { $2 = 0.1; $3 = 0.1 + $1 } 1' "$reference"__simpleA.csv >"$work/lift.csv"
 check "a path that is none of the table's is refused with its distance" \
     refuses "lift.csv" "bucket lengths away" -- "$BIN/digloop" identify "$table" "$work/lift.csv"
+check "a misspelt trajectory is recognised" refuses "did you mean \"actual\"?" -- \
+    "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actaul -o "$work/never"
 check "an unknown trajectory is named" refuses "nowhere" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory nowhere -o "$work/never"
 sed 's/"scene_hash": "./"scene_hash": "x/' "$work/id.json" >"$work/other.json"
@@ -191,23 +193,23 @@ for tool in digloop digreport digtable digwatch digrig digsightd; do
     check "$tool has --help with examples" eval '"$BIN/'$tool'" --help | grep -qi example'
     check "$tool has --version" eval '"$BIN/'$tool'" --version | grep -q "0\.1\.0"'
 done
-helps() { # TOOL COMMAND…: each command's help is of itself, with an example; other commands' are not in it
-    local tool=$1 command other
-    shift
-    for command in "$@"; do
-        "$BIN/$tool" "$command" --help >"$work/help" 2>"$work/err" && grep -q '^examples:' "$work/help" || return 1
-        for other in "$@"; do
-            if grep -qE "^  $tool $other( |$)" "$work/help"; then
-                [ "$other" = "$command" ] || return 1
-            elif [ "$other" = "$command" ]; then
-                return 1
-            fi
-        done
+commands_of() { # TOOL: one a line
+    "$BIN/$1" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]\{1,\}\)  .*/\1/p'
+}
+helps() { # TOOL: each command's help is of itself, has an example and fits a terminal
+    local tool=$1 command
+    [ "$(commands_of "$tool" | wc -l)" -ge 1 ] || return 1
+    for command in "" $(commands_of "$tool"); do
+        "$BIN/$tool" $command --help >"$work/help" 2>"$work/err" || return 1
+        grep -A1 '^Examples:' "$work/help" | grep -q "^  $tool $command" || return 1
+        head -n 1 "$work/help" | grep -q "^Usage: $tool $command" || return 1
+        ! grep -nE '.{81}' "$work/help" || return 1
     done
 }
-check "digloop COMMAND --help is that command's" helps digloop identify predict trace design
-check "so is digtable's" helps digtable dig generate list show import merge export check
-check "so is digrig's" helps digrig record serve
+check "digloop COMMAND --help is that command's" helps digloop
+check "so is digtable's" helps digtable
+check "so is digrig's" helps digrig
+check "so is digreport's" helps digreport
 check "an unknown command has none" refuses frobnicate -- "$BIN/digloop" frobnicate --help
 
 finish

@@ -7,7 +7,7 @@ dig=(--trajectory scrape --friction .5 --rolling .2 --density 2500)
 grid=tests/data/formats/grid.yaml # 6 points x 2 packings x 1 trajectory
 
 digtable --help
-check "--help ends with 0 and shows examples" eval 'is $code 0 && grep -q "^examples:" $work/out && [ ! -s $work/err ]'
+check "--help ends with 0 and shows examples" eval 'is $code 0 && grep -q "^Examples:" $work/out && [ ! -s $work/err ]'
 digtable --version
 check "--version names the program" eval 'is $code 0 && grep -qE "^digtable [0-9]+\.[0-9]+\.[0-9]+$" $work/out'
 

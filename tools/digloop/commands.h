@@ -31,11 +31,6 @@ struct digloop_options {
 DIG_MUST_CHECK enum dig_status
 digloop_parse(int argc, char *argv[], struct digloop_options *options, struct dig_error *error);
 
-/// Prints the help of one command, or of all when none is called so.
-void digloop_help(const char *command);
-
-bool digloop_is_command(const char *name);
-
 /// The status of reading an input: a file that is not there or cannot be read is bad input, not a
 /// failure of the work.
 enum dig_status digloop_input(enum dig_status status);

@@ -1,78 +1,85 @@
-#include "tools/digloop/commands.h"
+#include "tools/digloop/help.h"
 
-#include "tools/help.h"
-
-#include <stdio.h>
-#include <string.h>
-
-static const struct dig_help commands[] = {
-    { "identify",
-      "  digloop identify TABLE.sqlite RECORDING… [--machine MACHINE.yaml] [--model MODEL.json]\n"
-      "                   [--trajectory NAME] [--moment-alone] [--json]\n",
-      "      which gravel: all digs of the recordings matched together, by moment and forces "
-      "where\n"
-      "      every dig has them, else by the moment alone, as --moment-alone does in any case. A\n"
-      "      recording is a force recording, or with --machine a machine recording or an LCM log\n"
-      "      of the daemon, which may hold several digs. They are to be along one trajectory, or\n"
-      "      along such as begin with \"simple\"; --trajectory takes those along one.\n"
-      "      --model: table and machine with the effects that a trace has added\n",
-      "  digloop identify tables/rig.sqlite simpleA_1.csv simpleA_2.csv --json >id.json\n"
-      "  digloop identify tables/rig.sqlite run.csv --machine config/machines/zx200_trench.yaml\n"
-      "  digloop identify tables/rig.sqlite day.lcm --machine config/machines/zx200_trench.yaml "
-      "\\\n"
-      "          --trajectory simpleA --json >id.json\n" },
-    { "predict",
-      "  digloop predict TABLE.sqlite --identified ID.json --trajectory NAME\n"
-      "                  [--depth F] [--attack-deg A] [-o CURVE.csv]\n"
-      "                  [--measured RECORDING [--machine MACHINE.yaml]] [--model MODEL.json]\n"
-      "                  [--json]\n",
-      "      what that gravel will resist along another trajectory, at the table's scale, dug\n"
-      "      deeper or with the bucket turned where the table was; with digs measured, how wrong\n"
-      "      that was, each as it was dug: relative Euclidean norm of the moment, +-0.16 s.\n"
-      "      --model: table and machine with the effects that a trace has added\n",
-      "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-      "          --measured actual_1.csv\n"
-      "  digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-      "          --measured day.lcm --machine config/machines/zx200_trench.yaml\n" },
-    { "trace",
-      "  digloop trace TABLE.sqlite CAMPAIGN/ [--effects EFFECTS.sqlite]\n"
-      "                [--json OUT.json] [--html OUT.html] [--add MODEL.json]\n",
-      "      what the table lacks: the residual of a campaign's digs, the effect it traces to, "
-      "the\n"
-      "      error on the holdout digs before and after that effect is added. Effects of the soil\n"
-      "      are compared with beds that hold them, by default those of TABLE_effects.sqlite. OUT\n"
-      "      or MODEL \"-\": standard output. What people are told goes there without --json and\n"
-      "      --add, else to standard error\n",
-      "  digloop trace tables/rig.sqlite campaign/\n"
-      "  digloop trace tables/rig.sqlite campaign/ --json trace.json --html trace.html \\\n"
-      "          --add model.json\n" },
-    { "design", "  digloop design TABLE.sqlite [--effects EFFECTS.sqlite] [--json]\n",
-      "      which simple dig of the table tells most about the gravel and tells effects apart,\n"
-      "      and whether digs simulated with the table's own scatter bear that out\n",
-      "  digloop design tables/rig.sqlite\n" },
+static const struct dig_command commands[] = {
+    { "identify", "TABLE.sqlite RECORDING... [OPTION]...",
+      "Finds the gravel that resists like recorded digs.",
+      "All digs are matched together, by moment and forces where every dig has them, else by the "
+      "moment alone. They are to be along one trajectory, or along such as begin with "
+      "\"simple\".\n\n"
+      "A recording is a force recording, or with --machine a machine recording or an LCM log of "
+      "the daemon, which may hold several digs.",
+      "digloop identify tables/rig.sqlite simple1.csv simple2.csv --json >id.json\n"
+      "digloop identify tables/rig.sqlite run.csv \\\n"
+      "        --machine config/machines/zx200_trench.yaml\n"
+      "digloop identify tables/rig.sqlite day.lcm --trajectory simpleA \\\n"
+      "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
+    { "predict", "TABLE --identified ID --trajectory NAME [OPTION]...",
+      "Predicts what an identified gravel resists other digs with.",
+      "At the table's scale, dug deeper or with the bucket turned where the table was. With digs "
+      "measured, how wrong that was, each as it was dug: relative Euclidean norm of the moment, "
+      "+-0.16 s.",
+      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
+      "        --measured actual_1.csv\n"
+      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
+      "        --measured day.lcm --machine config/machines/zx200_trench.yaml\n" },
+    { "trace", "TABLE.sqlite CAMPAIGN/ [OPTION]...", "Traces what the table lacks to an effect.",
+      "The residual of a campaign's digs, the effect it traces to, the error on the holdout digs "
+      "before and after that effect is added. Effects of the soil are compared with beds that hold "
+      "them.\n\n"
+      "A file \"-\" is standard output. What people are told goes there without --json and --add, "
+      "else to standard error.",
+      "digloop trace tables/rig.sqlite campaign/\n"
+      "digloop trace tables/rig.sqlite campaign/ --html trace.html \\\n"
+      "        --json trace.json --add model.json\n" },
+    { "design", "TABLE.sqlite [OPTION]...",
+      "Tells which simple dig of the table tells most about the gravel.",
+      "And which tells effects apart, and whether digs simulated with the table's own scatter bear "
+      "that out.",
+      "digloop design tables/rig.sqlite\n" },
 };
 
-#define COMMANDS (sizeof commands / sizeof commands[0])
+static const struct dig_option options[] = {
+    { "identified", DIGLOOP_IDENTIFIED, "ID.json", " predict ",
+      "the gravel, as `digloop identify --json` wrote it" },
+    { "trajectory", DIGLOOP_TRAJECTORY, "NAME", " identify ", "take the digs along one only" },
+    { "trajectory", DIGLOOP_TRAJECTORY, "NAME", " predict ", "the dig to predict" },
+    { "machine", DIGLOOP_MACHINE, "MACHINE.yaml", " identify ",
+      "the recordings are of this machine" },
+    { "machine", DIGLOOP_MACHINE, "MACHINE.yaml", " predict ",
+      "the measured digs are of this machine" },
+    { "model", DIGLOOP_MODEL, "MODEL.json", " identify predict ",
+      "table and machine with the effects that a trace has added" },
+    { "moment-alone", DIGLOOP_MOMENT_ALONE, NULL, " identify ", "leave the forces out" },
+    { "measured", DIGLOOP_MEASURED, "RECORDING", " predict ", "compare with digs measured" },
+    { "depth", DIGLOOP_DEPTH, "F", " predict ",
+      "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)" },
+    { "attack-deg", DIGLOOP_ATTACK, "A", " predict ",
+      "the bucket turned about its tooth, -45 to 45, positive curls (default 0)" },
+    { "output", DIGLOOP_OUTPUT, "CURVE.csv", " predict ", "also write the predicted curve" },
+    { "effects", DIGLOOP_EFFECTS, "EFFECTS.sqlite", " trace design ",
+      "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)" },
+    { "json", DIGLOOP_JSON, NULL, " identify predict design ",
+      "the result as JSON on standard output" },
+    { "json", DIGLOOP_JSON, "OUT.json", " trace ", "write the result as JSON" },
+    { "html", DIGLOOP_HTML, "OUT.html", " trace ", "write it as a page with plots" },
+    { "add", DIGLOOP_ADD, "MODEL.json", " trace ",
+      "write the model with the effect added, for digsightd and --model" },
+};
 
-bool digloop_is_command(const char *const name)
+const struct dig_program *digloop_program(void)
 {
-    for (size_t i = 0; i < COMMANDS; i++) {
-        if (strcmp(commands[i].name, name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void digloop_help(const char *const command)
-{
-    const struct dig_help_of_program program = {
-        .intro      = "digloop finds the gravel of a table that resists like recorded digs, "
-                      "predicts other digs,\nand traces what a model lacks.\n\n",
-        .others     = "  digloop --help | --version, digloop COMMAND --help\n",
-        .exit_codes = "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n",
-        .commands   = COMMANDS,
-        .command    = commands,
+    static const struct dig_program program = {
+        .self        = { "digloop", "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\nCOMMAND --help",
+                         "Finds the gravel of a table that resists like recorded digs, predicts other "
+                                "digs, and traces what a model lacks.",
+                         NULL,
+                         "digloop identify tables/rig.sqlite simpleA_1.csv --json >id.json\n"
+                                "digloop predict tables/rig.sqlite --identified id.json --trajectory actual\n" },
+        .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input\n",
+        .commands    = sizeof commands / sizeof commands[0],
+        .command     = commands,
+        .options     = sizeof options / sizeof options[0],
+        .option      = options,
     };
-    dig_help_print(&program, command, stdout);
+    return &program;
 }

@@ -1,33 +1,61 @@
 #include "tools/digreport/options.h"
 
+#include "core/help.h"
+
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] =
-    "digreport shows what a run of digsightd identified and predicted, from its LCM log.\n"
-    "\n"
-    "usage:\n"
-    "  digreport --table TABLE.sqlite --machine MACHINE.yaml\n"
-    "            [--truth FRICTION,ROLLING,DENSITY] [--recording RECORDING.csv]…\n"
-    "            [--title TEXT] [--html PAGE.html] [--json FILE.json] NAME=LOG.lcm…\n"
-    "      NAME is how the run is called in the report (\"Modbus TCP=tcp.lcm\"); up to 4 runs.\n"
-    "      The log must hold one simple dig that identified the gravel and one later dig that was\n"
-    "      predicted. --recording: a force recording that was fed to the rig, drawn beside.\n"
-    "  digreport shift …\n"
-    "      what a whole shift was like, from its logs: digreport shift --help\n"
-    "  digreport --help | --version\n"
-    "\n"
-    "The table of results goes to standard output, with --json to standard error. Exit codes: 0 "
-    "done,\n"
-    "1 the work failed or the log holds no identified and predicted dig, 2 bad usage or bad "
-    "input.\n"
-    "\n"
-    "examples:\n"
-    "  digreport --table tables/rig.sqlite --machine config/machines/zx200_trench.yaml \\\n"
-    "            --html report.html \"SocketCAN=site.lcm\"\n";
+static const struct dig_command commands[] = {
+    { "shift", "--table TABLE --machine MACHINE LOG.lcm... [OPTION]...",
+      "Shows what a shift was like, from the LCM logs of digsightd.",
+      "Digs, gravel, peak and energy, error of the predictions, effects of the model, troubles. "
+      "Logs "
+      "in the order in which they were written. One sentence goes to standard output.",
+      "digreport shift --table tables/rig.sqlite --html shift.html --csv shift.csv \\\n"
+      "          --machine config/machines/zx200_trench.yaml early.lcm late.lcm\n" },
+};
+
+static const struct dig_option known[] = {
+    { "table", DIGREPORT_TABLE, "TABLE.sqlite", NULL, "what the daemon predicted from" },
+    { "machine", DIGREPORT_MACHINE, "MACHINE.yaml", NULL, "the machine that dug" },
+    { "model", DIGREPORT_MODEL, "MODEL.json", " shift ", "the model that the daemon ran with" },
+    { "truth", DIGREPORT_TRUTH, "FRICTION,ROLLING,DENSITY", " digreport ",
+      "the gravel, where it is known" },
+    { "recording", DIGREPORT_RECORDING, "RECORDING.csv", " digreport ",
+      "a force recording that was fed to the rig, drawn beside; up to 8" },
+    { "title", DIGREPORT_TITLE, "TEXT", NULL, "of the page" },
+    { "html", DIGREPORT_HTML, "PAGE.html", NULL, "write a page with plots" },
+    { "csv", DIGREPORT_CSV, "DIGS.csv", " shift ", "write a line a dig" },
+    { "json", DIGREPORT_JSON, "FILE.json", " digreport ",
+      "write the results as JSON, - for standard output; the table goes to standard error then" },
+};
+
+const struct dig_program *digreport_program(void)
+{
+    static const struct dig_program program = {
+        .self = { "digreport",
+                  "--table TABLE --machine MACHINE NAME=LOG.lcm... [OPTION]...\nshift ARGUMENT...",
+                  "Shows what a run of digsightd identified and predicted, from its LCM log.",
+                  "NAME is how the run is called in the report; up to 4 runs. A log must hold one "
+                  "simple dig that identified the gravel and one later dig that was predicted.\n\n"
+                  "The table of results goes to standard output.",
+                  "digreport --table tables/rig.sqlite --html report.html \\\n"
+                  "          --machine config/machines/zx200_trench.yaml "
+                  "\"SocketCAN=site.lcm\"\n" },
+        .exit_status =
+            "0  done\n1  the work failed, or a log holds no identified and predicted dig\n"
+            "2  bad usage or bad input\n",
+        .alone    = true,
+        .commands = sizeof commands / sizeof commands[0],
+        .command  = commands,
+        .options  = sizeof known / sizeof known[0],
+        .option   = known,
+    };
+    return &program;
+}
 
 static enum dig_status parse_truth(const char *const text, struct dig_gravel *const truth,
                                    struct dig_error *const error)
@@ -51,31 +79,19 @@ enum dig_status digreport_parse(const int argc, char *argv[],
                                 struct digreport_options *const options,
                                 struct dig_error *const         error)
 {
-    enum { TABLE = 256, MACHINE, TRUTH, RECORDING, TITLE, HTML, JSON, HELP, VERSION };
-    static const struct option known[] = {
-        { "table", required_argument, NULL, TABLE },
-        { "machine", required_argument, NULL, MACHINE },
-        { "truth", required_argument, NULL, TRUTH },
-        { "recording", required_argument, NULL, RECORDING },
-        { "title", required_argument, NULL, TITLE },
-        { "html", required_argument, NULL, HTML },
-        { "json", required_argument, NULL, JSON },
-        { "help", no_argument, NULL, HELP },
-        { "version", no_argument, NULL, VERSION },
-        { NULL, 0, NULL, 0 },
-    };
-    struct digreport_options o = { .title = "What the ground resisted with" };
-    opterr                     = 0;
-    for (int c; (c = getopt_long(argc, argv, "", known, NULL)) != -1;) {
+    const struct dig_program *const program = digreport_program();
+    struct digreport_options        o       = { .title = "What the ground resisted with" };
+    for (int c;
+         (c = dig_option_next(program, &program->self, argc, argv, error)) != DIG_OPTION_END;) {
         switch (c) {
-        case TABLE: o.table = optarg; break;
-        case MACHINE: o.machine = optarg; break;
-        case TITLE: o.title = optarg; break;
-        case HTML: o.html = optarg; break;
-        case JSON: o.json = optarg; break;
-        case HELP: (void)fputs(help, stdout); exit(EXIT_SUCCESS);
-        case VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
-        case TRUTH: {
+        case DIGREPORT_TABLE: o.table = optarg; break;
+        case DIGREPORT_MACHINE: o.machine = optarg; break;
+        case DIGREPORT_TITLE: o.title = optarg; break;
+        case DIGREPORT_HTML: o.html = optarg; break;
+        case DIGREPORT_JSON: o.json = optarg; break;
+        case DIG_OPTION_HELP: dig_help_print(program, &program->self, stdout); exit(EXIT_SUCCESS);
+        case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
+        case DIGREPORT_TRUTH: {
             const enum dig_status status = parse_truth(optarg, &o.truth, error);
             if (status != DIG_OK) {
                 return status;
@@ -83,15 +99,13 @@ enum dig_status digreport_parse(const int argc, char *argv[],
             o.truth_known = true;
             break;
         }
-        case RECORDING:
+        case DIGREPORT_RECORDING:
             if (o.recordings == sizeof o.recording / sizeof o.recording[0]) {
                 return dig_error_set(error, DIG_EINVAL, "--recording: expected at most 8");
             }
             o.recording[o.recordings++] = optarg;
             break;
-        default:
-            return dig_error_set(error, DIG_EINVAL, "unknown option or missing value: %s",
-                                 argv[optind - 1]);
+        default: return DIG_EINVAL; // said already
         }
     }
     for (; optind < argc; optind++) {

@@ -4,9 +4,25 @@
 #define DIG_TOOLS_DIGREPORT_OPTIONS_H
 
 #include "closed_loop/report/report.h"
+#include "core/command_line.h"
 #include "core/error.h"
 
 #include <stdbool.h>
+
+enum digreport_option {
+    DIGREPORT_TABLE = 256,
+    DIGREPORT_MACHINE,
+    DIGREPORT_MODEL,
+    DIGREPORT_TRUTH,
+    DIGREPORT_RECORDING,
+    DIGREPORT_TITLE,
+    DIGREPORT_HTML,
+    DIGREPORT_CSV,
+    DIGREPORT_JSON,
+};
+
+/// Its commands, and the options of them all.
+const struct dig_program *digreport_program(void);
 
 struct digreport_options {
     const char       *table, *machine, *title, *html, *json;

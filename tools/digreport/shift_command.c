@@ -1,32 +1,18 @@
 #include "tools/digreport/shift_command.h"
 
+#include "core/help.h"
 #include "files/machine_yaml.h"
 #include "files/model_json.h"
 #include "files/whole.h"
 #include "tables/load.h"
+#include "tools/digreport/options.h"
 #include "tools/digreport/shift_page.h"
 
 #include <getopt.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char help[] =
-    "digreport shift shows what a shift was like, from the LCM logs of digsightd: digs, gravel,\n"
-    "peak and energy, error of the predictions, effects of the model, troubles.\n"
-    "\n"
-    "usage:\n"
-    "  digreport shift --table TABLE.sqlite --machine MACHINE.yaml [--model MODEL.json]\n"
-    "                  [--title TEXT] [--html PAGE.html] [--csv DIGS.csv] LOG.lcm…\n"
-    "      Logs in the order in which they were written. --table, --machine and --model: what the\n"
-    "      daemon ran on. --csv: a line a dig (docs/formats.md).\n"
-    "\n"
-    "One sentence goes to standard output. Exit codes: 0 done, 1 the work failed, 2 bad usage or\n"
-    "bad input.\n"
-    "\n"
-    "examples:\n"
-    "  digreport shift --table tables/rig.sqlite --machine config/machines/zx200_trench.yaml \\\n"
-    "                  --html shift.html --csv shift.csv morning.lcm afternoon.lcm\n";
 
 struct options {
     const char *table, *machine, *model, *title, *html, *csv;
@@ -35,31 +21,20 @@ struct options {
 static enum dig_status parse(const int argc, char *argv[], struct options *const options,
                              struct dig_error *const error)
 {
-    enum { TABLE = 256, MACHINE, MODEL, TITLE, HTML, CSV, HELP };
-    static const struct option known[] = {
-        { "table", required_argument, NULL, TABLE },
-        { "machine", required_argument, NULL, MACHINE },
-        { "model", required_argument, NULL, MODEL },
-        { "title", required_argument, NULL, TITLE },
-        { "html", required_argument, NULL, HTML },
-        { "csv", required_argument, NULL, CSV },
-        { "help", no_argument, NULL, HELP },
-        { NULL, 0, NULL, 0 },
-    };
-    struct options o = { .title = "Shift report" };
-    opterr           = 0;
-    for (int c; (c = getopt_long(argc, argv, "", known, NULL)) != -1;) {
+    const struct dig_program *const program = digreport_program();
+    const struct dig_command *const command = dig_command_find(program, "shift", error);
+    struct options                  o       = { .title = "Shift report" };
+    for (int c; (c = dig_option_next(program, command, argc, argv, error)) != DIG_OPTION_END;) {
         switch (c) {
-        case TABLE: o.table = optarg; break;
-        case MACHINE: o.machine = optarg; break;
-        case MODEL: o.model = optarg; break;
-        case TITLE: o.title = optarg; break;
-        case HTML: o.html = optarg; break;
-        case CSV: o.csv = optarg; break;
-        case HELP: (void)fputs(help, stdout); exit(EXIT_SUCCESS);
-        default:
-            return dig_error_set(error, DIG_EINVAL, "unknown option or missing value: %s",
-                                 argv[optind - 1]);
+        case DIGREPORT_TABLE: o.table = optarg; break;
+        case DIGREPORT_MACHINE: o.machine = optarg; break;
+        case DIGREPORT_MODEL: o.model = optarg; break;
+        case DIGREPORT_TITLE: o.title = optarg; break;
+        case DIGREPORT_HTML: o.html = optarg; break;
+        case DIGREPORT_CSV: o.csv = optarg; break;
+        case DIG_OPTION_HELP: dig_help_print(program, command, stdout); exit(EXIT_SUCCESS);
+        case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
+        default: return DIG_EINVAL; // said already
         }
     }
     if (o.table == NULL || o.machine == NULL || optind == argc) {

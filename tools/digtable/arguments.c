@@ -1,6 +1,9 @@
 #include "tools/digtable/arguments.h"
 
+#include "core/did_you_mean.h"
+#include "core/help.h"
 #include "core/units.h"
+#include "tools/digtable/help.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -10,60 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-// Every option of every command; which command takes which, it says itself.
-enum option_id {
-    OPTION_TRAJECTORY = 256,
-    OPTION_FRICTION,
-    OPTION_ROLLING,
-    OPTION_DENSITY,
-    OPTION_DEPTH,
-    OPTION_ATTACK,
-    OPTION_YOUNG,
-    OPTION_SEED,
-    OPTION_ENGINE,
-    OPTION_BED,
-    OPTION_SAVE_BED,
-    OPTION_VTK,
-    OPTION_MAP,
-    OPTION_PACKINGS,
-    OPTION_TIME_LIMIT,
-    OPTION_SHARD,
-    OPTION_CHANNEL,
-    OPTION_CSV,
-    OPTION_JSON,
-    OPTION_RUNS,
-    OPTION_EFFECTS,
-    OPTION_COMPLETE,
-};
-
-static const struct option long_options[] = {
-    { "trajectory", required_argument, NULL, OPTION_TRAJECTORY },
-    { "friction", required_argument, NULL, OPTION_FRICTION },
-    { "rolling", required_argument, NULL, OPTION_ROLLING },
-    { "density", required_argument, NULL, OPTION_DENSITY },
-    { "depth", required_argument, NULL, OPTION_DEPTH },
-    { "attack-deg", required_argument, NULL, OPTION_ATTACK },
-    { "young", required_argument, NULL, OPTION_YOUNG },
-    { "seed", required_argument, NULL, OPTION_SEED },
-    { "engine", required_argument, NULL, OPTION_ENGINE },
-    { "bed", required_argument, NULL, OPTION_BED },
-    { "save-bed", required_argument, NULL, OPTION_SAVE_BED },
-    { "vtk", required_argument, NULL, OPTION_VTK },
-    { "map", required_argument, NULL, OPTION_MAP },
-    { "packings", required_argument, NULL, OPTION_PACKINGS },
-    { "time-limit", required_argument, NULL, OPTION_TIME_LIMIT },
-    { "shard", required_argument, NULL, OPTION_SHARD },
-    { "channel", required_argument, NULL, OPTION_CHANNEL },
-    { "csv", no_argument, NULL, OPTION_CSV },
-    { "json", no_argument, NULL, OPTION_JSON },
-    { "runs", no_argument, NULL, OPTION_RUNS },
-    { "effects", no_argument, NULL, OPTION_EFFECTS },
-    { "complete", no_argument, NULL, OPTION_COMPLETE },
-    { "output", required_argument, NULL, 'o' },
-    { "jobs", required_argument, NULL, 'j' },
-    { NULL, 0, NULL, 0 },
-};
 
 __attribute__((format(printf, 1, 2))) int dig_cli_bad_usage(const char *const format, ...)
 {
@@ -87,18 +36,6 @@ int dig_cli_work_failed(const enum dig_status status, const struct dig_error *co
     (void)fprintf(stderr, "digtable: %s\n",
                   error->text[0] != '\0' ? error->text : dig_status_str(status));
     return status == DIG_EINVAL || status == DIG_ESCHEMA ? EXIT_BAD_INPUT : EXIT_WORK_FAILED;
-}
-
-static bool number(const char *const text, const double least, const double most,
-                   double *const value)
-{
-    char        *end    = NULL;
-    const double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !(number >= least && number <= most)) {
-        return false;
-    }
-    *value = number;
-    return true;
 }
 
 bool dig_cli_count(const char *const text, const unsigned long least, const unsigned long most,
@@ -157,11 +94,11 @@ static const char *take_approach(const int option, const char *const value,
                                  struct dig_approach *const approach)
 {
     if (option == OPTION_DEPTH) {
-        const bool ok =
-            number(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, &approach->depth);
+        const bool ok = dig_number_read(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
+                                        &approach->depth);
         return ok ? NULL : "a factor, 0.2 to 3";
     }
-    const bool ok = number(value, -45.0, 45.0, &approach->attack_rad);
+    const bool ok = dig_number_read(value, -45.0, 45.0, &approach->attack_rad);
     approach->attack_rad *= DIG_RAD_PER_DEG;
     return ok ? NULL : "degrees, -45 to 45";
 }
@@ -188,22 +125,25 @@ static const char *take_option(const int option, const char *const value,
 {
     bool ok = true;
     switch (option) {
-    case 'o': a->output = value; break;
-    case 'j': ok = dig_cli_count(value, 1, 4096, &a->workers); return ok ? NULL : "1 to 4096";
+    case OPTION_OUTPUT: a->output = value; break;
+    case OPTION_QUIET: a->quiet = true; break;
+    case OPTION_JOBS:
+        ok = dig_cli_count(value, 1, 4096, &a->workers);
+        return ok ? NULL : "1 to 4096";
     case OPTION_TRAJECTORY: a->trajectory = value; break;
     case OPTION_FRICTION:
-        ok = number(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]);
+        ok = dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]);
         return ok ? NULL : "0 to 3";
     case OPTION_ROLLING:
-        ok = number(value, 0.0, 3.0, &a->gravel[DIG_AXIS_ROLLING]);
+        ok = dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_ROLLING]);
         return ok ? NULL : "0 to 3";
     case OPTION_DENSITY:
-        ok = number(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3]);
+        ok = dig_number_read(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3]);
         return ok ? NULL : "kg/m3, 100 to 20000";
     case OPTION_DEPTH:
     case OPTION_ATTACK: return take_approach(option, value, &a->approach);
     case OPTION_YOUNG:
-        ok = number(value, 1.0, 1e12, &a->young_Pa);
+        ok = dig_number_read(value, 1.0, 1e12, &a->young_Pa);
         return ok ? NULL : "Pa, 1 to 1e12";
     case OPTION_SEED:
         ok = dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed);
@@ -217,7 +157,7 @@ static const char *take_option(const int option, const char *const value,
         ok = dig_cli_count(value, 1, 1000, &a->packings);
         return ok ? NULL : "1 to 1000";
     case OPTION_TIME_LIMIT:
-        ok = number(value, 0.0, 1e9, &a->time_limit_s);
+        ok = dig_number_read(value, 0.0, 1e9, &a->time_limit_s);
         return ok ? NULL : "seconds, >= 0";
     case OPTION_SHARD: return parse_shard(value, a) ? NULL : "I/N, I from 1 to N";
     case OPTION_CHANNEL:
@@ -235,18 +175,12 @@ static const char *take_option(const int option, const char *const value,
 
 static const char *option_name(const int id)
 {
-    const struct option *o = long_options;
-    while (o->name != NULL && o->val != id) {
-        o++;
+    const struct dig_program *const program = dig_cli_program();
+    size_t                          i       = 0;
+    while (program->option[i].id != id) {
+        i++;
     }
-    return o->name != NULL ? o->name : "?";
-}
-
-static bool takes(const struct dig_command *const command, const int option)
-{
-    char word[32];
-    (void)snprintf(word, sizeof word, " %s ", option_name(option));
-    return strstr(command->options, word) != NULL;
+    return program->option[i].name;
 }
 
 int dig_arguments_read(const struct dig_command *const command, const int argc, char **const argv,
@@ -260,32 +194,32 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         .workers      = all_cores(),
         .time_limit_s = (double)INFINITY,
     };
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, ":o:j:", long_options, NULL)) != -1;) {
-        if (option == ':') {
-            return dig_cli_bad_usage("%s: needs a value", argv[optind - 1]);
+    struct dig_error error = { "" };
+    for (int option; (option = dig_option_next(dig_cli_program(), command, argc, argv, &error)) !=
+                     DIG_OPTION_END;) {
+        if (option == DIG_OPTION_WRONG) {
+            return dig_cli_bad_usage("%s", error.text);
         }
-        if (option == '?') {
-            return dig_cli_bad_usage("%s: unknown option", argv[optind - 1]);
+        if (option == DIG_OPTION_HELP) {
+            dig_help_print(dig_cli_program(), command, stdout);
+            exit(EXIT_DONE);
         }
-        if (!takes(command, option)) {
-            (void)fprintf(stderr, "digtable: %s takes no --%s\n", command->name,
-                          option_name(option));
-            return EXIT_BAD_INPUT;
+        if (option == DIG_OPTION_VERSION) {
+            (void)puts("digtable " DIG_VERSION);
+            exit(EXIT_DONE);
         }
         const char *const expected = take_option(option, optarg, a);
         if (expected != NULL) {
-            (void)fprintf(stderr, "digtable: --%s %s: expected %s\n", option_name(option), optarg,
-                          expected);
-            return EXIT_BAD_INPUT;
+            (void)dig_error_set(&error, DIG_EINVAL, "--%s %s: expected %s", option_name(option),
+                                optarg, expected);
+            return dig_cli_bad_input(DIG_EINVAL, &error);
         }
     }
     for (; optind < argc; optind++) {
-        if (a->positionals == command->most) {
+        if (a->positionals == DIG_POSITIONALS_MAX) {
             return dig_cli_bad_usage("%s: one argument too many", argv[optind]);
         }
         a->positional[a->positionals++] = argv[optind];
     }
-    return a->positionals >= command->least ? EXIT_DONE
-                                            : dig_cli_bad_usage("expected %s", command->positional);
+    return EXIT_DONE;
 }

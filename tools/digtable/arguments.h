@@ -4,6 +4,7 @@
 #define DIG_TOOLS_DIGTABLE_ARGUMENTS_H
 
 #include "core/approach.h"
+#include "core/command_line.h"
 #include "core/curve.h"
 #include "core/error.h"
 
@@ -30,22 +31,13 @@ struct dig_arguments {
     double                 time_limit_s;
     enum dig_channel       channel;
     enum dig_engine_choice engine;
-    bool                   csv, json, runs, effects, complete;
+    bool                   csv, json, runs, effects, complete, quiet;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };
 
-/// One command: which positional arguments and which long options it takes.
-struct dig_command {
-    const char *name;
-    int (*run)(const struct dig_arguments *a);
-    int         least, most; // positional arguments
-    const char *positional;
-    const char *options; // long names, each with a blank before and behind it
-};
-
-/// Reads the arguments behind the command's name; argv[0] is that name. EXIT_DONE, or what to exit
-/// with after a message.
+/// Reads the whole command line. EXIT_DONE, or what to exit with after a message; prints help or
+/// version and exits where asked to.
 int dig_arguments_read(const struct dig_command *command, int argc, char **argv,
                        struct dig_arguments *a);
 

@@ -15,7 +15,4 @@ int dig_cli_import(const struct dig_arguments *a);
 int dig_cli_merge(const struct dig_arguments *a);
 int dig_cli_export(const struct dig_arguments *a);
 
-/// Prints the help of one command, or of all when none is called so.
-void dig_cli_help(const char *command);
-
 #endif // DIG_TOOLS_DIGTABLE_COMMANDS_H

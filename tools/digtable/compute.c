@@ -71,8 +71,8 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
         *bed = read;
         return DIG_OK;
     }
-    struct dig_progress_report watch    = { dig_progress_line(), dig_progress_now_s(), "bed",
-                                            a->stop };
+    struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "bed",
+                                         a->stop };
     const struct dig_progress  progress = { report_dig, &watch };
     const enum dig_status status = engine_of(a).pour(scene, gravel, a->seed, &progress, bed, error);
     if (status == DIG_OK && watch.line.tty) {
@@ -86,8 +86,8 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
               const struct dig_gravel *const gravel, const struct dig_bed *const bed,
               const struct dig_trajectory *const trajectory, struct dig_error *const error)
 {
-    struct dig_progress_report watch     = { dig_progress_line(), dig_progress_now_s(), "dig",
-                                             a->stop };
+    struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "dig",
+                                         a->stop };
     const struct dig_progress  progress  = { report_dig, &watch };
     struct dig_recording       recording = { 0 };
     enum dig_status            status    = DIG_OK;
@@ -101,7 +101,7 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && !a->quiet) {
         (void)fprintf(stderr, "%s%zu grains, %zu samples, %.1f s -> %s",
                       dig_progress_start(&watch.line), bed->grains, recording.rows,
                       dig_progress_now_s() - watch.from_s, a->output);
@@ -205,6 +205,9 @@ static void report_sweep(void *const context, const struct dig_sweep_state *cons
 static int report_end(const struct dig_arguments *const a, const struct dig_sweep_state *const s,
                       const enum dig_status status, const struct dig_error *const error)
 {
+    if (a->quiet && status == DIG_OK && s->digs_done == s->digs_total) {
+        return EXIT_DONE;
+    }
     char elapsed[32];
     dig_text_put(stderr, a->output);
     (void)fprintf(stderr, ": %zu of %zu digs, %s", s->digs_done, s->digs_total,
@@ -239,7 +242,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     if (status != DIG_OK) {
         return dig_cli_work_failed(status, &error);
     }
-    struct dig_progress_line       line    = dig_progress_line();
+    struct dig_progress_line       line    = dig_progress_line(a->quiet);
     const struct dig_sweep_options options = {
         .workers      = a->workers,
         .time_limit_s = a->time_limit_s,

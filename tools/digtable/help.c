@@ -1,70 +1,99 @@
-#include "tools/digtable/commands.h"
+#include "tools/digtable/help.h"
 
-#include "tools/help.h"
-
-#include <stdio.h>
-
-static const struct dig_help commands[] = {
-    { "dig",
-      "  digtable dig SCENE.yaml --trajectory NAME --friction F --rolling R --density KGPM3\n"
-      "               [--depth F] [--attack-deg A] [--young PA] [--seed 1]\n"
-      "               [--engine kernel|ode|cuda] [--bed BED.csv] [--save-bed BED.csv]\n"
-      "               [--vtk DIR] -o CURVE.csv\n",
-      "      one dig; the curve is a force recording. --depth: factor on how far the tooth goes\n"
-      "      down in the first phase; --attack-deg: the bucket turned about its tooth, positive\n"
-      "      curls\n",
-      "  digtable dig config/scenes/rig.yaml --trajectory simpleA --friction .5 --rolling .5 \\\n"
-      "           --density 2500 -o dig.csv\n" },
-    { "generate",
-      "  digtable generate SCENE.yaml GRID.yaml -o TABLE.sqlite\n"
-      "               [-j N] [--packings N] [--time-limit S] [--shard I/N]\n"
-      "               [--engine kernel|ode|cuda]\n",
-      "      every dig of the grid, on all cores; what the table holds already is not computed\n"
-      "      again, and Ctrl-C keeps all that is finished\n"
-      "      --engine cuda: on a graphics card, with the library of `make cuda`\n",
-      "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o rig.sqlite \\\n"
-      "           --time-limit 3600\n"
-      "  digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o part3.sqlite \\\n"
-      "           --shard 3/16\n" },
-    { "list", "  digtable list TABLE.sqlite [--json]\n",
-      "      the entries and how many packings each has\n", "  digtable list tables/rig.sqlite\n" },
+static const struct dig_command commands[] = {
+    { "dig", "SCENE.yaml --trajectory NAME GRAVEL -o CSV [OPTION]...",
+      "Computes one dig; the curve is a force recording.",
+      "GRAVEL is --friction F --rolling R --density KGPM3.",
+      "digtable dig config/scenes/rig.yaml --trajectory simpleA --friction .5 \\\n"
+      "         --rolling .5 --density 2500 -o dig.csv\n" },
+    { "generate", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
+      "Computes every dig of a grid, on all cores.",
+      "What the table holds already is not computed again, and Ctrl-C keeps all that is finished.",
+      "digtable generate config/scenes/rig.yaml config/grids/rig.yaml \\\n"
+      "         -o rig.sqlite --time-limit 3600\n"
+      "digtable generate config/scenes/rig.yaml config/grids/rig.yaml \\\n"
+      "         -o part3.sqlite --shard 3/16\n" },
+    { "list", "TABLE.sqlite [OPTION]...", "Lists the entries and how many packings each has.", NULL,
+      "digtable list tables/rig.sqlite\n" },
     { "show",
-      "  digtable show TABLE.sqlite ENTRY | --friction F --rolling R --density KGPM3\n"
-      "               [--depth F] [--attack-deg A] [--trajectory NAME]\n"
-      "               [--channel My|Fx|Fz|carried] [--csv|--json]\n",
-      "      one curve of the table\n",
-      "  digtable show rig.sqlite --friction .5 --rolling .5 --density 2500 --trajectory "
-      "actual\n" },
-    { "import", "  digtable import CURVES.csv --map MAP.yaml -o TABLE.sqlite\n",
-      "      digs that something else measured or computed; the map says which column holds what\n",
-      "  digtable import curves.csv --map curve_map.yaml -o measured.sqlite\n" },
-    { "merge", "  digtable merge OUT.sqlite IN.sqlite...\n",
-      "      the runs of all tables, each once, in a new one, whose bytes do not depend on their\n"
-      "      order\n",
-      "  digtable merge rig.sqlite part*.sqlite\n" },
-    { "seal", "  digtable seal TABLE.sqlite\n",
-      "      makes a table of an older version one that shows a flipped bit when it is read, "
-      "after\n"
-      "      a check\n",
-      "  digtable seal old.sqlite\n" },
-    { "export", "  digtable export TABLE.sqlite [--effects|--runs] [-o FILE.csv]\n",
-      "      all curves; those dug with an effect; or all runs behind them\n",
-      "  digtable export rig.sqlite --runs -o runs.csv\n" },
-    { "check", "  digtable check TABLE.sqlite [--complete] [--json]\n",
-      "      version, integrity, and every curve against the runs it was made of; with\n"
-      "      --complete, holes and missing packings fail too\n",
-      "  digtable check tables/rig.sqlite\n" },
+      "TABLE.sqlite ENTRY [OPTION]...\n"
+      "TABLE.sqlite GRAVEL [OPTION]...",
+      "Shows one curve of a table.",
+      "ENTRY is a number of `digtable list`, GRAVEL is --friction F --rolling R --density KGPM3. "
+      "The "
+      "curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
+      "digtable show tables/rig.sqlite --friction .5 --rolling .5 --density 2500 \\\n"
+      "         --trajectory actual\n"
+      "digtable show tables/rig.sqlite 0 --channel Fx\n" },
+    { "import", "CURVES.csv --map MAP.yaml -o TABLE.sqlite",
+      "Adds digs that something else measured or computed to a table.",
+      "The map says which column holds what.",
+      "digtable import curves.csv --map curve_map.yaml -o measured.sqlite\n" },
+    { "merge", "OUT.sqlite IN.sqlite...", "Puts the runs of all tables, each once, into a new one.",
+      "The bytes of the new table do not depend on the order of the others.",
+      "digtable merge rig.sqlite part*.sqlite\n" },
+    { "seal", "TABLE.sqlite", "Seals a table of an older version.",
+      "The table is checked, and shows a flipped bit from then on whenever it is read.",
+      "digtable seal old.sqlite\n" },
+    { "export", "TABLE.sqlite [OPTION]...", "Writes all curves of a table as CSV.", NULL,
+      "digtable export rig.sqlite --runs -o runs.csv\n" },
+    { "check", "TABLE.sqlite [OPTION]...",
+      "Checks version, integrity, and every curve against the runs it was made of.", NULL,
+      "digtable check tables/rig.sqlite\n"
+      "digtable check rig.sqlite --complete --json\n" },
 };
 
-void dig_cli_help(const char *const command)
+static const struct dig_option options[] = {
+    { "trajectory", OPTION_TRAJECTORY, "NAME", " dig show ",
+      "its name in the scene (show: the entry's first if not given)" },
+    { "friction", OPTION_FRICTION, "F", " dig show ", "friction of the gravel, 0 to 3" },
+    { "rolling", OPTION_ROLLING, "R", " dig show ", "rolling friction of the gravel, 0 to 3" },
+    { "density", OPTION_DENSITY, "KGPM3", " dig show ", "density of the grains in kg/m3" },
+    { "depth", OPTION_DEPTH, "F", " dig show ",
+      "factor on how far the tooth goes down in the first phase (default 1)" },
+    { "attack-deg", OPTION_ATTACK, "A", " dig show ",
+      "the bucket turned about its tooth, positive curls (default 0)" },
+    { "young", OPTION_YOUNG, "PA", " dig ", "Young's modulus instead of the scene's" },
+    { "seed", OPTION_SEED, "N", " dig ", "of the bed (default 1)" },
+    { "engine", OPTION_ENGINE, "kernel|ode|cuda", " dig generate ",
+      "kernel (default); ode, the slow reference; cuda, on a graphics card, with the library of "
+      "`make cuda`" },
+    { "bed", OPTION_BED, "BED.csv", " dig ", "dig this bed instead of pouring one" },
+    { "save-bed", OPTION_SAVE_BED, "BED.csv", " dig ", "write the bed before it is dug" },
+    { "vtk", OPTION_VTK, "DIR", " dig ", "write grains and bucket for ParaView into DIR" },
+    { "output", OPTION_OUTPUT, "CURVE.csv", " dig ", "the curve to write; -: standard output" },
+    { "output", OPTION_OUTPUT, "TABLE.sqlite", " generate import ",
+      "the table to make or to go on with" },
+    { "output", OPTION_OUTPUT, "FILE.csv", " export ", "the file to write, not standard output" },
+    { "jobs", OPTION_JOBS, "N", " generate ", "digs at a time (default: one a core)" },
+    { "packings", OPTION_PACKINGS, "N", " generate ",
+      "beds of each gravel, not the grid's number" },
+    { "time-limit", OPTION_TIME_LIMIT, "S", " generate ", "begin no dig after S seconds" },
+    { "shard", OPTION_SHARD, "I/N", " generate ",
+      "the I-th of N parts alone; `digtable merge` puts the parts together" },
+    { "quiet", OPTION_QUIET, NULL, " dig generate ", "no progress, only what goes wrong" },
+    { "map", OPTION_MAP, "MAP.yaml", " import ", "which column holds what" },
+    { "channel", OPTION_CHANNEL, "My|Fx|Fz|carried", " show ", "what to draw (default My)" },
+    { "csv", OPTION_CSV, NULL, " show ", "the curve as CSV" },
+    { "json", OPTION_JSON, NULL, " list check show ", "the result as JSON" },
+    { "runs", OPTION_RUNS, NULL, " export ", "all runs behind the curves, instead" },
+    { "effects", OPTION_EFFECTS, NULL, " export ", "those dug with an effect, instead" },
+    { "complete", OPTION_COMPLETE, NULL, " check ",
+      "holes in the grid and missing packings fail, too" },
+};
+
+const struct dig_program *dig_cli_program(void)
 {
-    const struct dig_help_of_program program = {
-        .intro      = "digtable computes how gravel resists bucket digs, and keeps the curves in a "
-                      "table.\n\n",
-        .others     = "  digtable --help | --version, digtable COMMAND --help\n",
-        .exit_codes = "exit codes: 0 done, 1 the work failed, 2 bad usage or bad input\n",
-        .commands   = sizeof commands / sizeof commands[0],
-        .command    = commands,
+    static const struct dig_program program = {
+        .self        = { "digtable", "COMMAND ARGUMENT... [OPTION]...\nCOMMAND --help",
+                         "Computes how gravel resists bucket digs, and keeps the curves in a table.", NULL,
+                         "digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o my.sqlite\n"
+                                "digtable show my.sqlite --friction .5 --rolling .5 --density 2500\n" },
+        .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input\n",
+        .commands    = sizeof commands / sizeof commands[0],
+        .command     = commands,
+        .options     = sizeof options / sizeof options[0],
+        .option      = options,
     };
-    dig_help_print(&program, command, stdout);
+    return &program;
 }

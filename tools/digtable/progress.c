@@ -5,10 +5,14 @@
 #include <time.h>
 #include <unistd.h>
 
-struct dig_progress_line dig_progress_line(void)
+struct dig_progress_line dig_progress_line(const bool quiet)
 {
-    const bool tty = isatty(STDERR_FILENO) == 1;
-    return (struct dig_progress_line){ .tty = tty, .every_s = tty ? 0.2 : 5.0, .printed_s = -1e9 };
+    const bool tty = !quiet && isatty(STDERR_FILENO) == 1;
+    return (struct dig_progress_line){ .tty       = tty,
+                                       .every_s   = quiet ? (double)INFINITY
+                                                    : tty ? 0.2
+                                                          : 5.0,
+                                       .printed_s = -1e9 };
 }
 
 double dig_progress_now_s(void)

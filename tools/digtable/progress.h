@@ -11,7 +11,8 @@ struct dig_progress_line {
     double every_s, printed_s;
 };
 
-struct dig_progress_line dig_progress_line(void);
+/// A quiet one is never due.
+struct dig_progress_line dig_progress_line(bool quiet);
 
 /// True when the next line is due; it then counts as printed. Begin the line with
 /// dig_progress_start() and close it with dig_progress_end().

@@ -1,5 +1,6 @@
 // digtable list, check, show and export.
 
+#include "core/did_you_mean.h"
 #include "core/table_step.h"
 #include "core/text.h"
 #include "files/whole.h"
@@ -142,8 +143,15 @@ static int show(const struct dig_arguments *const a, const struct dig_curve_set 
         trajectory++;
     }
     if (trajectory >= set->trajectories || dig_listed_at(set, entry, trajectory).packings == 0) {
-        return dig_cli_bad_usage("%s: no such trajectory in this entry, digtable list shows all",
-                                 a->trajectory != NULL ? a->trajectory : a->positional[0]);
+        char             text[DIG_GUESS_SIZE];
+        struct dig_guess guess = dig_guess(a->trajectory != NULL ? a->trajectory : "");
+        for (size_t t = 0; t < set->trajectories; t++) {
+            dig_guess_try(&guess, set->trajectory[t].name);
+        }
+        return dig_cli_bad_usage("%s: no such trajectory in this entry%s",
+                                 a->trajectory != NULL ? a->trajectory : a->positional[0],
+                                 guess.best != NULL ? dig_guess_text(&guess, "", text)
+                                                    : ", digtable list shows all");
     }
     if (a->csv) {
         dig_export_curve_csv(set, entry, trajectory, stdout);

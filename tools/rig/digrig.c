@@ -1,5 +1,6 @@
 // digrig: a machine to test against. See --help.
 
+#include "core/help.h"
 #include "core/recording.h"
 #include "core/scene.h"
 #include "files/campaign_yaml.h"
@@ -157,7 +158,9 @@ static int work(const struct dig_rig_options *const options)
                                      &track, &error);
     }
     if (status == DIG_OK) {
-        describe(&machine, track_options.scene_tooth_m, &track);
+        if (!options->quiet) {
+            describe(&machine, track_options.scene_tooth_m, &track);
+        }
         status = options->command == DIG_RIG_COMMAND_RECORD
                      ? dig_rig_record(&machine, options, &track, &error)
                      : dig_rig_serve(&machine, options, &track, &error);
@@ -177,7 +180,8 @@ int main(const int argc, char *argv[])
         return EXIT_USAGE;
     }
     if (options.command == DIG_RIG_COMMAND_HELP) {
-        return fputs(dig_rig_options_help(options.help_of), stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
+        dig_help_print(dig_rig_program(), options.help_of, stdout);
+        return EXIT_DONE;
     }
     if (options.command == DIG_RIG_COMMAND_VERSION) {
         return printf("digrig %s\n", DIG_VERSION) < 0 ? EXIT_FAILED : EXIT_DONE;

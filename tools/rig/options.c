@@ -1,85 +1,11 @@
 #include "tools/rig/options.h"
 
+#include "core/command_line.h"
+
 #include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define USAGE_RECORD                                                                               \
-    "  digrig record RECORDING.csv...|CAMPAIGN/ --machine M.yaml -o OUT.csv [options]\n"
-#define USAGE_SERVE "  digrig serve RECORDING.csv...|CAMPAIGN/ --machine M.yaml BUS... [options]\n"
-
-#define INTRO                                                                                      \
-    "\n"                                                                                           \
-    "Turns recorded digs into the joint angles and cylinder pressures of a machine, or what a\n"   \
-    "force sensor that carries the bucket reads (not on CAN), and writes them to a file or\n"      \
-    "serves them on real buses. Several recordings are dug one after the other.\n"                 \
-    "\n"
-
-#define OPTIONS                                                                                    \
-    "  --machine M.yaml          the machine (config/machines)\n"                                  \
-    "  --tooth-m L               pin to tooth of the recordings' bucket (default 0.09, the rig)\n" \
-    "  --scene SCENE.yaml        take that from a scene instead (a campaign names its own)\n"      \
-    "  --pin-start X,Z           bucket pin at the first contact, from the boom foot (default:\n"  \
-    "                            the place that leaves the machine most room)\n"                   \
-    "  --seed N                  of the sensors' noise (default 1)\n"                              \
-    "  --no-noise                sensors without noise (--noise 0 too)\n"                          \
-    "  --quasi-static            leave the inertia of the links out\n"                             \
-    "  --no-blend                keep the velocity jumps of the recording\n"                       \
-    "  --no-air                  the dig alone, without motion before and after\n"
-
-#define OPTIONS_RECORD                                                                             \
-    "record:\n"                                                                                    \
-    "  -o OUT.csv                machine recording to write\n"                                     \
-    "  --rate HZ                 samples per second, a divisor of 1000 from 50 up (default 200)\n" \
-    "  --truth TRUTH.csv         also write the true pose and wrench of the bucket pin\n"          \
-    "  --no-quantisation         numbers as they are, not in steps of the machine's bus\n"         \
-    "  --exact                   --no-noise --no-quantisation\n"
-
-#define OPTIONS_SERVE                                                                              \
-    "serve, one or more buses:\n"                                                                  \
-    "  --can IFACE               CAN frames in the ZX200 layout\n"                                 \
-    "  --modbus-tcp HOST:PORT    Modbus TCP server (port 0: any free one, told on stderr)\n"       \
-    "  --can-sealed              pressures and angles carry a counter and a checksum\n"            \
-    "  --modbus-rtu DEV[:BAUD]   Modbus RTU slave 1 (default 115200 baud, 8N1)\n"                  \
-    "  --speed F                 times real time (default 1)\n"                                    \
-    "  --start-delay S           stand still so many seconds first, with the bus alive\n"          \
-    "  --loop                    start again at the end, until SIGTERM\n"                          \
-    "  --fault KIND[=N]@T[:DURATION]  what goes wrong at T seconds of machine time (may be\n"      \
-    "                            given again): not-available, nan, frozen, missing,\n"             \
-    "                            out-of-range, stuck-pressures, stuck-angles, far, far-silent;\n"  \
-    "                            drop, duplicate, reorder, corrupt, exception for a share N;\n"    \
-    "                            delay, slow by N seconds\n"                                       \
-    "  --json                    what was sent and asked for, as JSON on stdout at the end\n"
-
-#define EXAMPLES_RECORD                                                                            \
-    "  digrig record simpleA.csv actual.csv --machine config/machines/zx200_trench.yaml \\\n"      \
-    "         -o run.csv\n"
-#define EXAMPLES_SERVE                                                                             \
-    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"                  \
-    "         --modbus-tcp 127.0.0.1:1502 --speed 2\n"                                             \
-    "  digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml --can vcan0 \\\n"      \
-    "         --fault frozen@5:2\n"
-
-#define EXIT_STATUS                                                                                \
-    "\nexit status: 0 done, 1 the work failed, 2 bad usage, bad input or a dig the machine\n"      \
-    "cannot do\n"
-
-const char *dig_rig_options_help(const enum dig_rig_command command)
-{
-    switch (command) {
-    case DIG_RIG_COMMAND_RECORD:
-        return "usage:\n" USAGE_RECORD "\n" OPTIONS OPTIONS_RECORD
-               "\nexamples:\n" EXAMPLES_RECORD      EXIT_STATUS;
-    case DIG_RIG_COMMAND_SERVE:
-        return "usage:\n" USAGE_SERVE "\n" OPTIONS OPTIONS_SERVE
-               "\nexamples:\n" EXAMPLES_SERVE      EXIT_STATUS;
-    case DIG_RIG_COMMAND_HELP:
-    case DIG_RIG_COMMAND_VERSION: break;
-    }
-    return "usage:\n" USAGE_RECORD USAGE_SERVE INTRO OPTIONS OPTIONS_RECORD OPTIONS_SERVE
-           "\nexamples:\n" EXAMPLES_RECORD EXAMPLES_SERVE                   EXIT_STATUS;
-}
 
 enum {
     OPT_MACHINE = 256,
@@ -104,50 +30,97 @@ enum {
     OPT_DELAY,
     OPT_LOOP,
     OPT_FAULT,
-    OPT_JSON,
-    OPT_VERSION
+    OPT_JSON
 };
 
-static const struct option long_options[] = {
-    { "machine", required_argument, NULL, OPT_MACHINE },
-    { "tooth-m", required_argument, NULL, OPT_TOOTH },
-    { "scene", required_argument, NULL, OPT_SCENE },
-    { "pin-start", required_argument, NULL, OPT_PIN },
-    { "seed", required_argument, NULL, OPT_SEED },
-    { "noise", required_argument, NULL, OPT_NOISE },
-    { "no-noise", no_argument, NULL, OPT_NO_NOISE },
-    { "quasi-static", no_argument, NULL, OPT_QUASI_STATIC },
-    { "no-blend", no_argument, NULL, OPT_NO_BLEND },
-    { "no-air", no_argument, NULL, OPT_NO_AIR },
-    { "rate", required_argument, NULL, OPT_RATE },
-    { "truth", required_argument, NULL, OPT_TRUTH },
-    { "no-quantisation", no_argument, NULL, OPT_NO_QUANTISATION },
-    { "exact", no_argument, NULL, OPT_EXACT },
-    { "can", required_argument, NULL, OPT_CAN },
-    { "can-sealed", no_argument, NULL, OPT_SEALED },
-    { "modbus-tcp", required_argument, NULL, OPT_TCP },
-    { "modbus-rtu", required_argument, NULL, OPT_RTU },
-    { "speed", required_argument, NULL, OPT_SPEED },
-    { "start-delay", required_argument, NULL, OPT_DELAY },
-    { "loop", no_argument, NULL, OPT_LOOP },
-    { "fault", required_argument, NULL, OPT_FAULT },
-    { "json", no_argument, NULL, OPT_JSON },
-    { "help", no_argument, NULL, 'h' },
-    { "version", no_argument, NULL, OPT_VERSION },
-    { NULL, 0, NULL, 0 },
+static const struct dig_command commands[] = {
+    { "record", "RECORDING... --machine M.yaml -o OUT.csv [OPTION]...",
+      "Writes what the machine's sensors read during recorded digs to a file.",
+      "RECORDING is a force recording, or one campaign folder.",
+      "digrig record simpleA.csv actual.csv -o run.csv \\\n"
+      "       --machine config/machines/zx200_trench.yaml\n" },
+    { "serve", "RECORDING... --machine M.yaml BUS... [OPTION]...",
+      "Serves what the machine's sensors read during recorded digs on real buses.",
+      "RECORDING is a force recording, or one campaign folder. BUS is --can, --modbus-tcp or "
+      "--modbus-rtu.",
+      "digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"
+      "       --modbus-tcp 127.0.0.1:1502 --speed 2\n"
+      "digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"
+      "       --can vcan0 --fault frozen@5:2\n" },
 };
+
+static const struct dig_option known[] = {
+    { "machine", OPT_MACHINE, "M.yaml", NULL, "the machine (config/machines)" },
+    { "output", 'o', "OUT.csv", " record ", "machine recording to write" },
+    { "can", OPT_CAN, "IFACE", " serve ", "CAN frames in the ZX200 layout" },
+    { "modbus-tcp", OPT_TCP, "HOST:PORT", " serve ",
+      "Modbus TCP server (port 0: any free one, told on stderr)" },
+    { "modbus-rtu", OPT_RTU, "DEV[:BAUD]", " serve ",
+      "Modbus RTU slave 1 (default 115200 baud, 8N1)" },
+    { "can-sealed", OPT_SEALED, NULL, " serve ",
+      "pressures and angles carry a counter and a checksum" },
+    { "speed", OPT_SPEED, "F", " serve ", "times real time (default 1)" },
+    { "start-delay", OPT_DELAY, "S", " serve ",
+      "stand still so many seconds first, with the bus alive" },
+    { "loop", OPT_LOOP, NULL, " serve ", "start again at the end, until SIGTERM" },
+    { "fault", OPT_FAULT, "KIND[=N]@T[:DURATION]", " serve ",
+      "what goes wrong at T seconds of machine time (may be given again): not-available, nan, "
+      "frozen, missing, out-of-range, stuck-pressures, stuck-angles, far, far-silent; drop, "
+      "duplicate, reorder, corrupt, exception for a share N; delay, slow by N seconds" },
+    { "json", OPT_JSON, NULL, " serve ",
+      "what was sent and asked for, as JSON on stdout at the end" },
+    { "quiet", 'q', NULL, NULL, "no progress, only what goes wrong" },
+    { "rate", OPT_RATE, "HZ", " record ",
+      "samples per second, a divisor of 1000 from 50 up (default 200)" },
+    { "truth", OPT_TRUTH, "TRUTH.csv", " record ",
+      "also write the true pose and wrench of the bucket pin" },
+    { "no-quantisation", OPT_NO_QUANTISATION, NULL, " record ",
+      "numbers as they are, not in steps of the machine's bus" },
+    { "exact", OPT_EXACT, NULL, " record ", "--no-noise --no-quantisation" },
+    { "tooth-m", OPT_TOOTH, "L", NULL,
+      "pin to tooth of the recordings' bucket (default 0.09, the rig)" },
+    { "scene", OPT_SCENE, "SCENE.yaml", NULL,
+      "take that from a scene instead (a campaign names its own)" },
+    { "pin-start", OPT_PIN, "X,Z", NULL,
+      "bucket pin at the first contact, from the boom foot (default: the place that leaves the "
+      "machine most room)" },
+    { "seed", OPT_SEED, "N", NULL, "of the sensors' noise (default 1)" },
+    { "no-noise", OPT_NO_NOISE, NULL, NULL, "sensors without noise" },
+    { "noise", OPT_NOISE, "0|1", NULL, "0: as --no-noise" },
+    { "quasi-static", OPT_QUASI_STATIC, NULL, NULL, "leave the inertia of the links out" },
+    { "no-blend", OPT_NO_BLEND, NULL, NULL, "keep the velocity jumps of the recording" },
+    { "no-air", OPT_NO_AIR, NULL, NULL, "the dig alone, without motion before and after" },
+};
+
+const struct dig_program *dig_rig_program(void)
+{
+    static const struct dig_program program = {
+        .self = { "digrig", "COMMAND RECORDING... --machine M.yaml [OPTION]...\nCOMMAND --help",
+                  "Simulates the sensors of a machine that digs as was recorded.",
+                  "Recorded digs become the joint angles and cylinder pressures of a machine, "
+                  "or what a force sensor that carries the bucket reads (not on CAN). Several "
+                  "recordings are dug one after the other.",
+                  "digrig record simpleA.csv actual.csv -o run.csv \\\n"
+                  "       --machine config/machines/zx200_trench.yaml\n"
+                  "digrig serve simpleA.csv --modbus-tcp 127.0.0.1:1502 \\\n"
+                  "       --machine config/machines/zx200_trench.yaml\n" },
+        .exit_status = "0  done\n1  the work failed\n"
+                       "2  bad usage, bad input or a dig the machine cannot do\n",
+        .commands    = sizeof commands / sizeof commands[0],
+        .command     = commands,
+        .options     = sizeof known / sizeof known[0],
+        .option      = known,
+    };
+    return &program;
+}
 
 static enum dig_status number(const char *const name, const char *const text, const double low,
                               const double high, double *const value, struct dig_error *const error)
 {
-    char        *end   = NULL;
-    const double found = strtod(text, &end);
-    if (end == text || *end != '\0' || !(found >= low && found <= high)) {
-        return dig_error_set(error, DIG_EINVAL, "--%s: \"%s\", expected a number from %g to %g",
-                             name, text, low, high);
-    }
-    *value = found;
-    return DIG_OK;
+    return dig_number_read(text, low, high, value)
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL, "--%s: \"%s\", expected a number from %g to %g",
+                               name, text, low, high);
 }
 
 static enum dig_status pin_start(const char *const text, struct dig_rig_track_options *const track,
@@ -186,11 +159,7 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
 {
     double flag = 0.0;
     switch (option) {
-    case 'h':
-        options->help_of = options->command;
-        options->command = DIG_RIG_COMMAND_HELP;
-        break;
-    case OPT_VERSION: options->command = DIG_RIG_COMMAND_VERSION; break;
+    case 'q': options->quiet = true; break;
     case 'o': options->out = optarg; break;
     case OPT_MACHINE: options->machine = optarg; break;
     case OPT_SCENE: options->scene = optarg; break;
@@ -227,7 +196,7 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
             return dig_error_set(error, DIG_EINVAL, "--fault: more than %d", DIG_RIG_FAULTS_MAX);
         }
         return dig_rig_fault_parse(optarg, &options->fault[options->faults++], error);
-    default: return dig_error_set(error, DIG_EINVAL, "unknown option or missing value");
+    default: return DIG_EINVAL; // said already
     }
     return DIG_OK;
 }
@@ -241,21 +210,13 @@ static enum dig_status check(const struct dig_rig_options *const options,
     if (options->machine == NULL) {
         return dig_error_set(error, DIG_EINVAL, "--machine: missing, expected a machine YAML");
     }
-    const bool bus = options->can != NULL || options->tcp != NULL || options->rtu != NULL;
     if (options->command == DIG_RIG_COMMAND_RECORD && options->out == NULL) {
         return dig_error_set(error, DIG_EINVAL, "-o: missing, expected the file to write");
     }
-    if (options->command == DIG_RIG_COMMAND_RECORD && bus) {
-        return dig_error_set(error, DIG_EINVAL, "record writes a file; a bus belongs to serve");
-    }
-    if (options->command == DIG_RIG_COMMAND_SERVE && !bus) {
+    if (options->command == DIG_RIG_COMMAND_SERVE && options->can == NULL && options->tcp == NULL &&
+        options->rtu == NULL) {
         return dig_error_set(error, DIG_EINVAL,
                              "no bus: expected --can, --modbus-tcp or --modbus-rtu");
-    }
-    if (options->command == DIG_RIG_COMMAND_SERVE && (options->out || options->truth)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "serve writes no file; -o and --truth belong to "
-                             "record");
     }
     return DIG_OK;
 }
@@ -272,42 +233,31 @@ enum dig_status dig_rig_options_parse(const int argc, char *argv[],
         .quantise = true,
         .speed    = 1.0,
     };
-    if (argc < 2) {
-        return dig_error_set(error, DIG_EINVAL, "expected record or serve");
+    const struct dig_command *const command = dig_command_find(dig_rig_program(), argv[1], error);
+    if (command == NULL) {
+        return DIG_EINVAL;
     }
-    int first = 1;
-    if (strcmp(argv[1], "record") == 0 || strcmp(argv[1], "serve") == 0) {
-        result.command = argv[1][0] == 'r' ? DIG_RIG_COMMAND_RECORD : DIG_RIG_COMMAND_SERVE;
-        first          = 2;
-    } else if (argv[1][0] != '-') {
-        return dig_error_set(error, DIG_EINVAL, "\"%s\": expected record or serve", argv[1]);
-    }
-
-    opterr     = 0;
-    optind     = first;
-    int option = 0;
-    while ((option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1) {
-        if (option == '?') {
-            return dig_error_set(error, DIG_EINVAL, "%s: unknown option, or its value is missing",
-                                 argv[optind - 1]);
+    result.help_of = command;
+    optind         = 0;
+    for (int option; (option = dig_option_next(dig_rig_program(), command, argc, argv, error)) !=
+                     DIG_OPTION_END;) {
+        if (option == DIG_OPTION_HELP || option == DIG_OPTION_VERSION) {
+            result.command =
+                option == DIG_OPTION_HELP ? DIG_RIG_COMMAND_HELP : DIG_RIG_COMMAND_VERSION;
+            *options = result;
+            return DIG_OK;
         }
         const enum dig_status status = take(option, &result, error);
         if (status != DIG_OK) {
             return status;
         }
-        if (option == 'h' || option == OPT_VERSION) {
-            *options = result;
-            return DIG_OK;
-        }
     }
+    result.command = command->name[0] == 'r' ? DIG_RIG_COMMAND_RECORD : DIG_RIG_COMMAND_SERVE;
     for (int i = optind; i < argc; i++) {
         if (result.inputs == DIG_RIG_INPUTS_MAX) {
             return dig_error_set(error, DIG_EINVAL, "more than %d recordings", DIG_RIG_INPUTS_MAX);
         }
         result.input[result.inputs++] = argv[i];
-    }
-    if (first == 1) {
-        return dig_error_set(error, DIG_EINVAL, "expected record or serve");
     }
     const enum dig_status status = check(&result, error);
     if (status == DIG_OK) {

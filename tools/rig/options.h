@@ -3,6 +3,7 @@
 #ifndef DIG_TOOLS_RIG_OPTIONS_H
 #define DIG_TOOLS_RIG_OPTIONS_H
 
+#include "core/command_line.h"
 #include "core/error.h"
 #include "tools/rig/fault.h"
 #include "tools/rig/track.h"
@@ -23,7 +24,7 @@ enum dig_rig_command {
 /// Strings point into argv.
 struct dig_rig_options {
     enum dig_rig_command         command;
-    enum dig_rig_command         help_of; // HELP: the command it was asked for, or HELP for all
+    const struct dig_command    *help_of; // HELP: what it was asked for
     size_t                       inputs;
     const char                  *input[DIG_RIG_INPUTS_MAX]; // recordings, or one campaign folder
     const char                  *machine;
@@ -32,6 +33,7 @@ struct dig_rig_options {
     struct dig_rig_track_options track;
     uint64_t                     seed;
     bool                         noise;
+    bool                         quiet; // no progress
     // record
     bool        quantise;
     const char *out;
@@ -49,8 +51,7 @@ struct dig_rig_options {
     struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
 };
 
-/// The text of --help: of RECORD or SERVE alone, else of both.
-const char *dig_rig_options_help(enum dig_rig_command command);
+const struct dig_program *dig_rig_program(void);
 
 /// DIG_EINVAL says which option and what was expected.
 DIG_MUST_CHECK enum dig_status dig_rig_options_parse(int argc, char *argv[],

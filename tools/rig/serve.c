@@ -156,7 +156,7 @@ enum dig_status dig_rig_serve(const struct dig_machine *const     machine,
         .track   = track,
         .noise   = dig_rig_noise_init(options->seed),
     };
-    struct progress progress = { .terminal = isatty(STDERR_FILENO) == 1 };
+    struct progress progress = { .terminal = !options->quiet && isatty(STDERR_FILENO) == 1 };
     const int64_t   rows     = (int64_t)track->rows;
     const int64_t   first    = -llround(options->start_delay_s * options->speed / tick_s);
     const double    real_ns  = 1e9 * tick_s / options->speed;
@@ -169,7 +169,9 @@ enum dig_status dig_rig_serve(const struct dig_machine *const     machine,
         const int64_t late_ns = now_ns() - deadline_ns;
         worst_ns              = late_ns > worst_ns ? late_ns : worst_ns;
         play(&player, &buses, tick);
-        tell_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
+        if (!options->quiet) {
+            tell_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
+        }
         tick++;
     }
     if (progress.terminal) {

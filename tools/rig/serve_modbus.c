@@ -86,7 +86,8 @@ static bool damage(const struct dig_rig_modbus *const server, const uint8_t requ
     const int line = modbus_get_socket(server->context);
     if (server->listening < 0) {
         static const uint8_t rubbish[] = { 0x01, 0x04, 0x55 };
-        (void)write(line, rubbish, sizeof rubbish);
+        const ssize_t        written   = write(line, rubbish, sizeof rubbish);
+        (void)written; // lost on the line is lost
         return false;
     }
     uint8_t answer[] = {
