@@ -221,6 +221,11 @@ static void a_verdict_is_read_from_the_documented_json(void **state)
     assert_string_equal(v.name[0], "cylinder_friction");
     assert_string_equal(v.effect[1], "unlisted");
     assert_close(v.probability[0], 0.98, 1e-12);
+    assert_close(v.low[0], 760.0, 1e-9);
+    assert_close(v.high[0], 861.0, 1e-9);
+    assert_true(isnan(v.low[1])); // it has no parameter
+    assert_close(v.gravel_low.value[DIG_AXIS_DENSITY_kgpm3], 2100.0, 1e-9);
+    assert_close(v.gravel_high.value[DIG_AXIS_FRICTION], 0.63, 1e-12);
     assert_int_equal(v.sets, 1);
     assert_int_equal(v.set_size[0], 2);
     assert_string_equal(v.set[0][1], "ground_slope");
@@ -228,6 +233,48 @@ static void a_verdict_is_read_from_the_documented_json(void **state)
     assert_int_equal(blind_verdict_read("tests/data/formats/identity.json", &v, &error),
                      DIG_EINVAL);
     assert_int_equal(blind_verdict_read("tests/data/formats/none.json", &v, &error), DIG_EIO);
+}
+
+static const struct blind_criterion *criterion(const char *const begins)
+{
+    for (size_t i = 0; i < BLIND_CRITERIA; i++) {
+        if (strncmp(blind_criterion[i].title, begins, strlen(begins)) == 0) {
+            return &blind_criterion[i];
+        }
+    }
+    fail_msg("no criterion %s", begins);
+    return NULL;
+}
+
+// Of gravel three numbers count, of an effect that was found its first parameter; of one that was
+// not found, neither.
+static void intervals_are_judged_number_by_number(void **state)
+{
+    (void)state;
+    struct blind_result r = answered("wear", "wear", 0.9);
+    r.order.effect[0].how = BLIND_BY_GROUND;
+    r.gravel              = (struct dig_gravel){ { 0.5, 0.5, 2500.0 } };
+    r.verdict.gravel_low  = (struct dig_gravel){ { 0.4, 0.6, 2400.0 } };
+    r.verdict.gravel_high = (struct dig_gravel){ { 0.6, 0.7, 2600.0 } };
+    r.magnitude           = 0.04;
+    r.verdict.effects     = 1;
+    r.verdict.low[0]      = 0.05;
+    r.verdict.high[0]     = 0.06;
+    (void)snprintf(r.verdict.effect[0], DIG_NAME_SIZE, "wear");
+    (void)snprintf(r.source, sizeof r.source, "ours");
+    struct blind_share s = blind_criterion_judge(criterion("beside an effect"), 1, &r);
+    assert_int_equal(s.k, 2);
+    assert_int_equal(s.n, 3);
+    s = blind_criterion_judge(criterion("  of its magnitude, our DEM"), 1, &r);
+    assert_int_equal(s.k, 0);
+    assert_int_equal(s.n, 1);
+    r.verdict.low[0] = 0.03;
+    assert_int_equal(blind_criterion_judge(criterion("  of its magnitude, our DEM"), 1, &r).k, 1);
+    assert_int_equal(blind_criterion_judge(criterion("plain gravel"), 1, &r).n, 0);
+    (void)snprintf(r.verdict.name[0], DIG_NAME_SIZE, "layering");
+    (void)snprintf(r.verdict.effect[0], DIG_NAME_SIZE, "layering");
+    assert_int_equal(blind_criterion_judge(criterion("beside an effect"), 1, &r).n, 0);
+    assert_int_equal(blind_criterion_judge(criterion("  of its magnitude, our DEM"), 1, &r).n, 0);
 }
 
 static void the_pool_holds_whole_beds_of_known_gravel(void **state)
@@ -276,6 +323,7 @@ int main(void)
         cmocka_unit_test(intervals_are_those_of_wilson),
         cmocka_unit_test(answers_are_told_apart),
         cmocka_unit_test(a_verdict_is_read_from_the_documented_json),
+        cmocka_unit_test(intervals_are_judged_number_by_number),
         cmocka_unit_test(the_pool_holds_whole_beds_of_known_gravel),
     };
     return cmocka_run_group_tests_name("blind", tests, NULL, NULL);
