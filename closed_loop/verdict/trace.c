@@ -265,14 +265,11 @@ static enum dig_status weigh_soil(struct dig_trace_work *const w)
     return status;
 }
 
-// How well all that is reported is known.
+// How well what was found is known, and what competed with it.
 static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed)
 {
     struct dig_search *const s      = w->search;
     enum dig_status          status = dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen);
-    if (status == DIG_OK) {
-        status = dig_posterior_intervals(w->batch, w->soil, seed, &w->before);
-    }
     for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
         status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i]);
     }
@@ -293,6 +290,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK) {
         status = dig_trace_batch(w, digs, measured, &w->before, error);
     }
+    if (status == DIG_OK) {
+        status = dig_posterior_intervals(w->batch, w->soil, settings->seed, &w->before);
+    }
     struct dig_fitted plain = w->before;
     if (status == DIG_OK && machine != NULL) {
         choose_rate(w);
@@ -311,12 +311,12 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK) {
         status = dig_trace_confirm_without_air(w);
     }
+    if (status == DIG_OK) {
+        status = find_intervals(w, settings->seed);
+    }
     // Nothing was found that is corrected: nothing changes.
     if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
         w->search->chosen = w->before;
-    }
-    if (status == DIG_OK) {
-        status = find_intervals(w, settings->seed);
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
                                    digs, measured,   w->batch,   &w->before, w->search };
