@@ -47,6 +47,8 @@ refused "design's table" digloop design FILE
 refused "digreport's table" digreport --table FILE --machine $machine --html "$out" x=tests/data/formats/daemon.lcm
 refused "digreport's machine" digreport --table $table --machine FILE --html "$out" x=tests/data/formats/daemon.lcm
 refused "digreport's log" digreport --table $table --machine $machine --html "$out" x=FILE
+refused "shift's log" digreport shift --table $table --machine $machine FILE
+refused "digwatch's log" digwatch --log FILE
 refused "digrig's recording" digrig record FILE --machine $machine -o "$out"
 refused "digrig's machine" digrig record $recording --machine FILE -o "$out"
 refused "digrig's scene" digrig record $recording --machine $machine --scene FILE -o "$out"
