@@ -24,7 +24,7 @@ while read -r name; do known["word $name"]=1; done < <(
 awk '
     function say(kind, name) { print FILENAME, FNR, kind, name }
     function is_path(name) {
-        return name ~ /^(core|files|estimator|tables|offline_dem|closed_loop|firmware_host|tools|messages|config|tests|scripts|docs|\.ci)\//
+        return name ~ /^(core|files|estimator|tables|offline_dem|closed_loop|firmware_host|tools|messages|config|tests|python|scripts|docs|\.ci)\//
     }
     function look_at(text,    words, word, ours, name, w) {
         words = split(text, word, /[ \t]+/)

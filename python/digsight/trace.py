@@ -1,0 +1,42 @@
+"""What `digloop trace --json` found (docs/formats/trace.md, "Trace (JSON)")."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+
+@dataclass(frozen=True, repr=False)
+class Trace:
+    """The lists of the file as frames. A column is named by the path to it, as `soil.moment_Nm.before.rms`."""
+
+    verdict: list[str]
+    effects: pd.DataFrame
+    candidates: pd.DataFrame
+    residuals: pd.DataFrame
+    residual_against: pd.DataFrame  # of each regressor; bins holds a list
+    material: pd.DataFrame  # of each axis: value, low, high; before: without the effects
+    whole: dict[str, Any]  # the file as it is, with the rest
+
+    def __repr__(self) -> str:
+        return f"<trace of {self.whole['digs']} digs: {', '.join(self.verdict)}>"
+
+
+def read_trace(path: str | Path) -> Trace:
+    """Reads a trace; ValueError where it is none."""
+    text = Path(path).read_text(encoding="utf-8")
+    try:
+        whole = json.loads(text)
+        if not isinstance(whole, dict):
+            raise ValueError(f"{path}: a {type(whole).__name__}, expected an object")
+        material = pd.DataFrame(whole["material"]).T
+        material["before"] = pd.Series(whole["material_before"])
+        lists = ("effects", "candidates", "residuals", "residual_against")
+        frames = {name: pd.json_normalize(whole[name]) for name in lists}
+        return Trace(verdict=whole["verdict"], material=material, whole=whole, **frames)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{path}:{error.lineno}: {error.msg}, expected JSON") from error
+    except KeyError as error:
+        raise ValueError(f"{path}: no key {error}, expected what digloop trace --json writes") from error
