@@ -66,6 +66,7 @@ put_config "$work/digsightd.yaml"
 put 644 "$share/digsight/tables" tables/*.sqlite
 put_tree "$share/digsight" config/{can,grids,machines,scenes,signals}
 put 644 "$share/digsight/config" config/*.yaml
+put 644 "$share/digsight/python/digsight" python/digsight/*.py
 put 644 "$share/doc/digsight" README.md CHANGELOG.md LICENSE
 put_tree "$share/doc/digsight" docs
 

@@ -47,6 +47,10 @@ done
 check "so is a program that reads what it said" eval '"$put/bin/digsightd" -c config/digsightd.yaml --check --json |
     tee "$work/err" | tr -d "\n" | grep -qE "\"machine\": \{\"name\": \"zx200_trench\".*\"not_measured\": \[\]\}$"'
 check "a table that was put there is shown" eval '"$put/bin/digtable" show "$put/share/digsight/tables/rig.sqlite" 0 --json >"$work/out"'
+if /usr/bin/python3 -c 'import pandas' 2>/dev/null; then
+    check "Python reads it" eval 'PYTHONPATH=$put/share/digsight/python /usr/bin/python3 -B -c "import digsight, sys
+print(digsight.open_table(sys.argv[1]))" "$put/share/digsight/tables/rig.sqlite" >"$work/out" 2>"$work/err"'
+fi
 check "the unit starts the program and the configuration that were put there" \
     grep -qx "ExecStart=$prefix/bin/digsightd -c $prefix/etc/digsight/digsightd.yaml" "$put/lib/systemd/system/digsightd.service"
 
