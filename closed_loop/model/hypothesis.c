@@ -10,6 +10,7 @@
 enum {
     MEMORY = DIG_LIKELIHOOD_RESIDUALS * (DIG_HYPOTHESIS_NUMBERS + 2),
     ROUNDS = 4, // of fitting and of weighing anew, at most
+    HALVES = 5, // of the way to where least squares lead
 };
 
 static const double enough = 1e-3; // a fall of the misfit that is none
@@ -60,7 +61,8 @@ static bool improve(struct dig_likelihood *const likelihood, struct dig_levenber
     memcpy(to, f->number, sizeof to);
     dig_likelihood_weigh(likelihood, to);
     dig_levenberg_run(l, to, &squares);
-    for (double way = 1.0; way > 0.05 && !better; way *= 0.5) {
+    double way = 1.0;
+    for (int half = 0; half < HALVES && !better; half++, way *= 0.5) {
         double x[DIG_HYPOTHESIS_NUMBERS];
         for (size_t j = 0; j < l->unknowns; j++) {
             x[j] = f->number[j] + way * (to[j] - f->number[j]);

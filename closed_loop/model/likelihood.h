@@ -35,20 +35,21 @@ struct dig_likelihood {
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
 };
 
-void dig_likelihood_init(struct dig_likelihood *likelihood, const struct dig_whitened_digs *batch,
+void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_digs *batch,
                          const struct dig_soil *soil, const struct dig_hypothesis *hypothesis);
 
-/// Takes the covariance at these numbers for all that follows.
-void dig_likelihood_weigh(struct dig_likelihood *likelihood, const double number[]);
+/// Takes the covariance at the numbers x for all that follows.
+void dig_likelihood_weigh(struct dig_likelihood *l, const double x[]);
 
-/// The whitened residuals of the means, then of the digs about them; context: the likelihood.
-void dig_likelihood_residual(void *context, const double number[], double residual[]);
+/// The whitened residuals r of the means, then of the digs about them, at x; context: the
+/// likelihood.
+void dig_likelihood_residual(void *context, const double x[], double r[]);
 
 /// The misfit of residuals so long; *squares: of it, what is not a logarithm.
-double dig_likelihood_misfit(const struct dig_likelihood *likelihood, const double residual[],
+double dig_likelihood_misfit(const struct dig_likelihood *l, const double residual[],
                              double *squares);
 
-/// Squares of the means' misfit at these numbers, by the covariance that was taken.
-double dig_likelihood_means(struct dig_likelihood *likelihood, const double number[]);
+/// Squares of the means' misfit at x, by the covariance that was taken.
+double dig_likelihood_means(struct dig_likelihood *l, const double x[]);
 
 #endif // DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H

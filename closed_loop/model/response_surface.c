@@ -31,7 +31,7 @@ static size_t least_filled(const struct dig_curve_set *const set)
 static void choose_terms(const struct dig_curve_set *const  set,
                          struct dig_response_surface *const surface)
 {
-    const unsigned most = least_filled(set) >= 2 * DIG_RESPONSE_SURFACE_TERMS ? 3 : 2;
+    const unsigned most = least_filled(set) >= (size_t)2 * DIG_RESPONSE_SURFACE_TERMS ? 3 : 2;
     surface->terms      = 0;
     for (unsigned degree = 0; degree <= most; degree++) {
         for (unsigned x = 0; x <= degree; x++) {
