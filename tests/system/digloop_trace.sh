@@ -59,7 +59,7 @@ sed -i "s|scene: .*|scene: $PWD/config/scenes/rig.yaml|" "$work/named/campaign.y
 check "a scene may be a file; without a holdout the errors are not known" \
     eval '[ $? = 0 ] && grep -q "\"holdout\": null" "$work/n.json"'
 "$BIN/digloop" trace "$table" "$work/named" >"$work/text" 2>"$work/err"
-check "asked for nothing else, words are the result" eval 'grep -qi "nothing is missing" "$work/text" && [ ! -s "$work/err" ]'
+check "asked for nothing else, words are the result" eval 'grep -qi "nothing is missing" "$work/text" && ! grep -v trembles "$work/err"'
 "$BIN/digloop" trace "$table" "$work/named" --json - >"$work/stdout.json" 2>/dev/null
 check "JSON may go to standard output, alone" cmp -s "$work/n.json" "$work/stdout.json"
 (program=$(realpath "$BIN/digloop") data=$(realpath "$table") && cd "$work" && "$program" trace "$data" named --html - >page 2>told)

@@ -116,7 +116,7 @@ check "which left the file and nothing beside it" eval '[ -s "$work/health.prom"
 
 refused() { # PATTERN ARGUMENT…: exit status 2, one line and a hint
     "$BIN/digwatch" "${@:2}" >"$work/out" 2>"$work/err" </dev/null
-    [ $? = 2 ] && grep -q "$1" "$work/err" && [ ! -s "$work/out" ]
+    [ $? = 2 ] && grep -q -e "$1" "$work/err" && [ ! -s "$work/out" ]
 }
 check "without a terminal it is refused" refused 'standard input and output: expected a terminal' --log "$work/run.lcm"
 check "a log that is not there" refused 'none.lcm: No such file' --log "$work/none.lcm"
@@ -124,6 +124,6 @@ check "a log that is none" refused 'run.csv:1: does not begin with ED A1 DA 01' 
 check "a speed that is none" refused 'speed 0: expected 0.01 to 10000' --log "$work/run.lcm" --speed 0
 check "a speed without a log" refused 'expected --speed with --log' --speed 2
 check "an argument" refused 'run.lcm: expected options alone' run.lcm
-check "an unknown option" refused 'unknown option or missing value: --colour' --colour
+check "an unknown option" refused '--colour: unknown option' --colour
 check "--help has examples, on standard output" eval '"$BIN/digwatch" --help | grep -q "digwatch --log day.lcm --speed 10"'
 finish
