@@ -61,9 +61,9 @@ static bool improve(struct dig_likelihood *const likelihood, struct dig_levenber
     memcpy(to, f->number, sizeof to);
     dig_likelihood_weigh(likelihood, to);
     dig_levenberg_run(l, to, &squares);
-    double way = 1.0;
-    for (int half = 0; half < HALVES && !better; half++, way *= 0.5) {
-        double x[DIG_HYPOTHESIS_NUMBERS];
+    for (int half = 0; half < HALVES && !better; half++) {
+        const double way = ldexp(1.0, -half);
+        double       x[DIG_HYPOTHESIS_NUMBERS];
         for (size_t j = 0; j < l->unknowns; j++) {
             x[j] = f->number[j] + way * (to[j] - f->number[j]);
         }
