@@ -10,6 +10,13 @@
 
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 
+// An effect that misfits more than digs of its own would may leave at most so many times what they
+// would. Where the plain hypothesis leaves so many times what is expected, its curves must explain
+// this share of it.
+static const double most_left = 2.5;
+static const double much_left = 4.0;
+static const double matched   = 0.65;
+
 // Share of what the plain hypothesis leaves that a rock elsewhere must explain: another depth gives
 // its hump another shape.
 static const double half = 0.5;
@@ -63,15 +70,15 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
     return any;
 }
 
-// Whether a second effect is significant beside the best one: as digs that this made would show.
-// Most of the work.
-static enum dig_status look_for_more(struct dig_search_work *const c, bool *const more)
+// What digs of the chosen hypothesis would show; whether a second effect is significant beside it,
+// if that is asked (more not NULL): most of the work.
+static enum dig_status weigh_chosen(struct dig_search_work *const c, bool *const more)
 {
     struct dig_hypothesis      added[DIG_RIVALS_MAX];
     struct dig_fitted          fitted[DIG_RIVALS_MAX + 1];
     struct dig_statistic       statistic;
     struct dig_null_simulation null;
-    const size_t               n = list_additions(c, &c->s->chosen.hypothesis, added);
+    const size_t n = more != NULL ? list_additions(c, &c->s->chosen.hypothesis, added) : 0;
     // Digs that differ cost as many times more as there are of them.
     const size_t draws =
         dig_hypothesis_differs(&c->s->chosen.hypothesis) ? c->draws / 8 + 2 : c->draws / 2;
@@ -79,17 +86,44 @@ static enum dig_status look_for_more(struct dig_search_work *const c, bool *cons
                             c->s->chosen.number, DIG_FIT_BARE, fitted, &statistic);
     const enum dig_status status = dig_null_simulation_draw(c->batch, c->soil, &c->s->chosen, n,
                                                             added, draws, &c->seed, &null);
-    *more                        = status == DIG_OK && n > 0 &&
-            dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
+    if (status == DIG_OK) {
+        c->p_fit    = dig_null_simulation_p(&null, 0, statistic.misfit);
+        c->left     = statistic.misfit;
+        c->expected = null.mean[0];
+        if (more != NULL) {
+            *more = n > 0 && dig_null_simulation_p(&null, 2, statistic.gain) < c->false_alarm;
+        }
+    }
     return status;
 }
 
-// An effect must explain the digs better than none by what tells two answers apart, and no worse
-// than what has no name.
+// Share of the plain hypothesis' excess misfit that the chosen one takes away.
+static double share_taken(const struct dig_search_work *const c)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before   = dig_search_left(c, &c->s->plain) - expected;
+    const double after    = dig_search_left(c, &c->s->chosen) - expected;
+    return before > 0.0 ? 1.0 - after / before : 1.0;
+}
+
+// Where much is left of the plain hypothesis, the effect's own curves must explain it: not only
+// what an effect of this size may be unlike.
+static bool is_matched(const struct dig_search_work *const c)
+{
+    const double expected = c->plain_null.mean[0];
+    const double before   = dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, &c->s->plain);
+    const double after    = dig_hypothesis_squares(c->batch, c->soil, &c->s->chosen, &c->s->plain);
+    return before < much_left * expected || before - after >= matched * (before - expected);
+}
+
+// An effect must explain the digs better than none by what tells two answers apart, no worse than
+// what has no name, and leave what digs of its own would, or little.
 static bool is_believable(const struct dig_search_work *const c, const double evidence)
 {
     return evidence >= DIG_SEARCH_TOLD_APART &&
-           evidence >= dig_search_evidence(c, &c->s->nameless, 0);
+           evidence >= dig_search_evidence(c, &c->s->nameless, 0) && is_matched(c) &&
+           (c->p_fit >= DIG_SEARCH_LEAST_FIT ||
+            (share_taken(c) >= DIG_SEARCH_LEAST_SHARE && c->left <= most_left * c->expected));
 }
 
 // A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
@@ -185,11 +219,14 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     const size_t best = dig_search_best_rival(c->s);
     c->s->chosen      = c->s->rival[best];
     bool more         = false;
-    status            = look_for_more(c, &more);
+    status            = weigh_chosen(c, &more);
     struct dig_fitted pair;
     if (status == DIG_OK && more && find_pair(c, &pair)) {
         fit_again(c, best, &pair);
         status = choose_pair(c, best, &pair);
+        if (status == DIG_OK) {
+            status = weigh_chosen(c, NULL);
+        }
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
     if (status == DIG_OK) {

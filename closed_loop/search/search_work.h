@@ -10,8 +10,9 @@
 #define DIG_SEARCH_TOLD_APART 6.0
 
 /// An effect may be the whole truth when digs of its own would misfit as much in one campaign of a
-/// hundred.
-#define DIG_SEARCH_LEAST_FIT 0.01
+/// hundred, or when it takes away this share of what the plain hypothesis leaves.
+#define DIG_SEARCH_LEAST_FIT   0.01
+#define DIG_SEARCH_LEAST_SHARE 0.75
 
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
@@ -21,6 +22,7 @@ struct dig_search_work {
     uint64_t                   seed;
     struct dig_hypothesis      single[DIG_RIVALS_MAX];
     struct dig_null_simulation plain_null;
+    double                     p_fit, left, expected; // misfit of chosen, and of digs that it made
     struct dig_search         *s;
 };
 
