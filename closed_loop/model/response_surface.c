@@ -10,8 +10,8 @@
 // Of the diagonal: keeps a table with holes from being singular, and moves nothing else.
 static const double ridge = 1e-9;
 
-// The prior of a cubic term's coefficient: one over its variance, in variances of one dig. What a
-// parabola leaves of a table of 48 gravels is some .1 to .3 of it.
+// The prior of a cubic term's coefficient: one over its variance, in variances of one dig. Loose
+// beside what a table of 48 gravels with five packings each tells of it.
 static const double cubic_prior = 5.0;
 
 // Entries of the trajectory that has fewest, of those that have any.
