@@ -12,14 +12,38 @@
 static const double alike_bins[DIG_COMMON_ERROR_PARTS] = { 2.5, 2.5, 0.7 };
 static const double alike_channels                     = 0.7;
 
-// R of a part. The ridge keeps it positive definite.
-static double likeness(const size_t part, const size_t a, const size_t b)
+// R of a part between two features that lie so many bins apart on one channel. The ridge keeps it
+// positive definite.
+struct likeness {
+    double along[DIG_FEATURE_BINS];
+};
+
+static struct likeness likeness_of(const size_t part)
+{
+    struct likeness r;
+    for (size_t apart = 0; apart < DIG_FEATURE_BINS; apart++) {
+        r.along[apart] = exp(-0.5 * pow((double)apart / alike_bins[part], 2.0));
+    }
+    return r;
+}
+
+static double likeness(const struct likeness *const r, const size_t a, const size_t b)
 {
     static const double ridge = 1e-6;
-    const double        apart = (double)(a % DIG_FEATURE_BINS) - (double)(b % DIG_FEATURE_BINS);
+    const size_t        i     = a % DIG_FEATURE_BINS;
+    const size_t        j     = b % DIG_FEATURE_BINS;
     const bool          same  = a / DIG_FEATURE_BINS == b / DIG_FEATURE_BINS;
-    return (same ? 1.0 : alike_channels) * exp(-0.5 * pow(apart / alike_bins[part], 2.0)) +
-           (a == b ? ridge : 0.0);
+    return (same ? 1.0 : alike_channels) * r->along[i > j ? i - j : j - i] + (a == b ? ridge : 0.0);
+}
+
+// True where a part has no size at all: what has no name in a hypothesis of effects, say.
+static bool is_none(const double size[DIG_FEATURES])
+{
+    bool none = true;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        none = none && fabs(size[f]) <= 0.0;
+    }
+    return none;
 }
 
 // The smooth part's covariance, units of the table.
@@ -27,16 +51,16 @@ static void smooth_part(const struct dig_whitened_digs_group *const group,
                         const struct dig_common_error *const error, double k[])
 {
     const size_t n = group->features;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            const size_t a   = group->feature[i];
-            const size_t b   = group->feature[j];
-            double       sum = 0.0;
-            for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
-                sum += error->size[p][a] * error->size[p][b] * likeness(p, a, b);
+    memset(k, 0, n * n * sizeof k[0]);
+    for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
+        const struct likeness r = likeness_of(p);
+        for (size_t i = 0; i < n && !is_none(error->size[p]); i++) {
+            for (size_t j = 0; j <= i; j++) {
+                const size_t a = group->feature[i];
+                const size_t b = group->feature[j];
+                k[i * n + j] += error->size[p][a] * error->size[p][b] * likeness(&r, a, b);
+                k[j * n + i] = k[i * n + j];
             }
-            k[i * n + j] = sum;
-            k[j * n + i] = k[i * n + j];
         }
     }
 }
@@ -101,12 +125,13 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
 {
     double feature[DIG_FEATURES] = { 0.0 };
     for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
-        double lower[DIG_FEATURES * DIG_FEATURES];
-        double factor[DIG_FEATURES];
+        double                lower[DIG_FEATURES * DIG_FEATURES];
+        double                factor[DIG_FEATURES];
+        const struct likeness r = likeness_of(p);
         for (size_t a = 0; a < DIG_FEATURES; a++) {
             factor[a] = dig_chance_normal(seed);
             for (size_t b = 0; b <= a; b++) {
-                lower[a * DIG_FEATURES + b] = likeness(p, a, b);
+                lower[a * DIG_FEATURES + b] = likeness(&r, a, b);
             }
         }
         const enum dig_status status = dig_cholesky(DIG_FEATURES, lower);

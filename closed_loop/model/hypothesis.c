@@ -43,6 +43,7 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
     dig_likelihood_residual(likelihood, x, r);
     memcpy(f->number, x, l->unknowns * sizeof f->number[0]);
     f->misfit = dig_likelihood_misfit(likelihood, r, &f->squares);
+    memcpy(f->z, r + likelihood->residuals - likelihood->steps, likelihood->steps * sizeof f->z[0]);
     for (size_t g = 0; g < likelihood->batch->groups; g++) {
         f->noise[g] = likelihood->error[g].noise;
     }
@@ -50,7 +51,7 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
 }
 
 // Least squares by the covariance at x; on the way to where they lead, the covariance changes: as
-// far is gone as makes the misfit less.
+// far is gone as makes the misfit less. Where they lead nowhere, nothing is tried.
 static bool improve(struct dig_likelihood *const likelihood, struct dig_levenberg *const l,
                     struct dig_fitted *const f)
 {
@@ -61,7 +62,9 @@ static bool improve(struct dig_likelihood *const likelihood, struct dig_levenber
     memcpy(to, f->number, sizeof to);
     dig_likelihood_weigh(likelihood, to);
     dig_levenberg_run(l, to, &squares);
-    for (int half = 0; half < HALVES && !better; half++) {
+    const double about = likelihood->differs ? 0.0 : dig_whitened_digs_about(likelihood->batch);
+    const bool   leads = squares + about < f->squares - enough;
+    for (int half = 0; half < HALVES && leads && !better; half++) {
         const double way = ldexp(1.0, -half);
         double       x[DIG_HYPOTHESIS_NUMBERS];
         for (size_t j = 0; j < l->unknowns; j++) {
@@ -127,16 +130,18 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
 }
 
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
-                                 const struct dig_soil *const soil, const double start[],
-                                 struct dig_fitted *const fitted)
+                                 const struct dig_soil *const          soil,
+                                 const struct dig_fitted *const        beside,
+                                 struct dig_fitted *const              fitted)
 {
     static const double sizes[] = { 0.1, 0.2, 0.4, 0.8 };
     const size_t        n       = sizeof sizes / sizeof sizes[0];
     struct dig_fitted   best    = { .misfit = INFINITY };
     for (size_t i = 0; i < n; i++) {
-        const struct dig_hypothesis unlisted = { .effects = 0, .unlisted = sizes[i] };
-        struct dig_fitted           tried;
-        dig_hypothesis_fit(batch, soil, &unlisted, start, DIG_FIT_BARE, &tried);
+        struct dig_hypothesis unlisted = beside->hypothesis;
+        struct dig_fitted     tried;
+        unlisted.unlisted = sizes[i];
+        dig_hypothesis_fit(batch, soil, &unlisted, beside->number, DIG_FIT_BARE, &tried);
         if (tried.misfit < best.misfit) {
             best = tried;
         }
@@ -161,7 +166,10 @@ double dig_hypothesis_squares(const struct dig_whitened_digs *const batch,
                               const struct dig_fitted *const        by)
 {
     struct dig_likelihood own;
+    struct dig_likelihood other;
     dig_likelihood_init(&own, batch, soil, &fitted->hypothesis);
-    dig_hypothesis_errors(batch, soil, by, own.error);
+    dig_likelihood_init(&other, batch, soil, &by->hypothesis);
+    dig_likelihood_weigh(&other, by->number);
+    dig_likelihood_weigh_as(&own, &other);
     return dig_likelihood_means(&own, fitted->number);
 }

@@ -16,6 +16,7 @@ struct dig_fitted {
     double                misfit;                    // closed_loop/model/likelihood.h
     double                squares;                   // of it, what is not a logarithm
     size_t                free;                      // numbers fitted
+    double                z[DIG_STEPS_MAX];          // of the batch's steps
 };
 
 /// Where to start a fit from: the numbers given, or those and four corners of the table as well.
@@ -26,10 +27,10 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *batch, const struct dig_
                         const struct dig_hypothesis *hypothesis, const double start[],
                         enum dig_fit_care care, struct dig_fitted *fitted);
 
-/// Fits a gravel and something that has no name, of the size that explains most; the misfit pays
-/// for the choice of it.
+/// Fits something that has no name beside the hypothesis of a fit, of the size that explains most;
+/// the misfit pays for the choice of it.
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
-                                 const double start[], struct dig_fitted *fitted);
+                                 const struct dig_fitted *beside, struct dig_fitted *fitted);
 
 /// The bounds of a hypothesis' numbers: the table's gravels, or some beyond; an effect's range.
 void dig_hypothesis_bounds(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
@@ -39,7 +40,8 @@ void dig_hypothesis_bounds(const struct dig_soil *soil, const struct dig_hypothe
 void dig_hypothesis_errors(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                            const struct dig_fitted *fitted, struct dig_common_error error[]);
 
-/// Squares of the means' misfit of a fitted hypothesis, by the covariance of another fit.
+/// Squares of the means' misfit of a fitted hypothesis (and of z), by the covariance of another
+/// fit.
 double dig_hypothesis_squares(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                               const struct dig_fitted *fitted, const struct dig_fitted *by);
 

@@ -1,6 +1,7 @@
 #include "closed_loop/model/likelihood.h"
 
 #include "closed_loop/model/soil_fit.h"
+#include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
 #include <math.h>
@@ -40,7 +41,8 @@ void dig_likelihood_init(struct dig_likelihood *const          l,
     l->hypothesis = hypothesis;
     l->numbers    = DIG_AXES + hypothesis->effects;
     l->differs    = dig_hypothesis_differs(hypothesis);
-    l->residuals  = 0;
+    l->steps      = batch->steps != NULL ? batch->steps->steps : 0;
+    l->residuals  = l->steps;
     for (size_t g = 0; g < batch->groups; g++) {
         l->residuals += batch->group[g].features * (1 + (l->differs ? batch->group[g].digs : 0));
     }
@@ -103,11 +105,34 @@ static void model_at(struct dig_likelihood *const l, const double x[])
     }
 }
 
-void dig_likelihood_residual(void *const context, const double x[], double r[])
+// Fits z to the whitened residuals of the means, takes off what it explains, and leaves it in z.
+static void take_off_steps(const struct dig_likelihood *const l, double mean[], double z[])
 {
-    struct dig_likelihood *const l = context;
-    size_t                       n = 0;
-    model_at(l, x);
+    for (size_t k = 0; k < l->steps; k++) {
+        const double *r = mean;
+        z[k]            = 0.0;
+        for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
+            for (size_t f = 0; f < l->batch->group[g].features; f++) {
+                z[k] += l->step[k][g][f] * r[f];
+            }
+        }
+    }
+    dig_lower_solve(l->steps, l->step_lower, z);
+    dig_lower_transposed_solve(l->steps, l->step_lower, z);
+    for (size_t k = 0; k < l->steps; k++) {
+        double *r = mean;
+        for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
+            for (size_t f = 0; f < l->batch->group[g].features; f++) {
+                r[f] -= z[k] * l->step[k][g][f];
+            }
+        }
+    }
+}
+
+// Whitened residuals of the means, how many.
+static size_t residual_of_means(const struct dig_likelihood *const l, double r[])
+{
+    size_t n = 0;
     for (size_t g = 0; g < l->batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &l->batch->group[g];
         for (size_t k = 0; k < group->features; k++) {
@@ -115,10 +140,21 @@ void dig_likelihood_residual(void *const context, const double x[], double r[])
         }
         (void)dig_common_error_squares(group, &l->error[g], r + n);
         n += group->features;
-        for (size_t i = 0; l->differs && i < l->batch->digs; i++) {
-            for (size_t k = 0; l->batch->dig[i].group == g && k < group->features; k++) {
-                r[n++] = l->batch->dig[i].y[k] - group->mean[k] - (l->y[i][k] - l->mean[g][k]);
-            }
+    }
+    return n;
+}
+
+void dig_likelihood_residual(void *const context, const double x[], double r[])
+{
+    struct dig_likelihood *const l = context;
+    model_at(l, x);
+    size_t n = residual_of_means(l, r);
+    take_off_steps(l, r, r + l->residuals - l->steps);
+    for (size_t i = 0; l->differs && i < l->batch->digs; i++) {
+        const size_t                                g     = l->batch->dig[i].group;
+        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        for (size_t k = 0; k < group->features; k++) {
+            r[n++] = l->batch->dig[i].y[k] - group->mean[k] - (l->y[i][k] - l->mean[g][k]);
         }
     }
 }
@@ -170,6 +206,30 @@ static double effects_of(struct dig_likelihood *const l, const size_t g, const d
     return variance;
 }
 
+static void weigh_steps(struct dig_likelihood *const l)
+{
+    const struct dig_steps *const steps = l->batch->steps;
+    memset(l->step_lower, 0, l->steps * l->steps * sizeof l->step_lower[0]);
+    for (size_t k = 0; k < l->steps; k++) {
+        l->step_lower[k * l->steps + k] = 1.0;
+        for (size_t g = 0; g < l->batch->groups; g++) {
+            const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+            memcpy(l->step[k][g], steps->of[k][g], sizeof l->step[k][g]);
+            (void)dig_common_error_squares(group, &l->error[g], l->step[k][g]);
+            for (size_t j = 0; j <= k; j++) {
+                for (size_t f = 0; f < group->features; f++) {
+                    l->step_lower[k * l->steps + j] += l->step[k][g][f] * l->step[j][g][f];
+                }
+            }
+        }
+    }
+    // Positive definite by the 1 on its diagonal.
+    const enum dig_status status = dig_cholesky(l->steps, l->step_lower);
+    assert(status == DIG_OK);
+    (void)status;
+    l->step_log_det = dig_lower_log_det(l->steps, l->step_lower);
+}
+
 void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
 {
     if (is_same(l->numbers, l->weighed_at, x)) {
@@ -195,13 +255,24 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         }
         dig_common_error_build(group, error);
     }
+    weigh_steps(l);
+}
+
+void dig_likelihood_weigh_as(struct dig_likelihood *const       l,
+                             const struct dig_likelihood *const other)
+{
+    assert(l->batch == other->batch);
+    memcpy(l->error, other->error, sizeof l->error);
+    memcpy(l->step, other->step, sizeof l->step);
+    memcpy(l->step_lower, other->step_lower, sizeof l->step_lower);
+    l->step_log_det = other->step_log_det;
 }
 
 // Digs that a hypothesis takes for alike scatter about their mean.
 double dig_likelihood_misfit(const struct dig_likelihood *const l, const double residual[],
                              double *const squares)
 {
-    double logs = 0.0;
+    double logs = l->step_log_det;
     *squares    = 0.0;
     for (size_t i = 0; i < l->residuals; i++) {
         *squares += residual[i] * residual[i];
@@ -215,14 +286,13 @@ double dig_likelihood_misfit(const struct dig_likelihood *const l, const double 
 
 double dig_likelihood_means(struct dig_likelihood *const l, const double x[])
 {
+    double r[DIG_TRAJECTORY_MAX * DIG_FEATURES + DIG_STEPS_MAX];
     double sum = 0.0;
     model_at(l, x);
-    for (size_t g = 0; g < l->batch->groups; g++) {
-        double r[DIG_FEATURES];
-        for (size_t k = 0; k < l->batch->group[g].features; k++) {
-            r[k] = l->batch->group[g].mean[k] - l->mean[g][k];
-        }
-        sum += dig_common_error_squares(&l->batch->group[g], &l->error[g], r);
+    const size_t n = residual_of_means(l, r);
+    take_off_steps(l, r, r + n);
+    for (size_t i = 0; i < n + l->steps; i++) {
+        sum += r[i] * r[i];
     }
     return sum;
 }

@@ -3,9 +3,11 @@
 //   sum over trajectories [ |L^-1 (mean y - mean model)|^2 + log det L L'
 //                           + sum over digs |(y - mean y) - (model - mean model)|^2 ]
 //
-// L L' is the covariance of a trajectory's mean: closed_loop/model/common_error.h. What has no name
-// is an effect whose form is not known: a factor on the plain dig, with a wide prior, that changes
-// along it. It has no numbers to fit; the covariance holds all that it may be.
+// L L' is the covariance of a trajectory's mean: closed_loop/model/common_error.h. Where the batch
+// has steps, z is fitted along, exactly, and integrated out: mean model grows by D z, and |z|^2 +
+// log det (1 + sum D' C^-1 D) is added. What has no name is an effect whose form is not known: a
+// factor on the plain dig, with a wide prior, that changes along it. It has no numbers to fit; the
+// covariance holds all that it may be.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
 #define DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
@@ -13,7 +15,8 @@
 #include "closed_loop/model/common_error.h"
 #include "closed_loop/model/forward.h"
 
-#define DIG_LIKELIHOOD_RESIDUALS ((DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES)
+#define DIG_LIKELIHOOD_RESIDUALS                                                                   \
+    ((DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES + DIG_STEPS_MAX)
 
 /// The same numbers are asked about again and again: what was worked out of the last ones is kept.
 struct dig_likelihood {
@@ -33,6 +36,13 @@ struct dig_likelihood {
 
     double                  weighed_at[DIG_HYPOTHESIS_NUMBERS]; // of which this is
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
+
+    // Of the batch's steps, by that covariance: L^-1 D, and the lower triangle of 1 + sum D' C^-1
+    // D.
+    size_t steps;
+    double step[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double step_lower[DIG_STEPS_MAX * DIG_STEPS_MAX];
+    double step_log_det;
 };
 
 void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_digs *batch,
@@ -41,7 +51,10 @@ void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_dig
 /// Takes the covariance at the numbers x for all that follows.
 void dig_likelihood_weigh(struct dig_likelihood *l, const double x[]);
 
-/// The whitened residuals r of the means, then of the digs about them, at x; context: the
+/// Takes the covariance that another likelihood of the batch took.
+void dig_likelihood_weigh_as(struct dig_likelihood *l, const struct dig_likelihood *other);
+
+/// The whitened residuals r of the means, of the digs about them, and z, at x; context: the
 /// likelihood.
 void dig_likelihood_residual(void *context, const double x[], double r[]);
 
@@ -49,7 +62,7 @@ void dig_likelihood_residual(void *context, const double x[], double r[]);
 double dig_likelihood_misfit(const struct dig_likelihood *l, const double residual[],
                              double *squares);
 
-/// Squares of the means' misfit at x, by the covariance that was taken.
+/// Squares of the means' misfit at x and of z, by the covariance that was taken.
 double dig_likelihood_means(struct dig_likelihood *l, const double x[]);
 
 #endif // DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H

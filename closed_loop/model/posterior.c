@@ -146,6 +146,16 @@ static void set_interval(struct walk *const w, const size_t j, struct dig_fitted
     fitted->high[j]         = fmax(leans_high ? w->high[j] : taken[last], fitted->number[j]);
 }
 
+static void begin(struct walk *const w, const struct dig_whitened_digs *const batch,
+                  const struct dig_soil *const soil, const struct dig_fitted *const fitted)
+{
+    dig_likelihood_init(&w->likelihood, batch, soil, &fitted->hypothesis);
+    dig_likelihood_weigh(&w->likelihood, fitted->number);
+    dig_hypothesis_bounds(soil, &fitted->hypothesis, w->low, w->high);
+    w->reach = 2.4 / sqrt((double)w->likelihood.numbers);
+    measure_curvature(w, fitted->number);
+}
+
 enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const batch,
                                         const struct dig_soil *const soil, const uint64_t seed,
                                         struct dig_fitted *const fitted)
@@ -155,15 +165,54 @@ enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const ba
     if (w == NULL) {
         return DIG_ENOMEM;
     }
-    dig_likelihood_init(&w->likelihood, batch, soil, &fitted->hypothesis);
-    dig_likelihood_weigh(&w->likelihood, fitted->number);
-    dig_hypothesis_bounds(soil, &fitted->hypothesis, w->low, w->high);
-    w->reach = 2.4 / sqrt((double)w->likelihood.numbers);
-    measure_curvature(w, fitted->number);
+    begin(w, batch, soil, fitted);
     run(w, fitted->number, seed);
     for (size_t j = 0; j < w->likelihood.numbers; j++) {
         set_interval(w, j, fitted);
     }
+    free(w);
+    return DIG_OK;
+}
+
+// At given numbers z has the covariance M^-1; with the numbers it moves as the residuals' tail
+// says.
+static void add_numbers_share(const struct walk *const w, const double z_of[], double covariance[])
+{
+    const struct dig_likelihood *const l = &w->likelihood;
+    for (size_t k = 0; k < l->steps; k++) {
+        double moves[NUMBERS];
+        for (size_t j = 0; j < l->numbers; j++) {
+            moves[j] = z_of[j * l->residuals + k];
+        }
+        dig_lower_solve(l->numbers, w->lower, moves);
+        dig_lower_transposed_solve(l->numbers, w->lower, moves);
+        for (size_t m = 0; m < l->steps; m++) {
+            for (size_t j = 0; j < l->numbers; j++) {
+                covariance[k * l->steps + m] += moves[j] * z_of[j * l->residuals + m];
+            }
+        }
+    }
+}
+
+enum dig_status dig_posterior_steps(const struct dig_whitened_digs *const batch,
+                                    const struct dig_soil *const          soil,
+                                    const struct dig_fitted *const fitted, double covariance[])
+{
+    assert(batch != NULL && soil != NULL && fitted != NULL && covariance != NULL);
+    struct walk *const w = malloc(sizeof *w);
+    if (w == NULL) {
+        return DIG_ENOMEM;
+    }
+    begin(w, batch, soil, fitted);
+    const struct dig_likelihood *const l = &w->likelihood;
+    for (size_t k = 0; k < l->steps; k++) {
+        double *const row = covariance + k * l->steps;
+        memset(row, 0, l->steps * sizeof row[0]);
+        row[k] = 1.0;
+        dig_lower_solve(l->steps, l->step_lower, row);
+        dig_lower_transposed_solve(l->steps, l->step_lower, row);
+    }
+    add_numbers_share(w, w->moved + l->residuals - l->steps, covariance);
     free(w);
     return DIG_OK;
 }

@@ -16,4 +16,11 @@ DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened
                                                        const struct dig_soil *soil, uint64_t seed,
                                                        struct dig_fitted *fitted);
 
+/// The covariance of z of the batch's steps, [steps * steps], about a fit, with what the numbers
+/// leave open. Microseconds. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_posterior_steps(const struct dig_whitened_digs *batch,
+                                                   const struct dig_soil          *soil,
+                                                   const struct dig_fitted        *fitted,
+                                                   double                          covariance[]);
+
 #endif // DIG_CLOSED_LOOP_MODEL_POSTERIOR_H

@@ -326,6 +326,15 @@ enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const 
     return status;
 }
 
+double dig_whitened_digs_about(const struct dig_whitened_digs *const batch)
+{
+    double about = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        about += batch->group[g].about;
+    }
+    return about;
+}
+
 void dig_whitened_digs_leave_out(const struct dig_whitened_digs *const batch, const size_t dig,
                                  struct dig_whitened_digs *const others)
 {

@@ -12,6 +12,16 @@
 #include "closed_loop/model/scatter.h"
 #include "closed_loop/recordings/measured.h"
 
+#define DIG_STEPS_MAX 32
+
+/// What is not of the soil and known but for some numbers z, each of normal distribution about 0
+/// with a variance of 1: a machine as free air leaves it open. A step of z[k] adds of[k] to the
+/// groups' means.
+struct dig_steps {
+    size_t steps;
+    double of[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES]; // whitened
+};
+
 struct dig_whitened_digs_group {
     size_t trajectory;
     size_t digs;
@@ -34,6 +44,7 @@ struct dig_whitened_digs {
     const struct dig_response_surface *surface;  // not owned
     const struct dig_scatter          *scatter;  // not owned
     const struct dig_measured         *measured; // not owned
+    const struct dig_steps            *steps;    // not owned; NULL: none
     size_t                             groups;
     struct dig_whitened_digs_group     group[DIG_TRAJECTORY_MAX];
     size_t                             digs;
@@ -64,6 +75,9 @@ const struct dig_measured *dig_whitened_digs_first(const struct dig_whitened_dig
 
 /// Recomputes the groups' mean and about after the digs' y were changed.
 void dig_whitened_digs_summarise(struct dig_whitened_digs *batch);
+
+/// The sum of squares of all digs' y about their groups' means.
+double dig_whitened_digs_about(const struct dig_whitened_digs *batch);
 
 /// The batch without one of its two or more digs; without its trajectory where that was the only
 /// one along it.

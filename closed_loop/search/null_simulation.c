@@ -7,14 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { ENOUGH = 50 }; // draws that tell a chance far from the level
+
 // The misfit of means and of digs about them, without what does not depend on the digs.
 static void split(const struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
                   const struct dig_fitted *const fitted, struct dig_statistic *const statistic)
 {
-    statistic->about = 0.0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        statistic->about += batch->group[g].about;
-    }
+    statistic->about  = dig_whitened_digs_about(batch);
     statistic->misfit = dig_hypothesis_differs(&fitted->hypothesis)
                             ? dig_hypothesis_squares(batch, soil, fitted, fitted)
                             : fitted->squares - statistic->about;
@@ -129,12 +128,23 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
     dig_whitened_digs_summarise(drawn);
 }
 
+// True when more draws would not change the answer: the chance is known from so few to a factor of
+// some units.
+static bool is_answered(const struct dig_null_question *const   asked,
+                        const struct dig_null_simulation *const null)
+{
+    static const double far = 20.0;
+    const double        p   = asked != NULL ? dig_null_simulation_p(null, 2, asked->gain) : 0.0;
+    return asked != NULL && (p > far * asked->level || p < asked->level / (far * far));
+}
+
 enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
                                          const struct dig_soil *const          soil,
                                          const struct dig_fitted *const fitted, const size_t rivals,
                                          const struct dig_hypothesis rival[], const size_t draws,
-                                         uint64_t *const                   seed,
-                                         struct dig_null_simulation *const null)
+                                         const struct dig_null_question *const asked,
+                                         uint64_t *const                       seed,
+                                         struct dig_null_simulation *const     null)
 {
     assert(draws > 1 && rivals <= DIG_RIVALS_MAX);
     struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
@@ -145,23 +155,21 @@ enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const b
         return DIG_ENOMEM;
     }
     *drawn                                = *batch;
-    struct dig_null_simulation made       = { .draws = draws };
+    struct dig_null_simulation made       = { .draws = 0 };
     double                     squares[3] = { 0.0 };
-    for (size_t d = 0; d < draws; d++) {
+    while (made.draws < draws && !(made.draws == ENOUGH && is_answered(asked, &made))) {
         struct dig_statistic s;
         dig_null_simulation_digs(batch, soil, fitted, seed, drawn);
         dig_null_simulation_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number,
                                 DIG_FIT_BARE, again, &s);
         const double value[3] = { s.misfit, s.about, s.gain };
+        made.draws++;
         for (size_t i = 0; i < 3; i++) {
             const double off = value[i] - made.mean[i];
-            made.mean[i] += off / (double)(d + 1);
+            made.mean[i] += off / (double)made.draws;
             squares[i] += off * (value[i] - made.mean[i]);
+            made.variance[i] = squares[i] / fmax((double)made.draws - 1.0, 1.0);
         }
-        made.chosen[s.best] += 1.0 / (double)draws;
-    }
-    for (size_t i = 0; i < 3; i++) {
-        made.variance[i] = squares[i] / (double)(draws - 1);
     }
     free(drawn);
     free(again);

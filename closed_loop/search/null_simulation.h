@@ -25,8 +25,12 @@ struct dig_statistic {
 
 struct dig_null_simulation {
     size_t draws;
-    double mean[3], variance[3];       // of misfit, about, gain over the draws
-    double chosen[DIG_RIVALS_MAX + 1]; // share of draws in which a rival was best
+    double mean[3], variance[3]; // of misfit, about, gain over the draws
+};
+
+/// What a simulation is to decide: whether a gain is rarer than the level.
+struct dig_null_question {
+    double gain, level;
 };
 
 /// Fits a batch by base and by base with each rival added, from the numbers given. Writes the
@@ -42,11 +46,13 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *batch, const struc
                               const struct dig_fitted *fitted, uint64_t *seed,
                               struct dig_whitened_digs *drawn);
 
-/// Draws from fitted and fits again, draws times. DIG_ENOMEM.
+/// Draws from fitted and fits again, draws times, or only 50 times where that answers what is asked
+/// (may be NULL): the chance is far from the level. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                          const struct dig_fitted *fitted, size_t rivals,
-                         const struct dig_hypothesis rival[], size_t draws, uint64_t *seed,
+                         const struct dig_hypothesis rival[], size_t draws,
+                         const struct dig_null_question *asked, uint64_t *seed,
                          struct dig_null_simulation *null);
 
 /// Chance of a statistic (index 0 misfit, 1 about, 2 gain) this large.

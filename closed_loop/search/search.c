@@ -43,7 +43,7 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     }
     dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
                        &c->s->beyond);
-    dig_hypothesis_fit_unlisted(c->batch, c->soil, fitted[0].number, &c->s->nameless);
+    dig_hypothesis_fit_unlisted(c->batch, c->soil, &fitted[0], &c->s->nameless);
 }
 
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.
@@ -92,16 +92,20 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
     fit_all(c, &statistic);
     const struct dig_fitted plain = c->s->plain;
     enum dig_status status = dig_null_simulation_draw(drawn, c->soil, &plain, 0, NULL, c->draws,
-                                                      &c->seed, &c->plain_null);
+                                                      NULL, &c->seed, &c->plain_null);
     if (status == DIG_OK) {
         allow_for_scatter(c, &statistic);
         const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
         c->s->p_complete = chance_of_either(p);
         if (c->s->p_complete > 0.0) {
+            const struct dig_null_question asked = { statistic.gain, c->false_alarm };
+            struct dig_null_simulation     gains;
             status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
-                                              c->draws, &seed, &c->plain_null);
+                                              c->draws, &asked, &seed, &gains);
             c->s->p_complete =
-                chance_of_either(fmin(p, dig_null_simulation_p(&c->plain_null, 2, statistic.gain)));
+                status == DIG_OK
+                    ? chance_of_either(fmin(p, dig_null_simulation_p(&gains, 2, statistic.gain)))
+                    : 1.0;
         }
     }
     free(drawn);

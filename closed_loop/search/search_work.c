@@ -18,21 +18,12 @@ double dig_search_evidence(const struct dig_search_work *const c,
     return 0.5 * (c->s->plain.misfit - fitted->misfit) - penalty(c, numbers);
 }
 
-static double about_of(const struct dig_whitened_digs *const batch)
-{
-    double about = 0.0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        about += batch->group[g].about;
-    }
-    return about;
-}
-
 // What a fit leaves of the digs' means.
 double dig_search_left(const struct dig_search_work *const c, const struct dig_fitted *const fitted)
 {
     return dig_hypothesis_differs(&fitted->hypothesis)
                ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted)
-               : fitted->squares - about_of(c->batch);
+               : fitted->squares - dig_whitened_digs_about(c->batch);
 }
 
 bool dig_search_holds(const struct dig_hypothesis *const hypothesis,

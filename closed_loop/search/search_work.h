@@ -22,7 +22,6 @@ struct dig_search_work {
     uint64_t                   seed;
     struct dig_hypothesis      single[DIG_RIVALS_MAX];
     struct dig_null_simulation plain_null;
-    double                     p_fit, left, expected; // misfit of chosen, and of digs that it made
     struct dig_search         *s;
 };
 

@@ -1,16 +1,18 @@
 // What of the machine is missing, by free air and the digs together.
 //
 // The answers of free air (closed_loop/machine/machine_side.h), none, and "something without a
-// name" compete by one evidence: free air's, plus that of the digs with the answer taken off. Both
-// are of different samples, so their logarithms add up. The digs' is that of the best of a plain
-// gravel, one effect of the soil, and a soil without a name, so that neither side explains what is
-// the other's. Under no effect the evidence ratio has mean 1, and exceeds answers / level with a
-// chance of at most the level (Ville).
+// name" compete by one evidence: free air's, plus that of the digs fitted with what free air leaves
+// open of the answer (closed_loop/verdict/machine_steps.h). Both are of different samples, so their
+// logarithms add up. The digs' is that of the best of a plain gravel, one effect of the soil, and a
+// soil without a name, so that neither side explains what is the other's. Under no effect the
+// evidence ratio has mean 1, and exceeds answers / level with a chance of at most the level
+// (Ville).
 
 #include "closed_loop/accuracy/effect_size.h"
+#include "closed_loop/model/posterior.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/search/search_work.h"
-#include "closed_loop/verdict/joint_fit.h"
+#include "closed_loop/verdict/machine_steps.h"
 #include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>
@@ -36,13 +38,21 @@ struct choice {
     double                    of[DIG_MACHINE_ANSWERS]; // evidence of each
 };
 
+struct scratch {
+    struct dig_whitened_digs batch;
+    struct dig_steps         steps;
+    double                   covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
+};
+
 // The raw batch with what measured[].machine adds taken off: in the same units, so that the digs'
 // evidence of one answer compares with that of another.
 static void take_off_batch(const struct dig_whitened_digs *const raw,
                            const struct dig_measured             measured[],
+                           const struct dig_steps *const         steps,
                            struct dig_whitened_digs *const       batch)
 {
-    *batch = *raw;
+    *batch       = *raw;
+    batch->steps = steps;
     for (size_t i = 0; i < raw->digs; i++) {
         double feature[DIG_FEATURES];
         double added[DIG_FEATURES];
@@ -55,20 +65,26 @@ static void take_off_batch(const struct dig_whitened_digs *const raw,
     dig_whitened_digs_summarise(batch);
 }
 
-// The log evidence of the digs, of the best that the soil can be; *plain: of them with no effect.
+// The log evidence of the digs, of the best that the soil can be: *best.
 static double soil_evidence(const struct dig_whitened_digs *const batch,
-                            const struct dig_soil *const soil, struct dig_fitted *const plain)
+                            const struct dig_soil *const soil, struct dig_fitted *const best)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, plain);
-    double            features = 0.0;
-    struct dig_fitted fitted;
+    struct dig_fitted                  plain;
+    struct dig_fitted                  fitted;
+    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
+    double features = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
         features += (double)batch->group[g].features;
     }
-    dig_hypothesis_fit_unlisted(batch, soil, plain->number, &fitted);
-    double gain = fmax(0.5 * (plain->misfit - fitted.misfit) - unnamed_cost, 0.0);
+    *best         = plain;
+    double misfit = plain.misfit;
+    dig_hypothesis_fit_unlisted(batch, soil, &plain, &fitted);
+    if (fitted.misfit + 2.0 * unnamed_cost < misfit) {
+        misfit = fitted.misfit + 2.0 * unnamed_cost;
+        *best  = fitted;
+    }
     for (int e = 0; e < DIG_EFFECTS; e++) {
         const enum dig_effect_id    effect = (enum dig_effect_id)e;
         const struct dig_hypothesis single = { .effects = 1, .effect = { effect } };
@@ -77,11 +93,14 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
             continue;
         }
         double start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-        memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
+        memcpy(start, plain.number, DIG_AXES * sizeof start[0]);
         dig_hypothesis_fit(batch, soil, &single, start, DIG_FIT_BARE, &fitted);
-        gain = fmax(gain, 0.5 * (plain->misfit - fitted.misfit - log(features)));
+        if (fitted.misfit + log(features) < misfit) {
+            misfit = fitted.misfit + log(features);
+            *best  = fitted;
+        }
     }
-    return gain - 0.5 * plain->misfit;
+    return -0.5 * misfit;
 }
 
 // Where a dig is not told with an answer (a cylinder at its stop, a bucket off its path) it is no
@@ -102,40 +121,52 @@ static void keep_best(const struct dig_machine_answer *const answer, const size_
     }
 }
 
+// An answer with what free air leaves open of it, fitted to the digs.
+static enum dig_status weigh_open(struct dig_machine_side *const machine, const size_t from,
+                                  const size_t digs, struct dig_measured measured[],
+                                  const struct dig_trace_work *const w,
+                                  struct scratch *const scratch, struct choice *const choice)
+{
+    struct dig_machine_answer answer = w->air->answer[from];
+    struct dig_fitted         soil;
+    enum dig_status           status =
+        dig_machine_steps_make(machine, &answer, digs, measured, w->batch, &scratch->steps);
+    if (status != DIG_OK) {
+        return status;
+    }
+    take_off_batch(w->batch, measured, &scratch->steps, &scratch->batch);
+    const double evidence =
+        answer.log_evidence_wide + soil_evidence(&scratch->batch, w->soil, &soil) - choice->soil0;
+    status = dig_posterior_steps(&scratch->batch, w->soil, &soil, scratch->covariance);
+    if (status == DIG_OK) {
+        dig_machine_steps_values(soil.z, scratch->covariance, &answer);
+        keep_best(&answer, from, evidence, choice);
+    }
+    return status;
+}
+
 // One answer with free air's values, and with what the digs make of them.
 static enum dig_status weigh(struct dig_machine_side *const machine, const size_t from,
                              const size_t digs, struct dig_measured measured[],
                              const struct dig_trace_work *const w, struct choice *const choice)
 {
-    const struct dig_machine_answer *const answer = &w->air->answer[from];
-    struct dig_machine_answer              fitted;
-    struct dig_fitted                      plain;
-    double                                 log_cost = 0.0;
-    struct dig_whitened_digs *const        batch    = malloc(sizeof *batch);
-    enum dig_status                        status =
-        batch != NULL ? dig_machine_side_apply(machine, answer->effects, answer->effect, measured)
-                                             : DIG_ENOMEM;
+    const struct dig_machine_answer *const answer  = &w->air->answer[from];
+    struct scratch *const                  scratch = malloc(sizeof *scratch);
+    struct dig_fitted                      soil;
+    if (scratch == NULL) {
+        return DIG_ENOMEM;
+    }
+    enum dig_status status =
+        dig_machine_side_apply(machine, answer->effects, answer->effect, true, measured);
     if (status == DIG_OK) {
-        take_off_batch(w->batch, measured, batch);
+        take_off_batch(w->batch, measured, NULL, &scratch->batch);
         keep_best(answer, from,
-                  answer->log_evidence + soil_evidence(batch, w->soil, &plain) - choice->soil0,
-                  choice);
-    }
-    if (status == DIG_OK) {
-        status = dig_joint_fit(machine, answer, digs, measured, batch, w->soil, &plain, &fitted,
-                               &log_cost);
-    }
-    if (status == DIG_OK) {
-        status = dig_machine_side_apply(machine, fitted.effects, fitted.effect, measured);
-    }
-    if (status == DIG_OK) {
-        take_off_batch(w->batch, measured, batch);
-        keep_best(&fitted, from,
-                  answer->log_evidence_wide + log_cost + soil_evidence(batch, w->soil, &plain) -
+                  answer->log_evidence + soil_evidence(&scratch->batch, w->soil, &soil) -
                       choice->soil0,
                   choice);
+        status = weigh_open(machine, from, digs, measured, w, scratch, choice);
     }
-    free(batch);
+    free(scratch);
     return is_no_answer(status) ? DIG_OK : status;
 }
 
@@ -217,14 +248,11 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
     const double                      least   = log((double)air->candidates / level);
     double                            unnamed = -INFINITY;
     enum dig_status                   status  = DIG_OK;
-    struct dig_fitted                 plain;
+    struct dig_fitted                 soil;
     choice->evidence = -INFINITY;
-    choice->soil0    = soil_evidence(w->batch, w->soil, &plain);
+    choice->soil0    = soil_evidence(w->batch, w->soil, &soil);
     // All that an answer could explain of the digs.
-    double left = 0.5 * plain.squares;
-    for (size_t g = 0; g < w->batch->groups; g++) {
-        left -= 0.5 * w->batch->group[g].about;
-    }
+    const double left = 0.5 * (w->before.squares - dig_whitened_digs_about(w->batch));
     for (size_t i = 0; i < air->answers; i++) {
         choice->of[i] = -INFINITY;
     }
@@ -261,7 +289,7 @@ static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, con
     for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
         struct dig_model_effect *const effect = &w->air->effect[e];
 
-        status = dig_machine_side_apply(machine, 1, effect, alone);
+        status = dig_machine_side_apply(machine, 1, effect, false, alone);
         if (status == DIG_OK) {
             w->size[e] = dig_effect_size_of_machine(w->batch, plain, alone);
             effect->probability *= fmax(dig_effect_size_chance(w->size[e]), DIG_TRACE_UNCONFIRMED);
@@ -287,7 +315,11 @@ enum dig_status dig_trace_machine(struct dig_machine_side *const         machine
         status = choose(machine, settings, digs, measured, w, choice);
     }
     if (status == DIG_OK) {
-        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, measured);
+        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, true, measured);
+    }
+    if (is_no_answer(status)) { // a holdout is not told with what the digs made of it
+        write_none(true, w->air);
+        status = dig_machine_side_apply(machine, 0, NULL, true, measured);
     }
     if (status == DIG_OK) {
         status = dig_trace_batch(w, digs, measured, plain, error);

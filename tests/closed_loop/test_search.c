@@ -298,7 +298,7 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
         c.single[i] = s.rival[i].hypothesis;
     }
     assert_int_equal(dig_null_simulation_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS,
-                                              &c.seed, &c.plain_null),
+                                              NULL, &c.seed, &c.plain_null),
                      DIG_OK);
     const size_t best   = dig_search_best_rival(&s);
     const double before = s.log_evidence[best];

@@ -1,0 +1,119 @@
+#include "closed_loop/verdict/machine_steps.h"
+
+#include "closed_loop/recordings/features.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert(DIG_MACHINE_NUMBERS <= DIG_STEPS_MAX, "every number of an answer is a step");
+
+static const double ninety = 1.645;
+
+void dig_machine_steps_values(const double z[], const double covariance[],
+                              struct dig_machine_answer *const answer)
+{
+    size_t n = 0;
+    for (size_t e = 0; e < answer->effects; e++) {
+        for (size_t p = 0; p < answer->effect[e].parameters; p++, n++) {
+            struct dig_model_parameter *const to = &answer->effect[e].parameter[p];
+
+            double variance = 0.0;
+            to->value       = answer->value[n];
+            for (size_t k = 0; k < answer->numbers; k++) {
+                to->value += z[k] * answer->step[k][n];
+                for (size_t i = 0; covariance != NULL && i < answer->numbers; i++) {
+                    variance += answer->step[i][n] * covariance[i * answer->numbers + k] *
+                                answer->step[k][n];
+                }
+            }
+            to->low  = to->value - ninety * sqrt(fmax(variance, 0.0));
+            to->high = to->value + ninety * sqrt(fmax(variance, 0.0));
+        }
+    }
+}
+
+static void means_added(const struct dig_whitened_digs *const batch,
+                        const struct dig_measured measured[], double y[][DIG_FEATURES])
+{
+    memset(y, 0, batch->groups * sizeof y[0]);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
+        double                                      feature[DIG_FEATURES];
+        double                                      one[DIG_FEATURES];
+        dig_features_of(measured[batch->dig[i].measured].machine, feature);
+        dig_whitened_digs_whiten(group, feature, one);
+        for (size_t f = 0; f < group->features; f++) {
+            y[batch->dig[i].group][f] += one[f] / (double)group->digs;
+        }
+    }
+}
+
+// What the machine adds to the means at z. holdouts: whether they must be told, too.
+static enum dig_status added_at(struct dig_machine_side *const         machine,
+                                const struct dig_machine_answer *const answer, const double z[],
+                                const bool holdouts, struct dig_measured measured[],
+                                const struct dig_whitened_digs *const batch,
+                                double                                y[][DIG_FEATURES])
+{
+    struct dig_machine_answer there = *answer;
+    dig_machine_steps_values(z, NULL, &there);
+    const enum dig_status status =
+        dig_machine_side_apply(machine, there.effects, there.effect, holdouts, measured);
+    if (status == DIG_OK) {
+        means_added(batch, measured, y);
+    }
+    return status == DIG_EINVAL ? DIG_ENOMATCH : status;
+}
+
+// A step at which a dig is not told is a way that stays shut.
+static enum dig_status find_steps(struct dig_machine_side *const         machine,
+                                  const struct dig_machine_answer *const answer,
+                                  const struct dig_whitened_digs *const  batch,
+                                  const double middle[][DIG_FEATURES], struct dig_measured other[],
+                                  struct dig_steps *const steps)
+{
+    enum dig_status status = DIG_OK;
+    for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
+        double z[DIG_MACHINE_NUMBERS] = { 0.0 };
+        z[k]                          = 1.0;
+        status = added_at(machine, answer, z, false, other, batch, steps->of[k]);
+        for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                steps->of[k][g][f] -= middle[g][f];
+            }
+        }
+        status = status == DIG_ENOMATCH ? DIG_OK : status;
+    }
+    return status;
+}
+
+enum dig_status dig_machine_steps_make(struct dig_machine_side *const         machine,
+                                       const struct dig_machine_answer *const answer,
+                                       const size_t digs, struct dig_measured measured[],
+                                       const struct dig_whitened_digs *const batch,
+                                       struct dig_steps *const               steps)
+{
+    assert(machine != NULL && answer != NULL && measured != NULL && batch != NULL && steps != NULL);
+    static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
+    double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    memset(steps, 0, sizeof *steps);
+    if (answer->numbers == 0) {
+        return DIG_ENOMATCH;
+    }
+    steps->steps           = answer->numbers;
+    enum dig_status status = added_at(machine, answer, none, true, measured, batch, middle);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_measured *const other = malloc(digs * sizeof *other);
+    if (other == NULL) {
+        return DIG_ENOMEM;
+    }
+    memcpy(other, measured, digs * sizeof *other);
+    status =
+        find_steps(machine, answer, batch, (const double(*)[DIG_FEATURES])middle, other, steps);
+    free(other);
+    return status;
+}

@@ -1,0 +1,30 @@
+// A machine as free air leaves it open, as steps of a fit to the digs: the gain of a pressure
+// sensor, say, reads little in free air and much in a dig.
+//
+//   y(dig) = soil(dig) + middle(dig) + sum over k of z[k] D[k](dig),    z ~ N(0, 1)
+//
+// middle is what free air's values by wide priors add to a dig, D what a step from there adds
+// (closed_loop/machine/machine_side.h). Gravel, effects of the soil and z are then one fit:
+// closed_loop/model/likelihood.h.
+
+#ifndef DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
+#define DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
+
+#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/model/hypothesis.h"
+
+/// Leaves in measured[].machine what the answer's middle adds to every dig, and in *steps what its
+/// steps add to the means of the batch's groups. DIG_ENOMATCH: a dig is not told with the effects.
+/// DIG_ENOMEM. Some milliseconds a parameter.
+DIG_MUST_CHECK enum dig_status dig_machine_steps_make(struct dig_machine_side         *machine,
+                                                      const struct dig_machine_answer *answer,
+                                                      size_t digs, struct dig_measured measured[],
+                                                      const struct dig_whitened_digs *batch,
+                                                      struct dig_steps               *steps);
+
+/// Writes values and 90 % intervals of the answer's parameters: at z, whose covariance is
+/// [numbers * numbers] (NULL: the values alone).
+void dig_machine_steps_values(const double z[], const double covariance[],
+                              struct dig_machine_answer *answer);
+
+#endif // DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
