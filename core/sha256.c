@@ -26,6 +26,24 @@ static uint32_t big_endian(const uint8_t b[const 4])
     return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
 }
 
+// 6.2.2: step u of eight. Working variable i of step u is v[(i - u) mod 8], so that none is moved.
+static inline void take_step(uint32_t v[const 8], const size_t u, const uint32_t input)
+{
+    const uint32_t a      = v[(8 - u) % 8];
+    const uint32_t b      = v[(9 - u) % 8];
+    const uint32_t c      = v[(10 - u) % 8];
+    const uint32_t e      = v[(12 - u) % 8];
+    const uint32_t f      = v[(13 - u) % 8];
+    const uint32_t g      = v[(14 - u) % 8];
+    const uint32_t sum1   = rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25);
+    const uint32_t choose = (e & f) ^ (~e & g);
+    const uint32_t t1     = v[(15 - u) % 8] + sum1 + choose + input;
+    const uint32_t sum0   = rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22);
+    const uint32_t major  = (a & b) ^ (a & c) ^ (b & c);
+    v[(11 - u) % 8] += t1;
+    v[(15 - u) % 8] = t1 + sum0 + major;
+}
+
 // 6.2.2: one block of the message.
 static void digest_block(uint32_t state[const 8], const uint8_t block[const 64])
 {
@@ -41,15 +59,11 @@ static void digest_block(uint32_t state[const 8], const uint8_t block[const 64])
 
     uint32_t v[8];
     memcpy(v, state, sizeof v);
-    for (size_t t = 0; t < 64; t++) {
-        const uint32_t sum1   = rotate(v[4], 6) ^ rotate(v[4], 11) ^ rotate(v[4], 25);
-        const uint32_t choose = (v[4] & v[5]) ^ (~v[4] & v[6]);
-        const uint32_t t1     = v[7] + sum1 + choose + constant[t] + w[t];
-        const uint32_t sum0   = rotate(v[0], 2) ^ rotate(v[0], 13) ^ rotate(v[0], 22);
-        const uint32_t major  = (v[0] & v[1]) ^ (v[0] & v[2]) ^ (v[1] & v[2]);
-        memmove(v + 1, v, 7 * sizeof v[0]);
-        v[4] += t1;
-        v[0] = t1 + sum0 + major;
+    for (size_t t = 0; t < 64; t += 8) {
+#pragma GCC unroll 8
+        for (size_t u = 0; u < 8; u++) {
+            take_step(v, u, constant[t + u] + w[t + u]);
+        }
     }
     for (size_t i = 0; i < 8; i++) {
         state[i] += v[i];
@@ -67,10 +81,14 @@ void dig_sha256_init(struct dig_sha256 *const hash)
 void dig_sha256_add(struct dig_sha256 *const hash, const void *const data, const size_t size)
 {
     assert(hash != NULL && (data != NULL || size == 0));
-    const uint8_t *const byte = data;
-    for (size_t i = 0; i < size; i++) {
-        hash->block[hash->bytes % 64] = byte[i];
-        hash->bytes++;
+    const uint8_t *byte = data;
+    for (size_t left = size; left > 0;) {
+        const size_t filled = hash->bytes % 64;
+        const size_t taken  = left < 64 - filled ? left : 64 - filled;
+        memcpy(hash->block + filled, byte, taken);
+        hash->bytes += taken;
+        byte += taken;
+        left -= taken;
         if (hash->bytes % 64 == 0) {
             digest_block(hash->state, hash->block);
         }
