@@ -1,4 +1,4 @@
-// Tests for closed_loop/verdict/machine_choice.c and joint_fit.c: digs of the reference's gravel on
+// Tests for closed_loop/verdict/machine_choice.c and machine_steps.c: digs of the reference's gravel on
 // the shipped table, by a machine that is not as its file says.
 
 #include "closed_loop/verdict/trace.h"

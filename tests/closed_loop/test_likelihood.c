@@ -1,0 +1,147 @@
+// Tests for the steps of closed_loop/model/likelihood.h: numbers that are known but for a normal
+// distribution, and integrated out.
+
+#include "closed_loop/model/likelihood.h"
+
+#include "closed_loop/model/posterior.h"
+#include "closed_loop/search/null_simulation.h"
+#include "tests/closed_loop/world_fixture.h"
+#include "tests/model_front.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIGS = 4, STEPS = 2, CAMPAIGNS = 150, GRID = 201 };
+
+static const double reach = 7.0; // of the grid, in sigmas
+
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+static struct dig_steps         steps;
+
+static const struct dig_hypothesis plain                         = { .effects = 0 };
+static const double                start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+
+// Digs of two trajectories, and two steps that add to both, about as much as a dig scatters.
+static void make_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
+{
+    static const bool take[DIGS] = { true, true, true, true };
+    double            place[DIG_AXES];
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, seed);
+    }
+    dig_response_surface_place(world.surface, gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+    steps = (struct dig_steps){ .steps = STEPS };
+    for (size_t k = 0; k < STEPS; k++) {
+        for (size_t g = 0; g < batch.groups; g++) {
+            for (size_t f = 0; f < batch.group[g].features; f++) {
+                steps.of[k][g][f] = 2.0 * model_uniform(seed) - 0.5;
+            }
+        }
+    }
+}
+
+// Takes z steps off the digs of a batch.
+static void shift(struct dig_whitened_digs *const digs, const double z[STEPS])
+{
+    for (size_t i = 0; i < digs->digs; i++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            for (size_t k = 0; k < STEPS; k++) {
+                digs->dig[i].y[f] -= z[k] * steps.of[k][digs->dig[i].group][f];
+            }
+        }
+    }
+    dig_whitened_digs_summarise(digs);
+}
+
+static double misfit_of(const struct dig_whitened_digs *const digs, const double x[], double z[])
+{
+    static struct dig_likelihood l;
+    static double                r[DIG_LIKELIHOOD_RESIDUALS];
+    double                       squares;
+    dig_likelihood_init(&l, digs, soil, &plain);
+    dig_likelihood_weigh(&l, x);
+    dig_likelihood_residual(&l, x, r);
+    memcpy(z, r + l.residuals - l.steps, l.steps * sizeof z[0]);
+    return dig_likelihood_misfit(&l, r, &squares);
+}
+
+// Against the integral itself, over a grid of z, of the likelihood without steps.
+static void the_likelihood_is_the_integral_over_the_steps(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs shifted;
+    const struct dig_gravel         gravel   = { { 0.6, 0.6, 2500 } };
+    const double                    x[]      = { 0.1, -0.2, 0.15 };
+    uint64_t                        seed     = 3;
+    double                          sum      = 0.0;
+    double                          mean[]   = { 0.0, 0.0 };
+    double                          z[STEPS] = { 0.0 };
+    make_digs(&gravel, &seed);
+    const double none = misfit_of(&batch, x, z);
+    for (int i = 0; i < GRID * GRID; i++) {
+        const double at[STEPS] = { reach * (2.0 * (i % GRID) / (GRID - 1.0) - 1.0),
+                                   reach * (2.0 * (i / GRID) / (GRID - 1.0) - 1.0) };
+        shifted                = batch;
+        shift(&shifted, at);
+        const double density =
+            exp(0.5 * (none - misfit_of(&shifted, x, z) - at[0] * at[0] - at[1] * at[1]));
+        sum += density;
+        mean[0] += density * at[0];
+        mean[1] += density * at[1];
+    }
+    const double cell = pow(2.0 * reach / (GRID - 1.0), 2.0) / (2.0 * 3.14159265358979324);
+    batch.steps       = &steps;
+    const double with = misfit_of(&batch, x, z);
+    assert_true(fabs(with - (none - 2.0 * log(sum * cell))) < 1e-6);
+    assert_true(fabs(z[0] - mean[0] / sum) < 1e-6);
+    assert_true(fabs(z[1] - mean[1] / sum) < 1e-6);
+    assert_true(fabs(z[0]) > 0.05); // or the test would say nothing
+}
+
+// Digs drawn with steps of the prior: what is fitted is off by what the covariance says.
+static void fitted_steps_are_as_far_off_as_is_said(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs drawn;
+    const struct dig_gravel         gravel = { { 0.6, 0.6, 2500 } };
+    uint64_t                        seed   = 8;
+    double                          sum    = 0.0;
+    struct dig_fitted               truth;
+    make_digs(&gravel, &seed);
+    dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &truth);
+    for (int c = 0; c < CAMPAIGNS; c++) {
+        double            z[STEPS];
+        double            covariance[STEPS * STEPS];
+        struct dig_fitted fitted;
+        drawn = batch;
+        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
+        for (size_t k = 0; k < STEPS; k++) {
+            z[k] = -model_normal(&seed);
+        }
+        shift(&drawn, z);
+        drawn.steps = &steps;
+        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_steps(&drawn, soil, &fitted, covariance), DIG_OK);
+        for (size_t k = 0; k < STEPS; k++) {
+            sum += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k];
+        }
+    }
+    // Chi-squared over its degrees of freedom, to three sigmas and a tenth for what is not linear.
+    const double n = CAMPAIGNS * STEPS;
+    print_message("squares of the steps' errors over expected: %.2f\n", sum / n);
+    assert_true(fabs(sum / n - 1.0) < 0.1 + 3.0 * sqrt(2.0 / n));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_likelihood_is_the_integral_over_the_steps),
+        cmocka_unit_test(fitted_steps_are_as_far_off_as_is_said),
+    };
+    return cmocka_run_group_tests_name("likelihood", tests, world_setup, world_teardown);
+}
