@@ -10,7 +10,7 @@ gravel=${DIG_DEMO_GRAVEL:-mu0.5_mur0.5_rho2500_seed2} truth=${DIG_DEMO_TRUTH:-.5
 simple=$reference/${gravel}__simpleA.csv actual=$reference/${gravel}__actual.csv
 speed=${DIG_DEMO_SPEED:-1}
 
-say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
+say() { if [ -t 1 ]; then printf '\n\033[1m%s\033[0m\n' "$*"; else printf '\n%s\n' "$*"; fi; }
 rm -rf "$out" && mkdir -p "$out"
 out=$(cd "$out" && pwd)
 

@@ -15,6 +15,7 @@
 struct dig_trace_subject {
     const char                 *campaign; // folder or title, for people
     const char                 *table;    // file
+    double                      lambda;   // size of what dug over the table's; 0: not known
     const struct dig_curve_set *set;      // whose trajectories the digs are of
     size_t                      digs;     // as traced
     const struct dig_measured  *measured; // [digs]

@@ -12,8 +12,10 @@
 
 static struct dig_report one_run(void)
 {
-    struct dig_report report = { .title = "A <demo> & more", .table = "t.sqlite", .lambda = 10.0 };
-    report.runs              = 1;
+    struct dig_report report         = { .title  = "A <demo> & more",
+                                         .table  = "/home/somebody/t.sqlite",
+                                         .lambda = 10.0 };
+    report.runs                      = 1;
     struct dig_report_run *const run = &report.run[0];
     *run                             = (struct dig_report_run){ .name        = "Modbus TCP",
                                                                 .dig         = "a recording",
@@ -57,6 +59,12 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
     size_t      size = 0;
     char *const page = scratch_read(path, &size);
     assert_non_null(strstr(page, "A &lt;demo&gt; &amp; more"));
+    assert_non_null(strstr(page, "off by 12 % (noise floor 11 %) in the run Modbus TCP.</p>"));
+    assert_non_null(strstr(page, "Table: t.sqlite. The machine is 10 times the rig, which makes a "
+                                 "moment 10000 times as large."));
+    assert_null(strstr(page, "somebody"));
+    assert_non_null(strstr(page, ">moment about the bucket pin, kN·m</text>"));
+    assert_non_null(strstr(page, ">at rig scale, N·m</text>"));
     assert_non_null(strstr(page, "0.123"));
     assert_non_null(strstr(page, "2100 to 2800"));
     char *const first = strstr(page, "<svg");

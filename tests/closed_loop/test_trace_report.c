@@ -3,6 +3,7 @@
 
 #include "closed_loop/report/trace_report.h"
 
+#include "closed_loop/report/html.h"
 #include "closed_loop/report/residual_report.h"
 #include "files/yaml_tree.h"
 #include "tests/made_table.h"
@@ -415,15 +416,15 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     assert_contains(page, "bucket_weight</th>");
     assert_contains(page, ">nothing that was tried</td>");
     assert_contains(page, "cohesion, ground_slope");
-    assert_contains(page, "noise floor 0.110");
+    assert_contains(page, "<th>noise floor</th><td><b>0.110</b></td>");
     assert_contains(page, "On 2 digs that took no part in the fit, with 90 % intervals");
     assert_contains(page, "<pre>cat &gt;g.yaml &lt;&lt;&#39;END&#39;\npoints: []\nEND\n</pre>");
     size_t pictures = 0;
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
         pictures++;
     }
-    // The error, each dig's moment, one dig's force, and the residual over path and depth.
-    assert_int_equal(pictures, 1 + DIGS + 1 + 2);
+    // Each dig's moment, one dig's force, and the residual over path and depth.
+    assert_int_equal(pictures, DIGS + 1 + 2);
     assert_contains(page, "actual, fit, Fz");
     assert_contains(
         page,
@@ -444,6 +445,16 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
         assert_int_equal(dig_trace_html(&e->trace, &e->subject, keep, &error), DIG_OK);
     }
     drop(e);
+}
+
+static void no_folder_of_a_file_is_shown(void **state)
+{
+    (void)state;
+    char        text[128] = "";
+    FILE *const to        = fmemopen(text, sizeof text, "w");
+    dig_html_without_folders(to, "a / b: /home/x y/run.csv, cp /home/x/g.yaml -o=/tmp/a/ ../t.csv");
+    (void)fclose(to);
+    assert_string_equal(text, "a / b: x run.csv, cp g.yaml -o=a t.csv");
 }
 
 static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
@@ -486,6 +497,7 @@ int main(void)
         cmocka_unit_test(a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found),
         cmocka_unit_test(what_is_named_and_not_applied_is_told),
         cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
+        cmocka_unit_test(no_folder_of_a_file_is_shown),
         cmocka_unit_test(a_trace_without_holdout_or_findings_has_a_page_too),
     };
     return cmocka_run_group_tests_name("trace_report", tests, scratch_setup, scratch_teardown);

@@ -75,6 +75,7 @@ write_results(const struct digloop_options *const options, const struct dig_curv
         const struct dig_trace_subject subject = {
             .campaign = options->recording[0],
             .table    = options->table,
+            .lambda   = campaign->lambda,
             .set      = set,
             .digs     = campaign->digs,
             .measured = campaign->measured,

@@ -9,13 +9,14 @@
 #include <string.h>
 
 static const struct dig_command commands[] = {
-    { "shift", "--table TABLE --machine MACHINE LOG.lcm... [OPTION]...",
+    { "shift", "LOG.lcm... [OPTION]...",
       "Shows what a shift was like, from the LCM logs of digsightd.",
       "Digs, gravel, peak and energy, error of the predictions, effects of the model, troubles. "
-      "Logs "
-      "in the order in which they were written. One sentence goes to standard output.",
-      "digreport shift --table tables/rig.sqlite --html shift.html --csv shift.csv \\\n"
-      "          --machine config/machines/zx200_trench.yaml early.lcm late.lcm\n" },
+      "Logs in the order in which they were written. One sentence goes to standard output. With "
+      "--table and --machine numbers are shown at rig scale, too.",
+      "digreport shift --html shift.html --csv shift.csv early.lcm late.lcm\n"
+      "digreport shift --html shift.html --table tables/rig.sqlite \\\n"
+      "          --machine config/machines/zx200_trench.yaml day.lcm\n" },
 };
 
 static const struct dig_option known[] = {
@@ -29,8 +30,9 @@ static const struct dig_option known[] = {
     { "title", DIGREPORT_TITLE, "TEXT", NULL, "of the page" },
     { "html", DIGREPORT_HTML, "PAGE.html", NULL, "write a page with plots" },
     { "csv", DIGREPORT_CSV, "DIGS.csv", " shift ", "write a line a dig" },
-    { "json", DIGREPORT_JSON, "FILE.json", " digreport ",
-      "write the results as JSON, - for standard output; the table goes to standard error then" },
+    { "json", DIGREPORT_JSON, "FILE.json", NULL,
+      "write the results as JSON, - for standard output; what people read goes to standard error "
+      "then" },
 };
 
 const struct dig_program *digreport_program(void)

@@ -9,13 +9,12 @@
 #include "tools/digreport/shift_page.h"
 
 #include <getopt.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct options {
-    const char *table, *machine, *model, *title, *html, *csv;
+    const char *table, *machine, *model, *title, *html, *csv, *json;
 };
 
 static enum dig_status parse(const int argc, char *argv[], struct options *const options,
@@ -32,29 +31,43 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
         case DIGREPORT_TITLE: o.title = optarg; break;
         case DIGREPORT_HTML: o.html = optarg; break;
         case DIGREPORT_CSV: o.csv = optarg; break;
+        case DIGREPORT_JSON: o.json = optarg; break;
         case DIG_OPTION_HELP: dig_help_print(program, command, stdout); exit(EXIT_SUCCESS);
         case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
         default: return DIG_EINVAL; // said already
         }
     }
-    if (o.table == NULL || o.machine == NULL || optind == argc) {
+    if (optind == argc) {
+        return dig_error_set(error, DIG_EINVAL, "shift: expected at least one LOG.lcm");
+    }
+    if ((o.table == NULL) != (o.machine == NULL)) {
         return dig_error_set(error, DIG_EINVAL,
-                             "shift: expected --table, --machine and at least one LOG.lcm");
+                             "shift: expected --table and --machine, or neither: both tell how "
+                             "much larger the machine is than the rig");
     }
     *options = o;
     return DIG_OK;
 }
 
-static enum dig_status write_csv(const struct digreport_shift *const shift, const char *const path,
-                                 struct dig_error *const error)
+static enum dig_status write_file(const struct digreport_shift *const shift, const char *const path,
+                                  void (*const put)(const struct digreport_shift *, FILE *),
+                                  struct dig_error *const error)
 {
+    if (path == NULL) {
+        return DIG_OK;
+    }
     struct dig_out        out;
     const enum dig_status status = dig_out_open(&out, path, error);
     if (status != DIG_OK) {
         return status;
     }
-    digreport_shift_csv(shift, out.file);
+    put(shift, out.file);
     return dig_out_commit(&out, error);
+}
+
+static bool is_stdout(const char *const path)
+{
+    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
 }
 
 static enum dig_status report(const struct options *const                 options,
@@ -66,12 +79,19 @@ static enum dig_status report(const struct options *const                 option
     if (options->html != NULL) {
         status = digreport_shift_html(shift, subject, options->html, error);
     }
-    if (status == DIG_OK && options->csv != NULL) {
-        status = write_csv(shift, options->csv, error);
+    if (status == DIG_OK) {
+        status = write_file(shift, options->csv, digreport_shift_csv, error);
     }
     if (status == DIG_OK) {
-        digreport_shift_sentence(shift, stdout);
-        (void)fputs("\n", stdout);
+        status = write_file(shift, options->json, digreport_shift_json, error);
+    }
+    if (status == DIG_OK) {
+        // Where a program is to read the result, people read on standard error.
+        FILE *const to =
+            options->json != NULL || is_stdout(options->csv) || is_stdout(options->html) ? stderr
+                                                                                         : stdout;
+        digreport_shift_sentence(shift, to);
+        (void)fputs("\n", to);
     }
     return status;
 }
@@ -79,23 +99,23 @@ static enum dig_status report(const struct options *const                 option
 enum dig_status digreport_shift_command(const int argc, char *argv[], struct dig_error *const error)
 {
     struct options         options = { .table = NULL };
-    struct dig_machine     machine;
-    struct dig_model       model  = { .effects = 0 };
-    struct dig_curve_set  *set    = NULL;
-    struct digreport_shift shift  = { .lambda = 0.0 };
+    struct dig_machine     machine = { .name = "" };
+    struct dig_model       model   = { .effects = 0 };
+    struct dig_curve_set  *set     = NULL;
+    struct digreport_shift shift;
     enum dig_status        status = parse(argc, argv, &options, error);
-    if (status == DIG_OK) {
+    digreport_shift_begin(&shift, 0.0);
+    if (status == DIG_OK && options.machine != NULL) {
         status = dig_machine_read(options.machine, &machine, error);
     }
     if (status == DIG_OK && options.model != NULL) {
         status = dig_model_read(options.model, &model, error);
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && options.table != NULL) {
         status = dig_table_load(options.table, &set, error);
     }
-    if (status == DIG_OK) {
-        shift.lambda       = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
-        shift.track.half_s = DIG_SMOOTH_HALF_s * sqrt(shift.lambda);
+    if (status == DIG_OK && set != NULL) {
+        digreport_shift_begin(&shift, machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
     }
     for (int i = optind; i < argc && status == DIG_OK; i++) {
         status = digreport_shift_log(&shift, argv[i], error);
@@ -104,7 +124,7 @@ enum dig_status digreport_shift_command(const int argc, char *argv[], struct dig
         const struct digreport_shift_subject subject = {
             .title   = options.title,
             .machine = machine.name,
-            .scene   = set->scene_name,
+            .scene   = set != NULL ? set->scene_name : "",
             .model   = options.model != NULL ? &model : NULL,
             .logs    = (size_t)(argc - optind),
         };

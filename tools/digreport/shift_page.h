@@ -8,8 +8,8 @@
 
 /// What a report says beside the shift. Texts are escaped.
 struct digreport_shift_subject {
-    const char             *title, *machine, *scene;
-    const struct dig_model *model; // NULL: none was given
+    const char             *title, *machine, *scene; // the last two "": not known
+    const struct dig_model *model;                   // NULL: none was given
     size_t                  logs;
 };
 
@@ -20,6 +20,9 @@ void digreport_shift_sentence(const struct digreport_shift *shift, FILE *to);
 DIG_MUST_CHECK enum dig_status digreport_shift_html(const struct digreport_shift         *shift,
                                                     const struct digreport_shift_subject *subject,
                                                     const char *path, struct dig_error *error);
+
+/// Digs, gravels and troubles as one JSON object.
+void digreport_shift_json(const struct digreport_shift *shift, FILE *to);
 
 /// The digs as CSV, a line each; a number that is not known is left out.
 void digreport_shift_csv(const struct digreport_shift *shift, FILE *to);
