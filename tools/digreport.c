@@ -50,7 +50,7 @@ static enum dig_status report(const struct digreport_options *const options,
             status = dig_out_commit(&out, error);
         }
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && !options->quiet) {
         // Where a program is to read the result, people read on standard error.
         dig_report_text(all, options->json != NULL ? stderr : stdout);
     }

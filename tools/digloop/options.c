@@ -82,6 +82,7 @@ static enum dig_status take(const int option, struct digloop_options *const o,
         break;
     case DIGLOOP_HTML: o->html = optarg; break;
     case DIGLOOP_ADD: o->add = optarg; break;
+    case DIGLOOP_QUIET: o->quiet = true; break;
     default: return DIG_EINVAL; // said already
     }
     return DIG_OK;

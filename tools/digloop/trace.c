@@ -88,7 +88,9 @@ write_results(const struct digloop_options *const options, const struct dig_curv
     // Where programs are to read the result, people read on standard error.
     const bool for_program =
         options->json_out != NULL || options->add != NULL || is_stdout(options->html);
-    dig_trace_text(trace, for_program ? stderr : stdout);
+    if (!options->quiet) {
+        dig_trace_text(trace, for_program ? stderr : stdout);
+    }
     return status;
 }
 

@@ -1,5 +1,6 @@
 #include "tools/digreport/options.h"
 
+#include "core/did_you_mean.h"
 #include "core/help.h"
 
 #include <getopt.h>
@@ -33,6 +34,7 @@ static const struct dig_option known[] = {
     { "json", DIGREPORT_JSON, "FILE.json", NULL,
       "write the results as JSON, - for standard output; what people read goes to standard error "
       "then" },
+    { "quiet", DIGREPORT_QUIET, NULL, NULL, "nothing for people, only what goes wrong" },
 };
 
 const struct dig_program *digreport_program(void)
@@ -91,6 +93,7 @@ enum dig_status digreport_parse(const int argc, char *argv[],
         case DIGREPORT_TITLE: o.title = optarg; break;
         case DIGREPORT_HTML: o.html = optarg; break;
         case DIGREPORT_JSON: o.json = optarg; break;
+        case DIGREPORT_QUIET: o.quiet = true; break;
         case DIG_OPTION_HELP: dig_help_print(program, &program->self, stdout); exit(EXIT_SUCCESS);
         case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
         case DIGREPORT_TRUTH: {
@@ -112,8 +115,12 @@ enum dig_status digreport_parse(const int argc, char *argv[],
     }
     for (; optind < argc; optind++) {
         if (o.logs == DIG_REPORT_RUNS_MAX || strchr(argv[optind], '=') == NULL) {
-            return dig_error_set(error, DIG_EINVAL, "%s: expected NAME=LOG.lcm, at most %d of them",
-                                 argv[optind], DIG_REPORT_RUNS_MAX);
+            char             text[DIG_GUESS_SIZE];
+            struct dig_guess guess = dig_guess(argv[optind]);
+            dig_guess_try(&guess, commands[0].name);
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: expected NAME=LOG.lcm, at most %d of them%s", argv[optind],
+                                 DIG_REPORT_RUNS_MAX, dig_guess_text(&guess, "", text));
         }
         o.log[o.logs++] = argv[optind];
     }

@@ -9,13 +9,20 @@
 #include "tools/digreport/shift_page.h"
 
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct options {
     const char *table, *machine, *model, *title, *html, *csv, *json;
+    bool        quiet;
 };
+
+static bool is_stdout(const char *const path)
+{
+    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
+}
 
 static enum dig_status parse(const int argc, char *argv[], struct options *const options,
                              struct dig_error *const error)
@@ -32,6 +39,7 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
         case DIGREPORT_HTML: o.html = optarg; break;
         case DIGREPORT_CSV: o.csv = optarg; break;
         case DIGREPORT_JSON: o.json = optarg; break;
+        case DIGREPORT_QUIET: o.quiet = true; break;
         case DIG_OPTION_HELP: dig_help_print(program, command, stdout); exit(EXIT_SUCCESS);
         case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
         default: return DIG_EINVAL; // said already
@@ -44,6 +52,10 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
         return dig_error_set(error, DIG_EINVAL,
                              "shift: expected --table and --machine, or neither: both tell how "
                              "much larger the machine is than the rig");
+    }
+    if (is_stdout(o.html) + is_stdout(o.csv) + is_stdout(o.json) > 1) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "shift: expected at most one result on standard output");
     }
     *options = o;
     return DIG_OK;
@@ -65,11 +77,6 @@ static enum dig_status write_file(const struct digreport_shift *const shift, con
     return dig_out_commit(&out, error);
 }
 
-static bool is_stdout(const char *const path)
-{
-    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
-}
-
 static enum dig_status report(const struct options *const                 options,
                               const struct digreport_shift *const         shift,
                               const struct digreport_shift_subject *const subject,
@@ -85,7 +92,7 @@ static enum dig_status report(const struct options *const                 option
     if (status == DIG_OK) {
         status = write_file(shift, options->json, digreport_shift_json, error);
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && !options->quiet) {
         // Where a program is to read the result, people read on standard error.
         FILE *const to =
             options->json != NULL || is_stdout(options->csv) || is_stdout(options->html) ? stderr
