@@ -59,7 +59,7 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
         put_data(to, i, &plot->s[i]);
     }
     for (size_t i = 0; i < plot->series; i++) {
-        (void)fprintf(to, "%s $s%zu %s lc rgb 0x%06x", i == 0 ? "plot" : ",", i,
+        (void)fprintf(to, "%s $s%zu %s lc rgb 0x%06x notitle", i == 0 ? "plot" : ",", i,
                       how[plot->s[i].style], plot->s[i].rgb & 0xffffffU);
     }
     (void)fprintf(to, "\n");
@@ -104,8 +104,10 @@ static enum dig_status copy_drawing(FILE *const from, FILE *const to, struct dig
     rewind(from);
     while (at != BEHIND && fgets(line, sizeof line, from) != NULL) {
         if (at == INSIDE) {
-            at = strncmp(line, "</svg>", 6) == 0 ? BEHIND : INSIDE;
-            if (at == INSIDE && fputs(line, to) == EOF) {
+            // Its title and who made it would be read aloud, and shown where there are no pictures.
+            const bool about = strncmp(line, "<title>", 7) == 0 || strncmp(line, "<desc>", 6) == 0;
+            at               = strncmp(line, "</svg>", 6) == 0 ? BEHIND : INSIDE;
+            if (at == INSIDE && !about && fputs(line, to) == EOF) {
                 return dig_error_set(error, DIG_EIO, "writing a plot: %s", strerror(errno));
             }
         } else {
