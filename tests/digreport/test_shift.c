@@ -198,12 +198,16 @@ static void a_second_log_begins_anew(void **state)
     log_health(log, "DIGSIGHT_HEALTH", START_us + 60 * MINUTE, &h);
     put_dig(log, START_us + 61 * MINUTE, 0, 10000.0);
     put_match(log, START_us + 62 * MINUTE, 0.0, false, hostile);
+    digsight_match_t m = a_match(START_us + 63 * MINUTE, 0.0, false, hostile);
+    m.dig_count        = 5; // as a dig of the first log was
+    m.ending           = DIGREPORT_ABORTED;
+    log_match(log, "DIGSIGHT_MATCH", START_us + 63 * MINUTE, &m);
     lcm_eventlog_destroy(log);
     read_log("next.lcm");
     assert_int_equal(shift.digs, 3);
     assert_int_equal(shift.dig[2].number, 1);
     assert_int_equal(shift.dig[2].ended, DIGREPORT_NOT_TOLD);
-    assert_int_equal(shift.dig[1].ended, DIGREPORT_ABORTED);
+    assert_int_equal(shift.dig[0].ended, DIGREPORT_WHOLE);
     assert_close(shift.dig[2].error, 0.0, 1e-9);
     assert_int_equal(shift.events, 3); // timeouts before it are not its own
     assert_null(shift.event[2].text);
@@ -227,7 +231,7 @@ static void how_a_dig_ended_is_told_where_the_log_tells_it(void **state)
     put_dig(log, START_us + 5 * MINUTE, 3, 1000.0);
     h.digs_whole = h.digs_aborted = 1;
     log_health(log, "DIGSIGHT_HEALTH", START_us + 6 * MINUTE, &h);
-    m.dig_count = 4;
+    m.dig_count = 3;
     m.ending    = DIGREPORT_ABORTED;
     log_match(log, "DIGSIGHT_MATCH", START_us + 6 * MINUTE, &m);
     m.dig_count = 1; // of the daemon's run before
@@ -235,7 +239,7 @@ static void how_a_dig_ended_is_told_where_the_log_tells_it(void **state)
     log_match(log, "DIGSIGHT_MATCH", START_us + 6 * MINUTE, &m);
     lcm_eventlog_destroy(log);
     read_log("ends.lcm");
-    static const char *const ended[] = { "", "unknown", "", "aborted" };
+    static const char *const ended[] = { "", "unknown", "aborted", "" };
     for (size_t i = 0; i < 4; i++) {
         assert_string_equal(digreport_ending_name(shift.dig[i].ended), ended[i]);
     }

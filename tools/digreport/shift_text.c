@@ -79,7 +79,7 @@ static void numbers_of_gravel(const struct digreport_gravel *const g,
 static void numbers_of_dig(const struct digreport_shift *const shift,
                            const struct digreport_dig *const d, struct number number[const OF_DIG])
 {
-    const double        to_rig      = shift->lambda > 0.0 ? pow(shift->lambda, -4.0) : (double)NAN;
+    const double        to_rig      = pow(shift->lambda, -4.0); // infinite where it is not known
     const struct number all[OF_DIG] = {
         { "duration_s", d->duration_s },
         { "peak_Nm", d->peak_Nm },
