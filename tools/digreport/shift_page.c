@@ -6,18 +6,6 @@
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
-#include <time.h>
-
-// A day and a time, or nothing where there is none such.
-static void format_date(const int64_t time_us, const size_t size, char text[])
-{
-    const time_t seconds = (time_t)(time_us / 1000000);
-    struct tm    utc;
-    text[0] = '\0';
-    if (gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(text, size, "%Y-%m-%d %H:%M:%S UTC", &utc);
-    }
-}
 
 static void put_effects(const struct dig_model *const model, FILE *const to)
 {
@@ -92,10 +80,10 @@ static void put_events(const struct digreport_shift *const shift, FILE *const to
 static void put_subject(const struct digreport_page *const page, FILE *const to)
 {
     const struct digreport_shift *const shift = page->shift;
-    char                                from[48];
-    char                                until[48];
-    format_date(shift->first_us, sizeof from, from);
-    format_date(shift->last_us, sizeof until, until);
+    char                                from[DIGREPORT_TIME];
+    char                                until[DIGREPORT_TIME];
+    digreport_time(shift->first_us, from);
+    digreport_time(shift->last_us, until);
     (void)fputs("<p class=result>", to);
     digreport_shift_sentence(shift, to);
     (void)fprintf(to, "</p>\n<p>%s to %s, from %zu log%s. ", from, until, page->subject->logs,
@@ -152,8 +140,8 @@ enum dig_status digreport_shift_html(const struct digreport_shift *const        
     assert(shift != NULL && subject != NULL && path != NULL);
     const double          minutes = (double)(shift->last_us - shift->first_us) / 6e7;
     struct digreport_page page    = { shift, subject, minutes > 180.0 ? 3.6e9 : 6e7, "" };
-    char                  clock[32];
-    format_date(shift->first_us, sizeof clock, clock);
+    char                  clock[DIGREPORT_TIME];
+    digreport_time(shift->first_us, clock);
     (void)snprintf(page.x_label, sizeof page.x_label, "time since %s, %s", clock,
                    minutes > 180.0 ? "h" : "min");
     return dig_html_save(path, put_page, &page, error);

@@ -13,6 +13,11 @@ struct digreport_shift_subject {
     size_t                  logs;
 };
 
+#define DIGREPORT_TIME 32
+
+/// "2026-11-24T12:34:56Z"; nothing but zeros where there is no such time.
+void digreport_time(int64_t time_us, char text[DIGREPORT_TIME]);
+
 /// One sentence: digs, gravel, error, health. Of the messages it holds numbers alone.
 void digreport_shift_sentence(const struct digreport_shift *shift, FILE *to);
 

@@ -7,6 +7,16 @@
 #include <string.h>
 #include <time.h>
 
+void digreport_time(const int64_t time_us, char text[const DIGREPORT_TIME])
+{
+    const time_t seconds = (time_t)(time_us / 1000000);
+    struct tm    utc;
+    memset(text, 0, DIGREPORT_TIME);
+    if (gmtime_r(&seconds, &utc) != NULL) {
+        (void)strftime(text, DIGREPORT_TIME, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    }
+}
+
 static void put_duration(const int64_t us, FILE *const to)
 {
     const int64_t minutes = us / 60000000;
@@ -96,17 +106,6 @@ static void numbers_of_dig(const struct digreport_shift *const shift,
     memcpy(number, all, sizeof all);
 }
 
-static void put_time(const int64_t time_us, FILE *const to)
-{
-    const time_t seconds  = (time_t)(time_us / 1000000);
-    char         time[32] = "";
-    struct tm    utc;
-    if (gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(time, sizeof time, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    }
-    (void)fputs(time, to);
-}
-
 void digreport_shift_csv(const struct digreport_shift *const shift, FILE *const to)
 {
     assert(shift != NULL && to != NULL);
@@ -120,8 +119,9 @@ void digreport_shift_csv(const struct digreport_shift *const shift, FILE *const 
     (void)fputc('\n', to);
     for (size_t i = 0; i < shift->digs; i++) {
         const struct digreport_dig *const d = &shift->dig[i];
-        put_time(d->time_us, to);
-        (void)fprintf(to, ",%" PRId32 ",%s,%s", d->number, d->trajectory,
+        char                              time[DIGREPORT_TIME];
+        digreport_time(d->time_us, time);
+        (void)fprintf(to, "%s,%" PRId32 ",%s,%s", time, d->number, d->trajectory,
                       digreport_ending_name(d->ended));
         numbers_of_dig(shift, d, number);
         numbers_of_gravel(digreport_shift_gravel_at(shift, d->time_us), number + OF_DIG);
@@ -135,9 +135,9 @@ void digreport_shift_csv(const struct digreport_shift *const shift, FILE *const 
 static void put_json_time(const char *const before, const char *const name, const int64_t time_us,
                           FILE *const to)
 {
-    (void)fprintf(to, "%s\"%s\": \"", before, name);
-    put_time(time_us, to);
-    (void)fputc('"', to);
+    char time[DIGREPORT_TIME];
+    digreport_time(time_us, time);
+    (void)fprintf(to, "%s\"%s\": \"%s\"", before, name, time);
 }
 
 static void put_json_numbers(const int n, const struct number number[], FILE *const to)
