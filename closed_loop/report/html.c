@@ -1,10 +1,8 @@
 #include "closed_loop/report/html.h"
 
-#include "core/part.h"
 #include "core/text.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -106,52 +104,4 @@ void dig_html_end(FILE *const to, const char *const note)
                   "<footer>%s Predictions are advice, not a safety function.</footer>\n"
                   "</body></html>\n",
                   note);
-}
-
-// Renaming over the program's own output would be a file named "-".
-static enum dig_status put_out(enum dig_status (*const put)(void *, FILE *, struct dig_error *),
-                               void *const context, struct dig_error *const error)
-{
-    const enum dig_status status  = put(context, stdout, error);
-    const bool            written = fflush(stdout) == 0 && ferror(stdout) == 0;
-    return status != DIG_OK || written
-               ? status
-               : dig_error_set(error, DIG_EIO, "standard output: %s", strerror(errno));
-}
-
-enum dig_status dig_html_save(const char *const path,
-                              enum dig_status (*const put)(void *, FILE *, struct dig_error *),
-                              void *const context, struct dig_error *const error)
-{
-    assert(path != NULL && put != NULL);
-    if (strcmp(path, "-") == 0) {
-        return put_out(put, context, error);
-    }
-    const size_t size = strlen(path) + sizeof ".part";
-    char *const  part = malloc(size);
-    if (part == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
-    }
-    (void)snprintf(part, size, "%s.part", path);
-
-    enum dig_status status = DIG_EIO;
-    FILE *const     to     = dig_part_open(part);
-    if (to == NULL) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-        goto done;
-    }
-    status             = put(context, to, error);
-    const bool written = ferror(to) == 0;
-    if ((fclose(to) != 0 || !written) && status == DIG_OK) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-    }
-    if (status == DIG_OK && rename(part, path) != 0) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
-    }
-    if (status != DIG_OK) {
-        (void)remove(part);
-    }
-done:
-    free(part);
-    return status;
 }

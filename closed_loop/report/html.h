@@ -1,9 +1,7 @@
-// What every page has: escaped text, one style, and a file that appears whole or not at all.
+// What every page has: escaped text and one style.
 
 #ifndef DIG_CLOSED_LOOP_REPORT_HTML_H
 #define DIG_CLOSED_LOOP_REPORT_HTML_H
-
-#include "core/error.h"
 
 #include <stdio.h>
 
@@ -24,11 +22,5 @@ void dig_html_begin(FILE *to, const char *title);
 
 /// The footer, note (HTML) in it, and the end.
 void dig_html_end(FILE *to, const char *note);
-
-/// Opens PATH.part, lets put write into it, and renames it to PATH when all went well; removes it
-/// otherwise. "-" is standard output. The status and *error are put's, or DIG_EIO, or DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status
-dig_html_save(const char *path, enum dig_status (*put)(void *context, FILE *to, struct dig_error *),
-              void *context, struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_HTML_H

@@ -177,13 +177,10 @@ static void put_sentence(FILE *const to, const struct dig_report *const report)
     (void)fputs(".</p>\n", to);
 }
 
-struct page {
-    const struct dig_report *report;
-};
-
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+enum dig_status dig_report_html(const struct dig_report *const report, FILE *const to,
+                                struct dig_error *const error)
 {
-    const struct dig_report *const report = ((const struct page *)context)->report;
+    assert(report != NULL && to != NULL);
     dig_html_begin(to, report->title);
     put_sentence(to, report);
     (void)fputs("<p>Table: ", to);
@@ -215,12 +212,4 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     }
     dig_html_end(to, DIG_REPORT_ERROR_NOTE);
     return DIG_OK;
-}
-
-enum dig_status dig_report_html(const struct dig_report *const report, const char *const path,
-                                struct dig_error *const error)
-{
-    assert(report != NULL && path != NULL);
-    struct page page = { report };
-    return dig_html_save(path, put_page, &page, error);
 }

@@ -64,8 +64,8 @@ void dig_report_text(const struct dig_report *report, FILE *to);
 /// The same as one JSON object.
 void dig_report_json(const struct dig_report *report, FILE *to);
 
-/// The page: needs gnuplot. Writes PATH.part, then renames. DIG_EIO with *error otherwise.
-DIG_MUST_CHECK enum dig_status dig_report_html(const struct dig_report *report, const char *path,
+/// The page: needs gnuplot; DIG_EIO with *error without it.
+DIG_MUST_CHECK enum dig_status dig_report_html(const struct dig_report *report, FILE *to,
                                                struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_REPORT_H

@@ -312,9 +312,14 @@ static void put_next(FILE *const to, const struct page *const page)
     }
 }
 
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+enum dig_status dig_trace_html(const struct dig_trace *const         trace,
+                               const struct dig_trace_subject *const subject, FILE *const to,
+                               struct dig_error *const error)
 {
-    const struct page *const page = context;
+    assert(trace != NULL && subject != NULL && to != NULL);
+    assert(subject->campaign != NULL && subject->table != NULL);
+    const struct page        all  = { trace, subject };
+    const struct page *const page = &all;
     char                     sentence[1024];
     char                     title[256];
     const char *const        campaign = page->subject->campaign;
@@ -362,14 +367,4 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     put_next(to, page);
     dig_html_end(to, DIG_REPORT_ERROR_NOTE);
     return DIG_OK;
-}
-
-enum dig_status dig_trace_html(const struct dig_trace *const         trace,
-                               const struct dig_trace_subject *const subject,
-                               const char *const path, struct dig_error *const error)
-{
-    assert(trace != NULL && subject != NULL && path != NULL);
-    assert(subject->campaign != NULL && subject->table != NULL);
-    struct page page = { trace, subject };
-    return dig_html_save(path, put_page, &page, error);
 }

@@ -363,6 +363,16 @@ static void a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found(void *
 }
 
 // A change that was not made is told in every form of the report.
+static enum dig_status write_page(const struct example *const e, const char *const path,
+                                  struct dig_error *const error)
+{
+    FILE *const to = fopen(path, "w");
+    assert_non_null(to);
+    const enum dig_status status = dig_trace_html(&e->trace, &e->subject, to, error);
+    (void)fclose(to);
+    return status;
+}
+
 static void what_is_named_and_not_applied_is_told(void **state)
 {
     (void)state;
@@ -384,7 +394,7 @@ static void what_is_named_and_not_applied_is_told(void **state)
     free(json);
     const char *const html = scratch_path("refused.html");
     e->trace.holdouts      = 1;
-    assert_int_equal(dig_trace_html(&e->trace, &e->subject, html, &error), DIG_OK);
+    assert_int_equal(write_page(e, html, &error), DIG_OK);
     char *const page = scratch_read(html, &size);
     assert_contains(page, "named, not applied: cylinder_friction, unlisted;");
     assert_contains(page, "On 1 dig that took no part in the fit (one dig: no interval).");
@@ -403,7 +413,7 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     struct example *const e     = make();
     const char *const     path  = scratch_path("trace.html");
     struct dig_error      error = { "" };
-    if (dig_trace_html(&e->trace, &e->subject, path, &error) != DIG_OK) {
+    if (write_page(e, path, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     size_t      size = 0;
@@ -439,10 +449,9 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
         }
     }
     free(page);
-    assert_false(scratch_exists("trace.html.part"));
     const char *const keep = getenv("DIG_KEEP_PAGE");
     if (keep != NULL) {
-        assert_int_equal(dig_trace_html(&e->trace, &e->subject, keep, &error), DIG_OK);
+        assert_int_equal(write_page(e, keep, &error), DIG_OK);
     }
     drop(e);
 }
@@ -473,15 +482,13 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     e->trace.before.value       = (double)NAN;
     e->trace.advice[0]          = '\0';
     e->trace.command[0]         = '\0';
-    assert_int_equal(dig_trace_html(&e->trace, &e->subject, path, &error), DIG_OK);
+    assert_int_equal(write_page(e, path, &error), DIG_OK);
     size_t      size = 0;
     char *const page = scratch_read(path, &size);
     assert_contains(page, "No dig was held out");
     assert_null(strstr(page, "What to do next"));
     assert_null(strstr(page, "Residual dig by dig"));
     free(page);
-    assert_int_equal(dig_trace_html(&e->trace, &e->subject, scratch_path("no/such.html"), &error),
-                     DIG_EIO);
     drop(e);
 }
 

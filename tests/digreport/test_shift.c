@@ -300,9 +300,12 @@ static char *page_of(const struct digreport_shift_subject *const subject)
 {
     struct dig_error error = { "" };
     size_t           size  = 0;
-    if (digreport_shift_html(&shift, subject, scratch_path("page.html"), &error) != DIG_OK) {
+    FILE *const      to    = fopen(scratch_path("page.html"), "w");
+    assert_non_null(to);
+    if (digreport_shift_html(&shift, subject, to, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
+    (void)fclose(to);
     return scratch_read(scratch_path("page.html"), &size);
 }
 

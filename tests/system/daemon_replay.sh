@@ -180,6 +180,10 @@ check "from the logs alone it makes both, at machine scale" eval 'shift_of --htm
     within "$(awk -v a="$(field peak_Nm 2)" -v b="$peak" "BEGIN { print a / b }")" 0.99 1.01'
 check "and JSON, what people read going to standard error" eval 'shift_of --json - "$work/csv.lcm" && "$helpers/is_json" <"$work/shift.txt" &&
     grep -q "^2 digs in" "$work/err"'
+for args in "" --json=-; do
+    check "a page that cannot be drawn leaves nothing${args:+, nor other results}" eval '! PATH=/nonexistent shift_of --html "$work/no.html" $args "$work/csv.lcm" &&
+        grep -q "gnuplot: .*package gnuplot-nox" "$work/err" && [ ! -s "$work/shift.txt" ] && ! ls "$work"/no.* 2>/dev/null'
+done
 head -c 5000 /dev/urandom >"$work/rubbish.lcm"
 check "a log that is none is refused, and nothing is written" eval '! shift_of --html "$work/no.html" --csv "$work/no.csv" "$work/csv.lcm" "$work/rubbish.lcm" &&
     grep -q "rubbish.lcm:1: does not begin with ED A1 DA 01" "$work/err" && ! ls "$work"/no.* 2>/dev/null'

@@ -2,6 +2,7 @@
 
 #include "core/did_you_mean.h"
 #include "core/help.h"
+#include "files/whole.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -127,6 +128,9 @@ enum dig_status digreport_parse(const int argc, char *argv[],
     if (o.table == NULL || o.machine == NULL || o.logs == 0) {
         return dig_error_set(error, DIG_EINVAL,
                              "expected --table, --machine and at least one NAME=LOG.lcm");
+    }
+    if (dig_out_is_stdout(o.html) && dig_out_is_stdout(o.json)) {
+        return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
     }
     *options = o;
     return DIG_OK;

@@ -19,11 +19,6 @@ struct options {
     bool        quiet;
 };
 
-static bool is_stdout(const char *const path)
-{
-    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
-}
-
 static enum dig_status parse(const int argc, char *argv[], struct options *const options,
                              struct dig_error *const error)
 {
@@ -53,9 +48,9 @@ static enum dig_status parse(const int argc, char *argv[], struct options *const
                              "shift: expected --table and --machine, or neither: both tell how "
                              "much larger the machine is than the rig");
     }
-    if (is_stdout(o.html) + is_stdout(o.csv) + is_stdout(o.json) > 1) {
+    if (dig_out_is_stdout(o.html) + dig_out_is_stdout(o.csv) + dig_out_is_stdout(o.json) > 1) {
         return dig_error_set(error, DIG_EINVAL,
-                             "shift: expected at most one result on standard output");
+                             "shift: two results on standard output, expected one");
     }
     *options = o;
     return DIG_OK;
@@ -82,9 +77,11 @@ static enum dig_status report(const struct options *const                 option
                               const struct digreport_shift_subject *const subject,
                               struct dig_error *const                     error)
 {
-    enum dig_status status = DIG_OK;
-    if (options->html != NULL) {
-        status = digreport_shift_html(shift, subject, options->html, error);
+    struct dig_out  out;
+    enum dig_status status =
+        options->html != NULL ? dig_out_open(&out, options->html, error) : DIG_OK;
+    if (status == DIG_OK && options->html != NULL) {
+        status = dig_out_end(&out, digreport_shift_html(shift, subject, out.file, error), error);
     }
     if (status == DIG_OK) {
         status = write_file(shift, options->csv, digreport_shift_csv, error);
@@ -94,9 +91,10 @@ static enum dig_status report(const struct options *const                 option
     }
     if (status == DIG_OK && !options->quiet) {
         // Where a program is to read the result, people read on standard error.
-        FILE *const to =
-            options->json != NULL || is_stdout(options->csv) || is_stdout(options->html) ? stderr
-                                                                                         : stdout;
+        FILE *const to = options->json != NULL || dig_out_is_stdout(options->csv) ||
+                                 dig_out_is_stdout(options->html)
+                             ? stderr
+                             : stdout;
         digreport_shift_sentence(shift, to);
         (void)fputs("\n", to);
     }

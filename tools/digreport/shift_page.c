@@ -112,9 +112,9 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     }
 }
 
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+static enum dig_status put_page(const struct digreport_page *const page, FILE *const to,
+                                struct dig_error *const error)
 {
-    const struct digreport_page *const page = context;
     dig_html_begin(to, page->subject->title);
     put_subject(page, to);
     enum dig_status status = digreport_page_digs(page, to, error);
@@ -135,14 +135,14 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
 
 enum dig_status digreport_shift_html(const struct digreport_shift *const         shift,
                                      const struct digreport_shift_subject *const subject,
-                                     const char *const path, struct dig_error *const error)
+                                     FILE *const to, struct dig_error *const error)
 {
-    assert(shift != NULL && subject != NULL && path != NULL);
+    assert(shift != NULL && subject != NULL && to != NULL);
     const double          minutes = (double)(shift->last_us - shift->first_us) / 6e7;
     struct digreport_page page    = { shift, subject, minutes > 180.0 ? 3.6e9 : 6e7, "" };
     char                  clock[DIGREPORT_TIME];
     digreport_time(shift->first_us, clock);
     (void)snprintf(page.x_label, sizeof page.x_label, "time since %s, %s", clock,
                    minutes > 180.0 ? "h" : "min");
-    return dig_html_save(path, put_page, &page, error);
+    return put_page(&page, to, error);
 }

@@ -21,10 +21,10 @@ void digreport_time(int64_t time_us, char text[DIGREPORT_TIME]);
 /// One sentence: digs, gravel, error, health. Of the messages it holds numbers alone.
 void digreport_shift_sentence(const struct digreport_shift *shift, FILE *to);
 
-/// The page: needs gnuplot. Fails as dig_html_save().
+/// The page: needs gnuplot. Fails as dig_plot_figure().
 DIG_MUST_CHECK enum dig_status digreport_shift_html(const struct digreport_shift         *shift,
                                                     const struct digreport_shift_subject *subject,
-                                                    const char *path, struct dig_error *error);
+                                                    FILE *to, struct dig_error *error);
 
 /// Digs, gravels and troubles as one JSON object.
 void digreport_shift_json(const struct digreport_shift *shift, FILE *to);
