@@ -19,12 +19,11 @@ static enum dig_status report(const struct digreport_options *const options,
     struct dig_machine    machine;
     struct dig_curve_set *set    = NULL;
     enum dig_status       status = dig_machine_read(options->machine, &machine, error);
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        status = dig_table_load(options->table, &set, error);
     }
-    status = dig_table_load(options->table, &set, error);
     if (status != DIG_OK) {
-        return status;
+        return digreport_input(status);
     }
 
     // Some 40 kB a run: too much to leave to the stack's good will.
@@ -40,6 +39,7 @@ static enum dig_status report(const struct digreport_options *const options,
         status = digreport_run(options, &machine, set, options->log[i], &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
+    status = digreport_input(status);
     struct dig_out out;
     if (status == DIG_OK && options->html != NULL) {
         status = dig_out_open(&out, options->html, error);

@@ -187,6 +187,7 @@ done
 head -c 5000 /dev/urandom >"$work/rubbish.lcm"
 check "a log that is none is refused, and nothing is written" eval '! shift_of --html "$work/no.html" --csv "$work/no.csv" "$work/csv.lcm" "$work/rubbish.lcm" &&
     grep -q "rubbish.lcm:1: does not begin with ED A1 DA 01" "$work/err" && ! ls "$work"/no.* 2>/dev/null'
+check "so is one that is not there" eval 'shift_of "$work/csv.lcm" "$work/nowhere.lcm"; [ $? = 2 ] && grep -q "nowhere.lcm: No such file" "$work/err"'
 check "without a log it says what is missing" eval 'shift_of; [ $? = 2 ] && grep -q "shift: expected at least one LOG.lcm" "$work/err"'
 check "a table without a machine does not tell the scale" eval 'shift_of --table "$work/table.sqlite" "$work/csv.lcm"; [ $? = 2 ] &&
     grep -q "expected --table and --machine, or neither" "$work/err"'

@@ -135,3 +135,8 @@ enum dig_status digreport_parse(const int argc, char *argv[],
     *options = o;
     return DIG_OK;
 }
+
+enum dig_status digreport_input(const enum dig_status status)
+{
+    return status == DIG_EIO ? DIG_EINVAL : status;
+}

@@ -40,4 +40,7 @@ struct digreport_options {
 DIG_MUST_CHECK enum dig_status
 digreport_parse(int argc, char *argv[], struct digreport_options *options, struct dig_error *error);
 
+/// A file that cannot be read is bad input: DIG_EIO becomes DIG_EINVAL.
+enum dig_status digreport_input(enum dig_status status);
+
 #endif // DIG_TOOLS_DIGREPORT_OPTIONS_H

@@ -125,6 +125,7 @@ enum dig_status digreport_shift_command(const int argc, char *argv[], struct dig
     for (int i = optind; i < argc && status == DIG_OK; i++) {
         status = digreport_shift_log(&shift, argv[i], error);
     }
+    status = digreport_input(status);
     if (status == DIG_OK) {
         const struct digreport_shift_subject subject = {
             .title   = options.title,
