@@ -98,9 +98,9 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
 
 // The program's own output, under either of its names. Opened anew it would be cut, and renamed
 // over it would be gone.
-static bool is_stdout(const char *const path)
+bool dig_out_is_stdout(const char *const path)
 {
-    return strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0;
+    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
 }
 
 static FILE *open_stdout(void)
@@ -137,7 +137,7 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
         return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
 
-    if (is_stdout(path)) {
+    if (dig_out_is_stdout(path)) {
         out->file = open_stdout();
     } else if (there && !S_ISREG(target.st_mode)) {
         out->file = open_special(out->path);
@@ -175,6 +175,16 @@ enum dig_status dig_out_commit(struct dig_out *const out, struct dig_error *cons
     }
     out->part[0] = '\0';
     return DIG_OK;
+}
+
+enum dig_status dig_out_end(struct dig_out *const out, const enum dig_status put_status,
+                            struct dig_error *const error)
+{
+    if (put_status == DIG_OK) {
+        return dig_out_commit(out, error);
+    }
+    dig_out_cancel(out);
+    return put_status;
 }
 
 void dig_out_cancel(struct dig_out *const out)

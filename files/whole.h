@@ -8,6 +8,7 @@
 
 #include <limits.h>
 #include <locale.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 /// Reads all of path into *text (malloc, with a NUL behind *size bytes). DIG_EIO with errno's words
@@ -31,6 +32,13 @@ DIG_MUST_CHECK enum dig_status dig_out_open(struct dig_out *out, const char *pat
 
 /// Flushes to the disk and renames. On failure nothing is left behind.
 DIG_MUST_CHECK enum dig_status dig_out_commit(struct dig_out *out, struct dig_error *error);
+
+/// The end of what put_status tells: commits where it is DIG_OK, else cancels and returns it.
+DIG_MUST_CHECK enum dig_status dig_out_end(struct dig_out *out, enum dig_status put_status,
+                                           struct dig_error *error);
+
+/// True for "-" and /dev/stdout; false for another path and for NULL.
+bool dig_out_is_stdout(const char *path);
 
 /// Closes and removes what was written. Harmless after a commit and on a zeroed struct.
 void dig_out_cancel(struct dig_out *out);

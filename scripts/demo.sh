@@ -10,7 +10,7 @@ gravel=${DIG_DEMO_GRAVEL:-mu0.5_mur0.5_rho2500_seed2} truth=${DIG_DEMO_TRUTH:-.5
 simple=$reference/${gravel}__simpleA.csv actual=$reference/${gravel}__actual.csv
 speed=${DIG_DEMO_SPEED:-1}
 
-say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
+say() { if [ -t 1 ]; then printf '\n\033[1m%s\033[0m\n' "$*"; else printf '\n%s\n' "$*"; fi; }
 rm -rf "$out" && mkdir -p "$out"
 out=$(cd "$out" && pwd)
 
@@ -47,7 +47,10 @@ grep -h "real time\|realtime\|locked" "$out"/modbus.daemon.log | head -n 3 || tr
 say "3. What was identified, and how right the prediction of the real dig was"
 "$bin/digreport" --table "$out/table.sqlite" --machine "$machine" --truth "$truth" \
     --title "Digsight demo: $gravel" --recording "$simple" --recording "$actual" \
-    --html "$out/report.html" --json "$out/report.json" "${runs[@]}" 2>&1
+    --html "$out/report.html" --json "$out/report.json" "${runs[@]}" 2>&1 || {
+    echo "  On a busy machine samples are lost: see $out/*.daemon.log, and try again." >&2
+    exit 1
+}
 echo
 echo "  report with plots: $out/report.html"
 echo "  LCM logs: $out/*.lcm   (make spy, then lcm-logplayer LOG, shows them live)"

@@ -37,7 +37,7 @@ set title 'An actual dig, predicted from one simple dig: error $(printf %.2f "$(
 set xlabel 'trajectory progress, %'; set ylabel 'moment about the bucket pin, N·m'
 set key top left reverse Left; set grid lc rgb '#dddddd'; set border 3; set tics nomirror; set yrange [0:2]
 plot '$work/predicted' using 1:(\$2-\$3):(\$2+\$3) with filledcurves fc rgb '#c8d7ec' title 'predicted, 90 % band of one dig', \
-     '' using 1:2 with lines lw 2 lc rgb '#1f5fa8' title 'predicted', \
+     '' using 1:2 with lines lw 2 dt (8,5) lc rgb '#1f5fa8' title 'predicted', \
      '$work/measured' with lines lw 2 lc rgb '#c0392b' title 'measured (dug by LIGGGHTS)'
 PLOT
 mkdir -p "$(dirname "$to")"

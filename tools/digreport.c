@@ -8,6 +8,7 @@
 #include "tools/digreport/run.h"
 #include "tools/digreport/shift_command.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,12 +19,11 @@ static enum dig_status report(const struct digreport_options *const options,
     struct dig_machine    machine;
     struct dig_curve_set *set    = NULL;
     enum dig_status       status = dig_machine_read(options->machine, &machine, error);
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        status = dig_table_load(options->table, &set, error);
     }
-    status = dig_table_load(options->table, &set, error);
     if (status != DIG_OK) {
-        return status;
+        return digreport_input(status);
     }
 
     // Some 40 kB a run: too much to leave to the stack's good will.
@@ -39,20 +39,25 @@ static enum dig_status report(const struct digreport_options *const options,
         status = digreport_run(options, &machine, set, options->log[i], &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
+    status = digreport_input(status);
+    struct dig_out out;
     if (status == DIG_OK && options->html != NULL) {
-        status = dig_report_html(all, options->html, error);
+        status = dig_out_open(&out, options->html, error);
+        if (status == DIG_OK) {
+            status = dig_out_end(&out, dig_report_html(all, out.file, error), error);
+        }
     }
     if (status == DIG_OK && options->json != NULL) {
-        struct dig_out out;
         status = dig_out_open(&out, options->json, error);
         if (status == DIG_OK) {
             dig_report_json(all, out.file);
             status = dig_out_commit(&out, error);
         }
     }
-    if (status == DIG_OK) {
+    if (status == DIG_OK && !options->quiet) {
         // Where a program is to read the result, people read on standard error.
-        dig_report_text(all, options->json != NULL ? stderr : stdout);
+        const bool read = options->json != NULL || dig_out_is_stdout(options->html);
+        dig_report_text(all, read ? stderr : stdout);
     }
 done:
     free(all);

@@ -1,10 +1,9 @@
 #include "closed_loop/report/html.h"
 
-#include "core/part.h"
 #include "core/text.h"
 
 #include <assert.h>
-#include <errno.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,20 +30,60 @@ void dig_html_text(FILE *const to, const char *const text)
     }
 }
 
+void dig_html_without_folders(FILE *const to, const char *const text)
+{
+    assert(to != NULL && text != NULL);
+    char *const kept = malloc(strlen(text) + 1);
+    size_t      n    = 0;
+    size_t      word = 0;
+    for (const char *c = text; kept != NULL && *c != '\0'; c++) {
+        const bool inside = strchr(" \n'\"", c[1]) == NULL; // of a word: '\0' ends one, too
+        if (*c == '/' && inside) {
+            n = word;
+        } else if (*c != '/' || n == word) {
+            kept[n++] = *c;
+        }
+        word = strchr(" \n'\"=", *c) != NULL ? n : word;
+    }
+    if (kept != NULL) {
+        kept[n] = '\0';
+        dig_html_text(to, kept);
+    }
+    free(kept);
+}
+
+void dig_html_cell(FILE *const to, const int digits, const double value)
+{
+    assert(to != NULL);
+    if (isfinite(value)) {
+        (void)fprintf(to, "<td>%.*f</td>", digits, value);
+    } else {
+        (void)fputs("<td>–</td>", to);
+    }
+}
+
+// On paper nothing scrolls, no picture or line of a table is torn, and bars are printed.
 static const char style[] =
     "<style>body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:960px;margin:0 auto;"
     "padding:1em}h1{font-size:1.5em;overflow-wrap:anywhere}h2{font-size:1.2em;margin-top:2em;"
     "border-top:1px solid #ddd;"
     "padding-top:1em}table{border-collapse:collapse;display:block;overflow-x:auto}"
     "td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #eee;font-weight:normal}"
-    "th:first-child{text-align:left}tr:first-child th{color:#666}figure{margin:1em 0}"
-    "svg{width:100%;height:auto;max-width:900px}.result{background:#f4f7fb;padding:.6em 1em}"
+    "th:first-child,.words td,.words th{text-align:left}tr:first-child th{color:#666}"
+    "figure{margin:1em 0}.wide td,.wide th{padding:.25em .4em}.wide tr+tr>*{white-space:nowrap}"
+    "svg{width:100%;height:auto;max-width:900px}"
+    ".result{background:#f4f7fb;padding:.6em 1em;font-weight:bold}"
     ".grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,420px),1fr));"
-    "gap:.5em}.grid figure{margin:.3em 0;min-width:0}.muted{color:#666;font-size:.9em}"
+    "gap:.5em 1.5em}.grid figure{margin:.3em 0;min-width:0}.muted{color:#666;font-size:.9em}"
     ".bar{display:inline-block;height:.7em;background:#1f5fa8;vertical-align:baseline}"
     "code,pre{font-size:.9em;background:#f5f5f5;overflow-wrap:anywhere;white-space:pre-wrap}"
     "@media(max-width:500px){td,th{padding:.25em .35em;font-size:.9em}}"
-    "footer{color:#666;font-size:.9em;margin-top:2em}</style>\n";
+    "footer{color:#666;font-size:.9em;margin-top:2em}"
+    "@media print{body{max-width:none;padding:0;font-size:11px;color:#000}"
+    "table{display:table}.wide td,.wide th{padding:.2em;font-size:8px;white-space:normal}"
+    ".grid{grid-template-columns:1fr 1fr}figure,tr,.result{break-inside:avoid}h2{break-after:avoid}"
+    ".result{border:1px solid #000}.muted,footer,tr:first-child th{color:#000}"
+    ".bar{print-color-adjust:exact;-webkit-print-color-adjust:exact}}</style>\n";
 
 void dig_html_begin(FILE *const to, const char *const title)
 {
@@ -58,56 +97,11 @@ void dig_html_begin(FILE *const to, const char *const title)
     (void)fputs("</h1>\n", to);
 }
 
-void dig_html_end(FILE *const to)
+void dig_html_end(FILE *const to, const char *const note)
 {
-    assert(to != NULL);
-    (void)fputs("</body></html>\n", to);
-}
-
-// Renaming over the program's own output would be a file named "-".
-static enum dig_status put_out(enum dig_status (*const put)(void *, FILE *, struct dig_error *),
-                               void *const context, struct dig_error *const error)
-{
-    const enum dig_status status  = put(context, stdout, error);
-    const bool            written = fflush(stdout) == 0 && ferror(stdout) == 0;
-    return status != DIG_OK || written
-               ? status
-               : dig_error_set(error, DIG_EIO, "standard output: %s", strerror(errno));
-}
-
-enum dig_status dig_html_save(const char *const path,
-                              enum dig_status (*const put)(void *, FILE *, struct dig_error *),
-                              void *const context, struct dig_error *const error)
-{
-    assert(path != NULL && put != NULL);
-    if (strcmp(path, "-") == 0) {
-        return put_out(put, context, error);
-    }
-    const size_t size = strlen(path) + sizeof ".part";
-    char *const  part = malloc(size);
-    if (part == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
-    }
-    (void)snprintf(part, size, "%s.part", path);
-
-    enum dig_status status = DIG_EIO;
-    FILE *const     to     = dig_part_open(part);
-    if (to == NULL) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-        goto done;
-    }
-    status             = put(context, to, error);
-    const bool written = ferror(to) == 0;
-    if ((fclose(to) != 0 || !written) && status == DIG_OK) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", part, strerror(errno));
-    }
-    if (status == DIG_OK && rename(part, path) != 0) {
-        status = dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
-    }
-    if (status != DIG_OK) {
-        (void)remove(part);
-    }
-done:
-    free(part);
-    return status;
+    assert(to != NULL && note != NULL);
+    (void)fprintf(to,
+                  "<footer>%s Predictions are advice, not a safety function.</footer>\n"
+                  "</body></html>\n",
+                  note);
 }

@@ -1,9 +1,7 @@
-// What every page has: escaped text, one style, and a file that appears whole or not at all.
+// What every page has: escaped text and one style.
 
 #ifndef DIG_CLOSED_LOOP_REPORT_HTML_H
 #define DIG_CLOSED_LOOP_REPORT_HTML_H
-
-#include "core/error.h"
 
 #include <stdio.h>
 
@@ -11,16 +9,18 @@
 /// character or a byte that is not UTF-8 becomes U+FFFD. Every text on a page goes through here.
 void dig_html_text(FILE *to, const char *text);
 
-/// From the doctype to the <h1>, both with this title. The style makes phones and desktops happy;
-/// it styles table, figure, .result, .grid (plots side by side where there is room), .bar, .muted.
+/// The same, without the folders of files that are named in it: they are somebody's machine.
+void dig_html_without_folders(FILE *to, const char *text);
+
+/// A table's cell: the number, or a dash for none.
+void dig_html_cell(FILE *to, int digits, double value);
+
+/// From the doctype to the <h1>, both with this title; a sentence in <p class=result> comes next.
+/// The style makes phones, desktops and paper happy; it styles table (.words: to the left, .wide:
+/// of many columns), figure, .result, .grid (plots side by side where there is room), .bar, .muted.
 void dig_html_begin(FILE *to, const char *title);
 
-void dig_html_end(FILE *to);
-
-/// Opens PATH.part, lets put write into it, and renames it to PATH when all went well; removes it
-/// otherwise. "-" is standard output. The status and *error are put's, or DIG_EIO, or DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status
-dig_html_save(const char *path, enum dig_status (*put)(void *context, FILE *to, struct dig_error *),
-              void *context, struct dig_error *error);
+/// The footer, note (HTML) in it, and the end.
+void dig_html_end(FILE *to, const char *note);
 
 #endif // DIG_CLOSED_LOOP_REPORT_HTML_H

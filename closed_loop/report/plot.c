@@ -38,19 +38,28 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
     static const char *const how[] = {
         [DIG_PLOT_LINE]   = "using 1:2 with lines lw 2",
         [DIG_PLOT_DASHED] = "using 1:2 with lines lw 2 dt (8,5)",
+        [DIG_PLOT_DOTTED] = "using 1:2 with lines lw 2 dt (2,4)",
         [DIG_PLOT_POINTS] = "using 1:2 with points pt 7 ps 0.6",
         [DIG_PLOT_BAND]   = "using 1:2:3 with filledcurves fs transparent solid 0.25 noborder",
     };
     (void)fprintf(to,
                   "set terminal svg size %u,%u noenhanced font 'sans-serif,14'\n"
-                  "unset key\nset grid lc rgb 0xdddddd\nset border 3 lc rgb 0x666666\n"
+                  "unset key\nset grid lc rgb 0xdddddd\nset border %d lc rgb 0x666666\n"
                   "set tics nomirror\n",
-                  width, height);
+                  width, height, plot->right_label != NULL ? 11 : 3);
+    if (plot->right_label != NULL) {
+        (void)fprintf(to, "set rmargin 7\nset y2tics\nset link y2 via y*%.9g inverse y/%.9g\n",
+                      plot->right_factor, plot->right_factor);
+    }
+    if (plot->x_to > 0.0) {
+        (void)fprintf(to, "set xrange [0:%.9g]\n", plot->x_to);
+    }
+    (void)fputs(plot->from_zero ? "set yrange [*<0:*]\n" : "", to);
     for (size_t i = 0; i < plot->series; i++) {
         put_data(to, i, &plot->s[i]);
     }
     for (size_t i = 0; i < plot->series; i++) {
-        (void)fprintf(to, "%s $s%zu %s lc rgb 0x%06x", i == 0 ? "plot" : ",", i,
+        (void)fprintf(to, "%s $s%zu %s lc rgb 0x%06x notitle", i == 0 ? "plot" : ",", i,
                       how[plot->s[i].style], plot->s[i].rgb & 0xffffffU);
     }
     (void)fprintf(to, "\n");
@@ -95,8 +104,10 @@ static enum dig_status copy_drawing(FILE *const from, FILE *const to, struct dig
     rewind(from);
     while (at != BEHIND && fgets(line, sizeof line, from) != NULL) {
         if (at == INSIDE) {
-            at = strncmp(line, "</svg>", 6) == 0 ? BEHIND : INSIDE;
-            if (at == INSIDE && fputs(line, to) == EOF) {
+            // Its title and who made it would be read aloud, and shown where there are no pictures.
+            const bool about = strncmp(line, "<title>", 7) == 0 || strncmp(line, "<desc>", 6) == 0;
+            at               = strncmp(line, "</svg>", 6) == 0 ? BEHIND : INSIDE;
+            if (at == INSIDE && !about && fputs(line, to) == EOF) {
                 return dig_error_set(error, DIG_EIO, "writing a plot: %s", strerror(errno));
             }
         } else {
@@ -127,6 +138,15 @@ static void put_text(FILE *const to, const unsigned x, const unsigned y, const c
     (void)fputs("</text>\n", to);
 }
 
+// Upwards, about its middle.
+static void put_turned(FILE *const to, const unsigned x, const unsigned y, const char *const text)
+{
+    char turned[64];
+    (void)snprintf(turned, sizeof turned, " text-anchor=\"middle\" transform=\"rotate(-90 %u %u)\"",
+                   x, y);
+    put_text(to, x, y, turned, text);
+}
+
 static void put_sample(FILE *const to, const struct dig_plot_series *const s, const unsigned x,
                        const unsigned y)
 {
@@ -141,7 +161,9 @@ static void put_sample(FILE *const to, const struct dig_plot_series *const s, co
     } else {
         (void)fprintf(to, "<path d=\"M%u %uh%d\" stroke=\"#%06x\" stroke-width=\"2\"%s/>\n", x,
                       y - 5, SAMPLE - 8, s->rgb,
-                      s->style == DIG_PLOT_DASHED ? " stroke-dasharray=\"8 5\"" : "");
+                      s->style == DIG_PLOT_DASHED   ? " stroke-dasharray=\"8 5\""
+                      : s->style == DIG_PLOT_DOTTED ? " stroke-dasharray=\"2 4\""
+                                                    : "");
     }
 }
 
@@ -175,27 +197,27 @@ static enum dig_status put_picture(const struct dig_plot *const plot, FILE *cons
                                    const unsigned above, const unsigned below, FILE *const to,
                                    struct dig_error *const error)
 {
-    char turned[64];
-    (void)snprintf(turned, sizeof turned, " text-anchor=\"middle\" transform=\"rotate(-90 %d %u)\"",
-                   LINE - 4, height / 2);
     (void)fprintf(to,
-                  "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+                  "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
                   "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 %u %u\" "
                   "font-family=\"sans-serif\" font-size=\"14\">\n"
                   "<rect width=\"%u\" height=\"%u\" fill=\"#ffffff\"/>\n",
                   width, height, width, height);
     put_text(to, width / 2, LINE - 2, " text-anchor=\"middle\"", plot->title);
-    put_text(to, LINE - 4, height / 2, turned, plot->y_label);
+    put_turned(to, LINE - 4, height / 2, plot->y_label);
+    if (plot->right_label != NULL) {
+        put_turned(to, width - 8, height / 2, plot->right_label);
+    }
     put_text(to, width / 2, height - below + LINE - 6, " text-anchor=\"middle\"", plot->x_label);
     (void)put_key(to, plot, width, height - below + 2 * LINE - 2);
     (void)fprintf(to, "<g transform=\"translate(%d %u)\" fill=\"none\">\n", LEFT, above);
     const enum dig_status status = copy_drawing(drawing, to, error);
-    (void)fputs("</g>\n</svg>\n", to);
+    (void)fputs("</g>\n</svg>\n</figure>\n", to);
     return status;
 }
 
-enum dig_status dig_plot_svg(const struct dig_plot *const plot, FILE *const to,
-                             struct dig_error *const error)
+enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const to,
+                                struct dig_error *const error)
 {
     assert(plot != NULL && to != NULL && plot->series <= DIG_PLOT_SERIES_MAX);
     const unsigned width  = plot->width == 0 ? 900 : plot->width;
@@ -212,7 +234,8 @@ enum dig_status dig_plot_svg(const struct dig_plot *const plot, FILE *const to,
         (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
     }
-    put_script(script, plot, width - LEFT, height - above - below);
+    put_script(script, plot, width - LEFT - (plot->right_label != NULL ? LEFT : 0),
+               height - above - below);
     if (fflush(script) != 0) {
         (void)dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
         goto done;

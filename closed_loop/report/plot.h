@@ -7,12 +7,28 @@
 
 #include "core/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
 #define DIG_PLOT_SERIES_MAX 8
 
-enum dig_plot_style { DIG_PLOT_LINE, DIG_PLOT_DASHED, DIG_PLOT_POINTS, DIG_PLOT_BAND };
+/// Told apart without colour: what is measured is a line or points, what is predicted is dashed.
+enum dig_plot_style {
+    DIG_PLOT_LINE,
+    DIG_PLOT_DASHED,
+    DIG_PLOT_DOTTED,
+    DIG_PLOT_POINTS,
+    DIG_PLOT_BAND
+};
+
+/// Colours of all pages.
+enum {
+    DIG_PLOT_PREDICTED = 0x1f5fa8,
+    DIG_PLOT_MEASURED  = 0xc0392b,
+    DIG_PLOT_BEFORE    = 0xc77f00,
+    DIG_PLOT_FED       = 0x555555
+};
 
 struct dig_plot_series {
     const char         *title; // in the key; NULL: not in the key
@@ -28,15 +44,19 @@ struct dig_plot {
     const char            *title;
     const char            *x_label;
     const char            *y_label;
+    const char            *right_label;   // of a second scale at the right; NULL: none
+    double                 right_factor;  // what y is on it: y times this
+    double                 x_to;          // the axis goes from 0 to here; 0: as the points lie
+    bool                   from_zero;     // the y axis holds 0
     unsigned               width, height; // 0: 900 by 420; the text is 14 high whatever the size
     size_t                 series;        // drawn in this order, later ones on top
     struct dig_plot_series s[DIG_PLOT_SERIES_MAX];
 };
 
-/// Writes one <svg> element, without an XML header, so that it stands inside an HTML page. Points
-/// that are not finite are gaps. DIG_EIO: gnuplot is missing or failed; nothing useful was written
-/// then. Starts a process; takes some tens of milliseconds.
-DIG_MUST_CHECK enum dig_status dig_plot_svg(const struct dig_plot *plot, FILE *to,
-                                            struct dig_error *error);
+/// Writes a <figure> for an HTML page, of one <svg> element. Points that are not finite are gaps.
+/// DIG_EIO: gnuplot is missing or failed; nothing useful was written then. Starts a process; takes
+/// some tens of milliseconds.
+DIG_MUST_CHECK enum dig_status dig_plot_figure(const struct dig_plot *plot, FILE *to,
+                                               struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_PLOT_H

@@ -1,20 +1,25 @@
 #include "closed_loop/report/report.h"
 
 #include "closed_loop/report/html.h"
+#include "closed_loop/report/json.h"
 #include "closed_loop/report/plot.h"
 #include "core/text.h"
 
 #include <assert.h>
 #include <math.h>
 
-static const char *const axis_title[DIG_AXES] = {
-    [DIG_AXIS_FRICTION]      = "friction",
-    [DIG_AXIS_ROLLING]       = "rolling friction",
-    [DIG_AXIS_DENSITY_kgpm3] = "density, kg/m³",
-};
+const char *dig_report_axis(const int axis)
+{
+    static const char *const title[DIG_AXES] = {
+        [DIG_AXIS_FRICTION]      = "friction",
+        [DIG_AXIS_ROLLING]       = "rolling friction",
+        [DIG_AXIS_DENSITY_kgpm3] = "density, kg/m³",
+    };
+    assert(axis >= 0 && axis < DIG_AXES);
+    return title[axis];
+}
 
-// Enough digits to see, no more than are known.
-static int decimals(const int axis)
+int dig_report_axis_digits(const int axis)
 {
     return axis == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
 }
@@ -31,9 +36,9 @@ void dig_report_text(const struct dig_report *const report, FILE *const to)
         (void)fputs("\n", to);
         (void)fprintf(to, "  %-18s %9s %11s   %s\n", "", "true", "identified", "90 % interval");
         for (int a = 0; a < DIG_AXES; a++) {
-            const int d = decimals(a);
+            const int d = dig_report_axis_digits(a);
             // The multi-byte ³ takes two bytes for one column.
-            (void)fprintf(to, "  %-*s ", a == DIG_AXIS_DENSITY_kgpm3 ? 19 : 18, axis_title[a]);
+            (void)fprintf(to, "  %-*s ", a == DIG_AXIS_DENSITY_kgpm3 ? 19 : 18, dig_report_axis(a));
             if (run->truth_known) {
                 (void)fprintf(to, "%9.*f ", d, run->truth.value[a]);
             } else {
@@ -84,10 +89,13 @@ void dig_report_json(const struct dig_report *const report, FILE *const to)
         put_json_gravel(to, "high", &run->high, true);
         (void)fprintf(to, ",");
         put_json_gravel(to, "nearest", &run->nearest, true);
-        (void)fprintf(to,
-                      ",\"distance\":%.6g,\"predicted\":\"%s\",\"error\":%.6g,"
-                      "\"noise_floor\":%.6g}",
-                      run->distance, run->real.trajectory, run->error, run->noise_floor);
+        (void)fputs(",\"distance\":", to);
+        dig_json_number(to, run->distance);
+        (void)fprintf(to, ",\"predicted\":\"%s\",\"error\":", run->real.trajectory);
+        dig_json_number(to, run->error);
+        (void)fputs(",\"noise_floor\":", to);
+        dig_json_number(to, run->noise_floor);
+        (void)fputc('}', to);
     }
     (void)fprintf(to, "]}\n");
 }
@@ -98,8 +106,8 @@ static void put_table(FILE *const to, const struct dig_report_run *const run)
                 "<th>nearest entry</th></tr>\n",
                 to);
     for (int a = 0; a < DIG_AXES; a++) {
-        const int d = decimals(a);
-        (void)fprintf(to, "<tr><th>%s</th>", axis_title[a]);
+        const int d = dig_report_axis_digits(a);
+        (void)fprintf(to, "<tr><th>%s</th>", dig_report_axis(a));
         if (run->truth_known) {
             (void)fprintf(to, "<td>%.*f</td>", d, run->truth.value[a]);
         } else {
@@ -110,58 +118,77 @@ static void put_table(FILE *const to, const struct dig_report_run *const run)
                       run->nearest.value[a]);
     }
     (void)fprintf(to,
-                  "</table>\n<p class=result>Error of the predicted <i>%s</i> dig: <b>%.3f</b>; "
+                  "</table>\n<p>Error of the predicted <i>%s</i> dig: <b>%.3f</b>; "
                   "noise floor (1 σ of what it would be if the model were complete): %.3f.</p>\n",
                   run->real.trajectory, run->error, run->noise_floor);
 }
 
 // Measured against the model along one dig; what lies outside the measured range is a gap.
 static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *const dig,
-                                const char *const title, const char *const model,
-                                struct dig_error *const error)
+                                const double lambda, const char *const title,
+                                const char *const model, struct dig_error *const error)
 {
-    double x[DIG_CURVE_POINTS];
-    double low[DIG_CURVE_POINTS];
-    double high[DIG_CURVE_POINTS];
-    double measured[DIG_CURVE_POINTS];
+    double       x[DIG_CURVE_POINTS];
+    double       low[DIG_CURVE_POINTS];
+    double       high[DIG_CURVE_POINTS];
+    double       fed[DIG_CURVE_POINTS];
+    double       mean[DIG_CURVE_POINTS];
+    double       measured[DIG_CURVE_POINTS];
+    const double kNm = 1e-3 * pow(lambda, 4.0); // at machine scale, of a rig's N·m
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         x[k]        = 100.0 * k / (DIG_CURVE_POINTS - 1);
-        low[k]      = dig->model_Nm[k] - dig->sigma_Nm[k];
-        high[k]     = dig->model_Nm[k] + dig->sigma_Nm[k];
-        measured[k] = x[k] >= 100.0 * dig->first && x[k] <= 100.0 * dig->last ? dig->measured_Nm[k]
-                                                                              : (double)NAN;
+        mean[k]     = kNm * dig->model_Nm[k];
+        low[k]      = mean[k] - kNm * DIG_REPORT_BAND_SIGMAS * dig->sigma_Nm[k];
+        high[k]     = mean[k] + kNm * DIG_REPORT_BAND_SIGMAS * dig->sigma_Nm[k];
+        fed[k]      = kNm * dig->recording_Nm[k];
+        measured[k] = x[k] >= 100.0 * dig->first && x[k] <= 100.0 * dig->last
+                          ? kNm * dig->measured_Nm[k]
+                          : (double)NAN;
     }
     const size_t          n    = DIG_CURVE_POINTS;
     const struct dig_plot plot = {
-        .title   = title,
-        .x_label = "path of the dig done, %",
-        .y_label = "moment about the bucket pin, N·m at rig scale",
-        .series  = 4,
-        .s       = { { "1 σ of one dig", DIG_PLOT_BAND, 0x1f5fa8, n, x, low, high },
-                     { "recording fed to the rig", DIG_PLOT_DASHED, 0x888888, n, x, dig->recording_Nm,
-                       NULL },
-                     { model, DIG_PLOT_LINE, 0x1f5fa8, n, x, dig->model_Nm, NULL },
-                     { "measured through pressures", DIG_PLOT_LINE, 0xc0392b, n, x, measured, NULL } },
+        .title        = title,
+        .x_label      = "path of the dig done, %",
+        .y_label      = "moment about the bucket pin, kN·m",
+        .right_label  = "at rig scale, N·m",
+        .right_factor = 1.0 / kNm,
+        .from_zero    = true,
+        .width        = 480,
+        .height       = 370,
+        .series       = 4,
+        .s            = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, x, low, high },
+                          { "recording fed to the rig", DIG_PLOT_DOTTED, DIG_PLOT_FED, n, x, fed, NULL },
+                          { model, DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, x, mean, NULL },
+                          { "measured through pressures", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, x, measured,
+                            NULL } },
     };
-    (void)fputs("<figure>\n", to);
-    const enum dig_status status = dig_plot_svg(&plot, to, error);
-    (void)fputs("</figure>\n", to);
-    return status;
+    return dig_plot_figure(&plot, to, error);
 }
 
-struct page {
-    const struct dig_report *report;
-};
-
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+static void put_sentence(FILE *const to, const struct dig_report *const report)
 {
-    const struct dig_report *const report = ((const struct page *)context)->report;
+    (void)fputs("<p class=result>What was predicted from one simple dig was off by ", to);
+    for (size_t r = 0; r < report->runs; r++) {
+        const struct dig_report_run *const run = &report->run[r];
+        (void)fprintf(to, "%s%.0f %% (noise floor %.0f %%) in the run ", r == 0 ? "" : ", by ",
+                      100.0 * run->error, 100.0 * run->noise_floor);
+        dig_html_text(to, run->name);
+    }
+    (void)fputs(".</p>\n", to);
+}
+
+enum dig_status dig_report_html(const struct dig_report *const report, FILE *const to,
+                                struct dig_error *const error)
+{
+    assert(report != NULL && to != NULL);
     dig_html_begin(to, report->title);
+    put_sentence(to, report);
     (void)fputs("<p>Table: ", to);
-    dig_html_text(to, report->table);
+    dig_html_without_folders(to, report->table);
     (void)fprintf(to,
-                  ". The machine is %.3g times the rig; everything below is at rig scale.</p>\n",
-                  report->lambda);
+                  ". The machine is %.3g times the rig, which makes a moment %.0f times as large."
+                  "</p>\n",
+                  report->lambda, pow(report->lambda, 4.0));
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
         (void)fputs("<h2>", to);
@@ -170,30 +197,19 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
         dig_html_text(to, run->dig);
         (void)fputs("</p>\n", to);
         put_table(to, run);
+        (void)fputs("<div class=grid>\n", to);
         enum dig_status status =
-            put_plot(to, &run->simple, "The simple dig that identified the gravel",
+            put_plot(to, &run->simple, report->lambda, "The simple dig that identified the gravel",
                      "identified gravel", error);
         if (status == DIG_OK) {
-            status = put_plot(to, &run->real, "The real dig, predicted before it was dug",
-                              "predicted", error);
+            status = put_plot(to, &run->real, report->lambda,
+                              "The real dig, predicted before it was dug", "predicted", error);
         }
         if (status != DIG_OK) {
             return status;
         }
+        (void)fputs("</div>\n", to);
     }
-    (void)fputs(
-        "<footer>Error: relative Euclidean norm of the moment over rig time from contact to "
-        "exit, moving average ±0.16 s. Predictions are advice, not a safety "
-        "function.</footer>\n",
-        to);
-    dig_html_end(to);
+    dig_html_end(to, DIG_REPORT_ERROR_NOTE);
     return DIG_OK;
-}
-
-enum dig_status dig_report_html(const struct dig_report *const report, const char *const path,
-                                struct dig_error *const error)
-{
-    assert(report != NULL && path != NULL);
-    struct page page = { report };
-    return dig_html_save(path, put_page, &page, error);
 }

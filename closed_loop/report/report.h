@@ -13,6 +13,14 @@
 
 #define DIG_REPORT_RUNS_MAX 4
 
+#define DIG_REPORT_BAND_SIGMAS 1.645 // of the band that holds 90 % of digs
+
+/// What each page says below of the error it shows.
+#define DIG_REPORT_ERROR_NOTE                                                                       \
+    "Error: relative Euclidean norm of the moment, measured minus predicted, over rig time from "   \
+    "contact to exit, moving average ±0.16 s. Noise floor: 1 σ of what it would be if the model " \
+    "were complete."
+
 /// One dig of a run on the table's grid of path progress, rig scale, smoothed.
 struct dig_report_dig {
     char   trajectory[DIG_NAME_SIZE];
@@ -40,11 +48,15 @@ struct dig_report_run {
 
 struct dig_report {
     const char           *title;
-    const char           *table;  // file and scene
+    const char           *table;  // file; its folders are left out
     double                lambda; // machine's tooth length / rig's
     size_t                runs;
     struct dig_report_run run[DIG_REPORT_RUNS_MAX];
 };
+
+/// An axis of the gravel for people, with its unit; and the digits that are enough to see.
+const char *dig_report_axis(int axis);
+int         dig_report_axis_digits(int axis);
 
 /// The lines a terminal gets: true and identified gravel with its 90 % interval, error and floor.
 void dig_report_text(const struct dig_report *report, FILE *to);
@@ -52,8 +64,8 @@ void dig_report_text(const struct dig_report *report, FILE *to);
 /// The same as one JSON object.
 void dig_report_json(const struct dig_report *report, FILE *to);
 
-/// The page: needs gnuplot. Writes PATH.part, then renames. DIG_EIO with *error otherwise.
-DIG_MUST_CHECK enum dig_status dig_report_html(const struct dig_report *report, const char *path,
+/// The page: needs gnuplot; DIG_EIO with *error without it.
+DIG_MUST_CHECK enum dig_status dig_report_html(const struct dig_report *report, FILE *to,
                                                struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_REPORT_H

@@ -8,15 +8,6 @@
 
 static const char *const of_channel[DIG_FORCE_CHANNELS] = { "moment", "Fx", "Fz" };
 
-static void put_cell(FILE *const to, const int digits, const double value)
-{
-    if (isfinite(value)) {
-        (void)fprintf(to, "<td>%.*f</td>", digits, value);
-    } else {
-        (void)fputs("<td>–</td>", to);
-    }
-}
-
 // One line a dig and channel: sigmas by part, and the share of the whole dig before and after.
 static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
 {
@@ -29,17 +20,17 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
         }
         (void)fputs("<tr><th>", to);
         if (c == DIG_CHANNEL_MY_Nm) {
-            dig_html_text(to, dig->name);
+            dig_html_without_folders(to, dig->name);
             (void)fprintf(to, "<br><span class=muted>%s</span>", use[dig->use]);
         }
         (void)fprintf(to, "</th><td>%s</td>", of_channel[c]);
-        put_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);
-        put_cell(to, 1, soil->sigmas);
-        put_cell(to, 1, lifted->sigmas);
-        put_cell(to, 3, hypot(fmax(soil->relative, 0.0), fmax(lifted->relative, 0.0)));
-        put_cell(to, 3,
-                 hypot(fmax(dig->after[DIG_PART_SOIL][c].relative, 0.0),
-                       fmax(dig->after[DIG_PART_LIFTED][c].relative, 0.0)));
+        dig_html_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);
+        dig_html_cell(to, 1, soil->sigmas);
+        dig_html_cell(to, 1, lifted->sigmas);
+        dig_html_cell(to, 3, hypot(fmax(soil->relative, 0.0), fmax(lifted->relative, 0.0)));
+        dig_html_cell(to, 3,
+                      hypot(fmax(dig->after[DIG_PART_SOIL][c].relative, 0.0),
+                            fmax(dig->after[DIG_PART_LIFTED][c].relative, 0.0)));
         (void)fputs("</tr>\n", to);
     }
 }
@@ -86,15 +77,13 @@ static enum dig_status put_plot(FILE *const to, const struct dig_trend *const tr
         .width   = 480,
         .height  = 300,
         .series  = 4,
-        .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, 0xc77f00, trend->bins, x, low, high },
-               { NULL, DIG_PLOT_LINE, 0x888888, trend->bins, x, zero, NULL },
-               { "mean", DIG_PLOT_LINE, 0xc77f00, trend->bins, x, y, NULL },
-               { NULL, DIG_PLOT_POINTS, 0xc77f00, trend->bins, x, y, NULL } },
+        .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, DIG_PLOT_BEFORE, trend->bins, x, low,
+                 high },
+               { NULL, DIG_PLOT_LINE, DIG_PLOT_FED, trend->bins, x, zero, NULL },
+               { "mean", DIG_PLOT_LINE, DIG_PLOT_BEFORE, trend->bins, x, y, NULL },
+               { NULL, DIG_PLOT_POINTS, DIG_PLOT_BEFORE, trend->bins, x, y, NULL } },
     };
-    (void)fputs("<figure>\n", to);
-    const enum dig_status status = dig_plot_svg(&plot, to, error);
-    (void)fputs("</figure>\n", to);
-    return status;
+    return dig_plot_figure(&plot, to, error);
 }
 
 static void put_slopes(FILE *const to, const struct dig_residuals *const residuals)
@@ -112,8 +101,8 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
         (void)fprintf(to, "<tr><th>%s</th>", name[s]);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             if (residuals->known[c]) {
-                put_cell(to, 2, residuals->trend[c][s].correlation);
-                put_cell(to, 3, residuals->trend[c][s].p);
+                dig_html_cell(to, 2, residuals->trend[c][s].correlation);
+                dig_html_cell(to, 3, residuals->trend[c][s].p);
             }
         }
         (void)fputs("</tr>\n", to);

@@ -14,7 +14,7 @@
 void dig_residuals_json(const struct dig_residuals *residuals, FILE *to);
 
 /// A table dig by dig, one of the slopes, pictures over path and depth. Nothing for NULL. DIG_EIO
-/// as dig_plot_svg().
+/// as dig_plot_figure().
 DIG_MUST_CHECK enum dig_status dig_residuals_html(const struct dig_residuals *residuals, FILE *to,
                                                   struct dig_error *error);
 

@@ -1,5 +1,6 @@
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
+#include "closed_loop/report/report.h"
 #include "closed_loop/report/residual_report.h"
 #include "closed_loop/report/trace_report.h"
 
@@ -14,29 +15,19 @@ struct page {
     const struct dig_trace_subject *subject;
 };
 
-// A number in a table cell, or a dash.
-static void put_cell(FILE *const to, const int digits, const double value)
+static void put_error_row(FILE *const to, const char *const title, const double most,
+                          const struct dig_error_range *const range)
 {
-    if (isfinite(value)) {
-        (void)fprintf(to, "<td>%.*f</td>", digits, value);
+    (void)fprintf(to, "<tr><th>%s</th><td><b>%.3f</b></td>", title, range->value);
+    if (isfinite(range->low) && range->high > range->low) {
+        (void)fprintf(to, "<td>%.3f to %.3f</td>", range->low, range->high);
     } else {
-        (void)fputs("<td>–</td>", to);
+        (void)fputs("<td></td>", to);
     }
-}
-
-// One line of the error picture: the interval as a bar, the value as a dot.
-static void put_range(FILE *const to, const char *const title, const char *const colour,
-                      const double y, const double scale, const struct dig_error_range *const range)
-{
-    (void)fprintf(to,
-                  "<text x=\"0\" y=\"%g\">%s</text>"
-                  "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%g\" y2=\"%g\" stroke=\"%s\" "
-                  "stroke-width=\"6\" stroke-opacity=\".35\"/>"
-                  "<circle cx=\"%.1f\" cy=\"%g\" r=\"6\" fill=\"%s\"/>"
-                  "<text x=\"%.1f\" y=\"%g\">%.3f</text>\n",
-                  y + 5.0, title, 70.0 + scale * range->low, 70.0 + scale * range->high, y, y,
-                  colour, 70.0 + scale * range->value, y, colour, 78.0 + scale * range->high,
-                  y + 5.0, range->value);
+    (void)fprintf(
+        to,
+        "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\"></span></td></tr>\n",
+        150.0 * range->value / most);
 }
 
 static void put_errors(FILE *const to, const struct dig_trace *const trace)
@@ -48,29 +39,23 @@ static void put_errors(FILE *const to, const struct dig_trace *const trace)
                     to);
         return;
     }
+    const double floor = trace->noise_floor;
     const double most =
-        fmax(fmax(trace->before.high, trace->after.high), fmax(trace->noise_floor, 0.01));
-    const double scale = 260.0 / most;
-    (void)fprintf(to,
-                  "<figure><svg viewBox=\"0 0 390 112\" style=\"max-width:560px;font-size:15px\" "
-                  "role=\"img\" aria-label=\"error before and after\">\n");
-    if (isfinite(trace->noise_floor)) {
-        const double x = 70.0 + scale * trace->noise_floor;
-        (void)fprintf(to,
-                      "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"6\" y2=\"82\" stroke=\"#888\" "
-                      "stroke-dasharray=\"4 3\"/><text x=\"%.1f\" y=\"102\" fill=\"#666\" "
-                      "text-anchor=\"middle\">noise floor %.3f</text>\n",
-                      x, x, fmin(fmax(x, 66.0), 320.0), trace->noise_floor);
+        fmax(fmax(trace->before.value, trace->after.value), isfinite(floor) ? floor : 1e-9);
+    (void)fputs("<table><tr><th></th><th>error</th><th>90 % interval</th><th></th></tr>\n", to);
+    put_error_row(to, "before", most, &trace->before);
+    put_error_row(to, "after", most, &trace->after);
+    if (isfinite(floor)) {
+        const struct dig_error_range range = { .value = floor };
+        put_error_row(to, "noise floor", most, &range);
     }
-    put_range(to, "before", "#c77f00", 24.0, scale, &trace->before);
-    put_range(to, "after", "#1f5fa8", 62.0, scale, &trace->after);
-    (void)fprintf(
-        to,
-        "</svg></figure>\n<p class=muted>On %zu dig%s that took no part in the fit%s. The "
-        "floor is 1 σ of what the error would be if "
-        "the model were complete. Both use the gravel refitted on the same digs.</p>\n",
-        trace->holdouts, trace->holdouts == 1 ? "" : "s",
-        trace->holdouts == 1 ? " (one dig: no interval)" : ", with 90 % intervals over recordings");
+    (void)fprintf(to,
+                  "</table>\n<p class=muted>On %zu dig%s that took no part in the fit%s. The "
+                  "floor is 1 σ of what the error would be if "
+                  "the model were complete. Both use the gravel refitted on the same digs.</p>\n",
+                  trace->holdouts, trace->holdouts == 1 ? "" : "s",
+                  trace->holdouts == 1 ? " (one dig: no interval)"
+                                       : ", with 90 % intervals over recordings");
 }
 
 static void put_found(FILE *const to, const struct dig_trace *const trace)
@@ -126,7 +111,7 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
         "<h2>Where the residual shows</h2>\n<table><tr><th></th><th>rms</th><th></th></tr>\n", to);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         (void)fprintf(to, "<tr><th>%s</th>", title[p]);
-        put_cell(to, 2, trace->residual[p]);
+        dig_html_cell(to, 2, trace->residual[p]);
         (void)fprintf(to,
                       "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\">"
                       "</span></td></tr>\n",
@@ -152,10 +137,10 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
     for (size_t i = 0; i < trace->candidates && i < CANDIDATES_SHOWN; i++) {
         const struct dig_candidate *const c = &trace->candidate[i];
         (void)fprintf(to, "<tr><th>%s</th>", dig_effect_name(c->effect));
-        put_cell(to, 1, c->log_evidence);
-        put_cell(to, 3, c->p_fit);
-        put_cell(to, 2, c->inclusion);
-        put_cell(to, 3, c->error);
+        dig_html_cell(to, 1, c->log_evidence);
+        dig_html_cell(to, 3, c->p_fit);
+        dig_html_cell(to, 2, c->inclusion);
+        dig_html_cell(to, 3, c->error);
         (void)fputs("<td style=\"text-align:left;min-width:15em\">", to);
         for (size_t p = 0; p < c->parameters; p++) {
             (void)fprintf(to, "%s", p == 0 ? "" : ", ");
@@ -172,44 +157,53 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         to);
 }
 
-// A channel of one dig over its path, with 1 sigma of one dig about what was predicted.
+// A channel of one dig over its path, with the band that holds 90 % of digs.
 struct dig_picture {
     double x[DIG_CURVE_POINTS], measured[DIG_CURVE_POINTS];
-    double low[2][DIG_CURVE_POINTS], high[2][DIG_CURVE_POINTS]; // before, after
+    double before[DIG_CURVE_POINTS], after[DIG_CURVE_POINTS];
+    double low[DIG_CURVE_POINTS], high[DIG_CURVE_POINTS]; // about after
 };
 
-// What lies outside contact to exit is a gap.
+// What lies outside contact to exit is a gap. unit: of the table's, as it is drawn.
 static void fill_picture(const struct dig_trace_curves *const curves,
                          const struct dig_measured *const dig, const size_t channel,
-                         struct dig_picture *const p)
+                         const double unit, struct dig_picture *const p)
 {
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        const double half     = unit * DIG_REPORT_BAND_SIGMAS * curves->after_sd[channel][k];
         p->x[k]               = 100.0 * progress;
-        p->low[0][k]          = curves->before[channel][k] - curves->before_sd[channel][k];
-        p->high[0][k]         = curves->before[channel][k] + curves->before_sd[channel][k];
-        p->low[1][k]          = curves->after[channel][k] - curves->after_sd[channel][k];
-        p->high[1][k]         = curves->after[channel][k] + curves->after_sd[channel][k];
-        p->measured[k] =
-            progress >= dig->first && progress <= dig->last ? dig->value[channel][k] : (double)NAN;
+        p->before[k]          = unit * curves->before[channel][k];
+        p->after[k]           = unit * curves->after[channel][k];
+        p->low[k]             = p->after[k] - half;
+        p->high[k]            = p->after[k] + half;
+        p->measured[k]        = progress >= dig->first && progress <= dig->last
+                                    ? unit * dig->value[channel][k]
+                                    : (double)NAN;
     }
 }
 
 static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves *const curves,
                                    const struct dig_measured *const dig,
-                                   const char *const trajectory, const size_t channel,
-                                   struct dig_error *const error)
+                                   const char *const trajectory, const double lambda,
+                                   const size_t channel, struct dig_error *const error)
 {
-    static const char *const use[]                       = { "identify", "fit", "holdout" };
-    static const char *const y_label[DIG_FORCE_CHANNELS] = { "moment, N·m at rig scale",
-                                                             "Fx, N at rig scale",
-                                                             "Fz, N at rig scale" };
-    static const char *const of[DIG_FORCE_CHANNELS]      = { "", ", Fx", ", Fz" };
+    static const char *const use[]                        = { "identify", "fit", "holdout" };
+    static const char *const label[2][DIG_FORCE_CHANNELS] = {
+        { "moment, N·m at rig scale", "Fx, N at rig scale", "Fz, N at rig scale" },
+        { "moment, kN·m", "Fx, kN", "Fz, kN" },
+    };
+    static const char *const right[DIG_FORCE_CHANNELS] = { "at rig scale, N·m", "at rig scale, N",
+                                                           "at rig scale, N" };
+    static const char *const of[DIG_FORCE_CHANNELS]    = { "", ", Fx", ", Fz" };
 
     struct dig_picture p;
     char               title[192];
-    const size_t       n = DIG_CURVE_POINTS;
-    fill_picture(curves, dig, channel, &p);
+    const size_t       n      = DIG_CURVE_POINTS;
+    const bool         scaled = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
+    const double       power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
+    const double       unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
+    fill_picture(curves, dig, channel, unit, &p);
     (void)snprintf(title, sizeof title, "%s: %s, %s%s%s", dig->name, trajectory, use[dig->use],
                    dig->pass > 1 ? ", dug before" : "", of[channel]);
     // Where nothing was changed before is after, and is drawn once.
@@ -217,47 +211,35 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
         memcmp(curves->before[channel], curves->after[channel], sizeof curves->after[channel]) == 0;
     struct dig_plot plot = {
-        .title   = title,
-        .x_label = "path of the dig done, %",
-        .y_label = y_label[channel],
-        .width   = 480,
-        .height  = 370,
+        .title        = title,
+        .x_label      = "path of the dig done, %",
+        .y_label      = label[scaled ? 1 : 0][channel],
+        .right_label  = scaled ? right[channel] : NULL,
+        .right_factor = 1.0 / unit,
+        .width        = 480,
+        .height       = 370,
+        .series       = 3,
+        .s = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, p.x, p.low, p.high },
+               { same ? "before and after" : "after", DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, p.x,
+                 p.after, NULL },
+               { "measured", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, p.x, p.measured, NULL } },
     };
     if (!same) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ NULL, DIG_PLOT_BAND, 0xe0a030, n, p.x, p.low[0], p.high[0] };
+            (struct dig_plot_series){ "before", DIG_PLOT_DOTTED, DIG_PLOT_BEFORE, n, p.x, p.before,
+                                      NULL };
     }
-    plot.s[plot.series++] = (struct dig_plot_series){
-        same ? "1 σ of one dig" : NULL, DIG_PLOT_BAND, 0x1f5fa8, n, p.x, p.low[1], p.high[1]
-    };
-    if (!same) {
-        plot.s[plot.series++] =
-            (struct dig_plot_series){ "before", DIG_PLOT_DASHED,         0xc77f00, n,
-                                      p.x,      curves->before[channel], NULL };
-    }
-    plot.s[plot.series++] = (struct dig_plot_series){ same ? "before and after" : "after",
-                                                      DIG_PLOT_LINE,
-                                                      0x1f5fa8,
-                                                      n,
-                                                      p.x,
-                                                      curves->after[channel],
-                                                      NULL };
-    plot.s[plot.series++] =
-        (struct dig_plot_series){ "measured", DIG_PLOT_LINE, 0xc0392b, n, p.x, p.measured, NULL };
-    (void)fputs("<figure>\n", to);
-    const enum dig_status status = dig_plot_svg(&plot, to, error);
-    (void)fputs("</figure>\n", to);
-    return status;
+    return dig_plot_figure(&plot, to, error);
 }
 
 static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *const curves,
                                const struct dig_measured *const dig, const char *const trajectory,
-                               struct dig_error *const error)
+                               const double lambda, struct dig_error *const error)
 {
     enum dig_status status = DIG_OK;
     for (size_t c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
         if (dig->measured[c]) {
-            status = put_channel(to, curves, dig, trajectory, c, error);
+            status = put_channel(to, curves, dig, trajectory, lambda, c, error);
         }
     }
     return status;
@@ -276,10 +258,10 @@ static enum dig_status put_digs(FILE *const to, const struct page *const page,
         const struct dig_measured *const dig = &subject->measured[d];
         assert((size_t)dig->trajectory < subject->set->trajectories);
         status = put_dig(to, &page->trace->curves[d], dig,
-                         subject->set->trajectory[dig->trajectory].name, error);
+                         subject->set->trajectory[dig->trajectory].name, subject->lambda, error);
     }
     (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
-                "with what was found. Bands: 1 σ of one dig about each. Forces are drawn where "
+                "with what was found, and the band that holds 90 % of digs. Forces are drawn where "
                 "every sensor for them was there.</p>\n",
                 to);
     return status;
@@ -300,8 +282,8 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
                       dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
         dig_html_text(to, told ? tell->how : "nothing that was tried");
         (void)fputs("</td>", to);
-        put_cell(to, 2, told ? tell->sigmas : (double)NAN);
-        put_cell(to, 0, told ? tell->repeats : (double)NAN);
+        dig_html_cell(to, 2, told ? tell->sigmas : (double)NAN);
+        dig_html_cell(to, 0, told ? tell->repeats : (double)NAN);
         (void)fputs("</tr>\n", to);
     }
     (void)fputs("</table>\n<p class=muted>What these digs cannot tell apart, as fitted: where they "
@@ -325,23 +307,43 @@ static void put_next(FILE *const to, const struct page *const page)
     put_tells(to, page->trace);
     if (page->trace->command[0] != '\0') {
         (void)fputs("<p>A table with it in its beds:</p>\n<pre>", to);
-        dig_html_text(to, page->trace->command);
+        dig_html_without_folders(to, page->trace->command);
         (void)fputs("</pre>\n", to);
     }
 }
 
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+enum dig_status dig_trace_html(const struct dig_trace *const         trace,
+                               const struct dig_trace_subject *const subject, FILE *const to,
+                               struct dig_error *const error)
 {
-    const struct page *const page = context;
+    assert(trace != NULL && subject != NULL && to != NULL);
+    assert(subject->campaign != NULL && subject->table != NULL);
+    const struct page        all  = { trace, subject };
+    const struct page *const page = &all;
     char                     sentence[1024];
     char                     title[256];
+    const char *const        campaign = page->subject->campaign;
+    size_t                   ends     = strlen(campaign);
+    while (ends > 1 && campaign[ends - 1] == '/') {
+        ends--;
+    }
+    size_t begins = ends;
+    while (begins > 0 && campaign[begins - 1] != '/') {
+        begins--;
+    }
     dig_trace_sentence(page->trace, sizeof sentence, sentence);
-    (void)snprintf(title, sizeof title, "What the model lacks: %s", page->subject->campaign);
+    (void)snprintf(title, sizeof title, "What the model lacks: %.*s", (int)(ends - begins),
+                   campaign + begins);
     dig_html_begin(to, title);
     (void)fputs("<p class=result>", to);
     dig_html_text(to, sentence);
     (void)fprintf(to, "</p>\n<p>%zu digs against ", page->trace->digs);
-    dig_html_text(to, page->subject->table);
+    dig_html_without_folders(to, page->subject->table);
+    if (page->subject->lambda > 0.0) {
+        (void)fprintf(to,
+                      "; what dug is %.3g times the rig, which makes a moment %.0f times as large",
+                      page->subject->lambda, pow(page->subject->lambda, 4.0));
+    }
     (void)fputs(".</p>\n", to);
     dig_trace_not_applied(page->trace, sizeof sentence, sentence);
     if (sentence[0] != '\0') {
@@ -363,20 +365,6 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     }
     put_candidates(to, page->trace);
     put_next(to, page);
-    (void)fputs("<footer>Error: relative Euclidean norm of the moment over rig time from contact "
-                "to exit, moving average ±0.16 s. Predictions are advice, not a safety "
-                "function.</footer>\n",
-                to);
-    dig_html_end(to);
+    dig_html_end(to, DIG_REPORT_ERROR_NOTE);
     return DIG_OK;
-}
-
-enum dig_status dig_trace_html(const struct dig_trace *const         trace,
-                               const struct dig_trace_subject *const subject,
-                               const char *const path, struct dig_error *const error)
-{
-    assert(trace != NULL && subject != NULL && path != NULL);
-    assert(subject->campaign != NULL && subject->table != NULL);
-    struct page page = { trace, subject };
-    return dig_html_save(path, put_page, &page, error);
 }

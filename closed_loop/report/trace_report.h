@@ -15,6 +15,7 @@
 struct dig_trace_subject {
     const char                 *campaign; // folder or title, for people
     const char                 *table;    // file
+    double                      lambda;   // size of what dug over the table's; 0: not known
     const struct dig_curve_set *set;      // whose trajectories the digs are of
     size_t                      digs;     // as traced
     const struct dig_measured  *measured; // [digs]
@@ -34,10 +35,9 @@ void dig_trace_not_applied(const struct dig_trace *trace, size_t size, char text
 /// The verdict, the errors and what to do next, for a terminal.
 void dig_trace_text(const struct dig_trace *trace, FILE *to);
 
-/// The page: needs gnuplot, some tens of milliseconds a dig. Writes PATH.part, then renames.
-/// DIG_EIO with *error otherwise.
+/// The page: needs gnuplot, some tens of milliseconds a dig; DIG_EIO with *error without it.
 DIG_MUST_CHECK enum dig_status dig_trace_html(const struct dig_trace         *trace,
-                                              const struct dig_trace_subject *subject,
-                                              const char *path, struct dig_error *error);
+                                              const struct dig_trace_subject *subject, FILE *to,
+                                              struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_TRACE_REPORT_H

@@ -24,7 +24,7 @@ static char *svg_of(const char *const text)
     char            *svg   = NULL;
     size_t           size  = 0;
     FILE *const      to    = open_memstream(&svg, &size);
-    assert_int_equal(dig_plot_svg(&plot, to, &error), DIG_OK);
+    assert_int_equal(dig_plot_figure(&plot, to, &error), DIG_OK);
     (void)fclose(to);
     return svg;
 }
@@ -71,6 +71,31 @@ static void markup_and_control_characters_are_escaped(void **state)
     free(svg);
 }
 
+// 0 to 1 kN·m at the left is 0 to 0.1 N·m at the right: both scales' numbers are drawn.
+static void a_second_scale_stands_at_the_right(void **state)
+{
+    (void)state;
+    struct dig_plot  plot  = { .title        = "",
+                               .x_label      = "x",
+                               .y_label      = "left, kN·m",
+                               .right_factor = 0.0625,
+                               .series       = 1,
+                               .s            = { { NULL, DIG_PLOT_LINE, 0, 2, two, two, NULL } } };
+    struct dig_error error = { "" };
+    for (int i = 0; i < 2; i++) {
+        char       *svg  = NULL;
+        size_t      size = 0;
+        FILE *const to   = open_memstream(&svg, &size);
+        plot.right_label = i == 0 ? NULL : "right, N·m";
+        assert_int_equal(dig_plot_figure(&plot, to, &error), DIG_OK);
+        (void)fclose(to);
+        assert_int_equal(strstr(svg, ">right, N·m</text>") != NULL, i);
+        assert_int_equal(strstr(svg, "> 0.0625</text>") != NULL, i);
+        assert_null(strstr(svg, "GNUPLOT")); // text browsers would show it
+        free(svg);
+    }
+}
+
 static void the_users_start_up_file_is_not_run(void **state)
 {
     (void)state;
@@ -94,6 +119,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_text_runs_a_command),
         cmocka_unit_test(markup_and_control_characters_are_escaped),
+        cmocka_unit_test(a_second_scale_stands_at_the_right),
         cmocka_unit_test(the_users_start_up_file_is_not_run),
     };
     return cmocka_run_group_tests_name("plot", tests, scratch_setup, scratch_teardown);

@@ -1,6 +1,5 @@
 // Tests for core/part.c, and for those who write with it: a link where their file should go.
 
-#include "closed_loop/report/html.h"
 #include "core/part.h"
 #include "files/whole.h"
 #include "tables/merge.h"
@@ -71,13 +70,6 @@ static void an_output_file_does_not_write_through_a_link_at_its_part(void **stat
     assert_true(S_ISREG(found.st_mode));
 }
 
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
-{
-    (void)context;
-    (void)error;
-    return fputs("page", to) >= 0 ? DIG_OK : DIG_EIO;
-}
-
 static void a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise(void **state)
 {
     (void)state;
@@ -96,15 +88,6 @@ static void a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwi
     assert_int_equal(dig_out_commit(&out, &error), DIG_OK);
     assert_int_equal(read(fd, read_back, sizeof read_back), 3);
     assert_int_equal(close(fd), 0);
-}
-
-static void nor_does_a_page(void **state)
-{
-    (void)state;
-    struct dig_error error = { "" };
-    lay_link("page.html.part");
-    assert_int_equal(dig_html_save(scratch_path("page.html"), put_page, NULL, &error), DIG_OK);
-    assert_kept();
 }
 
 static void nor_does_a_merged_table(void **state)
@@ -131,7 +114,6 @@ int main(void)
         cmocka_unit_test(a_link_is_replaced_not_followed),
         cmocka_unit_test(what_was_left_there_is_replaced_and_a_folder_is_not),
         cmocka_unit_test(an_output_file_does_not_write_through_a_link_at_its_part),
-        cmocka_unit_test(nor_does_a_page),
         cmocka_unit_test(nor_does_a_merged_table),
         cmocka_unit_test(a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise),
     };

@@ -26,7 +26,7 @@ static int fresh(void **state)
 {
     (void)state;
     digreport_shift_finish(&shift);
-    shift = (struct digreport_shift){ .lambda = 10.0, .track = { .half_s = 0.05 } };
+    digreport_shift_begin(&shift, 10.0);
     return 0;
 }
 
@@ -45,27 +45,33 @@ static lcm_eventlog_t *begin(const char *const name)
     return log;
 }
 
+static digsight_match_t a_match(const int64_t time_us, const double friction, const bool valid,
+                                char *const text)
+{
+    return (digsight_match_t){ .time_ns            = time_us, // any that differs
+                               .valid              = valid ? 1 : 0,
+                               .friction           = friction,
+                               .friction_low       = friction - 0.1,
+                               .friction_high      = friction + 0.1,
+                               .rolling            = 0.5,
+                               .rolling_low        = 0.3,
+                               .rolling_high       = 0.8,
+                               .density_kgpm3      = 2500.0,
+                               .density_low_kgpm3  = 2000.0,
+                               .density_high_kgpm3 = 3000.0,
+                               .digs               = 1,
+                               .trajectory         = no_text,
+                               .table              = no_text,
+                               .wanted             = text,
+                               .hint_trajectory    = no_text,
+                               .advice             = no_text,
+                               .untold             = text };
+}
+
 static void put_match(lcm_eventlog_t *const log, const int64_t time_us, const double friction,
                       const bool valid, char *const text)
 {
-    const digsight_match_t m = { .time_ns            = time_us, // any that differs
-                                 .valid              = valid ? 1 : 0,
-                                 .friction           = friction,
-                                 .friction_low       = friction - 0.1,
-                                 .friction_high      = friction + 0.1,
-                                 .rolling            = 0.5,
-                                 .rolling_low        = 0.3,
-                                 .rolling_high       = 0.8,
-                                 .density_kgpm3      = 2500.0,
-                                 .density_low_kgpm3  = 2000.0,
-                                 .density_high_kgpm3 = 3000.0,
-                                 .digs               = 1,
-                                 .trajectory         = no_text,
-                                 .table              = no_text,
-                                 .wanted             = text,
-                                 .hint_trajectory    = no_text,
-                                 .advice             = no_text,
-                                 .untold             = text };
+    const digsight_match_t m = a_match(time_us, friction, valid, text);
     log_match(log, "DIGSIGHT_MATCH", time_us, &m);
 }
 
@@ -133,7 +139,8 @@ static void make_day(void)
     put_match(log, START_us + MINUTE, 0.4, true, no_text);
     put_match(log, START_us + MINUTE, 0.4, true, no_text); // said again
     put_dig(log, START_us + 2 * MINUTE, 4, 8000.0);        // off by 2 of 8: 25 %
-    h.timeouts = 103;
+    h.timeouts   = 103;
+    h.digs_whole = 1;
     log_health(log, "DIGSIGHT_HEALTH", START_us + 3 * MINUTE, &h);
     h.timeouts = 110;
     log_health(log, "DIGSIGHT_HEALTH", START_us + 3 * MINUTE + 30000000, &h);
@@ -173,8 +180,10 @@ static void a_shift_has_its_digs_gravels_and_troubles(void **state)
     assert_int_equal(shift.event[0].count, 10);
     assert_int_equal(shift.event[0].to_us - shift.event[0].from_us, 30000000);
     assert_int_equal(shift.event[1].count, 1);
-    assert_int_equal(shift.whole, 1);
-    assert_int_equal(shift.aborted, 1);
+    assert_int_equal(shift.ended[DIGREPORT_WHOLE], 1);
+    assert_int_equal(shift.ended[DIGREPORT_ABORTED], 1);
+    assert_int_equal(shift.dig[0].ended, DIGREPORT_WHOLE);
+    assert_int_equal(shift.dig[1].ended, DIGREPORT_ABORTED);
     assert_int_equal(shift.last_us - shift.first_us, 8 * MINUTE);
 }
 
@@ -189,14 +198,51 @@ static void a_second_log_begins_anew(void **state)
     log_health(log, "DIGSIGHT_HEALTH", START_us + 60 * MINUTE, &h);
     put_dig(log, START_us + 61 * MINUTE, 0, 10000.0);
     put_match(log, START_us + 62 * MINUTE, 0.0, false, hostile);
+    digsight_match_t m = a_match(START_us + 63 * MINUTE, 0.0, false, hostile);
+    m.dig_count        = 5; // as a dig of the first log was
+    m.ending           = DIGREPORT_ABORTED;
+    log_match(log, "DIGSIGHT_MATCH", START_us + 63 * MINUTE, &m);
     lcm_eventlog_destroy(log);
     read_log("next.lcm");
     assert_int_equal(shift.digs, 3);
     assert_int_equal(shift.dig[2].number, 1);
+    assert_int_equal(shift.dig[2].ended, DIGREPORT_NOT_TOLD);
+    assert_int_equal(shift.dig[0].ended, DIGREPORT_WHOLE);
     assert_close(shift.dig[2].error, 0.0, 1e-9);
     assert_int_equal(shift.events, 3); // timeouts before it are not its own
     assert_null(shift.event[2].text);
     assert_null(digreport_shift_gravel_at(&shift, INT64_MAX));
+}
+
+// HEALTH tells nothing of the first of four digs, and not which of the last two is which: MATCH
+// does.
+static void how_a_dig_ended_is_told_where_the_log_tells_it(void **state)
+{
+    (void)state;
+    lcm_eventlog_t *const log = begin("ends.lcm");
+    digsight_health_t     h   = healthy();
+    digsight_match_t      m   = a_match(START_us + 4 * MINUTE, 0.4, true, no_text);
+    log_health(log, "DIGSIGHT_HEALTH", START_us, &h);
+    put_dig(log, START_us + MINUTE, 0, 1000.0);
+    put_dig(log, START_us + 2 * MINUTE, 1, 1000.0);
+    h.digs_unknown = 1;
+    log_health(log, "DIGSIGHT_HEALTH", START_us + 3 * MINUTE, &h);
+    put_dig(log, START_us + 4 * MINUTE, 2, 1000.0);
+    put_dig(log, START_us + 5 * MINUTE, 3, 1000.0);
+    h.digs_whole = h.digs_aborted = 1;
+    log_health(log, "DIGSIGHT_HEALTH", START_us + 6 * MINUTE, &h);
+    m.dig_count = 3;
+    m.ending    = DIGREPORT_ABORTED;
+    log_match(log, "DIGSIGHT_MATCH", START_us + 6 * MINUTE, &m);
+    m.dig_count = 1; // of the daemon's run before
+    m.restored  = 1;
+    log_match(log, "DIGSIGHT_MATCH", START_us + 6 * MINUTE, &m);
+    lcm_eventlog_destroy(log);
+    read_log("ends.lcm");
+    static const char *const ended[] = { "", "unknown", "aborted", "" };
+    for (size_t i = 0; i < 4; i++) {
+        assert_string_equal(digreport_ending_name(shift.dig[i].ended), ended[i]);
+    }
 }
 
 static char *text_of(void (*const put)(const struct digreport_shift *, FILE *))
@@ -218,7 +264,7 @@ static void one_sentence_says_what_came_out(void **state)
     read_log("day.lcm");
     assert_string_equal(
         text_of(digreport_shift_sentence),
-        "2 digs in 8 min; the gravel at the end: friction 0.60 (0.50 to 0.70), "
+        "2 digs in 8 min, 1 aborted; the gravel at the end: friction 0.60 (0.50 to 0.70), "
         "rolling friction 0.50 (0.30 to 0.80), density 2500 (2000 to 3000) kg/m3; 2 "
         "predictions, off by 22 % (median; noise floor 10 %); health: 2 events.");
 }
@@ -229,21 +275,37 @@ static void the_csv_has_a_line_a_dig(void **state)
     make_day();
     read_log("day.lcm");
     const char *const csv = text_of(digreport_shift_csv);
-    assert_contains(csv, "time_utc,dig,trajectory,duration_s,peak_Nm,");
+    assert_contains(csv, "time_utc,dig,trajectory,ended,duration_s,peak_Nm,");
     // At rig scale a moment and an energy are 10^4 times less.
-    assert_contains(csv,
-                    "\n2023-11-14T22:15:20Z,5,actual,1,8000,10000,1000,0,20000,2000,0.8,0,0.25,"
-                    "0.125,0.4,0.3,0.5,0.5,0.3,0.8,2500,2000,3000\n");
-    assert_contains(csv, "\n2023-11-14T22:18:20Z,6,actual,1,12500,");
+    assert_contains(
+        csv, "\n2023-11-14T22:15:20Z,5,actual,whole,1,8000,10000,1000,0,20000,2000,0.8,0,0.25,"
+             "0.125,0.4,0.3,0.5,0.5,0.3,0.8,2500,2000,3000\n");
+    assert_contains(csv, "\n2023-11-14T22:18:20Z,6,actual,aborted,1,12500,");
+}
+
+static void json_holds_digs_gravels_and_troubles(void **state)
+{
+    (void)state;
+    make_day();
+    read_log("day.lcm");
+    const char *const json = text_of(digreport_shift_json);
+    assert_contains(json,
+                    "\n {\"time_utc\": \"2023-11-14T22:18:20Z\", \"dig\": 6, \"trajectory\": "
+                    "\"actual\", \"ended\": \"aborted\", \"duration_s\": 1, \"peak_Nm\": 12500,");
+    assert_contains(json, "\"friction\": 0.6, \"friction_low\": 0.5, \"friction_high\": 0.7,");
+    assert_contains(json, "\"count\": 10, \"what\": \"Modbus requests had no answer\"");
 }
 
 static char *page_of(const struct digreport_shift_subject *const subject)
 {
     struct dig_error error = { "" };
     size_t           size  = 0;
-    if (digreport_shift_html(&shift, subject, scratch_path("page.html"), &error) != DIG_OK) {
+    FILE *const      to    = fopen(scratch_path("page.html"), "w");
+    assert_non_null(to);
+    if (digreport_shift_html(&shift, subject, to, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
+    (void)fclose(to);
     return scratch_read(scratch_path("page.html"), &size);
 }
 
@@ -257,13 +319,15 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
     };
     char *const page = page_of(&subject);
     assert_contains(page, "<h1>Tuesday</h1>");
-    assert_contains(page, "<b>2 digs in 8 min; the gravel at the end: friction 0.60");
-    assert_contains(page, "<th>22:15:20</th><td>5</td><td>actual</td><td>1.0</td><td>8.0</td>"
+    assert_contains(page, "<p class=result>2 digs in 8 min, 1 aborted; the gravel at the end: ");
+    assert_contains(page, "<th>22:15:20</th><td>5</td><td>actual</td><td>whole</td><td>1.0</td>"
+                          "<td>8.0</td>"
                           "<td>10.0 ± 1.6</td><td>0.80</td><td>0.0</td><td>20.0 ± 3.3</td>"
                           "<td>0.00</td><td>25</td><td>12</td>");
     assert_contains(page, "<td>Modbus requests had no answer</td><td>10</td>");
-    assert_contains(page, "peak, kN·m (1 is 0.1 N·m at rig scale)");
-    assert_contains(page, "time since 2023-11-14 22:13 UTC, min");
+    assert_contains(page, ">peak moment, kN·m</text>");
+    assert_contains(page, ">at rig scale, N·m</text>");
+    assert_contains(page, "time since 2023-11-14T22:13:20Z, min");
     int pictures = 0;
     for (const char *at = page; (at = strstr(at, "<svg")) != NULL; at++) {
         pictures++;
@@ -272,6 +336,25 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
     for (const char *at = page; (at = strstr(at, "://")) != NULL; at++) {
         assert_memory_equal(at, "://www.w3.org/", 14);
     }
+    free(page);
+}
+
+// Where nothing tells the machine's size, all is at its scale.
+static void a_machine_of_unknown_size_has_a_page_too(void **state)
+{
+    (void)state;
+    digreport_shift_begin(&shift, 0.0);
+    make_day();
+    read_log("day.lcm");
+    assert_close(shift.dig[0].peak_Nm, 8000.0, 1e-9);
+    assert_contains(text_of(digreport_shift_csv), ",8000,10000,1000,0,20000,2000,,,0.25,0.125,");
+    const struct digreport_shift_subject subject = {
+        .title = "Tuesday", .machine = "", .scene = "", .logs = 1
+    };
+    char *const page = page_of(&subject);
+    assert_contains(page, "All at machine scale");
+    assert_contains(page, "<td>8.0</td><td>10.0 ± 1.6</td><td>0.0</td>");
+    assert_null(strstr(page, "rig scale"));
     free(page);
 }
 
@@ -312,7 +395,7 @@ static void no_text_of_a_message_is_markup_or_somebodys_path(void **state)
     read_log("hostile.lcm");
     assert_int_equal(shift.misread, 1);
     assert_int_equal(shift.gravels, 2);
-    assert_int_equal(shift.whole, 15); // three daemons of five digs
+    assert_int_equal(shift.ended[DIGREPORT_WHOLE], 15); // three daemons of five digs
     for (size_t i = 0; i < shift.events; i++) {
         assert_int_equal(shift.event[i].count, 0);
     }
@@ -362,9 +445,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_shift_has_its_digs_gravels_and_troubles, fresh),
         cmocka_unit_test_setup(a_second_log_begins_anew, fresh),
+        cmocka_unit_test_setup(how_a_dig_ended_is_told_where_the_log_tells_it, fresh),
         cmocka_unit_test_setup(one_sentence_says_what_came_out, fresh),
         cmocka_unit_test_setup(the_csv_has_a_line_a_dig, fresh),
+        cmocka_unit_test_setup(json_holds_digs_gravels_and_troubles, fresh),
         cmocka_unit_test_setup(the_page_stands_alone_and_holds_the_numbers, fresh),
+        cmocka_unit_test_setup(a_machine_of_unknown_size_has_a_page_too, fresh),
         cmocka_unit_test_setup(a_shift_without_anything_is_a_page, fresh),
         cmocka_unit_test_setup(no_text_of_a_message_is_markup_or_somebodys_path, fresh),
         cmocka_unit_test_setup(a_log_that_is_none_or_damaged_is_refused, fresh),

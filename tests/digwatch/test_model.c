@@ -32,6 +32,16 @@ static void a_prediction_is_read_where_the_bucket_is(void **state)
     e = estimate_at(60000000001, 0.25, 3000.0); // it has expired
     say_estimate(&model, &e);
     assert_true(isnan(model.estimate.predicted_Nm));
+    // It has not where HEALTH tells that the controller's clock is at 30 s: that of a recording
+    // which is played fast runs ahead.
+    const digsight_health_t before = health_at(30000000000, running_state);
+    say_health(&model, &before);
+    say_estimate(&model, &e);
+    assert_close(model.estimate.predicted_Nm, 2500.0, 1e-9);
+    const digsight_health_t behind = health_at(60000000001, running_state);
+    say_health(&model, &behind);
+    say_estimate(&model, &e);
+    assert_true(isnan(model.estimate.predicted_Nm));
 }
 
 static void the_error_of_a_dig_is_relative_and_stands_until_the_next(void **state)

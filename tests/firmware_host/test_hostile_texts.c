@@ -117,6 +117,10 @@ static void pages_hold_no_markup_of_a_text(void **state)
         assert_printable(html);
         assert_null(strpbrk(html, "<>\"'"));
         free(html);
+        char *const name = written(dig_html_without_folders, hostile[i]);
+        assert_printable(name);
+        assert_null(strpbrk(name, "<>\"'"));
+        free(name);
         char *const page = written(dig_html_begin, hostile[i]);
         assert_printable(page);
         assert_null(strstr(page, "<script"));

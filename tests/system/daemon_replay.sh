@@ -159,12 +159,13 @@ check "and that the prediction was right" \
 check "its table is for people, its JSON for programs" eval '[ ! -s "$work/report.txt" ] && [ -s "$work/report.err" ] && "$helpers/is_json" <"$work/page.json"'
 check "that it identified by moment and forces" grep -q "simpleA identified the gravel by moment and forces, then actual" "$work/report.err" "$work/page.html"
 check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
-shift_of() { "$BIN/digreport" shift --table "$work/table.sqlite" --machine "$machine" "$@" >"$work/shift.txt" 2>"$work/err"; }
+shift_of() { "$BIN/digreport" shift "$@" >"$work/shift.txt" 2>"$work/err"; }
 field() { awk -F, -v name="$1" -v row="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) f = i } NR == row + 1 { print $f }' "$work/shift.csv"; }
 check "digreport shift makes a page and a table of both logs" shift_of --html "$work/shift.html" --csv "$work/shift.csv" \
-    "$work/csv.lcm" "$work/aborts.lcm"
+    --table "$work/table.sqlite" --machine "$machine" "$work/csv.lcm" "$work/aborts.lcm"
 check "with every dig" [ "$(cut -d, -f3 "$work/shift.csv" | tr '\n' ' ')" = "trajectory simpleA actual simpleA actual actual " ]
-check "says it in a sentence" grep -Eq '^5 digs in [0-9]+ min; the gravel at the end: friction 0\.[45].* predictions, off by [0-9] % ' "$work/shift.txt"
+check "and how it ended, where the daemon could tell" [ "$(cut -d, -f4 "$work/shift.csv" | tr '\n' ,)" = ended,whole,,whole,aborted,, ]
+check "says it in a sentence" grep -Eq '^5 digs in [0-9]+ min, 1 aborted; the gravel at the end: friction 0\.[45].* predictions, off by [0-9] % ' "$work/shift.txt"
 check "has the error of the actual dig's prediction" within "$(field error 2)" 0 0.1
 check "and a peak and an energy within four sigma of the predicted" eval '
     within "$(awk -v a="$(field peak_Nm 2)" -v b="$(field predicted_peak_Nm 2)" -v s="$(field predicted_peak_sigma_Nm 2)" "BEGIN { print (a - b) / s }")" -4 4 &&
@@ -173,10 +174,23 @@ check "the dig that identified is not judged by itself" [ -z "$(field error 1)" 
 check "the page needs nothing from elsewhere, and names no folder" eval '[ "$(grep -c "<svg" "$work/shift.html")" = 7 ] &&
     ! grep -o "[a-z]*://[a-z.0-9]*" "$work/shift.html" | grep -qv "://www.w3.org" && ! grep -qF "$work" "$work/shift.html"'
 check "an aborted dig is among the troubles" grep -q 'dig 2 (actual): aborted at [67][0-9] % of its path' "$work/shift.html"
+rig_peak=$(field rig_peak_Nm 2) peak=$(field peak_Nm 2)
+check "from the logs alone it makes both, at machine scale" eval 'shift_of --html "$work/alone.html" --csv "$work/shift.csv" "$work/csv.lcm" "$work/aborts.lcm" &&
+    grep -q "All at machine scale" "$work/alone.html" && [ -z "$(field rig_peak_Nm 2)" ] && [ -n "$rig_peak" ] &&
+    within "$(awk -v a="$(field peak_Nm 2)" -v b="$peak" "BEGIN { print a / b }")" 0.99 1.01'
+check "and JSON, what people read going to standard error" eval 'shift_of --json - "$work/csv.lcm" && "$helpers/is_json" <"$work/shift.txt" &&
+    grep -q "^2 digs in" "$work/err"'
+for args in "" --json=-; do
+    check "a page that cannot be drawn leaves nothing${args:+, nor other results}" eval '! PATH=/nonexistent shift_of --html "$work/no.html" $args "$work/csv.lcm" &&
+        grep -q "gnuplot: .*package gnuplot-nox" "$work/err" && [ ! -s "$work/shift.txt" ] && ! ls "$work"/no.* 2>/dev/null'
+done
 head -c 5000 /dev/urandom >"$work/rubbish.lcm"
 check "a log that is none is refused, and nothing is written" eval '! shift_of --html "$work/no.html" --csv "$work/no.csv" "$work/csv.lcm" "$work/rubbish.lcm" &&
     grep -q "rubbish.lcm:1: does not begin with ED A1 DA 01" "$work/err" && ! ls "$work"/no.* 2>/dev/null'
-check "without a log it says what is missing" eval 'shift_of; [ $? = 2 ] && grep -q "expected --table, --machine and at least one LOG.lcm" "$work/err"'
+check "so is one that is not there" eval 'shift_of "$work/csv.lcm" "$work/nowhere.lcm"; [ $? = 2 ] && grep -q "nowhere.lcm: No such file" "$work/err"'
+check "without a log it says what is missing" eval 'shift_of; [ $? = 2 ] && grep -q "shift: expected at least one LOG.lcm" "$work/err"'
+check "a table without a machine does not tell the scale" eval 'shift_of --table "$work/table.sqlite" "$work/csv.lcm"; [ $? = 2 ] &&
+    grep -q "expected --table and --machine, or neither" "$work/err"'
 
 # A table dug at several depths and attacks: a simple dig at 1.12 of its depth, the same again, one at 1.7.
 "$helpers/daemon_data" "$scene" "$work" ways >"$work/ways.log" 2>&1

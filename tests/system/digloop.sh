@@ -189,27 +189,6 @@ check "a truth that is no gravel is named" refuses "--truth" "expected FRICTION"
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --truth 1,2 "a=b"
 check "a log that is none is named" refuses README.md -- \
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --html "$work/never" "a=README.md"
-for tool in digloop digreport digtable digwatch digrig digsightd; do
-    check "$tool has --help with examples" eval '"$BIN/'$tool'" --help | grep -qi example'
-    check "$tool has --version" eval '"$BIN/'$tool'" --version | grep -q "0\.1\.0"'
-done
-commands_of() { # TOOL: one a line
-    "$BIN/$1" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]\{1,\}\)  .*/\1/p'
-}
-helps() { # TOOL: each command's help is of itself, has an example and fits a terminal
-    local tool=$1 command
-    [ "$(commands_of "$tool" | wc -l)" -ge 1 ] || return 1
-    for command in "" $(commands_of "$tool"); do
-        "$BIN/$tool" $command --help >"$work/help" 2>"$work/err" || return 1
-        grep -A1 '^Examples:' "$work/help" | grep -q "^  $tool $command" || return 1
-        head -n 1 "$work/help" | grep -q "^Usage: $tool $command" || return 1
-        ! grep -nE '.{81}' "$work/help" || return 1
-    done
-}
-check "digloop COMMAND --help is that command's" helps digloop
-check "so is digtable's" helps digtable
-check "so is digrig's" helps digrig
-check "so is digreport's" helps digreport
 check "an unknown command has none" refuses frobnicate -- "$BIN/digloop" frobnicate --help
 
 finish

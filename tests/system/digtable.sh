@@ -6,11 +6,6 @@
 dig=(--trajectory scrape --friction .5 --rolling .2 --density 2500)
 grid=tests/data/formats/grid.yaml # 6 points x 2 packings x 1 trajectory
 
-digtable --help
-check "--help ends with 0 and shows examples" eval 'is $code 0 && grep -q "^Examples:" $work/out && [ ! -s $work/err ]'
-digtable --version
-check "--version names the program" eval 'is $code 0 && grep -qE "^digtable [0-9]+\.[0-9]+\.[0-9]+$" $work/out'
-
 digtable dig $scene "${dig[@]}" --seed 3 --save-bed "$work/bed.csv" -o "$work/a.csv"
 check "a dig writes a force recording" eval 'is $code 0 && head -1 $work/a.csv | grep -q "^t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm,carried_kg$"'
 check "it tells progress to stderr and nothing to stdout" eval '[ -s $work/err ] && [ ! -s $work/out ]'

@@ -42,7 +42,7 @@ cut=$(grep -abo DIGSIGHT_PREDICTION "$work/run.lcm" | sed -n "$(($(grep ^predict
 head -c "$cut" "$work/run.lcm" >"$work/cut.lcm"
 begin --log "$work/cut.lcm" --speed 10000
 check "a log is shown to its end" until_shows '^digwatch cut.lcm, 10000x, at its end .* UTC q: quit$'
-check "the state, the source and the digs" shows '^running, replay .*run.csv; 1 digs (0 aborted), 1 identified'
+check "the state, the source and the digs" shows '^running, replay .*; 1 digs (0 aborted), 1 identified'
 check "the moment, measured and predicted" shows '^Moment    -\?[0-9.]* +- [0-9.]* kNm, predicted -\?[0-9.]* (-\?[0-9.]* to [0-9.]*)$'
 check "phase, motion, trajectory and progress" shows '^Phase     dig, [a-z]* *actual  *=*-* [0-9]* %$'
 check "the residual" shows '^Residual  [+-][0-9.]* kNm, [+-][0-9.]* sigma'
@@ -55,6 +55,9 @@ check "nothing beyond 80 columns and 24 rows" eval '[ "$(shown | wc -l)" -le 24 
 
 tmux resize-window -x 120 -y 40
 check "a larger window is filled" until_shows '^         27\.8 s before now  *now$'
+tmux resize-window -x 60 -y 20
+check "at 60 columns nothing is cut off" eval 'until_shows "^digwatch cut.lcm, 10000x, at its end *[0-9:]* UTC q: quit$" && shows "^Phase .* [0-9]* %$" && shows "^running, .* 1 identified$" &&
+    shows "^Moment .* to [0-9.]*)$" && shows "^Moment, kNm .* digs$" && shows "^Predicted .* kJ$" && shows "^Gravel .* kg/m3$" && shows "^ *1 dig, with force"'
 tmux resize-window -x 50 -y 10
 check "one too small asks for more" until_shows '^50 x 10 is too small: 60 x 18 at least. q: quit'
 tmux resize-window -x 80 -y 24
@@ -125,5 +128,4 @@ check "a speed that is none" refused 'speed 0: expected 0.01 to 10000' --log "$w
 check "a speed without a log" refused 'expected --speed with --log' --speed 2
 check "an argument" refused 'run.lcm: expected options alone' run.lcm
 check "an unknown option" refused '--colour: unknown option' --colour
-check "--help has examples, on standard output" eval '"$BIN/digwatch" --help | grep -q "digwatch --log day.lcm --speed 10"'
 finish

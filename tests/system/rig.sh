@@ -17,9 +17,6 @@ exits() { # STATUS COMMAND…: runs it, output in $work/out and err
 
 says() { grep -qF -- "$1" "$work/err"; }
 
-check "help is printed and is no error" exits 0 "$rig" --help
-check "help shows examples" grep -q 'digrig serve simpleA.csv' "$work/out"
-check "version is printed and is no error" exits 0 "$rig" --version
 check "no command is bad usage" exits 2 "$rig"
 check "a machine that is not there is bad input" \
     exits 2 "$rig" record $simple --machine nowhere.yaml -o "$work/a.csv"

@@ -121,6 +121,7 @@ static enum dig_status load_machine(const struct dig_campaign *const from, const
     if (status == DIG_OK) {
         status = digloop_check_bucket(from->machine, &machine, table, set, error);
     }
+    campaign->lambda = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
         status                 = digloop_read_machine(file, &machine, &recording[i], error);
@@ -184,6 +185,7 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
     if (!digloop_is_force_recording(from->recording[0].file)) {
         return load_machine(from, table, set, campaign, error);
     }
+    campaign->lambda = scale;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         status = measure_force(&from->recording[i], set, scale, &campaign->measured[i], error);
     }

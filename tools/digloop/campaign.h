@@ -10,6 +10,7 @@
 
 struct digloop_campaign {
     size_t                   digs;
+    double                   lambda;   // size of what dug over the table's
     struct dig_measured     *measured; // [digs], malloc'ed
     struct dig_machine_side *machine;  // NULL: the digs are force recordings
 };

@@ -23,7 +23,7 @@ struct digloop_options {
     const char         *effects, *json_out, *html, *add; // trace
     bool                moment_alone;                    // identify
     struct dig_approach approach;                        // predict: the plain one if not given
-    bool                json;
+    bool                json, quiet;
 };
 
 /// Reads the command line; prints help or version and exits where asked to. *error says what is

@@ -64,6 +64,7 @@ static const struct dig_option options[] = {
     { "html", DIGLOOP_HTML, "OUT.html", " trace ", "write it as a page with plots" },
     { "add", DIGLOOP_ADD, "MODEL.json", " trace ",
       "write the model with the effect added, for digsightd and --model" },
+    { "quiet", DIGLOOP_QUIET, NULL, " trace ", "nothing for people, only what goes wrong" },
 };
 
 const struct dig_program *digloop_program(void)

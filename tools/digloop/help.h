@@ -8,6 +8,7 @@
 /// A letter is an option's short name, too.
 enum digloop_option {
     DIGLOOP_OUTPUT     = 'o',
+    DIGLOOP_QUIET      = 'q',
     DIGLOOP_IDENTIFIED = 256,
     DIGLOOP_TRAJECTORY,
     DIGLOOP_MACHINE,

@@ -3,6 +3,7 @@
 #include "core/did_you_mean.h"
 #include "core/help.h"
 #include "core/units.h"
+#include "files/whole.h"
 #include "tools/digloop/help.h"
 
 #include <getopt.h>
@@ -10,16 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int to_stdout(const char *const path)
-{
-    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0) ? 1 : 0;
-}
-
 // Results that would go to standard output, one into the other.
 static int results_on_stdout(const struct digloop_options *const o)
 {
-    return to_stdout(o->out) + to_stdout(o->html) + to_stdout(o->add) +
-           (o->json_out != NULL ? to_stdout(o->json_out) : (int)o->json);
+    return (int)dig_out_is_stdout(o->out) + (int)dig_out_is_stdout(o->html) +
+           (int)dig_out_is_stdout(o->add) +
+           (o->json_out != NULL ? (int)dig_out_is_stdout(o->json_out) : (int)o->json);
 }
 
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
@@ -82,6 +79,7 @@ static enum dig_status take(const int option, struct digloop_options *const o,
         break;
     case DIGLOOP_HTML: o->html = optarg; break;
     case DIGLOOP_ADD: o->add = optarg; break;
+    case DIGLOOP_QUIET: o->quiet = true; break;
     default: return DIG_EINVAL; // said already
     }
     return DIG_OK;

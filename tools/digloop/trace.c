@@ -57,11 +57,6 @@ static enum dig_status write_json(const char *const path, const struct dig_trace
     return dig_out_commit(&out, error);
 }
 
-static bool is_stdout(const char *const path)
-{
-    return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
-}
-
 static enum dig_status
 write_results(const struct digloop_options *const options, const struct dig_curve_set *const set,
               const char *const effects, const struct digloop_campaign *const campaign,
@@ -75,19 +70,26 @@ write_results(const struct digloop_options *const options, const struct dig_curv
         const struct dig_trace_subject subject = {
             .campaign = options->recording[0],
             .table    = options->table,
+            .lambda   = campaign->lambda,
             .set      = set,
             .digs     = campaign->digs,
             .measured = campaign->measured,
         };
-        status = dig_trace_html(trace, &subject, options->html, error);
+        struct dig_out out;
+        status = dig_out_open(&out, options->html, error);
+        if (status == DIG_OK) {
+            status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);
+        }
     }
     if (status == DIG_OK && options->add != NULL) {
         status = digloop_save_model(options, set, effects, trace, error);
     }
     // Where programs are to read the result, people read on standard error.
     const bool for_program =
-        options->json_out != NULL || options->add != NULL || is_stdout(options->html);
-    dig_trace_text(trace, for_program ? stderr : stdout);
+        options->json_out != NULL || options->add != NULL || dig_out_is_stdout(options->html);
+    if (!options->quiet) {
+        dig_trace_text(trace, for_program ? stderr : stdout);
+    }
     return status;
 }
 

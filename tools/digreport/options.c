@@ -1,6 +1,8 @@
 #include "tools/digreport/options.h"
 
+#include "core/did_you_mean.h"
 #include "core/help.h"
+#include "files/whole.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -9,13 +11,14 @@
 #include <string.h>
 
 static const struct dig_command commands[] = {
-    { "shift", "--table TABLE --machine MACHINE LOG.lcm... [OPTION]...",
+    { "shift", "LOG.lcm... [OPTION]...",
       "Shows what a shift was like, from the LCM logs of digsightd.",
       "Digs, gravel, peak and energy, error of the predictions, effects of the model, troubles. "
-      "Logs "
-      "in the order in which they were written. One sentence goes to standard output.",
-      "digreport shift --table tables/rig.sqlite --html shift.html --csv shift.csv \\\n"
-      "          --machine config/machines/zx200_trench.yaml early.lcm late.lcm\n" },
+      "Logs in the order in which they were written. One sentence goes to standard output. With "
+      "--table and --machine numbers are shown at rig scale, too.",
+      "digreport shift --html shift.html --csv shift.csv early.lcm late.lcm\n"
+      "digreport shift --html shift.html --table tables/rig.sqlite \\\n"
+      "          --machine config/machines/zx200_trench.yaml day.lcm\n" },
 };
 
 static const struct dig_option known[] = {
@@ -29,8 +32,10 @@ static const struct dig_option known[] = {
     { "title", DIGREPORT_TITLE, "TEXT", NULL, "of the page" },
     { "html", DIGREPORT_HTML, "PAGE.html", NULL, "write a page with plots" },
     { "csv", DIGREPORT_CSV, "DIGS.csv", " shift ", "write a line a dig" },
-    { "json", DIGREPORT_JSON, "FILE.json", " digreport ",
-      "write the results as JSON, - for standard output; the table goes to standard error then" },
+    { "json", DIGREPORT_JSON, "FILE.json", NULL,
+      "write the results as JSON, - for standard output; what people read goes to standard error "
+      "then" },
+    { "quiet", DIGREPORT_QUIET, NULL, NULL, "nothing for people, only what goes wrong" },
 };
 
 const struct dig_program *digreport_program(void)
@@ -89,6 +94,7 @@ enum dig_status digreport_parse(const int argc, char *argv[],
         case DIGREPORT_TITLE: o.title = optarg; break;
         case DIGREPORT_HTML: o.html = optarg; break;
         case DIGREPORT_JSON: o.json = optarg; break;
+        case DIGREPORT_QUIET: o.quiet = true; break;
         case DIG_OPTION_HELP: dig_help_print(program, &program->self, stdout); exit(EXIT_SUCCESS);
         case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
         case DIGREPORT_TRUTH: {
@@ -110,8 +116,12 @@ enum dig_status digreport_parse(const int argc, char *argv[],
     }
     for (; optind < argc; optind++) {
         if (o.logs == DIG_REPORT_RUNS_MAX || strchr(argv[optind], '=') == NULL) {
-            return dig_error_set(error, DIG_EINVAL, "%s: expected NAME=LOG.lcm, at most %d of them",
-                                 argv[optind], DIG_REPORT_RUNS_MAX);
+            char             text[DIG_GUESS_SIZE];
+            struct dig_guess guess = dig_guess(argv[optind]);
+            dig_guess_try(&guess, commands[0].name);
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: expected NAME=LOG.lcm, at most %d of them%s", argv[optind],
+                                 DIG_REPORT_RUNS_MAX, dig_guess_text(&guess, "", text));
         }
         o.log[o.logs++] = argv[optind];
     }
@@ -119,6 +129,14 @@ enum dig_status digreport_parse(const int argc, char *argv[],
         return dig_error_set(error, DIG_EINVAL,
                              "expected --table, --machine and at least one NAME=LOG.lcm");
     }
+    if (dig_out_is_stdout(o.html) && dig_out_is_stdout(o.json)) {
+        return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
+    }
     *options = o;
     return DIG_OK;
+}
+
+enum dig_status digreport_input(const enum dig_status status)
+{
+    return status == DIG_EIO ? DIG_EINVAL : status;
 }

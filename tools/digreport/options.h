@@ -19,6 +19,7 @@ enum digreport_option {
     DIGREPORT_HTML,
     DIGREPORT_CSV,
     DIGREPORT_JSON,
+    DIGREPORT_QUIET = 'q',
 };
 
 /// Its commands, and the options of them all.
@@ -26,7 +27,7 @@ const struct dig_program *digreport_program(void);
 
 struct digreport_options {
     const char       *table, *machine, *title, *html, *json;
-    bool              truth_known;
+    bool              truth_known, quiet;
     struct dig_gravel truth;
     size_t            recordings;
     const char       *recording[8];
@@ -38,5 +39,8 @@ struct digreport_options {
 /// wrong with it.
 DIG_MUST_CHECK enum dig_status
 digreport_parse(int argc, char *argv[], struct digreport_options *options, struct dig_error *error);
+
+/// A file that cannot be read is bad input: DIG_EIO becomes DIG_EINVAL.
+enum dig_status digreport_input(enum dig_status status);
 
 #endif // DIG_TOOLS_DIGREPORT_OPTIONS_H

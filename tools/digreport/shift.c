@@ -20,6 +20,21 @@ static const struct dig_health_text outside  = { "outside",
                                                  "a simple dig was none of the table's gravels",
                                                  "do not rely on predictions of that ground" };
 
+void digreport_shift_begin(struct digreport_shift *const shift, const double lambda)
+{
+    assert(shift != NULL);
+    *shift = (struct digreport_shift){
+        .lambda = lambda,
+        .track  = { .half_s = DIG_SMOOTH_HALF_s * sqrt(lambda > 0.0 ? lambda : 10.0) },
+    };
+}
+
+const char *digreport_ending_name(const enum digreport_ending ended)
+{
+    static const char *const name[] = { "", "whole", "aborted", "unknown" };
+    return name[ended];
+}
+
 // The array with room for one more element; NULL: no memory, and it stays as it is.
 static void *with_room(void *const array, const size_t n, const size_t size)
 {
@@ -95,6 +110,42 @@ static void take_prediction(void *const context, const int64_t time_us,
     digreport_track_prediction(&((struct digreport_shift *)context)->track, said);
 }
 
+// A match names the simple dig it came from, and how that ended.
+static void tell_ending(struct digreport_shift *const shift, const digsight_match_t *const said)
+{
+    const bool told = said->ending == DIGREPORT_WHOLE || said->ending == DIGREPORT_ABORTED;
+    for (size_t i = shift->digs; i > shift->log_digs && told && !said->restored; i--) {
+        if (shift->dig[i - 1].number == said->dig_count) {
+            shift->dig[i - 1].ended = (enum digreport_ending)said->ending;
+        }
+    }
+}
+
+// HEALTH counts digs by how they ended, soon after each: what grew is of the last digs. Of digs
+// that ended in several ways within a second it does not say which is which.
+static void count_endings(struct digreport_shift *const shift, const digsight_health_t *const said)
+{
+    const int64_t now[DIGREPORT_ENDINGS] = { 0, said->digs_whole, said->digs_aborted,
+                                             said->digs_unknown };
+    int           kinds                  = 0;
+    int64_t       left                   = 0;
+    int           kind                   = DIGREPORT_NOT_TOLD;
+    for (int k = DIGREPORT_WHOLE; k < DIGREPORT_ENDINGS && shift->any_health; k++) {
+        const int64_t grown = growth(shift->log_ended[k], now[k]);
+        shift->ended[k] += grown;
+        kinds += grown > 0 ? 1 : 0;
+        left = grown > 0 ? grown : left;
+        kind = grown > 0 ? k : kind;
+    }
+    for (size_t i = shift->digs; i > shift->log_digs && left > 0 && kinds == 1; i--, left--) {
+        if (shift->dig[i - 1].ended != DIGREPORT_NOT_TOLD) {
+            break;
+        }
+        shift->dig[i - 1].ended = (enum digreport_ending)kind;
+    }
+    memcpy(shift->log_ended, now, sizeof now);
+}
+
 static bool is_gravel(const struct dig_gravel *const gravel)
 {
     int a = 0;
@@ -110,6 +161,7 @@ static void take_match(void *const context, const int64_t time_us,
 {
     struct digreport_shift *const shift = context;
     const bool                    known = said->valid != 0;
+    tell_ending(shift, said);
     if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
         return;
     }
@@ -173,14 +225,11 @@ static void take_health(void *const context, const int64_t time_us,
         if (taken > 0) {
             add_event(shift, time_us, &reloaded, "", taken);
         }
-        shift->whole += growth(shift->log_whole, said->digs_whole);
-        shift->aborted += growth(shift->log_aborted, said->digs_aborted);
     }
+    count_endings(shift, said);
     memcpy(shift->count, count, sizeof shift->count);
-    shift->reloads     = said->reloads;
-    shift->log_whole   = said->digs_whole;
-    shift->log_aborted = said->digs_aborted;
-    shift->any_health  = true;
+    shift->reloads    = said->reloads;
+    shift->any_health = true;
 }
 
 static enum dig_status take(struct digreport_shift *const     shift,
@@ -217,6 +266,7 @@ enum dig_status digreport_shift_log(struct digreport_shift *const shift, const c
     }
     digreport_track_finish(&shift->track);
     shift->any_health = false;
+    shift->log_digs   = shift->digs;
     shift->match_ns   = 0;
     while (status == DIG_OK) {
         status = dig_lcm_log_next(reading, &event, error);

@@ -27,13 +27,13 @@ struct digreport_event {
     char                          said[DIGREPORT_TEXT]; // those
 };
 
-/// Zeroed, but for lambda and track.half_s: nothing was taken.
+/// digreport_shift_begin() zeroes it but for the scale: nothing was taken.
 struct digreport_shift {
-    double  lambda; // tooth length of the machine over the table's
+    double  lambda; // tooth length of the machine over the table's; 0: not known
     int64_t first_us, last_us;
-    int64_t messages, misread; // misread: on our channels, not understood
-    int64_t whole, aborted;    // digs, by how they ended
-    int64_t left_out;          // digs, matches and events beyond the first ten thousand of each
+    int64_t messages, misread;        // misread: on our channels, not understood
+    int64_t ended[DIGREPORT_ENDINGS]; // digs, by the daemon's counts
+    int64_t left_out; // digs, matches and events beyond the first ten thousand of each
     size_t  digs, gravels, events;
     struct digreport_dig      *dig;
     struct digreport_gravel   *gravel;
@@ -43,11 +43,19 @@ struct digreport_shift {
     // Of the log that is read.
     bool            any_health;
     int64_t         count[DIG_HEALTH_COUNTERS], reloads;
-    int64_t         log_whole, log_aborted;
+    int64_t         log_ended[DIGREPORT_ENDINGS];
+    size_t          log_digs; // digs of logs before
     int64_t         match_ns; // time of the last match
     bool            match_known;
     enum dig_status status; // of the last message
 };
+
+/// A machine this much larger than the table's rig; 0: not known. The moving average of moments
+/// takes 0.16 s of rig time, for a machine of unknown size as if it were ten times the rig.
+void digreport_shift_begin(struct digreport_shift *shift, double lambda);
+
+/// "whole", "aborted", "unknown", "" for one that is not told.
+const char *digreport_ending_name(enum digreport_ending ended);
 
 /// Takes all messages of a log. A message that is not understood is counted; a log that is cut off
 /// is read up to there. Fails as dig_lcm_log_open() and dig_lcm_log_next(); DIG_ENOMEM.

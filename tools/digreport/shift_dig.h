@@ -12,17 +12,27 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/// How a dig ended, as the daemon counts it (docs/formats/daemon.md).
+enum digreport_ending {
+    DIGREPORT_NOT_TOLD,
+    DIGREPORT_WHOLE,
+    DIGREPORT_ABORTED,
+    DIGREPORT_UNKNOWN, // along no trajectory, too short, or with samples missing
+    DIGREPORT_ENDINGS
+};
+
 /// From contact to exit. NaN: not known.
 struct digreport_dig {
-    int64_t time_us; // wall clock of its begin
-    int32_t number;  // as the daemon counts
-    double  duration_s;
-    char    trajectory[DIG_NAME_SIZE]; // "": none of the table's
-    double  peak_Nm;                   // of the moment, averaged as the table's curves are
-    double  energy_J; // work on the soil; NaN where a force was not measured throughout
-    double  predicted_peak_Nm, predicted_peak_sigma_Nm;
-    double  predicted_energy_J, predicted_energy_sigma_J;
-    double  error, noise_floor; // docs/glossary.md, of the first prediction made in the dig
+    int64_t               time_us; // wall clock of its begin
+    int32_t               number;  // as the daemon counts
+    enum digreport_ending ended;
+    double                duration_s;
+    char                  trajectory[DIG_NAME_SIZE]; // "": none of the table's
+    double                peak_Nm; // of the moment, averaged as the table's curves are
+    double energy_J; // work on the soil; NaN where a force was not measured throughout
+    double predicted_peak_Nm, predicted_peak_sigma_Nm;
+    double predicted_energy_J, predicted_energy_sigma_J;
+    double error, noise_floor; // docs/glossary.md, of the first prediction made in the dig
 };
 
 /// A row of the dig in progress.
@@ -35,7 +45,7 @@ struct digreport_row {
 
 /// Zeroed, but for half_s: no dig is in progress.
 struct digreport_dig_track {
-    double                     half_s; // of the moving average, machine time: 0.16 s sqrt(lambda)
+    double                     half_s; // of the moving average, machine time
     bool                       open;
     int32_t                    dig_count; // digs finished before it
     struct digreport_dig       dig;

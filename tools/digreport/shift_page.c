@@ -1,22 +1,11 @@
 #include "tools/digreport/shift_page_parts.h"
 
 #include "closed_loop/report/html.h"
+#include "closed_loop/report/report.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
-#include <time.h>
-
-// A day and a time, or nothing where there is none such.
-static void format_date(const int64_t time_us, const size_t size, char text[])
-{
-    const time_t seconds = (time_t)(time_us / 1000000);
-    struct tm    utc;
-    text[0] = '\0';
-    if (gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(text, size, "%Y-%m-%d %H:%M UTC", &utc);
-    }
-}
 
 static void put_effects(const struct dig_model *const model, FILE *const to)
 {
@@ -50,24 +39,6 @@ static void put_effects(const struct dig_model *const model, FILE *const to)
     (void)fputs("</table>\n", to);
 }
 
-// A replay's note may name a file: its folders are somebody's machine.
-static void put_without_folders(FILE *const to, const char *const said)
-{
-    char   text[DIGREPORT_TEXT];
-    size_t n    = 0;
-    size_t word = 0;
-    for (const char *c = said; *c != '\0'; c++) {
-        if (*c == '/' && n > word) {
-            n = word;
-        } else if (*c != '/') {
-            text[n++] = *c;
-        }
-        word = *c == ' ' ? n : word;
-    }
-    text[n] = '\0';
-    dig_html_text(to, text);
-}
-
 static void put_events(const struct digreport_shift *const shift, FILE *const to)
 {
     (void)fputs("<h2>Health</h2>\n", to);
@@ -93,7 +64,7 @@ static void put_events(const struct digreport_shift *const shift, FILE *const to
         if (e->text != NULL) {
             dig_html_text(to, e->text->what);
         } else {
-            put_without_folders(to, e->said);
+            dig_html_without_folders(to, e->said);
         }
         if (e->count > 0) {
             (void)fprintf(to, "</td><td>%" PRId64 "</td><td>", e->count);
@@ -109,22 +80,30 @@ static void put_events(const struct digreport_shift *const shift, FILE *const to
 static void put_subject(const struct digreport_page *const page, FILE *const to)
 {
     const struct digreport_shift *const shift = page->shift;
-    char                                from[48];
-    char                                until[48];
-    format_date(shift->first_us, sizeof from, from);
-    format_date(shift->last_us, sizeof until, until);
-    (void)fputs("<p class=result><b>", to);
+    char                                from[DIGREPORT_TIME];
+    char                                until[DIGREPORT_TIME];
+    digreport_time(shift->first_us, from);
+    digreport_time(shift->last_us, until);
+    (void)fputs("<p class=result>", to);
     digreport_shift_sentence(shift, to);
-    (void)fprintf(to, "</b></p>\n<p>%s to %s, from %zu log%s. Machine ", from, until,
-                  page->subject->logs, page->subject->logs == 1 ? "" : "s");
-    dig_html_text(to, page->subject->machine);
-    (void)fputs(", table of scene ", to);
-    dig_html_text(to, page->subject->scene);
-    (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
+    (void)fprintf(to, "</p>\n<p>%s to %s, from %zu log%s. ", from, until, page->subject->logs,
+                  page->subject->logs == 1 ? "" : "s");
+    if (shift->lambda > 0.0) {
+        (void)fputs("Machine ", to);
+        dig_html_text(to, page->subject->machine);
+        (void)fputs(", table of scene ", to);
+        dig_html_text(to, page->subject->scene);
+        (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
+    } else {
+        (void)fputs("All at machine scale; <code>--table</code> and <code>--machine</code> add the "
+                    "rig's. ",
+                    to);
+    }
     (void)fprintf(to,
-                  "By the daemon's counts %" PRId64 " digs were dug to their end, %" PRId64
-                  " were aborted.</p>\n",
-                  shift->whole, shift->aborted);
+                  "Digs by the daemon's counts: %" PRId64 " dug to their end, %" PRId64
+                  " aborted, %" PRId64 " unknown; of others it is not told.</p>\n",
+                  shift->ended[DIGREPORT_WHOLE], shift->ended[DIGREPORT_ABORTED],
+                  shift->ended[DIGREPORT_UNKNOWN]);
     if (shift->left_out > 0) {
         (void)fprintf(to,
                       "<p>%" PRId64 " digs, matches or troubles are left out: only the first ten "
@@ -133,14 +112,10 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     }
 }
 
-static enum dig_status put_page(void *const context, FILE *const to, struct dig_error *const error)
+static enum dig_status put_page(const struct digreport_page *const page, FILE *const to,
+                                struct dig_error *const error)
 {
-    const struct digreport_page *const page = context;
     dig_html_begin(to, page->subject->title);
-    (void)fputs("<style>.words td,.words tr:first-child th{text-align:left}.digs "
-                "tr+tr>*{white-space:nowrap}"
-                ".digs td,.digs th{padding:.25em .4em}</style>\n",
-                to);
     put_subject(page, to);
     enum dig_status status = digreport_page_digs(page, to, error);
     if (status == DIG_OK) {
@@ -148,27 +123,26 @@ static enum dig_status put_page(void *const context, FILE *const to, struct dig_
     }
     put_effects(page->subject->model, to);
     put_events(page->shift, to);
-    (void)fputs("<footer>Error: relative Euclidean norm of the moment, measured minus the first "
-                "prediction made in the dig, over time from there to exit, moving average ±0.16 s "
-                "of rig time. Noise floor: 1 σ of what it would be if the model were complete. "
-                "Predicted: expected of one dig, with the interval that holds 90 % of digs. "
-                "Energy: work of the bucket on the soil, where forces are measured. Predictions "
-                "are advice, not a safety function.</footer>\n",
-                to);
-    dig_html_end(to);
+    dig_html_end(
+        to, DIG_REPORT_ERROR_NOTE
+        " Of the first prediction made in the dig, from there on; of a machine of unknown size the "
+        "average is ±0.5 s. Predicted: expected of one dig, with the interval that holds 90 % of "
+        "digs. Energy: work of the bucket on the soil, where forces are measured. Ended: whole, "
+        "dug to the end of its trajectory; aborted, left it before; unknown, along none, too short "
+        "or with samples missing.");
     return status;
 }
 
 enum dig_status digreport_shift_html(const struct digreport_shift *const         shift,
                                      const struct digreport_shift_subject *const subject,
-                                     const char *const path, struct dig_error *const error)
+                                     FILE *const to, struct dig_error *const error)
 {
-    assert(shift != NULL && subject != NULL && path != NULL);
+    assert(shift != NULL && subject != NULL && to != NULL);
     const double          minutes = (double)(shift->last_us - shift->first_us) / 6e7;
     struct digreport_page page    = { shift, subject, minutes > 180.0 ? 3.6e9 : 6e7, "" };
-    char                  clock[32];
-    format_date(shift->first_us, sizeof clock, clock);
+    char                  clock[DIGREPORT_TIME];
+    digreport_time(shift->first_us, clock);
     (void)snprintf(page.x_label, sizeof page.x_label, "time since %s, %s", clock,
                    minutes > 180.0 ? "h" : "min");
-    return dig_html_save(path, put_page, &page, error);
+    return put_page(&page, to, error);
 }

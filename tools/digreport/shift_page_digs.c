@@ -2,29 +2,19 @@
 
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
+#include "closed_loop/report/report.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define BAND_SIGMAS 1.645 // of 90 %
-#define MEASURED    0xc0392bU
-
-static void put_cell(FILE *const to, const int digits, const double value)
-{
-    if (isfinite(value)) {
-        (void)fprintf(to, "<td>%.*f</td>", digits, value);
-    } else {
-        (void)fputs("<td>–</td>", to);
-    }
-}
-
 // What was predicted, and half the interval that holds 90 % of digs.
 static void put_predicted(FILE *const to, const int digits, const double value, const double sigma)
 {
     if (isfinite(value) && isfinite(sigma)) {
-        (void)fprintf(to, "<td>%.*f ± %.*f</td>", digits, value, digits, BAND_SIGMAS * sigma);
+        (void)fprintf(to, "<td>%.*f ± %.*f</td>", digits, value, digits,
+                      DIG_REPORT_BAND_SIGMAS * sigma);
     } else {
         (void)fputs("<td>–</td>", to);
     }
@@ -54,7 +44,7 @@ static void set_dig(const struct digreport_page *const page, struct series *cons
                     const double measured, const double predicted, const double sigma)
 {
     const struct digreport_shift *const shift = page->shift;
-    const double width = 0.006 * fmax(digreport_page_time(page, shift->last_us), 1e-6);
+    const double width = 0.012 * fmax(digreport_page_time(page, shift->last_us), 1e-6);
     s->x[i]            = digreport_page_time(page, shift->dig[i].time_us);
     s->y[i]            = measured;
     for (size_t end = 0; end < 3; end++) {
@@ -62,40 +52,52 @@ static void set_dig(const struct digreport_page *const page, struct series *cons
         const double y  = end < 2 ? predicted : (double)NAN;
         s->box_x[at]    = s->x[i] + (end == 0 ? -width : width);
         s->box_y[at]    = y;
-        s->low[at]      = y - BAND_SIGMAS * sigma;
-        s->high[at]     = y + BAND_SIGMAS * sigma;
+        s->low[at]      = y - DIG_REPORT_BAND_SIGMAS * sigma;
+        s->high[at]     = y + DIG_REPORT_BAND_SIGMAS * sigma;
     }
 }
 
 static enum dig_status put_dig_plot(const struct digreport_page *const page, FILE *const to,
                                     const struct series *const s, const char *const title,
-                                    const char *const y_label, const char *const predicted,
-                                    const char *const band, struct dig_error *const error)
+                                    const char *const y_label, const char *const right_label,
+                                    const char *const predicted, const char *const band,
+                                    struct dig_error *const error)
 {
     const size_t    n    = 3 * s->n;
     struct dig_plot plot = {
-        .title = title, .x_label = page->x_label, .y_label = y_label, .width = 480, .height = 340
+        .title     = title,
+        .x_label   = page->x_label,
+        .y_label   = y_label,
+        .x_to      = digreport_page_time(page, page->shift->last_us),
+        .from_zero = true,
+        .width     = 480,
+        .height    = 340,
     };
+    if (right_label != NULL && page->shift->lambda > 0.0) {
+        plot.right_label  = right_label;
+        plot.right_factor = 1e3 * pow(page->shift->lambda, -4.0);
+    }
     if (!digreport_page_any(s->n, s->y)) {
         return DIG_OK;
     }
     if (band != NULL && digreport_page_any(n, s->low)) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ band,   DIG_PLOT_BAND, DIGREPORT_PREDICTED, n, s->box_x,
+            (struct dig_plot_series){ band,   DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, s->box_x,
                                       s->low, s->high };
     }
     if (digreport_page_any(n, s->box_y)) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ predicted, DIG_PLOT_LINE, DIGREPORT_PREDICTED, n, s->box_x,
+            (struct dig_plot_series){ predicted, DIG_PLOT_LINE, DIG_PLOT_PREDICTED, n, s->box_x,
                                       s->box_y,  NULL };
     }
-    plot.s[plot.series++] = (struct dig_plot_series){
-        predicted != NULL ? "measured" : NULL, DIG_PLOT_POINTS, MEASURED, s->n, s->x, s->y, NULL
-    };
-    (void)fputs("<figure>\n", to);
-    const enum dig_status status = dig_plot_svg(&plot, to, error);
-    (void)fputs("</figure>\n", to);
-    return status;
+    plot.s[plot.series++] = (struct dig_plot_series){ predicted != NULL ? "measured" : NULL,
+                                                      DIG_PLOT_POINTS,
+                                                      DIG_PLOT_MEASURED,
+                                                      s->n,
+                                                      s->x,
+                                                      s->y,
+                                                      NULL };
+    return dig_plot_figure(&plot, to, error);
 }
 
 static enum dig_status put_dig_plots(const struct digreport_page *const page, FILE *const to,
@@ -107,25 +109,19 @@ static enum dig_status put_dig_plots(const struct digreport_page *const page, FI
     if (status != DIG_OK) {
         return dig_error_set(error, status, "out of memory");
     }
-    char peak_label[96];
-    char energy_label[96];
-    (void)snprintf(peak_label, sizeof peak_label, "peak, kN·m (1 is %.3g N·m at rig scale)",
-                   1e3 * pow(shift->lambda, -4.0));
-    (void)snprintf(energy_label, sizeof energy_label, "energy, kJ (1 is %.3g J at rig scale)",
-                   1e3 * pow(shift->lambda, -4.0));
     (void)fputs("<div class=grid>\n", to);
     for (size_t i = 0; i < shift->digs; i++) {
         set_dig(page, &s, i, (double)i + 1.0, (double)NAN, (double)NAN);
     }
-    status = put_dig_plot(page, to, &s, "Digs", "digs done", NULL, NULL, error);
+    status = put_dig_plot(page, to, &s, "Digs", "digs done", NULL, NULL, NULL, error);
     for (size_t i = 0; i < shift->digs; i++) {
         const struct digreport_dig *const d = &shift->dig[i];
         set_dig(page, &s, i, 1e-3 * d->peak_Nm, 1e-3 * d->predicted_peak_Nm,
                 1e-3 * d->predicted_peak_sigma_Nm);
     }
     if (status == DIG_OK) {
-        status = put_dig_plot(page, to, &s, "Peak of each dig", peak_label, "predicted",
-                              "90 % of digs", error);
+        status = put_dig_plot(page, to, &s, "Peak of each dig", "peak moment, kN·m",
+                              "at rig scale, N·m", "predicted", "90 % of digs", error);
     }
     for (size_t i = 0; i < shift->digs; i++) {
         const struct digreport_dig *const d = &shift->dig[i];
@@ -133,8 +129,8 @@ static enum dig_status put_dig_plots(const struct digreport_page *const page, FI
                 1e-3 * d->predicted_energy_sigma_J);
     }
     if (status == DIG_OK) {
-        status = put_dig_plot(page, to, &s, "Energy of each dig", energy_label, "predicted",
-                              "90 % of digs", error);
+        status = put_dig_plot(page, to, &s, "Energy of each dig", "energy, kJ", "at rig scale, J",
+                              "predicted", "90 % of digs", error);
     }
     for (size_t i = 0; i < shift->digs; i++) {
         const struct digreport_dig *const d = &shift->dig[i];
@@ -142,7 +138,7 @@ static enum dig_status put_dig_plots(const struct digreport_page *const page, FI
     }
     if (status == DIG_OK) {
         status = put_dig_plot(page, to, &s, "Error of each prediction", "error, % of the moment",
-                              "noise floor", NULL, error);
+                              NULL, "noise floor", NULL, error);
     }
     (void)fputs("</div>\n", to);
     free(s.x);
@@ -151,29 +147,35 @@ static enum dig_status put_dig_plots(const struct digreport_page *const page, FI
 
 static void put_digs(const struct digreport_shift *const shift, FILE *const to)
 {
+    const bool   scaled = shift->lambda > 0.0;
     const double to_rig = pow(shift->lambda, -4.0);
-    (void)fputs(
-        "<table class=digs><tr><th>time, UTC</th><th>dig</th><th>along</th><th>duration, s</th>"
-        "<th>peak, kN·m</th><th>predicted ± 90 %</th><th>rig scale, N·m</th>"
-        "<th>energy, kJ</th><th>predicted ± 90 %</th><th>rig scale, J</th>"
-        "<th>error, %</th><th>noise floor, %</th></tr>\n",
-        to);
+    (void)fprintf(to,
+                  "<table class=wide><tr><th>time, UTC</th><th>dig</th><th>along</th><th>ended</th>"
+                  "<th>duration, s</th><th>peak, kN·m</th><th>predicted ± 90 %%</th>%s"
+                  "<th>energy, kJ</th><th>predicted ± 90 %%</th>%s<th>error, %%</th>"
+                  "<th>noise floor, %%</th></tr>\n",
+                  scaled ? "<th>rig scale, N·m</th>" : "", scaled ? "<th>rig scale, J</th>" : "");
     for (size_t i = 0; i < shift->digs; i++) {
-        const struct digreport_dig *const d = &shift->dig[i];
+        const struct digreport_dig *const d     = &shift->dig[i];
+        const char *const                 ended = digreport_ending_name(d->ended);
         (void)fputs("<tr>", to);
         digreport_page_time_cell(to, d->time_us);
         (void)fprintf(to, "<td>%" PRId32 "</td><td>", d->number);
         dig_html_text(to, d->trajectory[0] != '\0' ? d->trajectory : "–");
-        (void)fputs("</td>", to);
-        put_cell(to, 1, d->duration_s);
-        put_cell(to, 1, 1e-3 * d->peak_Nm);
+        (void)fprintf(to, "</td><td>%s</td>", ended[0] != '\0' ? ended : "–");
+        dig_html_cell(to, 1, d->duration_s);
+        dig_html_cell(to, 1, 1e-3 * d->peak_Nm);
         put_predicted(to, 1, 1e-3 * d->predicted_peak_Nm, 1e-3 * d->predicted_peak_sigma_Nm);
-        put_cell(to, 2, to_rig * d->peak_Nm);
-        put_cell(to, 1, 1e-3 * d->energy_J);
+        if (scaled) {
+            dig_html_cell(to, 2, to_rig * d->peak_Nm);
+        }
+        dig_html_cell(to, 1, 1e-3 * d->energy_J);
         put_predicted(to, 1, 1e-3 * d->predicted_energy_J, 1e-3 * d->predicted_energy_sigma_J);
-        put_cell(to, 2, to_rig * d->energy_J);
-        put_cell(to, 0, 100.0 * d->error);
-        put_cell(to, 0, 100.0 * d->noise_floor);
+        if (scaled) {
+            dig_html_cell(to, 2, to_rig * d->energy_J);
+        }
+        dig_html_cell(to, 0, 100.0 * d->error);
+        dig_html_cell(to, 0, 100.0 * d->noise_floor);
         (void)fputs("</tr>\n", to);
     }
     (void)fputs("</table>\n", to);

@@ -2,14 +2,12 @@
 
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
+#include "closed_loop/report/report.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const char *const axis_title[DIG_AXES] = { "friction", "rolling friction",
-                                                  "density, kg/m³" };
 
 // A gravel stands from its match to the next; a gap where none was known.
 static enum dig_status put_gravel_plot(const struct digreport_page *const page, FILE *const to,
@@ -34,22 +32,23 @@ static enum dig_status put_gravel_plot(const struct digreport_page *const page, 
             all[3 * n + at]    = shown ? g->high.value[axis] : (double)NAN;
         }
     }
-    const struct dig_plot plot = {
-        .title   = "",
-        .x_label = page->x_label,
-        .y_label = axis_title[axis],
-        .width   = 480,
-        .height  = 280,
-        .series  = 2,
-        .s       = { { "90 % interval", DIG_PLOT_BAND, DIGREPORT_PREDICTED, n, all, all + 2 * n,
-                       all + 3 * n },
-                     { "identified", DIG_PLOT_LINE, DIGREPORT_PREDICTED, n, all, all + n, NULL } },
+    static const char *const label[DIG_AXES] = { "friction, no unit", "rolling friction, no unit",
+                                                 "density, kg/m³" };
+    const struct dig_plot    plot            = {
+                      .title   = "",
+                      .x_label = page->x_label,
+                      .y_label = label[axis],
+                      .x_to    = digreport_page_time(page, shift->last_us),
+                      .width   = 480,
+                      .height  = 280,
+                      .series  = 2,
+                      .s       = { { "90 % interval", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, all, all + 2 * n,
+                                     all + 3 * n },
+                                   { "identified", DIG_PLOT_LINE, DIG_PLOT_PREDICTED, n, all, all + n, NULL } },
     };
     enum dig_status status = DIG_OK;
     if (digreport_page_any(n, all + n)) {
-        (void)fputs("<figure>\n", to);
-        status = dig_plot_svg(&plot, to, error);
-        (void)fputs("</figure>\n", to);
+        status = dig_plot_figure(&plot, to, error);
     }
     free(all);
     return status;
@@ -66,12 +65,12 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
         return;
     }
     for (int a = 0; a < DIG_AXES; a++) {
-        const int d = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
+        const int d = dig_report_axis_digits(a);
         (void)fprintf(to, "<td><b>%.*f</b> (%.*f to %.*f)</td>", d, g->gravel.value[a], d,
                       g->low.value[a], d, g->high.value[a]);
     }
-    (void)fprintf(to, "<td>%" PRId32 ", %s</td><td>%s", g->digs,
-                  g->forces ? "with force" : "moment alone",
+    (void)fprintf(to, "<td>%" PRId32 ", %s</td><td style=\"white-space:normal;text-align:left\">%s",
+                  g->digs, g->forces ? "with force" : "moment alone",
                   g->outside ? "outside the table: the nearest" : "");
     if (g->untold[0] != '\0') {
         (void)fputs("a family; not told: ", to);
@@ -94,9 +93,9 @@ enum dig_status digreport_page_gravels(const struct digreport_page *const page, 
     for (int a = 0; a < DIG_AXES && status == DIG_OK; a++) {
         status = put_gravel_plot(page, to, a, error);
     }
-    (void)fputs("</div>\n<table class=digs><tr><th>time, UTC</th>", to);
+    (void)fputs("</div>\n<table class=wide><tr><th>time, UTC</th>", to);
     for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "<th>%s (90 %%)</th>", axis_title[a]);
+        (void)fprintf(to, "<th>%s (90 %%)</th>", dig_report_axis(a));
     }
     (void)fputs("<th>digs</th><th></th></tr>\n", to);
     for (size_t i = 0; i < shift->gravels; i++) {

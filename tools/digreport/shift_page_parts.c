@@ -1,7 +1,7 @@
 #include "tools/digreport/shift_page_parts.h"
 
 #include <math.h>
-#include <time.h>
+#include <string.h>
 
 double digreport_page_time(const struct digreport_page *const page, const int64_t time_us)
 {
@@ -10,13 +10,9 @@ double digreport_page_time(const struct digreport_page *const page, const int64_
 
 void digreport_page_time_cell(FILE *const to, const int64_t time_us)
 {
-    const time_t seconds = (time_t)(time_us / 1000000);
-    struct tm    utc;
-    char         text[32] = "";
-    if (gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(text, sizeof text, "%H:%M:%S", &utc);
-    }
-    (void)fprintf(to, "<th>%s</th>", text);
+    char text[DIGREPORT_TIME];
+    digreport_time(time_us, text);
+    (void)fprintf(to, "<th>%.8s</th>", text + strlen("2026-11-24T"));
 }
 
 bool digreport_page_any(const size_t n, const double value[])

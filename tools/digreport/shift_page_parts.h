@@ -7,8 +7,6 @@
 
 #include <stdbool.h>
 
-#define DIGREPORT_PREDICTED 0x1f5fa8U // colour of what is predicted or identified
-
 struct digreport_page {
     const struct digreport_shift         *shift;
     const struct digreport_shift_subject *subject;
@@ -26,7 +24,7 @@ void digreport_page_time_cell(FILE *to, int64_t time_us);
 bool digreport_page_any(size_t n, const double value[]);
 
 /// Number, peak, energy and error of the digs over time, and a table of them. DIG_ENOMEM, or as
-/// dig_plot_svg().
+/// dig_plot_figure().
 DIG_MUST_CHECK enum dig_status digreport_page_digs(const struct digreport_page *page, FILE *to,
                                                    struct dig_error *error);
 

@@ -1,9 +1,21 @@
+#include "closed_loop/report/json.h"
 #include "tools/digreport/shift_page.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 #include <time.h>
+
+void digreport_time(const int64_t time_us, char text[const DIGREPORT_TIME])
+{
+    const time_t seconds = (time_t)(time_us / 1000000);
+    struct tm    utc;
+    memset(text, 0, DIGREPORT_TIME);
+    if (gmtime_r(&seconds, &utc) != NULL) {
+        (void)strftime(text, DIGREPORT_TIME, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    }
+}
 
 static void put_duration(const int64_t us, FILE *const to)
 {
@@ -24,6 +36,13 @@ void digreport_shift_sentence(const struct digreport_shift *const shift, FILE *c
     const struct digreport_gravel *const g = digreport_shift_gravel_at(shift, INT64_MAX);
     (void)fprintf(to, "%zu dig%s in ", shift->digs, shift->digs == 1 ? "" : "s");
     put_duration(shift->last_us - shift->first_us, to);
+    size_t aborted = 0;
+    for (size_t i = 0; i < shift->digs; i++) {
+        aborted += shift->dig[i].ended == DIGREPORT_ABORTED ? 1 : 0;
+    }
+    if (aborted > 0) {
+        (void)fprintf(to, ", %zu aborted", aborted);
+    }
     if (g != NULL) {
         (void)fprintf(
             to,
@@ -44,57 +63,134 @@ void digreport_shift_sentence(const struct digreport_shift *const shift, FILE *c
     (void)fprintf(to, "; health: %zu event%s.", shift->events, shift->events == 1 ? "" : "s");
 }
 
-static void put_number(const double value, FILE *const to)
+struct number {
+    const char *name;
+    double      value;
+};
+
+enum { OF_GRAVEL = 9, OF_DIG = 11 };
+
+static void numbers_of_gravel(const struct digreport_gravel *const g,
+                              struct number                        number[const OF_GRAVEL])
 {
-    (void)fputc(',', to);
-    if (isfinite(value)) {
-        (void)fprintf(to, "%.6g", value);
+    static const char *const name[OF_GRAVEL] = {
+        "friction",     "friction_low",  "friction_high",     "rolling",           "rolling_low",
+        "rolling_high", "density_kgpm3", "density_low_kgpm3", "density_high_kgpm3"
+    };
+    for (int i = 0; i < OF_GRAVEL; i++) {
+        const struct dig_gravel *const end = g == NULL    ? NULL
+                                             : i % 3 == 0 ? &g->gravel
+                                             : i % 3 == 1 ? &g->low
+                                                          : &g->high;
+        number[i] = (struct number){ name[i], end != NULL ? end->value[i / 3] : (double)NAN };
     }
 }
 
-static void put_gravel(const struct digreport_gravel *const g, FILE *const to)
+static void numbers_of_dig(const struct digreport_shift *const shift,
+                           const struct digreport_dig *const d, struct number number[const OF_DIG])
 {
-    for (int a = 0; a < DIG_AXES; a++) {
-        put_number(g != NULL ? g->gravel.value[a] : (double)NAN, to);
-        put_number(g != NULL ? g->low.value[a] : (double)NAN, to);
-        put_number(g != NULL ? g->high.value[a] : (double)NAN, to);
-    }
+    const double        to_rig      = pow(shift->lambda, -4.0); // infinite where it is not known
+    const struct number all[OF_DIG] = {
+        { "duration_s", d->duration_s },
+        { "peak_Nm", d->peak_Nm },
+        { "predicted_peak_Nm", d->predicted_peak_Nm },
+        { "predicted_peak_sigma_Nm", d->predicted_peak_sigma_Nm },
+        { "energy_J", d->energy_J },
+        { "predicted_energy_J", d->predicted_energy_J },
+        { "predicted_energy_sigma_J", d->predicted_energy_sigma_J },
+        { "rig_peak_Nm", to_rig * d->peak_Nm },
+        { "rig_energy_J", to_rig * d->energy_J },
+        { "error", d->error },
+        { "noise_floor", d->noise_floor },
+    };
+    memcpy(number, all, sizeof all);
 }
 
 void digreport_shift_csv(const struct digreport_shift *const shift, FILE *const to)
 {
     assert(shift != NULL && to != NULL);
-    const double to_rig = pow(shift->lambda, -4.0);
-    (void)fputs("time_utc,dig,trajectory,duration_s,peak_Nm,predicted_peak_Nm,"
-                "predicted_peak_sigma_Nm,energy_J,predicted_energy_J,predicted_energy_sigma_J,"
-                "rig_peak_Nm,rig_energy_J,error,noise_floor,friction,friction_low,friction_high,"
-                "rolling,rolling_low,rolling_high,density_kgpm3,density_low_kgpm3,"
-                "density_high_kgpm3\n",
-                to);
+    struct number number[OF_DIG + OF_GRAVEL];
+    numbers_of_dig(shift, &(struct digreport_dig){ .number = 0 }, number);
+    numbers_of_gravel(NULL, number + OF_DIG);
+    (void)fputs("time_utc,dig,trajectory,ended", to);
+    for (int k = 0; k < OF_DIG + OF_GRAVEL; k++) {
+        (void)fprintf(to, ",%s", number[k].name);
+    }
+    (void)fputc('\n', to);
     for (size_t i = 0; i < shift->digs; i++) {
-        const struct digreport_dig *const d        = &shift->dig[i];
-        const time_t                      seconds  = (time_t)(d->time_us / 1000000);
-        char                              time[32] = "";
-        struct tm                         utc;
-        if (gmtime_r(&seconds, &utc) != NULL) {
-            (void)strftime(time, sizeof time, "%Y-%m-%dT%H:%M:%SZ", &utc);
+        const struct digreport_dig *const d = &shift->dig[i];
+        char                              time[DIGREPORT_TIME];
+        digreport_time(d->time_us, time);
+        (void)fprintf(to, "%s,%" PRId32 ",%s,%s", time, d->number, d->trajectory,
+                      digreport_ending_name(d->ended));
+        numbers_of_dig(shift, d, number);
+        numbers_of_gravel(digreport_shift_gravel_at(shift, d->time_us), number + OF_DIG);
+        for (int k = 0; k < OF_DIG + OF_GRAVEL; k++) {
+            (void)fprintf(to, isfinite(number[k].value) ? ",%.6g" : ",", number[k].value);
         }
-        (void)fprintf(to, "%s,%" PRId32 ",%s", time, d->number, d->trajectory);
-        const double number[] = { d->duration_s,
-                                  d->peak_Nm,
-                                  d->predicted_peak_Nm,
-                                  d->predicted_peak_sigma_Nm,
-                                  d->energy_J,
-                                  d->predicted_energy_J,
-                                  d->predicted_energy_sigma_J,
-                                  to_rig * d->peak_Nm,
-                                  to_rig * d->energy_J,
-                                  d->error,
-                                  d->noise_floor };
-        for (size_t k = 0; k < sizeof number / sizeof number[0]; k++) {
-            put_number(number[k], to);
-        }
-        put_gravel(digreport_shift_gravel_at(shift, d->time_us), to);
         (void)fputc('\n', to);
     }
+}
+
+static void put_json_time(const char *const before, const char *const name, const int64_t time_us,
+                          FILE *const to)
+{
+    char time[DIGREPORT_TIME];
+    digreport_time(time_us, time);
+    (void)fprintf(to, "%s\"%s\": \"%s\"", before, name, time);
+}
+
+static void put_json_numbers(const int n, const struct number number[], FILE *const to)
+{
+    for (int k = 0; k < n; k++) {
+        dig_json_member(to, ", ", number[k].name, number[k].value);
+    }
+    (void)fputc('}', to);
+}
+
+static void put_json_text(const char *const name, const char *const text, FILE *const to)
+{
+    (void)fprintf(to, ", \"%s\": ", name);
+    dig_json_string(to, text);
+}
+
+void digreport_shift_json(const struct digreport_shift *const shift, FILE *const to)
+{
+    assert(shift != NULL && to != NULL);
+    struct number number[OF_DIG];
+    put_json_time("{", "from_utc", shift->first_us, to);
+    put_json_time(", ", "to_utc", shift->last_us, to);
+    dig_json_member(to, ", ", "lambda", shift->lambda > 0.0 ? shift->lambda : (double)NAN);
+    (void)fprintf(to, ", \"misread\": %" PRId64 ", \"digs\": [", shift->misread);
+    for (size_t i = 0; i < shift->digs; i++) {
+        const struct digreport_dig *const d = &shift->dig[i];
+        put_json_time(i == 0 ? "\n {" : ",\n {", "time_utc", d->time_us, to);
+        (void)fprintf(to, ", \"dig\": %" PRId32, d->number);
+        put_json_text("trajectory", d->trajectory, to);
+        put_json_text("ended", digreport_ending_name(d->ended), to);
+        numbers_of_dig(shift, d, number);
+        put_json_numbers(OF_DIG, number, to);
+    }
+    (void)fputs("],\n\"gravels\": [", to);
+    for (size_t i = 0; i < shift->gravels; i++) {
+        const struct digreport_gravel *const g = &shift->gravel[i];
+        put_json_time(i == 0 ? "\n {" : ",\n {", "time_utc", g->time_us, to);
+        (void)fprintf(to, ", \"known\": %s, \"outside\": %s, \"forces\": %s, \"digs\": %" PRId32,
+                      g->known ? "true" : "false", g->outside ? "true" : "false",
+                      g->forces ? "true" : "false", g->digs);
+        put_json_text("untold", g->untold, to);
+        numbers_of_gravel(g->known ? g : NULL, number);
+        put_json_numbers(OF_GRAVEL, number, to);
+    }
+    (void)fputs("],\n\"troubles\": [", to);
+    for (size_t i = 0; i < shift->events; i++) {
+        const struct digreport_event *const e = &shift->event[i];
+        put_json_time(i == 0 ? "\n {" : ",\n {", "from_utc", e->from_us, to);
+        put_json_time(", ", "to_utc", e->to_us, to);
+        (void)fprintf(to, ", \"count\": %" PRId64, e->count);
+        put_json_text("what", e->text != NULL ? e->text->what : e->said, to);
+        put_json_text("todo", e->text != NULL ? e->text->todo : "", to);
+        (void)fputc('}', to);
+    }
+    (void)fputs("]}\n", to);
 }

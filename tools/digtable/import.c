@@ -102,9 +102,11 @@ int dig_cli_import(const struct dig_arguments *const a)
         }
         return dig_cli_work_failed(status, &error);
     }
-    dig_text_put(stderr, a->output);
-    (void)fprintf(stderr, ": %zu digs of ", import.digs);
-    dig_text_put(stderr, a->positional[0]);
-    (void)fputs("\n", stderr);
+    if (!a->quiet) {
+        dig_text_put(stderr, a->output);
+        (void)fprintf(stderr, ": %zu digs of ", import.digs);
+        dig_text_put(stderr, a->positional[0]);
+        (void)fputs("\n", stderr);
+    }
     return EXIT_DONE;
 }

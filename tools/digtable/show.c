@@ -102,8 +102,10 @@ int dig_cli_seal(const struct dig_arguments *const a)
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    dig_text_put(stdout, a->positional[0]);
-    (void)puts(was ? ": was sealed" : ": sealed");
+    if (!a->quiet) {
+        dig_text_put(stdout, a->positional[0]);
+        (void)puts(was ? ": was sealed" : ": sealed");
+    }
     return EXIT_DONE;
 }
 

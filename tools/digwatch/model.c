@@ -42,12 +42,22 @@ static bool begins_dig(const int phase)
     return phase == 1 || phase == 2;
 }
 
+static bool has_expired(const struct digwatch_model *const m, const int64_t expires_ns,
+                        const int64_t estimate_ns)
+{
+    // Times of messages may be any: their difference need not be an int64_t.
+    const double since_ns = 1e3 * ((double)m->time_us - (double)m->health_us);
+    const double now_ns =
+        m->any_health ? (double)m->health.time_ns + since_ns : (double)estimate_ns;
+    return now_ns > (double)expires_ns;
+}
+
 // What the last prediction says of this place; NaN where it says nothing.
 static void predict_here(const struct digwatch_model *const m, struct digwatch_estimate *const e)
 {
     const struct digwatch_prediction *const p = &m->prediction;
     e->predicted_Nm = e->predicted_sigma_Nm = (double)NAN;
-    if (p->valid && e->time_ns <= p->expires_ns &&
+    if (p->valid && !has_expired(m, p->expires_ns, e->time_ns) &&
         strcmp(e->trajectory, p->curve.trajectory) == 0) {
         (void)dig_predicted_curve_at(&p->curve, e->progress, &e->predicted_Nm,
                                      &e->predicted_sigma_Nm);
@@ -175,7 +185,6 @@ static void take_health(void *const context, const int64_t time_us,
                         const digsight_health_t *const said)
 {
     struct digwatch_model *const m = context;
-    (void)time_us;
     if (!is_time(said->time_ns)) {
         return;
     }
@@ -200,6 +209,7 @@ static void take_health(void *const context, const int64_t time_us,
     take_text(h.note, said->note);
     take_text(h.missing, said->missing_signals);
     m->health     = h;
+    m->health_us  = time_us;
     m->any_health = true;
 }
 
@@ -240,14 +250,14 @@ bool digwatch_model_match_holds(const struct digwatch_model *const model)
 {
     assert(model != NULL);
     return model->any_match && model->match.valid &&
-           model->estimate.time_ns <= model->match.expires_ns;
+           !has_expired(model, model->match.expires_ns, model->estimate.time_ns);
 }
 
 bool digwatch_model_prediction_holds(const struct digwatch_model *const model)
 {
     assert(model != NULL);
     return model->any_prediction && model->prediction.valid &&
-           model->estimate.time_ns <= model->prediction.expires_ns;
+           !has_expired(model, model->prediction.expires_ns, model->estimate.time_ns);
 }
 
 double digwatch_error(const struct digwatch_error *const error)

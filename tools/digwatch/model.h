@@ -73,6 +73,7 @@ struct digwatch_model {
     struct digwatch_match      match;
     struct digwatch_prediction prediction;
     struct digwatch_health     health;
+    int64_t                    health_us;   // wall clock of that
     struct digwatch_error      now, before; // of the dig in progress and of the last one
     int64_t                    slot_index;  // of the newest slot: its time over DIGWATCH_SLOT_ns
     int                        slot_rows;   // estimates in it so far
@@ -89,7 +90,8 @@ void digwatch_model_take(struct digwatch_model *model, const struct dig_lcm_even
 /// The slot `back` before the newest; of NaN where there is none.
 struct digwatch_slot digwatch_model_slot(const struct digwatch_model *model, int64_t back);
 
-/// True when the match, or the prediction, may be used at the time of the last estimate.
+/// True when the match, or the prediction, may be used by the controller's clock, which HEALTH
+/// tells: estimates of a recording that is played fast have a faster one.
 bool digwatch_model_match_holds(const struct digwatch_model *model);
 bool digwatch_model_prediction_holds(const struct digwatch_model *model);
 
