@@ -22,7 +22,8 @@ static struct dig_steps         steps;
 static const struct dig_hypothesis plain                         = { .effects = 0 };
 static const double                start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
 
-// Digs of two trajectories, and two steps that add to both, about as much as a dig scatters.
+// Digs of two trajectories, and two steps that add to both, about as much as a dig scatters: one
+// does what another gravel would do, the other anything.
 static void make_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
 {
     static const bool take[DIGS] = { true, true, true, true };
@@ -36,11 +37,17 @@ static void make_digs(const struct dig_gravel *const gravel, uint64_t *const see
         dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
         DIG_OK);
     steps = (struct dig_steps){ .steps = STEPS };
-    for (size_t k = 0; k < STEPS; k++) {
-        for (size_t g = 0; g < batch.groups; g++) {
-            for (size_t f = 0; f < batch.group[g].features; f++) {
-                steps.of[k][g][f] = 2.0 * model_uniform(seed) - 0.5;
-            }
+    for (size_t g = 0; g < batch.groups; g++) {
+        double changed[DIG_AXES] = { place[0] + 0.4, place[1], place[2] };
+        double here[DIG_FEATURES];
+        double there[DIG_FEATURES];
+        dig_whitened_digs_whiten(
+            &batch.group[g], dig_plain_of(soil, batch.group[g].trajectory, place).feature, here);
+        dig_whitened_digs_whiten(
+            &batch.group[g], dig_plain_of(soil, batch.group[g].trajectory, changed).feature, there);
+        for (size_t f = 0; f < batch.group[g].features; f++) {
+            steps.of[0][g][f] = there[f] - here[f];
+            steps.of[1][g][f] = 2.0 * model_uniform(seed) - 0.5;
         }
     }
 }
@@ -97,9 +104,9 @@ static void the_likelihood_is_the_integral_over_the_steps(void **state)
     const double cell = pow(2.0 * reach / (GRID - 1.0), 2.0) / (2.0 * 3.14159265358979324);
     batch.steps       = &steps;
     const double with = misfit_of(&batch, x, z);
-    assert_true(fabs(with - (none - 2.0 * log(sum * cell))) < 1e-6);
-    assert_true(fabs(z[0] - mean[0] / sum) < 1e-6);
-    assert_true(fabs(z[1] - mean[1] / sum) < 1e-6);
+    assert_close(with, none - 2.0 * log(sum * cell), 1e-6);
+    assert_close(z[0], mean[0] / sum, 1e-6);
+    assert_close(z[1], mean[1] / sum, 1e-6);
     assert_true(fabs(z[0]) > 0.05); // or the test would say nothing
 }
 
