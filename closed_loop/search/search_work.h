@@ -9,10 +9,8 @@
 /// from two.
 #define DIG_SEARCH_TOLD_APART 6.0
 
-/// An effect may be the whole truth when digs of its own would misfit as much in one campaign of a
-/// hundred, or when it takes away this share of what the plain hypothesis leaves.
-#define DIG_SEARCH_LEAST_FIT   0.01
-#define DIG_SEARCH_LEAST_SHARE 0.75
+/// A fit whose own digs would misfit as much more seldom than this does not fit.
+#define DIG_SEARCH_LEAST_FIT 0.01
 
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
