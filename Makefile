@@ -103,6 +103,10 @@ evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
 	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
 	$(Q)BIN=$(BUILD)/bin scripts/offgrid.sh
 
+.PHONY: release-check
+release-check: all ## Measure again what README and docs/accuracy.md quote, fail where it differs (minutes; RELEASE=all: hours)
+	$(Q)scripts/release_check.py $(if $(filter all,$(RELEASE)),--all)
+
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
 	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh
 

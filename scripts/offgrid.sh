@@ -22,22 +22,6 @@ sure_of() { # FRICTION ROLLING DENSITY
         { print }' "$work/id.json"
 }
 
-# Relative Euclidean norm of the difference of two recordings' moments after +-0.16 s.
-between() { # PREDICTION MEASURED
-    awk -F, -v half_s=.16 '
-        FNR == 1 { file++; n = 0 }
-        /^#/ { next }
-        /My_Nm/ { for (i = 1; i <= NF; i++) if ($i == "My_Nm") my = i; next }
-        { t[n] = $1; y[file, n++] = $my }
-        function smoothed(f, i,    sum, k, j) {
-            for (j = i; j >= 0 && t[i] - t[j] <= half_s; j--) { sum += y[f, j]; k++ }
-            for (j = i + 1; j < n && t[j] - t[i] <= half_s; j++) { sum += y[f, j]; k++ }
-            return sum / k
-        }
-        END { for (i = 0; i < n; i++) { a = smoothed(1, i); b = smoothed(2, i); d += (a - b) ^ 2; s += b * b }
-              printf "%.3f\n", sqrt(d / s) }' "$1" "$2"
-}
-
 printf '%-30s %6s %8s %8s\n' gravel error hindsight packings
 for simple in "$data"/mu*__simpleA.csv; do
     case=${simple%__simpleA.csv}
@@ -49,7 +33,7 @@ for simple in "$data"/mu*__simpleA.csv; do
             error_of "$work/sure.json" "${case}__actual.csv"
         done | sort -g | head -n 1)
     others=$(for other in "${case%_seed*}"_seed*__actual.csv; do
-        [ "$other" = "${case}__actual.csv" ] || between "$other" "${case}__actual.csv"
+        [ "$other" = "${case}__actual.csv" ] || awk -f scripts/between.awk "$other" "${case}__actual.csv"
     done | awk '{ s += $1 } END { if (NR) printf "%.3f", s / NR; else print "-" }')
     printf '%-30s %6.3f %8.3f %8s\n' "$(basename "$case")" "$error" "$best" "$others" | tee -a "$work/lines"
 done

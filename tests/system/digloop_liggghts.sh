@@ -18,6 +18,7 @@ trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
         done
     } >"$work/$1/campaign.yaml"
     "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" "${@:2}" 2>"$work/$1.txt" || cat "$work/$1.txt"
+    sed -n "/^Missing\|^  gravel:\|^Nothing/s/^ */found in $1: /p" "$work/$1.txt"
 }
 verdict() { tr -d ' \n' <"$work/$1.json" | sed -nE 's/.*"verdict":\[([^]]*)\].*/\1/p'; }
 number() { # GRAVEL KEY FIELD: a field of the first object of that key
