@@ -1,5 +1,5 @@
-// Tests for closed_loop/verdict/machine_choice.c and machine_steps.c: digs of the reference's gravel on
-// the shipped table, by a machine that is not as its file says.
+// Tests for closed_loop/verdict/machine_choice.c and machine_steps.c: digs of the reference's
+// gravel on the shipped table, by a machine that is not as its file says.
 
 #include "closed_loop/verdict/trace.h"
 #include "tables/load.h"
@@ -57,6 +57,8 @@ static void a_gain_that_free_air_leaves_open_is_told_by_the_digs(void **state)
     assert_int_equal(result.effects, 1);
     assert_int_equal(result.effect[0].effect, DIG_EFFECT_PRESSURE_OFFSET);
     const struct dig_model_parameter *const gain = parameter(&result.effect[0], "bucket_head_gain");
+    print_message("a gain of .08: %.3f (%.3f to %.3f), error %.3f to %.3f\n", gain->value,
+                  gain->low, gain->high, result.before.value, result.after.value);
     assert_true(gain->low <= 0.08 && 0.08 <= gain->high && gain->low > 0.0);
     // As near as where the sensor reads what is there.
     const struct fault none   = { .gain = 0.0 };
