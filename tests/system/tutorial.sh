@@ -3,8 +3,9 @@
 # must succeed. Each line of a ```text block that follows it must be among its output lines, in that order; … stands for
 # anything, and blanks count once. Run from the repository's root; BIN is where the programs are, TUTORIAL another text.
 #
+# A ```sh can block runs in User Mode Linux, where can0 exists; there this script is called again for it.
 # What is computed for the first part is lent to the others, whose commands then find it done.
-if [ -z "${DIG_IN_NAMESPACE-}" ] && unshare -Urn true 2>/dev/null; then # ports and messages of its own
+if [ -z "${DIG_DATA-}${DIG_IN_NAMESPACE-}" ] && unshare -Urn true 2>/dev/null; then # ports and messages of its own
     DIG_IN_NAMESPACE=1 exec unshare -Urn "$0" "$@"
 fi
 . tests/system/check.bash
@@ -15,10 +16,11 @@ ip route add 239.255.76.67 dev lo 2>/dev/null
 export DIGSIGHT=$PWD PATH=$BIN:$PATH
 text=$(realpath "${TUTORIAL:-docs/tutorial.md}")
 
-# Blocks as files: PART.NUMBER.sh and what it must say, PART.NUMBER.text.
-awk -v to="$work/" '
+# Blocks as files, but inside: PART.NUMBER.sh and what it must say, PART.NUMBER.text.
+[ "${1-}" = inside ] || awk -v to="$work/" '
     /^## Part / { part++; number = 0 }
-    /^```sh$/ { number++; name = sprintf("%s%d.%02d", to, part, number); kind = ".sh"; print FNR >(name ".line"); next }
+    /^```sh( can)?$/ { if ($2 == "can") print "" >(sprintf("%s%d.%02d.can", to, part, number + 1)) }
+    /^```sh( can)?$/ { number++; name = sprintf("%s%d.%02d", to, part, number); kind = ".sh"; print FNR >(name ".line"); next }
     /^```text$/ { kind = ".text"; next }
     /^```$/ { kind = ""; next }
     kind != "" { print >(name kind) }' "$text"
@@ -26,8 +28,8 @@ awk -v to="$work/" '
 # What needs time to pass, in words of the simulated clock: programs begun, waited for, ended. A screen is a terminal.
 on_simclock() { # BLOCK
     sed -E -e 's/^(digsightd .*|lcm-logger .*|digrig serve .*) &$/begin \1/' \
-        -e 's/^digrig serve .*[^&]$/begin &; ends "$started"; (exit "$status")/' \
-        -e 's/^sleep /pass /' -e 's/^kill %1 %2$/stop_all/' -e 's/^digwatch .*/on_screen "&"/' "$1"
+        -e 's/^(digrig serve|canplayer) .*[^&]$/begin &; ends "$started"; (exit "$status")/' \
+        -e 's/^sleep /pass /' -e 's/^kill %1( %2)?$/stop_all/' -e 's/^digwatch .*/on_screen "&"/' "$1"
 }
 begin() {
     LD_PRELOAD=$preload "$@" </dev/null &
@@ -49,7 +51,7 @@ on_screen() { # COMMAND: for two seconds, on a terminal of 80 by 24; it has to d
 }
 
 said() { # OUTPUT TEXT: every line of TEXT is in OUTPUT, in order; the first that is not is shown
-    local want line
+    local want line want_pattern=
     exec 3< <(tr -s ' ' <"$1")
     while read -r want; do
         want=$(tr -s ' ' <<<"$want")
@@ -67,6 +69,11 @@ run_block() { # FILE OUTPUT: in this shell, as jobs begun in one block end in it
     . <(on_simclock "$1")
 }
 
+if [ "${1-}" = inside ]; then # FOLDER BLOCK
+    cd "$2" && run_block "$3"
+    exit
+fi
+
 for part in 1 2 3; do
     mkdir "$work/part$part"
     cd "$work/part$part" || exit 1
@@ -75,8 +82,17 @@ for part in 1 2 3; do
         [ -e "$block" ] || { check "part $part has commands" false; continue; }
         where="line $(cat "${block%.sh}.line")"
         out=${block%.sh}.log
-        (trap stop_left EXIT; run_block "$block") >"$out" 2>&1
-        status=$?
+        if [ -e "${block%.sh}.can" ]; then
+            (cd "$DIGSIGHT" && DIG_DATA=$work tools/vcan/with-vcan -t 600 -i can0 tests/system/tutorial.sh inside "$work/part$part" "$block") >"$out" 2>&1
+            status=$?
+            if [ "$status" = 125 ] && [ -z "${DIG_NO_SKIP-}" ]; then
+                skip_check "$where" "User Mode Linux does not start here"
+                continue
+            fi
+        else
+            (trap stop_left EXIT; run_block "$block") >"$out" 2>&1
+            status=$?
+        fi
         check "$where: $(head -n 1 "$block")" [ "$status" = 0 ] || true
         [ "$status" = 0 ] || sed 's/^/      | /' "$out" | tail -n 15
         [ ! -e "${block%.sh}.text" ] || check "$where: says what the tutorial shows" said "$out" "${block%.sh}.text" ||
