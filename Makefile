@@ -110,8 +110,9 @@ release-check: all ## Measure again what README and docs/accuracy.md quote, fail
 paper: all $(BUILD)/tests/paper/paper ## The paper's findings, tested on the rig table: numbers and plots
 	$(Q)BIN=$(BUILD)/bin PAPER=$(BUILD)/tests/paper/paper scripts/paper.sh
 
-picture: all floors ## The README's picture, a predicted dig against the measured one, and those of the floors
+picture: all floors ## Pictures of README and tutorial, a predicted dig against the measured one, and those of the floors
 	$(Q)BIN=$(BUILD)/bin scripts/picture.sh docs/pictures/predicted.svg
+	$(Q)BIN=$(BUILD)/bin scripts/tutorial_picture.sh docs/pictures/tutorial.svg
 
 floors: ## The pictures of docs/architecture.md, drawn from scripts/check_layers.sh and the tree
 	$(Q)scripts/floors.sh docs/pictures

@@ -2,15 +2,19 @@
 # scripts/picture.sh OUT.svg: a predicted dig against the measured one. LIGGGHTS dug a gravel that lies between
 # the points of the table; the gravel is identified from its simpleA dig, and its actual dig is predicted.
 #   BIN=build/bin scripts/picture.sh docs/pictures/predicted.svg
+#   BIN=build/bin scripts/picture.sh OUT.svg TABLE SIMPLE.csv DIG.csv TRAJECTORY WHO
+# The second takes other digs; WHO says in the legend who dug them.
 set -euo pipefail
-to=${1:?usage: picture.sh OUT.svg}
-bin=${BIN:-build/bin} table=tables/rig.sqlite dig=tests/data/liggghts_more/mu0.4_mur0.6_rho2000_seed1
+to=${1:?usage: picture.sh OUT.svg [TABLE SIMPLE.csv DIG.csv TRAJECTORY WHO]}
+dig=tests/data/liggghts_more/mu0.4_mur0.6_rho2000_seed1
+bin=${BIN:-build/bin} table=${2:-tables/rig.sqlite} simple=${3:-${dig}__simpleA.csv} actual=${4:-${dig}__actual.csv}
+trajectory=${5:-actual} who=${6:-dug by LIGGGHTS}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$bin/digloop" identify "$table" ${dig}__simpleA.csv --json >"$work/gravel.json"
-"$bin/digloop" predict "$table" --identified "$work/gravel.json" --trajectory actual \
-    --measured ${dig}__actual.csv --json >"$work/predicted.json"
+"$bin/digloop" identify "$table" "$simple" --json >"$work/gravel.json"
+"$bin/digloop" predict "$table" --identified "$work/gravel.json" --trajectory "$trajectory" \
+    --measured "$actual" --json >"$work/predicted.json"
 
 array() { sed -nE "s/^ *\"$1\": \[([^]]*)\].*/\1/p" "$work/predicted.json" | tr -d ' ' | tr ',' '\n'; }
 number() { sed -nE "s/.*\"$1\": ([0-9.e+-]+).*/\1/p" "$work/predicted.json" | head -n 1; }
@@ -29,7 +33,7 @@ awk -F, -v tooth="$tooth" '
     END { for (i = 0; i < n; i += 4) { sum = k = 0
               for (j = i; j >= 0 && t[i] - t[j] <= .16; j--) { sum += y[j]; k++ }
               for (j = i + 1; j < n && t[j] - t[i] <= .16; j++) { sum += y[j]; k++ }
-              print 100 * way[i] / way[n - 1], sum / k } }' ${dig}__actual.csv >"$work/measured"
+              print 100 * way[i] / way[n - 1], sum / k } }' "$actual" >"$work/measured"
 
 gnuplot >"$work/picture.svg" <<PLOT
 set terminal svg noenhanced size 860,400 font 'sans-serif,14' background 'white'
@@ -38,7 +42,7 @@ set xlabel 'trajectory progress, %'; set ylabel 'moment about the bucket pin, NÂ
 set key top left reverse Left; set grid lc rgb '#dddddd'; set border 3; set tics nomirror; set yrange [0:2]
 plot '$work/predicted' using 1:(\$2-\$3):(\$2+\$3) with filledcurves fc rgb '#c8d7ec' title 'predicted, 90 % band of one dig', \
      '' using 1:2 with lines lw 2 dt (8,5) lc rgb '#1f5fa8' title 'predicted', \
-     '$work/measured' with lines lw 2 lc rgb '#c0392b' title 'measured (dug by LIGGGHTS)'
+     '$work/measured' with lines lw 2 lc rgb '#c0392b' title 'measured ($who)'
 PLOT
 mkdir -p "$(dirname "$to")"
 mv "$work/picture.svg" "$to"

@@ -1,8 +1,10 @@
 // digreport: reports a run of the daemon from its LCM log.
 
 #include "closed_loop/report/report.h"
+#include "estimator/wrench/correction.h"
 #include "files/machine_yaml.h"
 #include "files/whole.h"
+#include "firmware_host/config/load_model.h"
 #include "tables/load.h"
 #include "tools/digreport/options.h"
 #include "tools/digreport/run.h"
@@ -17,17 +19,26 @@ static enum dig_status report(const struct digreport_options *const options,
                               struct dig_error *const               error)
 {
     struct dig_machine    machine;
-    struct dig_curve_set *set    = NULL;
-    enum dig_status       status = dig_machine_read(options->machine, &machine, error);
+    struct dig_correction correction = { .delay_s = 0.0 };
+    bool                  corrects   = false;
+    struct dig_curve_set *set        = NULL;
+    struct dig_report    *all        = NULL;
+    enum dig_status       status     = dig_machine_read(options->machine, &machine, error);
     if (status == DIG_OK) {
         status = dig_table_load(options->table, &set, error);
     }
+    // The digs are measured again, by the machine and the table as the daemon had them.
+    if (status == DIG_OK && options->model != NULL) {
+        status = dig_load_model(options->model, options->table, &machine, set, &correction,
+                                &corrects, error);
+    }
     if (status != DIG_OK) {
-        return digreport_input(status);
+        status = digreport_input(status);
+        goto done;
     }
 
     // Some 40 kB a run: too much to leave to the stack's good will.
-    struct dig_report *const all = calloc(1, sizeof *all);
+    all = calloc(1, sizeof *all);
     if (all == NULL) {
         status = dig_error_set(error, DIG_ENOMEM, "out of memory");
         goto done;
@@ -36,7 +47,8 @@ static enum dig_status report(const struct digreport_options *const options,
     all->table  = options->table;
     all->lambda = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
-        status = digreport_run(options, &machine, set, options->log[i], &all->run[i], error);
+        status = digreport_run(options, &machine, corrects ? &correction : NULL, set,
+                               options->log[i], &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
     status = digreport_input(status);

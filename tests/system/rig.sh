@@ -35,6 +35,10 @@ check "two digs are recorded" \
 exits 0 "$rig" record $simple $actual --machine $machine -o "$work/b.csv"
 exits 0 "$rig" record $simple $actual --machine $machine -o "$work/c.csv" --seed 2
 check "one seed gives one recording, byte for byte" cmp -s "$work/a.csv" "$work/b.csv"
+exits 0 "$rig" record $simple --machine $machine -o "$work/d.csv"
+check "whose bucket is taken for granted is said" says "0.090 m from pin to tooth"
+exits 0 "$rig" record $simple --machine $machine --scene config/scenes/rig.yaml -o "$work/d.csv"
+check "but not where a scene says it" eval '! says "from pin to tooth"'
 check "another seed gives another" bash -c "! cmp -s '$work/a.csv' '$work/c.csv'"
 check "truth has as many rows as the recording" \
     test "$(wc -l <"$work/a.csv")" = "$(wc -l <"$work/t.csv")"

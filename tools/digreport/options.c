@@ -24,7 +24,7 @@ static const struct dig_command commands[] = {
 static const struct dig_option known[] = {
     { "table", DIGREPORT_TABLE, "TABLE.sqlite", NULL, "what the daemon predicted from" },
     { "machine", DIGREPORT_MACHINE, "MACHINE.yaml", NULL, "the machine that dug" },
-    { "model", DIGREPORT_MODEL, "MODEL.json", " shift ", "the model that the daemon ran with" },
+    { "model", DIGREPORT_MODEL, "MODEL.json", NULL, "the model that the daemon ran with" },
     { "truth", DIGREPORT_TRUTH, "FRICTION,ROLLING,DENSITY", " digreport ",
       "the gravel, where it is known" },
     { "recording", DIGREPORT_RECORDING, "RECORDING.csv", " digreport ",
@@ -91,6 +91,7 @@ enum dig_status digreport_parse(const int argc, char *argv[],
         switch (c) {
         case DIGREPORT_TABLE: o.table = optarg; break;
         case DIGREPORT_MACHINE: o.machine = optarg; break;
+        case DIGREPORT_MODEL: o.model = optarg; break;
         case DIGREPORT_TITLE: o.title = optarg; break;
         case DIGREPORT_HTML: o.html = optarg; break;
         case DIGREPORT_JSON: o.json = optarg; break;

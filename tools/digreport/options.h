@@ -26,7 +26,7 @@ enum digreport_option {
 const struct dig_program *digreport_program(void);
 
 struct digreport_options {
-    const char       *table, *machine, *title, *html, *json;
+    const char       *table, *machine, *model, *title, *html, *json;
     bool              truth_known, quiet;
     struct dig_gravel truth;
     size_t            recordings;

@@ -72,7 +72,8 @@ static void take_prediction(void *const context, const int64_t time_us,
 }
 
 // The digs of a log, measured again from its samples: the same estimator, without a bus.
-static enum dig_status measure(const struct dig_machine *const   machine,
+static enum dig_status measure(const struct dig_machine *const    machine,
+                               const struct dig_correction *const correction,
                                const struct dig_curve_set *const set, const char *const log,
                                const struct published *const published,
                                struct dig_observation *const simple,
@@ -93,6 +94,9 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         goto done;
     }
     status = dig_estimator_init(estimator, machine, set, &settings);
+    if (status == DIG_OK && correction != NULL) {
+        status = dig_estimator_set_correction(estimator, correction);
+    }
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: %s", log, dig_status_str(status));
         goto done;
@@ -116,10 +120,11 @@ static enum dig_status measure(const struct dig_machine *const   machine,
         }
     }
     if (!have_simple || !have_real) {
-        status = dig_error_set(error, DIG_ENOMATCH,
-                               "%s: the samples hold no %s, expected the dig that identified and "
-                               "the one that was predicted",
-                               log, have_simple ? "predicted dig" : "identifying dig");
+        status = dig_error_set(
+            error, DIG_ENOMATCH,
+            "%s: the samples hold no %s, expected the dig that identified and "
+            "the one that was predicted; a daemon that ran with a model wants --model",
+            log, have_simple ? "predicted dig" : "identifying dig");
     }
 done:
     free(estimator);
@@ -170,6 +175,7 @@ static void fill_dig(struct dig_report_dig *const dig, const struct dig_curve_se
 
 enum dig_status digreport_run(const struct digreport_options *const options,
                               const struct dig_machine *const       machine,
+                              const struct dig_correction *const    correction,
                               const struct dig_curve_set *const set, char *const named_log,
                               struct dig_report_run *const run, struct dig_error *const error)
 {
@@ -191,7 +197,7 @@ enum dig_status digreport_run(const struct digreport_options *const options,
 
     struct dig_observation simple = { .trajectory = 0 };
     struct dig_observation real   = { .trajectory = 0 };
-    status                        = measure(machine, set, log, &published, &simple, &real, error);
+    status = measure(machine, correction, set, log, &published, &simple, &real, error);
     if (status != DIG_OK) {
         return status;
     }

@@ -119,7 +119,7 @@ static enum dig_status load(const struct dig_rig_options *const options,
 }
 
 static void describe(const struct dig_machine *const machine, const double scene_tooth_m,
-                     const struct dig_rig_track *const track)
+                     const bool tooth_known, const struct dig_rig_track *const track)
 {
     (void)fprintf(
         stderr,
@@ -130,6 +130,12 @@ static void describe(const struct dig_machine *const machine, const double scene
         (double)(track->rows - 1) * track->step_s, track->placement.X_m, track->placement.Z_m,
         1e3 * track->blend_off_m, 57.29578 * track->blend_off_rad, 100.0 * track->nearest.share,
         track->nearest_text);
+    if (!tooth_known) {
+        (void)fprintf(stderr,
+                      "digrig: taken for digs of the rig's bucket, %.3f m from pin to tooth; "
+                      "--scene or --tooth-m says another\n",
+                      scene_tooth_m);
+    }
 }
 
 static int work(const struct dig_rig_options *const options)
@@ -159,7 +165,10 @@ static int work(const struct dig_rig_options *const options)
     }
     if (status == DIG_OK) {
         if (!options->quiet) {
-            describe(&machine, track_options.scene_tooth_m, &track);
+            describe(&machine, track_options.scene_tooth_m,
+                     options->scene != NULL || options->tooth_given ||
+                         dig_campaign_is(options->input[0]),
+                     &track);
         }
         status = options->command == DIG_RIG_COMMAND_RECORD
                      ? dig_rig_record(&machine, options, &track, &error)
