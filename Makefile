@@ -251,8 +251,11 @@ torture: all $(helpers) $(torture_made) ## kill -9, full disks, no memory, lying
 $(BUILD)/tests/torture/%.so: tests/torture/%.c
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D) && $(CC) -std=gnu11 -O2 -fPIC -shared $< -o $@ -ldl
+.PHONY: flips mends
+mends: all ## What keeps hostile input out, taken out one at a time: each time its test fails
+	$(Q)scripts/mends.sh
+
 FLIPS ?= 1000
-.PHONY: flips
 flips: $(BUILD)/tests/torture/flips ## FLIPS bits of every shipped table flipped, one at a time: refused, or nothing changes
 	$(Q)for t in tables/*.sqlite; do $(BUILD)/tests/torture/flips $$t $(FLIPS) $(FLIPS_SEED) || exit 1; done
 

@@ -56,6 +56,7 @@ static void counts_that_cannot_be_are_refused(void **state)
                                   { 0x7f, 0xff, 0xff, 0xff } };
     for (size_t i = 0; i < 4; i++) {
         memcpy(body, counts[i], 4);
+        assert_false(fits("4", body, 4)); // with nothing behind it
         assert_false(fits("4D", body, 20));
         assert_false(fits("4B", body, 20));
         assert_false(fits("s", body, 20));
