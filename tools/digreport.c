@@ -15,25 +15,36 @@
 #include <stdlib.h>
 #include <string.h>
 
+// What the daemon had: machine, table and, where it ran with one, the model, by which the digs are
+// measured again.
+struct loaded {
+    struct dig_machine    machine;
+    struct dig_curve_set *set;
+    struct dig_correction correction;
+    bool                  corrects;
+};
+
+static enum dig_status load(const struct digreport_options *const options, struct loaded *const had,
+                            struct dig_error *const error)
+{
+    enum dig_status status = dig_machine_read(options->machine, &had->machine, error);
+    if (status == DIG_OK) {
+        status = dig_table_load(options->table, &had->set, error);
+    }
+    if (status == DIG_OK && options->model != NULL) {
+        status = dig_load_model(options->model, options->table, &had->machine, had->set,
+                                &had->correction, &had->corrects, error);
+    }
+    return digreport_input(status);
+}
+
 static enum dig_status report(const struct digreport_options *const options,
                               struct dig_error *const               error)
 {
-    struct dig_machine    machine;
-    struct dig_correction correction = { .delay_s = 0.0 };
-    bool                  corrects   = false;
-    struct dig_curve_set *set        = NULL;
-    struct dig_report    *all        = NULL;
-    enum dig_status       status     = dig_machine_read(options->machine, &machine, error);
-    if (status == DIG_OK) {
-        status = dig_table_load(options->table, &set, error);
-    }
-    // The digs are measured again, by the machine and the table as the daemon had them.
-    if (status == DIG_OK && options->model != NULL) {
-        status = dig_load_model(options->model, options->table, &machine, set, &correction,
-                                &corrects, error);
-    }
+    struct dig_report *all    = NULL;
+    struct loaded      had    = { .set = NULL };
+    enum dig_status    status = load(options, &had, error);
     if (status != DIG_OK) {
-        status = digreport_input(status);
         goto done;
     }
 
@@ -45,10 +56,10 @@ static enum dig_status report(const struct digreport_options *const options,
     }
     all->title  = options->title;
     all->table  = options->table;
-    all->lambda = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    all->lambda = had.machine.link[DIG_JOINT_BUCKET].length_m / had.set->tooth_m;
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
-        status = digreport_run(options, &machine, corrects ? &correction : NULL, set,
-                               options->log[i], &all->run[i], error);
+        status = digreport_run(options, &had.machine, had.corrects ? &had.correction : NULL,
+                               had.set, options->log[i], &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
     status = digreport_input(status);
@@ -73,7 +84,7 @@ static enum dig_status report(const struct digreport_options *const options,
     }
 done:
     free(all);
-    dig_curve_set_destroy(set);
+    dig_curve_set_destroy(had.set);
     return status;
 }
 
