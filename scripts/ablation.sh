@@ -20,11 +20,11 @@ no lead over what has no name (15: 0)|closed_loop/search/search_which.c|s/least_
 an effect need not be enough|closed_loop/search/search_which.c|s/dig_search_evidence(c, &with, effects) - DIG/-1e9 - DIG/|6
 what has no name is not asked whether|closed_loop/search/null_simulation.c|s/rival != NULL/false/|8
 any lead names (6: 0)|closed_loop/search/search_work.h|s/TOLD_APART 6.0/TOLD_APART 0.0/|0
-left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed < 0.0 ||/false ||/|77
+left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed < 0.0/false/|77
 a drift may bend|closed_loop/search/search_which.c|s/most_bent = 2.576/most_bent = 1e9/|156
 no rock elsewhere|closed_loop/search/search_which.c|s/c->s->is_rock = lead/c->s->is_rock = false \&\& lead/|330
 no second effect|closed_loop/search/search_which.c|s/if (find_pair(c, &pair))/if (false \&\& find_pair(c, \&pair))/|90
-sets by evidence alone|closed_loop/search/search_odds.c|s/(is_near_chosen(c, i) || is_as_likely(c, i))/is_near_chosen(c, i)/|14
+sets by evidence alone|closed_loop/search/search_odds.c|s/is_as_likely(c, i))/false)/|14
 no gravel outside the grid|closed_loop/search/search.c|s/search->outside = !search->is_rock/search->outside = false \&\& !search->is_rock/|25
 what nothing explains is never chance|closed_loop/search/search.c|s/rarer = 0.01/rarer = 1e9/|8
 digs do not widen their scatter|closed_loop/search/search.c|s/statistic->about) < c->false_alarm/statistic->about) < -1.0/|40
