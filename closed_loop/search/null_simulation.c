@@ -69,12 +69,6 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
             statistic->best = i;
         }
     }
-    if (rival != NULL) {
-        dig_hypothesis_fit_unlisted(batch, soil, &fitted[0], &fitted[1 + rivals]);
-        const double gain = fitted[0].misfit - fitted[1 + rivals].misfit;
-        statistic->best   = gain > statistic->gain ? rivals : statistic->best;
-        statistic->gain   = fmax(gain, statistic->gain);
-    }
 }
 
 // One dig's scatter, whitened: a residual of the table, or normal numbers.
@@ -154,7 +148,7 @@ enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const b
 {
     assert(draws > 1 && rivals <= DIG_RIVALS_MAX);
     struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
-    struct dig_fitted *const        again = malloc((rivals + 2) * sizeof *again);
+    struct dig_fitted *const        again = malloc((rivals + 1) * sizeof *again);
     if (drawn == NULL || again == NULL) {
         free(drawn);
         free(again);

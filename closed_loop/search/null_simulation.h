@@ -19,8 +19,8 @@
 struct dig_statistic {
     double misfit; // of the means: what is left after the fit
     double about;  // of the digs about their means
-    double gain;   // the most that a rival, or what has no name, takes off the misfit
-    size_t best;   // which rival; the number of rivals when none takes as much
+    double gain;   // the most that a rival takes off the misfit
+    size_t best;   // which rival; the number of rivals when none takes anything off
 };
 
 struct dig_null_simulation {
@@ -33,9 +33,8 @@ struct dig_null_question {
     double gain, level;
 };
 
-/// Fits a batch by base, by base with each rival added, and by base with what has no name beside
-/// it, from the numbers given. Writes the fits: fitted[0] by base, fitted[1 + i] by rival i,
-/// fitted[1 + rivals] without a name; with rival NULL base alone.
+/// Fits a batch by base and by base with each rival added, from the numbers given. Writes the
+/// fits: fitted[0] by base, fitted[1 + i] by rival i.
 void dig_null_simulation_fit(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                              const struct dig_hypothesis *base, size_t rivals,
                              const struct dig_hypothesis rival[], const double start[],

@@ -33,7 +33,7 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     static const struct dig_hypothesis plain   = { .effects = 0 };
     static const struct dig_hypothesis outside = { .effects = 0, .outside = true };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted                  fitted[DIG_RIVALS_MAX + 2];
+    struct dig_fitted                  fitted[DIG_RIVALS_MAX + 1];
     dig_null_simulation_fit(c->batch, c->soil, &plain, c->s->rivals, c->single, middle,
                             DIG_FIT_THOROUGH, fitted, statistic);
     c->s->plain = fitted[0];
@@ -43,7 +43,7 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     }
     dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
                        &c->s->beyond);
-    c->s->nameless = fitted[1 + c->s->rivals];
+    dig_hypothesis_fit_unlisted(c->batch, c->soil, &fitted[0], &c->s->nameless);
 }
 
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.
@@ -72,8 +72,14 @@ static void allow_for_scatter(struct dig_search_work *const c,
     }
 }
 
-// By the most that an effect, or what has no name, takes off the misfit, beside what it takes off
-// digs that lack nothing.
+// The smaller chance of two tests, as if there were but one.
+static double chance_of_either(const double p)
+{
+    return 1.0 - (1.0 - p) * (1.0 - p);
+}
+
+// By the misfit, and by the gain where that could still change the answer: a draw that rivals are
+// fitted to costs as much as thirty that none are.
 static enum dig_status decide_whether(struct dig_search_work *const c)
 {
     struct dig_statistic            statistic;
@@ -89,12 +95,18 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
                                                       NULL, &c->seed, &c->plain_null);
     if (status == DIG_OK) {
         allow_for_scatter(c, &statistic);
-        const struct dig_null_question asked = { statistic.gain, c->false_alarm };
-        struct dig_null_simulation     gains;
-        status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single, c->draws,
-                                          &asked, &seed, &gains);
-        c->s->p_complete =
-            status == DIG_OK ? dig_null_simulation_p(&gains, 2, statistic.gain) : 1.0;
+        const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
+        c->s->p_complete = chance_of_either(p);
+        if (c->s->p_complete > 0.0) {
+            const struct dig_null_question asked = { statistic.gain, c->false_alarm };
+            struct dig_null_simulation     gains;
+            status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
+                                              c->draws, &asked, &seed, &gains);
+            c->s->p_complete =
+                status == DIG_OK
+                    ? chance_of_either(fmin(p, dig_null_simulation_p(&gains, 2, statistic.gain)))
+                    : 1.0;
+        }
     }
     free(drawn);
     c->s->significant = c->s->p_complete < c->false_alarm;
@@ -126,7 +138,7 @@ static void resample(const struct dig_whitened_digs *const batch, uint64_t *cons
 // How often each single effect is best when the campaign is drawn from its own digs.
 static enum dig_status bootstrap(struct dig_search_work *const c, const size_t times)
 {
-    struct dig_fitted               fitted[DIG_RIVALS_MAX + 2];
+    struct dig_fitted               fitted[DIG_RIVALS_MAX + 1];
     struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
     if (drawn == NULL) {
         return DIG_ENOMEM;

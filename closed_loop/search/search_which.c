@@ -53,7 +53,7 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
         }
         tried[first] = true;
         struct dig_hypothesis added[DIG_RIVALS_MAX];
-        struct dig_fitted     fitted[DIG_RIVALS_MAX + 2];
+        struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
         struct dig_statistic  statistic;
         const size_t          n = list_additions(c, &c->single[first], added);
         dig_null_simulation_fit(c->batch, c->soil, &c->single[first], n, added,
