@@ -228,6 +228,33 @@ static void the_holdout_is_for_the_error_alone(void **state)
     dig_trace_finish(&b);
 }
 
+// No effect competes there: that digs are like none of the table's is found all the same.
+static void without_a_table_of_effects_strange_digs_are_found(void **state)
+{
+    (void)state;
+    struct dig_trace_settings settings = dig_trace_settings_default();
+    struct dig_trace          trace;
+    struct dig_error          error = { "" };
+    settings.bootstraps             = 24;
+    dig_campaign(0, DIG_EFFECT_UNLISTED, 0.0, 17);
+    for (size_t i = 0; i < DIGS; i++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            double *const v = measured[i].value[c];
+            for (size_t k = 0; k < DIG_CURVE_POINTS / 2; k++) {
+                const double other          = v[DIG_CURVE_POINTS - 1 - k];
+                v[DIG_CURVE_POINTS - 1 - k] = v[k];
+                v[k]                        = other;
+            }
+        }
+    }
+    assert_int_equal(
+        dig_trace_run(world.set, NULL, NULL, &settings, NULL, DIGS, measured, &trace, &error),
+        DIG_OK);
+    assert_true(trace.significant);
+    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
+    dig_trace_finish(&trace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -240,6 +267,7 @@ int main(void)
         cmocka_unit_test(too_few_digs_are_refused_and_nothing_is_written),
         cmocka_unit_test(another_scenes_effects_are_refused),
         cmocka_unit_test(the_holdout_is_for_the_error_alone),
+        cmocka_unit_test(without_a_table_of_effects_strange_digs_are_found),
     };
     return cmocka_run_group_tests_name("trace", tests, world_setup, world_teardown);
 }
