@@ -10,8 +10,8 @@
 
 enum { PARTNERS = 4 }; // of the best single effects that pairs are made with
 
-// Log evidence by which an effect must lead what has no name. That may be liker to an effect than its
-// wide prior lets it be: a trench is nearly a slope. Chosen on the split for development.
+// Log evidence by which an effect must lead what has no name. That may be liker to an effect than
+// its wide prior lets it be: a trench is nearly a slope. Chosen on the split for development.
 static const double least_lead = 15.0;
 
 // Share of what the plain hypothesis leaves that a rock elsewhere must explain: another depth gives
