@@ -44,10 +44,21 @@ stop_all() {
 stop_left() { # what a block that failed has left running
     for pid in "${children[@]-}"; do [ -z "$pid" ] || kill -KILL "$pid" 2>/dev/null; done
 }
-on_screen() { # COMMAND: for two seconds, on a terminal of 80 by 24; it has to draw, and to end well
-    timeout 60 script -qec "stty cols 80 rows 24; TERM=xterm timeout --preserve-status -s TERM 2 $1" /dev/null </dev/null >screen || return 1
-    tr -d '\r' <screen
-    grep -q Health screen
+on_screen() { # COMMAND: in a terminal of 80 by 24 until it has drawn, then q; it has to end well
+    local tmux=(tmux -u -f /dev/null -S "$work/tmux") status=0
+    "${tmux[@]}" new-session -d -x 80 -y 24 "$1; echo ended \$?; sleep 1000"
+    drawn ^Health && "${tmux[@]}" send-keys q && drawn '^ended 0' || status=1
+    "${tmux[@]}" kill-server
+    return $status
+}
+drawn() { # PATTERN: within a minute; else the screen is shown
+    local i
+    for ((i = 0; i < 600; i++)); do
+        "${tmux[@]}" capture-pane -p >screen && grep -q -e "$1" screen && return
+        sleep 0.1
+    done
+    cat screen
+    return 1
 }
 
 said() { # OUTPUT TEXT: every line of TEXT is in OUTPUT, in order; the first that is not is shown
