@@ -281,7 +281,7 @@ double dig_likelihood_misfit(const struct dig_likelihood *const l, const double 
         *squares += l->differs ? 0.0 : l->batch->group[g].about;
         logs += l->error[g].log_det;
     }
-    return *squares + logs;
+    return dig_whitened_digs_misfit(l->batch, *squares) + logs;
 }
 
 double dig_likelihood_means(struct dig_likelihood *const l, const double x[])

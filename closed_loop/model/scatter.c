@@ -19,8 +19,9 @@ static const double even_reduction = 0.95;
 static const double least_factor = 0.4;
 static const double most_factor  = 2.5;
 
-// Where a table has no second packings: neighbouring bins of a channel.
-static const double assumed_correlation = 0.5;
+// Of neighbouring bins of a channel, where a table has too few packings to pool: what makes its
+// packings likeliest, and the first where it has none.
+static const double correlations[] = { 0.5, 0.7, 0.8, 0.9, 0.95, 0.98 };
 
 double dig_scatter_factor(const struct dig_scatter *const scatter, const size_t trajectory,
                           const double strength)
@@ -243,7 +244,7 @@ static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const 
     if (status != DIG_OK) {
         return status;
     }
-    scatter->freedom[t]        = pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
+    (void)pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
     const double held_out_size = held_out(scatter, t, n, r);
     const double larger = fmax(held_out_size / fmax(taken_part(scatter, t, n, r), 1e-3), 1.0);
     scatter->widened[t] = fmax(held_out_size, 1.0);
@@ -256,13 +257,13 @@ static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const 
     return keep_residuals(scatter, t, n, r, larger);
 }
 
-// S from the standard deviations of the table's curves.
-static void assume(const struct dig_response_surface *const surface, const size_t t,
-                   struct dig_scatter *const scatter)
+// Variances of the table's curves, the mean of all entries.
+static void variances_of(const struct dig_response_surface *const surface, const size_t t,
+                         double variance[DIG_FEATURES])
 {
-    const struct dig_curve_set *const set                    = surface->set;
-    double                            variance[DIG_FEATURES] = { 0.0 };
-    double                            entries                = 0.0;
+    const struct dig_curve_set *const set     = surface->set;
+    double                            entries = 0.0;
+    memset(variance, 0, DIG_FEATURES * sizeof variance[0]);
     for (size_t e = 0; e < set->entries; e++) {
         const struct dig_curve *const curve = &set->curve[e * set->trajectories + t];
         if (set->packings[e * set->trajectories + t] <= 0) {
@@ -285,17 +286,62 @@ static void assume(const struct dig_response_surface *const surface, const size_
         }
         entries += 1.0;
     }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        variance[f] /= fmax(entries, 1.0);
+    }
+}
+
+static void correlate(const double variance[DIG_FEATURES], const double correlation,
+                      double s[DIG_FEATURES][DIG_FEATURES])
+{
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         for (size_t j = 0; j < DIG_FEATURES; j++) {
             const bool   same = i / DIG_FEATURE_BINS == j / DIG_FEATURE_BINS;
             const double away = fabs((double)i - (double)j);
-            scatter->covariance[t][i][j] =
-                same && entries > 0.0
-                    ? sqrt(variance[i] * variance[j]) / entries * pow(assumed_correlation, away)
-                    : 0.0;
+            s[i][j] = same ? sqrt(variance[i] * variance[j]) * pow(correlation, away) : 0.0;
         }
     }
-    add_floor(scatter->covariance[t]);
+    add_floor(s);
+}
+
+// Of the residuals of one trajectory, -2 log: as many independent digs as degrees of freedom.
+static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t t, const size_t n,
+                        const struct dig_scatter_residual r[])
+{
+    double lower[DIG_FEATURES][DIG_FEATURES];
+    double sum = 0.0;
+    memcpy(lower, s, sizeof lower);
+    if (dig_cholesky(DIG_FEATURES, &lower[0][0]) != DIG_OK) {
+        return INFINITY;
+    }
+    const double log_det = dig_lower_log_det(DIG_FEATURES, &lower[0][0]);
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory == t && r[i].packings > 1) {
+            sum += freedom_of(&r[i]) *
+                   (log_det + DIG_FEATURES * size_of((const double(*)[DIG_FEATURES])lower, &r[i]));
+        }
+    }
+    return sum;
+}
+
+// S from the standard deviations of the table's curves, with the correlation that suits the few
+// packings best.
+static void assume(const struct dig_response_surface *const surface, const size_t t, const size_t n,
+                   const struct dig_scatter_residual r[], struct dig_scatter *const scatter)
+{
+    double variance[DIG_FEATURES];
+    double best = INFINITY;
+    variances_of(surface, t, variance);
+    for (size_t i = 0; i < sizeof correlations / sizeof correlations[0]; i++) {
+        double s[DIG_FEATURES][DIG_FEATURES];
+        correlate(variance, correlations[i], s);
+        const double misfit = misfit_of((const double(*)[DIG_FEATURES])s, t, n, r);
+        if (i == 0 || misfit < best) {
+            best = misfit;
+            memcpy(scatter->covariance[t], s, sizeof s);
+        }
+    }
+    scatter->slope[t]   = 0.0;
     scatter->widened[t] = 1.0;
 }
 
@@ -323,7 +369,8 @@ enum dig_status dig_scatter_pool(const struct dig_response_surface *const surfac
             continue;
         }
         enum dig_status status = DIG_EINVAL;
-        if (freedom_along(t, residuals, residual) >= LEAST_FREEDOM) {
+        made->freedom[t]       = freedom_along(t, residuals, residual);
+        if (made->freedom[t] >= LEAST_FREEDOM) {
             status = pool_trajectory(made, t, residuals, residual);
         }
         if (status == DIG_ENOMEM) {
@@ -331,8 +378,7 @@ enum dig_status dig_scatter_pool(const struct dig_response_surface *const surfac
             return status;
         }
         if (status != DIG_OK) {
-            made->slope[t] = 0.0;
-            assume(surface, t, made);
+            assume(surface, t, residuals, residual, made);
         }
     }
     *scatter = made;

@@ -18,7 +18,9 @@
 #define DIG_SCATTER_FLOOR 0.002
 
 struct dig_scatter {
-    double freedom[DIG_TRAJECTORY_MAX]; // degrees of freedom S was pooled from
+    // Degrees of freedom that S, or at least its size, is known from; 0: S is as the table states
+    // it.
+    double freedom[DIG_TRAJECTORY_MAX];
     double covariance[DIG_TRAJECTORY_MAX][DIG_FEATURES][DIG_FEATURES]; // S
     double widened[DIG_TRAJECTORY_MAX];  // variance of digs that took no part, over S
     double strength[DIG_TRAJECTORY_MAX]; // at which the factor is 1
@@ -29,8 +31,8 @@ struct dig_scatter {
 };
 
 /// Measures it from the runs of the table at path, whose surface is given. A trajectory whose
-/// entries hold too few second packings gets its S from the curves' standard deviations and an
-/// assumed correlation of neighbours. Free with dig_scatter_destroy().
+/// entries hold too few second packings gets its S from the curves' standard deviations and the
+/// correlation of neighbours that suits these packings best. Free with dig_scatter_destroy().
 DIG_MUST_CHECK enum dig_status dig_scatter_measure(const char                        *path,
                                                    const struct dig_response_surface *surface,
                                                    struct dig_scatter               **scatter,

@@ -326,6 +326,27 @@ enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const 
     return status;
 }
 
+double dig_whitened_digs_misfit(const struct dig_whitened_digs *const batch, const double squares)
+{
+    double numbers = 0.0;
+    double known   = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch->group[g];
+        const double freedom = batch->scatter->freedom[group->trajectory];
+        numbers += (double)(group->features * group->digs);
+        known += (double)group->features * (freedom > 0.0 ? freedom : (double)INFINITY);
+    }
+    return isinf(known) ? squares : (known + numbers) * log1p(squares / known);
+}
+
+double dig_whitened_digs_misfit_of_means(const struct dig_whitened_digs *const batch,
+                                         const double                          squares)
+{
+    const double about = dig_whitened_digs_about(batch);
+    return dig_whitened_digs_misfit(batch, squares + about) -
+           dig_whitened_digs_misfit(batch, about);
+}
+
 double dig_whitened_digs_about(const struct dig_whitened_digs *const batch)
 {
     double about = 0.0;

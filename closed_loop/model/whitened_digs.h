@@ -79,6 +79,14 @@ void dig_whitened_digs_summarise(struct dig_whitened_digs *batch);
 /// The sum of squares of all digs' y about their groups' means.
 double dig_whitened_digs_about(const struct dig_whitened_digs *batch);
 
+/// -2 log likelihood of whitened squares of all digs, but for a constant: the table knows the size
+/// of its scatter from so many packings only, so that it is integrated out (Student's
+/// distribution); squares, where it is known.
+double dig_whitened_digs_misfit(const struct dig_whitened_digs *batch, double squares);
+
+/// What squares of the means add to that of the digs about them.
+double dig_whitened_digs_misfit_of_means(const struct dig_whitened_digs *batch, double squares);
+
 /// The batch without one of its two or more digs; without its trajectory where that was the only
 /// one along it.
 void dig_whitened_digs_leave_out(const struct dig_whitened_digs *batch, size_t dig,

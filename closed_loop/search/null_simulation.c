@@ -9,14 +9,14 @@
 
 enum { ENOUGH = 50 }; // draws that tell a chance far from the level
 
-// The misfit of means and of digs about them, without what does not depend on the digs.
-static void split(const struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
-                  const struct dig_fitted *const fitted, struct dig_statistic *const statistic)
+double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
+                                const struct dig_soil *const          soil,
+                                const struct dig_fitted *const        fitted)
 {
-    statistic->about  = dig_whitened_digs_about(batch);
-    statistic->misfit = dig_hypothesis_differs(&fitted->hypothesis)
-                            ? dig_hypothesis_squares(batch, soil, fitted, fitted)
-                            : fitted->squares - statistic->about;
+    const double squares = dig_hypothesis_differs(&fitted->hypothesis)
+                               ? dig_hypothesis_squares(batch, soil, fitted, fitted)
+                               : fitted->squares - dig_whitened_digs_about(batch);
+    return dig_whitened_digs_misfit_of_means(batch, squares);
 }
 
 // Fits base with one effect more. What an effect adds need not grow evenly with it, so that a fit
@@ -58,9 +58,10 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
 {
     assert(rivals <= DIG_RIVALS_MAX);
     dig_hypothesis_fit(batch, soil, base, start, care, &fitted[0]);
-    split(batch, soil, &fitted[0], statistic);
-    statistic->gain = 0.0;
-    statistic->best = rivals;
+    statistic->about  = dig_whitened_digs_about(batch);
+    statistic->misfit = dig_null_simulation_left(batch, soil, &fitted[0]);
+    statistic->gain   = 0.0;
+    statistic->best   = rivals;
     for (size_t i = 0; i < rivals; i++) {
         fit_rival(batch, soil, base, &rival[i], &fitted[0], care, &fitted[1 + i]);
         const double gain = fitted[0].misfit - fitted[1 + i].misfit;
@@ -69,6 +70,38 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
             statistic->best = i;
         }
     }
+}
+
+// In how many directions digs of a group scatter independently (Satterthwaite: of what the trace
+// is known from).
+static double directions(const struct dig_whitened_digs *const batch, const size_t g)
+{
+    const struct dig_whitened_digs_group *const group = &batch->group[g];
+    const double(*const s)[DIG_FEATURES] =
+        (const double(*)[DIG_FEATURES])batch->scatter->covariance[group->trajectory];
+    double trace   = 0.0;
+    double squares = 0.0;
+    for (size_t i = 0; i < group->features; i++) {
+        trace += s[group->feature[i]][group->feature[i]];
+        for (size_t j = 0; j < group->features; j++) {
+            squares += pow(s[group->feature[i]][group->feature[j]], 2.0);
+        }
+    }
+    return trace * trace / squares;
+}
+
+// The size of a group's true scatter over what the table makes of its few packings: the root of
+// n / chi-squared of n, by Wilson and Hilferty.
+static double draw_size(const struct dig_whitened_digs *const batch, const size_t g,
+                        uint64_t *const seed)
+{
+    static const double least   = 0.05;
+    const double        freedom = batch->scatter->freedom[batch->group[g].trajectory];
+    if (!(freedom > 0.0)) {
+        return 1.0;
+    }
+    const double part = 2.0 / (9.0 * freedom * directions(batch, g));
+    return pow(fmax(1.0 - part + sqrt(part) * dig_chance_normal(seed), least), -1.5);
 }
 
 // One dig's scatter, whitened: a residual of the table, or normal numbers.
@@ -101,14 +134,16 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
 {
     assert(batch != NULL && fitted != NULL && seed != NULL && drawn != NULL);
     double                  common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double                  size[DIG_TRAJECTORY_MAX];
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
     dig_hypothesis_errors(batch, soil, fitted, error);
     for (size_t g = 0; g < batch->groups; g++) {
         double smooth[DIG_FEATURES];
+        size[g] = draw_size(batch, g, seed);
         draw_scatter(batch, g, seed, common[g]);
         dig_common_error_draw(&batch->group[g], &error[g], seed, smooth);
         for (size_t k = 0; k < batch->group[g].features; k++) {
-            common[g][k] = common[g][k] * sqrt(error[g].even) + smooth[k];
+            common[g][k] = common[g][k] * size[g] * sqrt(error[g].even) + smooth[k];
         }
     }
     for (size_t i = 0; i < batch->digs; i++) {
@@ -122,7 +157,7 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
         dig_whitened_digs_whiten(&batch->group[g], feature, model);
         draw_scatter(batch, g, seed, own);
         for (size_t k = 0; k < batch->group[g].features; k++) {
-            drawn->dig[i].y[k] = model[k] + common[g][k] + own[k];
+            drawn->dig[i].y[k] = model[k] + common[g][k] + size[g] * own[k];
         }
     }
     dig_whitened_digs_summarise(drawn);

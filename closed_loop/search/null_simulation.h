@@ -2,9 +2,9 @@
 // significant and what fits, by simulation with refit.
 //
 // Digs are drawn about the fitted model with the table's own residuals (or normal numbers where the
-// table has none), the errors common to a trajectory with the variance the fit gave them; each
-// draw is fitted as the campaign was. A tail beyond the draws is that of the gamma distribution
-// with their mean and variance.
+// table has none), as much larger or smaller as its few packings leave open, the errors common to a
+// trajectory with the variance the fit gave them; each draw is fitted as the campaign was. A tail
+// beyond the draws is that of the gamma distribution with their mean and variance.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H
 #define DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H
@@ -54,6 +54,10 @@ dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig
                          const struct dig_hypothesis rival[], size_t draws,
                          const struct dig_null_question *asked, uint64_t *seed,
                          struct dig_null_simulation *null);
+
+/// What a fit leaves of the means: a statistic's misfit.
+double dig_null_simulation_left(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+                                const struct dig_fitted *fitted);
 
 /// Chance of a statistic (index 0 misfit, 1 about, 2 gain) this large.
 double dig_null_simulation_p(const struct dig_null_simulation *null, size_t index, double value);

@@ -190,10 +190,12 @@ static void judge(const struct room *const r, const struct place *const p,
         const double left = dig_common_error_squares(group, &own[g], rest);
         f->noise[g]       = own[g].noise;
         f->squares += left;
-        f->misfit += left + own[g].log_det + group->about;
+        f->misfit += own[g].log_det;
         rock->squares += dig_common_error_squares(group, &other[g], again);
         rock->numbers += rock->factor[g] > 0.0 ? 1 : 0;
     }
+    f->misfit +=
+        dig_whitened_digs_misfit(r->batch, f->squares + dig_whitened_digs_about(&r->without));
 }
 
 // Gravel and factors for one place, in turn.

@@ -148,13 +148,15 @@ static enum dig_status look_for_rock(struct dig_search_work *const c)
     if (status != DIG_OK || !rock->known) {
         return status;
     }
-    const double before = dig_hypothesis_squares(c->batch, c->soil, &c->s->plain, &c->s->plain);
+    const double before = dig_search_left(c, &c->s->plain);
+    const double after  = dig_whitened_digs_misfit_of_means(c->batch, rock->squares);
     rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers);
-    rock->p_fit         = dig_null_simulation_p(&c->plain_null, 0, rock->plain.squares);
+    rock->p_fit         = dig_null_simulation_p(
+                &c->plain_null, 0, dig_whitened_digs_misfit_of_means(c->batch, rock->plain.squares));
     const double lead =
         rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
-    c->s->is_rock = lead >= DIG_SEARCH_TOLD_APART &&
-                    before - rock->squares >= half * (before - c->plain_null.mean[0]);
+    c->s->is_rock =
+        lead >= DIG_SEARCH_TOLD_APART && before - after >= half * (before - c->plain_null.mean[0]);
     if (c->s->is_rock) {
         c->s->chosen = rock->plain;
     }

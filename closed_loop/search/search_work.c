@@ -18,12 +18,9 @@ double dig_search_evidence(const struct dig_search_work *const c,
     return 0.5 * (c->s->plain.misfit - fitted->misfit) - penalty(c, numbers);
 }
 
-// What a fit leaves of the digs' means.
 double dig_search_left(const struct dig_search_work *const c, const struct dig_fitted *const fitted)
 {
-    return dig_hypothesis_differs(&fitted->hypothesis)
-               ? dig_hypothesis_squares(c->batch, c->soil, fitted, fitted)
-               : fitted->squares - dig_whitened_digs_about(c->batch);
+    return dig_null_simulation_left(c->batch, c->soil, fitted);
 }
 
 bool dig_search_holds(const struct dig_hypothesis *const hypothesis,

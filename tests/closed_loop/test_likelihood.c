@@ -144,11 +144,21 @@ static void fitted_steps_are_as_far_off_as_is_said(void **state)
     assert_true(fabs(sum / n - 1.0) < 0.1 + 3.0 * sqrt(2.0 / n));
 }
 
+// The integral is exact, and the covariance the digs' own, where the table's S is known to be
+// theirs.
+static int known_scatter_setup(void **state)
+{
+    const int status = world_setup(state);
+    memset(world.scatter->freedom, 0, sizeof world.scatter->freedom);
+    memset(world.scatter->residuals, 0, sizeof world.scatter->residuals);
+    return status;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_likelihood_is_the_integral_over_the_steps),
         cmocka_unit_test(fitted_steps_are_as_far_off_as_is_said),
     };
-    return cmocka_run_group_tests_name("likelihood", tests, world_setup, world_teardown);
+    return cmocka_run_group_tests_name("likelihood", tests, known_scatter_setup, world_teardown);
 }

@@ -109,12 +109,52 @@ static void a_table_without_runs_uses_its_curves(void **state)
     made_table_destroy(set);
 }
 
+// Three packings of one entry whose channels are each too strong or too weak all along the dig, or
+// have nothing to do with it from bin to bin.
+static double neighbours_of_few(const double alike)
+{
+    struct dig_curve_set        *set;
+    struct dig_response_surface *surface = make_surface(&set);
+    struct dig_scatter          *s       = NULL;
+    struct dig_scatter_residual  r[3] = { { .packings = 3 }, { .packings = 3 }, { .packings = 3 } };
+    uint64_t                     seed = 4;
+    assert_int_equal(dig_scatter_pool(surface, 0, NULL, &s), DIG_OK); // how large the curves say
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        double off[3];
+        for (size_t p = 0; p < 3; p++) {
+            const double of_channel = (double)p - 1.0;
+            off[p]                  = sqrt(s->covariance[0][f][f]) *
+                     (alike * of_channel + (1.0 - alike) * model_normal(&seed));
+        }
+        for (size_t p = 0; p < 3; p++) {
+            r[p].value[f] = off[p] - (off[0] + off[1] + off[2]) / 3.0;
+        }
+    }
+    dig_scatter_destroy(s);
+    assert_int_equal(dig_scatter_pool(surface, 3, r, &s), DIG_OK);
+    assert_close(s->freedom[0], 2.0, 1e-9);
+    const double correlation =
+        s->covariance[0][3][4] / sqrt(s->covariance[0][3][3] * s->covariance[0][4][4]);
+    dig_scatter_destroy(s);
+    free(surface);
+    made_table_destroy(set);
+    return correlation;
+}
+
+static void few_packings_say_how_alike_neighbours_are(void **state)
+{
+    (void)state;
+    assert_true(neighbours_of_few(0.95) > 0.85);
+    assert_true(neighbours_of_few(0.0) < 0.55);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_known_covariance_is_found),
         cmocka_unit_test(stronger_gravels_may_scatter_more),
         cmocka_unit_test(a_table_without_runs_uses_its_curves),
+        cmocka_unit_test(few_packings_say_how_alike_neighbours_are),
     };
     return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);
 }

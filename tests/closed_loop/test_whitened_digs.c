@@ -185,6 +185,52 @@ static void only_what_all_digs_have_is_compared(void **state)
     free(measured);
 }
 
+// Against the integral itself: squares of so many normal numbers whose variance is n / chi-squared
+// of n, n numbers having told it, over the logarithm of the variance.
+static double integrated(const double known, const double numbers, const double squares)
+{
+    enum { CELLS = 4000 };
+    double most = -INFINITY;
+    double log_density[CELLS];
+    double sum = 0.0;
+    for (int i = 0; i < CELLS; i++) {
+        const double variance = exp(-6.0 + 12.0 * (i + 0.5) / CELLS);
+        log_density[i] =
+            -0.5 * (known + numbers) * log(variance) - 0.5 * (known + squares) / variance;
+        most = fmax(most, log_density[i]);
+    }
+    for (int i = 0; i < CELLS; i++) {
+        sum += exp(log_density[i] - most);
+    }
+    return -2.0 * (most + log(sum));
+}
+
+static void a_size_known_from_few_beds_is_integrated_out(void **state)
+{
+    (void)state;
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status           status;
+    struct dig_whitened_digs *batch   = batch_of(measured, &status);
+    struct dig_scatter        scatter = *world.scatter;
+    batch->scatter                    = &scatter;
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        scatter.freedom[t] = 3.0;
+    }
+    const double numbers = 60.0 * DIG_FEATURES;
+    const double known   = 2.0 * 3.0 * DIG_FEATURES;
+    for (double squares = 200.0; squares < 20000.0; squares *= 3.0) {
+        assert_close(dig_whitened_digs_misfit(batch, squares) -
+                         dig_whitened_digs_misfit(batch, 100.0),
+                     integrated(known, numbers, squares) - integrated(known, numbers, 100.0), 1e-6);
+    }
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        scatter.freedom[t] = 0.0;
+    }
+    assert_close(dig_whitened_digs_misfit(batch, 123.0), 123.0, 0.0);
+    free(batch);
+    free(measured);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -193,6 +239,7 @@ int main(void)
         cmocka_unit_test(digs_and_models_shrink_alike),
         cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
         cmocka_unit_test(only_what_all_digs_have_is_compared),
+        cmocka_unit_test(a_size_known_from_few_beds_is_integrated_out),
     };
     return cmocka_run_group_tests_name("batch", tests, world_setup, world_teardown);
 }
