@@ -1,38 +1,41 @@
-// The effects that a model of digging may lack, by the names results give them. What each does to
-// a prediction stands in estimator/effects/; what it does to a bed, in offline_dem/dig/variant.h.
+// The effects that a model of digging may lack: the list. What one is and does stands in its file,
+// estimator/effects/NAME.c; what it does to a bed, in offline_dem/dig/variant.h.
 
 #ifndef DIG_CORE_EFFECT_H
 #define DIG_CORE_EFFECT_H
 
 #include <stdbool.h>
 
+// Id and name; the names are fixed, people script against them. Those of the machine show in free
+// air, those of the soil do not.
+#define DIG_EFFECTS_OF_MACHINE(effect)                                                             \
+    effect(CYLINDER_FRICTION, cylinder_friction) effect(PRESSURE_OFFSET, pressure_offset)          \
+        effect(BUCKET_WEIGHT, bucket_weight) effect(BUCKET_INERTIA, bucket_inertia)                \
+            effect(PAYLOAD, payload) effect(LINKAGE_GEOMETRY, linkage_geometry)                    \
+                effect(SENSOR_DELAY, sensor_delay)
+#define DIG_EFFECTS_OF_SOIL(effect)                                                                \
+    effect(COHESION, cohesion) effect(ADHESION, adhesion) effect(POLYDISPERSITY, polydispersity)   \
+        effect(GRAIN_SHAPE, grain_shape) effect(GROUND_SLOPE, ground_slope)                        \
+            effect(LAYERING, layering) effect(OBSTACLE, obstacle) effect(COMPACTION, compaction)   \
+                effect(RATE_DEPENDENCE, rate_dependence) effect(WEAR, wear)                        \
+                    effect(BUCKET_FRICTION, bucket_friction)
+
+// clang-format off
+#define DIG_EFFECT_ID(id, name) DIG_EFFECT_##id,
 enum dig_effect_id {
-    // Of the machine: they show in free air.
-    DIG_EFFECT_CYLINDER_FRICTION,
-    DIG_EFFECT_PRESSURE_OFFSET,
-    DIG_EFFECT_BUCKET_WEIGHT,
-    DIG_EFFECT_BUCKET_INERTIA,
-    DIG_EFFECT_PAYLOAD,
-    DIG_EFFECT_LINKAGE_GEOMETRY,
-    DIG_EFFECT_SENSOR_DELAY,
-    // Of the soil: they do not.
-    DIG_EFFECT_COHESION,
-    DIG_EFFECT_ADHESION,
-    DIG_EFFECT_POLYDISPERSITY,
-    DIG_EFFECT_GRAIN_SHAPE,
-    DIG_EFFECT_GROUND_SLOPE,
-    DIG_EFFECT_LAYERING,
-    DIG_EFFECT_OBSTACLE,
-    DIG_EFFECT_COMPACTION,
-    DIG_EFFECT_RATE_DEPENDENCE,
-    DIG_EFFECT_WEAR,
-    DIG_EFFECT_BUCKET_FRICTION,
-    // None of the above.
-    DIG_EFFECT_UNLISTED,
+    DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_ID)
+    DIG_EFFECTS_OF_SOIL(DIG_EFFECT_ID)
+    DIG_EFFECT_UNLISTED, // none of the above
     DIG_EFFECTS
 };
+#undef DIG_EFFECT_ID
 
-/// "cylinder_friction", …, "unlisted": the names are fixed, people script against them.
+#define DIG_EFFECT_ONE(id, name) + 1
+enum { DIG_MACHINE_EFFECTS = 0 DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_ONE) };
+#undef DIG_EFFECT_ONE
+// clang-format on
+
+/// "cylinder_friction", …, "unlisted".
 const char *dig_effect_name(enum dig_effect_id effect);
 
 /// The effect of that name, or -1.

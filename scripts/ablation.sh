@@ -32,7 +32,7 @@ size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 repeats count as beds|closed_loop/model/same_bed.c|s/return beds;/return batch->group[group].digs;/|54
 codes agree (.015: 0)|closed_loop/model/likelihood.c|s/of_codes *= 0.015/of_codes = 0.0/|2
-templates are true (.2: 0)|closed_loop/model/likelihood.c|s/of_templates = 0.2, of_rocks = 0.3/of_templates = 0.0, of_rocks = 0.0/|20
+templates are true (.2: 0)|closed_loop/model/likelihood.c|s/of_templates = 0.2;/of_templates = 0.0;/|20
 a higher floor of scatter (.002: .015)|closed_loop/model/scatter.h|s/SCATTER_FLOOR 0.002/SCATTER_FLOOR 0.015/|0
 no cubic terms|closed_loop/model/response_surface.c|s/? 3 : 2;/? 2 : 2;/|20
 a strange machine leaves the soil its name|closed_loop/verdict/trace_verdict.c|s/if (air->unexplained/if (false \&\& air->unexplained/|12

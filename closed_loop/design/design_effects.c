@@ -1,6 +1,7 @@
 #include "closed_loop/design/design_view.h"
 
 #include "closed_loop/numeric/dense.h"
+#include "estimator/effects/effect.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -92,22 +93,16 @@ static void take_medians(const size_t places, struct sigmas *const s,
     }
 }
 
-// Only effects that every dig shows: those that grow with passes, paces or wear need several digs.
-static bool is_of_one_dig(const enum dig_effect_id effect)
-{
-    return effect != DIG_EFFECT_COMPACTION && effect != DIG_EFFECT_RATE_DEPENDENCE &&
-           effect != DIG_EFFECT_WEAR;
-}
-
 enum dig_status dig_design_effects(const struct dig_response_surface *const surface,
                                    const struct dig_scatter *const          scatter,
                                    const struct dig_soil *const soil, const size_t t,
                                    const size_t places, const double place[][DIG_AXES],
                                    struct dig_design_dig *const dig)
 {
+    // Those that act on each dig otherwise need several digs.
     for (int e = 0; e < DIG_EFFECTS; e++) {
-        dig->tells[e] =
-            is_of_one_dig((enum dig_effect_id)e) && dig_soil_knows(soil, (enum dig_effect_id)e, t);
+        dig->tells[e] = !dig_effect_is_by_dig((enum dig_effect_id)e) &&
+                        dig_soil_knows(soil, (enum dig_effect_id)e, t);
     }
     struct sigmas *const s = calloc(1, sizeof *s);
     if (s == NULL) {

@@ -13,20 +13,6 @@ static const double own_share = 0.5;
 // A common payload of so much tells where it lies.
 static const double telling_kg = 5.0;
 
-// How far an effect may be from the form of its formula, which where it is strong is more than the
-// sensors' noise: a share of what it explains of a row, and of the step where it comes or goes
-// within a block, as friction does when a rod turns about. A constant error of a sensor, a mass
-// that is part of the bucket and a delay are what their formulas say; what rubs, spills or is made
-// otherwise than drawn is not.
-static const struct {
-    double share, step;
-} form[DIG_MACHINE_EFFECTS] = {
-    [DIG_EFFECT_CYLINDER_FRICTION] = { 0.08, 0.35 }, [DIG_EFFECT_PRESSURE_OFFSET] = { 0.02, 0.02 },
-    [DIG_EFFECT_BUCKET_WEIGHT] = { 0.02, 0.02 },     [DIG_EFFECT_BUCKET_INERTIA] = { 0.08, 0.35 },
-    [DIG_EFFECT_PAYLOAD] = { 0.08, 0.35 },           [DIG_EFFECT_LINKAGE_GEOMETRY] = { 0.08, 0.35 },
-    [DIG_EFFECT_SENSOR_DELAY] = { 0.08, 0.35 },
-};
-
 // Step of the differences, in scales.
 static const double step = 0.05;
 
@@ -327,6 +313,7 @@ double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
 static void add_form(const struct dig_air *const air, const enum dig_effect_id effect,
                      const double explained[], double wrong[])
 {
+    const struct dig_effect *const known = dig_effect_of(effect);
     for (size_t r = 0; r < air->rows; r++) {
         const double here = fabs(explained[r]);
         double       most = here;
@@ -340,7 +327,7 @@ static void add_form(const struct dig_air *const air, const enum dig_effect_id e
                 most = fmax(most, fabs(explained[r + back]));
             }
         }
-        wrong[r] += form[effect].share * here + form[effect].step * (most - here);
+        wrong[r] += known->wrong_share * here + known->wrong_step * (most - here);
     }
 }
 

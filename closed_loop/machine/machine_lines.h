@@ -14,7 +14,6 @@
 #include "core/effect.h"
 #include "core/model.h"
 
-#define DIG_MACHINE_EFFECTS     (DIG_EFFECT_SENSOR_DELAY + 1)
 #define DIG_MACHINE_ALL_EFFECTS ((1U << DIG_MACHINE_EFFECTS) - 1U)
 
 struct dig_lines_column {

@@ -1,22 +1,18 @@
 #include "closed_loop/model/forward.h"
 
+#include "estimator/effects/effect.h"
+
 #include <math.h>
 #include <string.h>
 
 static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
 static const size_t least_order = 4;    // digs that can show a trend: two that differ are none
 
-static bool differs_by_dig(const enum dig_effect_id effect)
-{
-    return effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
-           effect == DIG_EFFECT_COMPACTION;
-}
-
 bool dig_hypothesis_differs(const struct dig_hypothesis *const hypothesis)
 {
     bool differs = false;
     for (size_t e = 0; e < hypothesis->effects; e++) {
-        differs = differs || differs_by_dig(hypothesis->effect[e]);
+        differs = differs || dig_effect_is_by_dig(hypothesis->effect[e]);
     }
     return differs;
 }
@@ -29,12 +25,6 @@ bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
             return false;
         }
     }
-    if (!differs_by_dig(effect)) {
-        return true;
-    }
-    if (effect == DIG_EFFECT_WEAR && batch->digs < least_order) {
-        return false;
-    }
     double least = INFINITY;
     double most  = -INFINITY;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -42,10 +32,15 @@ bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
         least              = fmin(least, share);
         most               = fmax(most, share);
     }
+    const struct dig_effect *const known = dig_effect_of(effect);
+    switch (known != NULL ? known->by : DIG_BY_NOTHING) {
+    case DIG_BY_PACE: return most - least > least_pace;
+    case DIG_BY_ORDER: return most - least > 0.5 && batch->digs >= least_order;
     // Ground dug before differs from the table's even where all digs are of the same pass.
-    return effect == DIG_EFFECT_COMPACTION
-               ? most > 0.5
-               : most - least > (effect == DIG_EFFECT_RATE_DEPENDENCE ? least_pace : 0.5);
+    case DIG_BY_PASS: return most > 0.5;
+    case DIG_BY_NOTHING: break;
+    }
+    return true;
 }
 
 struct dig_plain dig_plain_of(const struct dig_soil *const soil, const size_t trajectory,

@@ -2,17 +2,16 @@
 
 #include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 // By how much another DEM code's plain dig differs from ours beyond the scatter of both, and what
-// lies in the ground from a template's: shares of it, 1 sigma. Rocks have all shapes: what one of
-// triangles in another code adds to Fz differs by a third from what a sphere does
-// (tests/offline_dem/test_ensemble.c).
+// lies in the ground from a template's: shares of it, 1 sigma.
 static const double of_codes     = 0.015;
-static const double of_templates = 0.2, of_rocks = 0.3;
+static const double of_templates = 0.2; // but where the effect says otherwise
 
 // What of that changes from bin to bin, in variances of one dig.
 static const double rough = 0.01;
@@ -175,7 +174,7 @@ static double likeness_of(const struct dig_hypothesis *const hypothesis)
 {
     double most = of_templates;
     for (size_t e = 0; e < hypothesis->effects; e++) {
-        most = hypothesis->effect[e] == DIG_EFFECT_OBSTACLE ? of_rocks : most;
+        most = fmax(most, dig_effect_of(hypothesis->effect[e])->likeness);
     }
     return most;
 }

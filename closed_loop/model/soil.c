@@ -10,18 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of the reduced forms: the exponent of pace, the share a dig adds.
-static const double most_rate = 1.0;
-static const double most_wear = 0.15;
-
-static bool has_factor(const enum dig_effect_id effect)
+static bool has_templates(const enum dig_effect_id effect)
 {
-    return effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR;
-}
-
-static bool acts_by_weight(const enum dig_effect_id effect)
-{
-    return effect == DIG_EFFECT_COHESION || effect == DIG_EFFECT_ADHESION;
+    const struct dig_effect *const known = dig_effect_of(effect);
+    return known == NULL || known->templated;
 }
 
 static void fill_speeds(struct dig_soil *const soil)
@@ -33,11 +25,13 @@ static void fill_speeds(struct dig_soil *const soil)
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
             size_t from;
             size_t to;
+            double sum = 0.0;
             dig_feature_bin(b, &from, &to);
             for (size_t k = from; k < to; k++) {
-                soil->speed[t][k] = log(speed[k]);
-                soil->bin_speed[t][b] += soil->speed[t][k] / (double)(to - from);
+                soil->speed[t][k] = speed[k];
+                sum += log(speed[k]);
             }
+            soil->bin_speed[t][b] = exp(sum / (double)(to - from));
         }
     }
 }
@@ -60,13 +54,12 @@ enum dig_status dig_soil_create(const struct dig_response_surface *const surface
     fill_speeds(made);
     for (int e = 0; e < DIG_EFFECTS; e++) {
         made->absent[e] = dig_template_absent((enum dig_effect_id)e);
+        if (!has_templates((enum dig_effect_id)e)) {
+            made->scale[e] = 1.0;
+            made->high[e]  = dig_effect_of((enum dig_effect_id)e)->reach;
+            made->low[e]   = -made->high[e];
+        }
     }
-    made->scale[DIG_EFFECT_RATE_DEPENDENCE] = 1.0;
-    made->low[DIG_EFFECT_RATE_DEPENDENCE]   = -most_rate;
-    made->high[DIG_EFFECT_RATE_DEPENDENCE]  = most_rate;
-    made->scale[DIG_EFFECT_WEAR]            = 1.0;
-    made->low[DIG_EFFECT_WEAR]              = -most_wear;
-    made->high[DIG_EFFECT_WEAR]             = most_wear;
     if (effects != NULL && dig_soil_fit(made, effects, scatter) != DIG_OK) {
         free(made);
         return DIG_ENOMEM;
@@ -80,7 +73,7 @@ bool dig_soil_knows(const struct dig_soil *const soil, const enum dig_effect_id 
 {
     const bool above = soil->high[effect] > 0.0;
     const bool below = soil->low[effect] < 0.0;
-    return has_factor(effect) ||
+    return !has_templates(effect) ||
            ((above || below) &&
             (!above || dig_soil_template_at(soil, effect, trajectory, 1.0)->known) &&
             (!below || dig_soil_template_at(soil, effect, trajectory, -1.0)->known));
@@ -88,21 +81,20 @@ bool dig_soil_knows(const struct dig_soil *const soil, const enum dig_effect_id 
 
 double dig_soil_share(const enum dig_effect_id effect, const struct dig_measured *const dig)
 {
-    if (effect == DIG_EFFECT_RATE_DEPENDENCE) {
-        return log(dig->pace);
-    }
-    if (effect == DIG_EFFECT_WEAR) {
-        return (double)dig->order;
-    }
-    return effect == DIG_EFFECT_COMPACTION ? (double)dig->pass - 1.0 : 1.0;
+    const struct dig_effect_dig of = { .pass = dig->pass, .order = dig->order, .pace = dig->pace };
+    return dig_effect_share(effect, &of);
 }
 
-// What a reduced form adds, as a share of the plain dig, where the tooth has this speed (its log).
+// What an effect without templates adds, as a share of the plain dig.
 static double factor_of(const struct dig_soil *const soil, const enum dig_effect_id effect,
                         const double u, const double share, const double speed)
 {
-    return effect == DIG_EFFECT_RATE_DEPENDENCE ? expm1(u * (share + soil->along * speed))
-                                                : u * share;
+    const struct dig_effect *const known = dig_effect_of(effect);
+    double                         value[DIG_MODEL_PARAMETERS_MAX];
+    dig_effect_absent(known, value);
+    value[0] = u;
+    value[1] = effect == DIG_EFFECT_RATE_DEPENDENCE ? soil->along : value[1];
+    return known->factor != NULL ? known->factor(value, share, speed) : 0.0;
 }
 
 // The terms of a template at a place, u scaled to the gravel's density.
@@ -112,7 +104,7 @@ static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id
 {
     const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
     double scaled                                  = u;
-    if (acts_by_weight(effect)) {
+    if (dig_effect_of(effect) != NULL && dig_effect_of(effect)->over_density) {
         const struct dig_gravel gravel = dig_response_surface_gravel(soil->surface, place);
         scaled *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
     }
@@ -125,7 +117,7 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
                   const double amplitude[DIG_FORCE_CHANNELS], double feature[DIG_FEATURES],
                   double *const noise)
 {
-    if (has_factor(effect)) {
+    if (!has_templates(effect)) {
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
             const double factor = factor_of(soil, effect, u, share, soil->bin_speed[trajectory][b]);
             for (size_t f = b; f < DIG_FEATURES; f += DIG_FEATURE_BINS) {
@@ -181,16 +173,16 @@ void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect
     dig_response_surface_features(soil->surface, trajectory, place, feature, amplitude);
     const struct dig_soil_template *const template =
         dig_soil_template_at(soil, effect, trajectory, u * share);
-    if (!has_factor(effect)) {
+    if (has_templates(effect)) {
         terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
     }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             double sum =
-                has_factor(effect)
+                !has_templates(effect)
                     ? factor_of(soil, effect, u, share, soil->speed[trajectory][k]) * plain[c][k]
                     : 0.0;
-            for (size_t i = 0; !has_factor(effect) && i < template->terms; i++) {
+            for (size_t i = 0; has_templates(effect) && i < template->terms; i++) {
                 sum += term[i] * template->curve[i][c][k] * amplitude[c];
             }
             curve[c][k] += sum;

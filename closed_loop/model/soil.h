@@ -51,8 +51,8 @@ struct dig_soil {
     double                             absent[DIG_EFFECTS];
     double                             scale[DIG_EFFECTS]; // magnitude - absent at u = 1
     double                             low[DIG_EFFECTS], high[DIG_EFFECTS]; // of u
-    // Of rate_dependence: log of the tooth's speed along a trajectory, over bins and points, and
-    // whether the ground feels that (1) or the pace of a dig alone (0).
+    // The tooth's speed along a trajectory, over bins and points; and whether the ground of
+    // rate_dependence feels that (1) or the pace of a dig alone (0).
     double along;
     double bin_speed[DIG_TRAJECTORY_MAX][DIG_FEATURE_BINS];
     double speed[DIG_TRAJECTORY_MAX][DIG_CURVE_POINTS];

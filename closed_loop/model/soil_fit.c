@@ -30,15 +30,10 @@ double dig_soil_strength(const struct dig_response_surface *const surface,
     return log(amplitude[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
 }
 
-static bool has_unlike_sides(const enum dig_effect_id effect)
-{
-    return effect == DIG_EFFECT_LAYERING;
-}
-
 // Of the one template of an effect whose sides are alike the other side is not looked at.
 static size_t side_of(const enum dig_effect_id effect, const double u)
 {
-    return has_unlike_sides(effect) && u < 0.0 ? 1 : 0;
+    return u < 0.0 && dig_effect_of(effect) != NULL && dig_effect_of(effect)->unlike_sides ? 1 : 0;
 }
 
 const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *const soil,

@@ -1,6 +1,7 @@
 #include "closed_loop/search/search_work.h"
 
 #include "closed_loop/numeric/chance.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -52,9 +53,7 @@ static bool is_told_by_order(const struct dig_search_work *const c)
     bool told = false;
     for (size_t i = 0; i < c->s->rivals; i++) {
         const enum dig_effect_id effect = c->single[i].effect[0];
-        const bool by_dig = effect == DIG_EFFECT_RATE_DEPENDENCE || effect == DIG_EFFECT_WEAR ||
-                            effect == DIG_EFFECT_COMPACTION;
-        told = told || (by_dig && c->s->log_evidence[i] > lead);
+        told = told || (dig_effect_is_by_dig(effect) && c->s->log_evidence[i] > lead);
     }
     return told;
 }

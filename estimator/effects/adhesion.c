@@ -12,11 +12,9 @@ enum { ENERGY, LIFT_SHARE, PARAMETERS };
 // The last part of the path, in which a dig lifts its bucket out.
 static const double lift_from = 0.8;
 
-static void reduce(const double value[], const struct dig_effect_dig *const dig,
-                   const struct dig_curve *const plain,
-                   double                        delta[DIG_CHANNELS][DIG_CURVE_POINTS])
+static void reduce(const double value[], const struct dig_curve *const plain,
+                   double delta[DIG_CHANNELS][DIG_CURVE_POINTS])
 {
-    (void)dig;
     double sum = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         sum += pow((double)plain->mean[DIG_CHANNEL_MY_Nm][k], 2.0);
@@ -31,8 +29,8 @@ static void reduce(const double value[], const struct dig_effect_dig *const dig,
 const struct dig_effect dig_effect_adhesion = {
     .id         = DIG_EFFECT_ADHESION,
     .summary    = "grains that stick to the bucket",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
+    .over_density = true,
     .parameters = PARAMETERS,
     .parameter  = {
         [ENERGY]     = { "adhesion_Jpm3", 0.0, 0.0, 1e9, 1e4 },

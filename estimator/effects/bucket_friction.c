@@ -7,7 +7,6 @@
 const struct dig_effect dig_effect_bucket_friction = {
     .id         = DIG_EFFECT_BUCKET_FRICTION,
     .summary    = "a bucket smoother than the table's",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
     .parameters = 1,
     .parameter  = { { "bucket_smoothness", 0.0, 0.0, 1.0, 0.5 } },

@@ -8,10 +8,11 @@ static void correct(const double value[], struct dig_correction *const correctio
 }
 
 const struct dig_effect dig_effect_bucket_inertia = {
-    .id         = DIG_EFFECT_BUCKET_INERTIA,
-    .summary    = "a bucket with another moment of inertia",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
-    .parameters = 1,
-    .parameter  = { { "inertia_kgm2", 0.0, -1e4, 1e5, 100.0 } },
-    .correct    = correct,
+    .id          = DIG_EFFECT_BUCKET_INERTIA,
+    .summary     = "a bucket with another moment of inertia",
+    .parameters  = 1,
+    .parameter   = { { "inertia_kgm2", 0.0, -1e4, 1e5, 100.0 } },
+    .wrong_share = 0.08,
+    .wrong_step  = 0.35,
+    .correct     = correct,
 };

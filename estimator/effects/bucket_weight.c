@@ -15,12 +15,12 @@ static void correct(const double value[], struct dig_correction *const correctio
 const struct dig_effect dig_effect_bucket_weight = {
     .id         = DIG_EFFECT_BUCKET_WEIGHT,
     .summary    = "a bucket of another mass or another centre of mass",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         [MASS]     = { "mass_kg", 0.0, -1e4, 1e4, 50.0 },
         [MOMENT_X] = { "moment_x_kgm", 0.0, -1e4, 1e4, 20.0 },
         [MOMENT_Y] = { "moment_y_kgm", 0.0, -1e4, 1e4, 20.0 },
     },
+    .wrong_share = 0.02, .wrong_step = 0.02,
     .correct = correct,
 };

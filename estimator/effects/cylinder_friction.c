@@ -27,7 +27,6 @@ static void correct(const double value[], struct dig_correction *const correctio
 const struct dig_effect dig_effect_cylinder_friction = {
     .id         = DIG_EFFECT_CYLINDER_FRICTION,
     .summary    = "friction of the cylinders' seals, against the rod's motion",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         { "coulomb_N", 0.0, -1e5, 1e5, 2000.0 },
@@ -44,5 +43,6 @@ const struct dig_effect dig_effect_cylinder_friction = {
         { "boom_stribeck_N", 0.0, -1e5, 1e5, 1000.0 },
         { "stribeck_mps", 0.02, 0.001, 0.5, 0.02 },
     },
+    .wrong_share = 0.08, .wrong_step = 0.35,
     .correct = correct,
 };

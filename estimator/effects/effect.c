@@ -1,38 +1,10 @@
 #include "estimator/effects/effect.h"
 
 #include "estimator/approach/interpolate.h"
-#include "estimator/effects/list.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-static const struct dig_effect *const list[DIG_EFFECTS] = {
-    [DIG_EFFECT_CYLINDER_FRICTION] = &dig_effect_cylinder_friction,
-    [DIG_EFFECT_PRESSURE_OFFSET]   = &dig_effect_pressure_offset,
-    [DIG_EFFECT_BUCKET_WEIGHT]     = &dig_effect_bucket_weight,
-    [DIG_EFFECT_BUCKET_INERTIA]    = &dig_effect_bucket_inertia,
-    [DIG_EFFECT_PAYLOAD]           = &dig_effect_payload,
-    [DIG_EFFECT_LINKAGE_GEOMETRY]  = &dig_effect_linkage_geometry,
-    [DIG_EFFECT_SENSOR_DELAY]      = &dig_effect_sensor_delay,
-    [DIG_EFFECT_COHESION]          = &dig_effect_cohesion,
-    [DIG_EFFECT_ADHESION]          = &dig_effect_adhesion,
-    [DIG_EFFECT_POLYDISPERSITY]    = &dig_effect_polydispersity,
-    [DIG_EFFECT_GRAIN_SHAPE]       = &dig_effect_grain_shape,
-    [DIG_EFFECT_GROUND_SLOPE]      = &dig_effect_ground_slope,
-    [DIG_EFFECT_LAYERING]          = &dig_effect_layering,
-    [DIG_EFFECT_OBSTACLE]          = &dig_effect_obstacle,
-    [DIG_EFFECT_COMPACTION]        = &dig_effect_compaction,
-    [DIG_EFFECT_RATE_DEPENDENCE]   = &dig_effect_rate_dependence,
-    [DIG_EFFECT_WEAR]              = &dig_effect_wear,
-    [DIG_EFFECT_BUCKET_FRICTION]   = &dig_effect_bucket_friction,
-};
-
-const struct dig_effect *dig_effect_of(const enum dig_effect_id id)
-{
-    assert(id >= 0 && id < DIG_EFFECTS);
-    return list[id];
-}
 
 void dig_effect_absent(const struct dig_effect *const effect,
                        double                         value[DIG_MODEL_PARAMETERS_MAX])
@@ -89,6 +61,22 @@ static enum dig_status plain_at(const struct dig_curve_set *const plain,
     return DIG_OK;
 }
 
+static void add_factor(const struct dig_effect *const    effect,
+                       const struct dig_curve_set *const plain, const double value[],
+                       const size_t trajectory, const double share,
+                       const struct dig_curve *const curve,
+                       double                        delta[DIG_CHANNELS][DIG_CURVE_POINTS])
+{
+    double speed[DIG_CURVE_POINTS];
+    dig_effect_speeds(plain, trajectory, speed);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double factor = effect->factor(value, share, speed[k]);
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            delta[c][k] += factor * (double)curve->mean[c][k];
+        }
+    }
+}
+
 enum dig_status dig_effect_add(const struct dig_effect *const     effect,
                                const struct dig_curve_set *const  plain,
                                const struct dig_effect_set *const effects, const double value[],
@@ -98,11 +86,11 @@ enum dig_status dig_effect_add(const struct dig_effect *const     effect,
 {
     assert(effect != NULL && effect->correct == NULL && plain != NULL && value != NULL);
     assert(gravel != NULL && dig != NULL && added != NULL);
-    struct dig_template sum = { .delta = { { 0.0 } } };
+    struct dig_template sum   = { .delta = { { 0.0 } } };
+    const double        share = dig_effect_share(effect->id, dig);
     if (effect->templated) {
-        const double at     = effect->magnitude != NULL ? effect->magnitude(value, dig) : value[0];
-        const bool   absent = fabs(at - dig_template_absent(effect->id)) <= 0.0;
-
+        const double          at     = value[0] * share;
+        const bool            absent = fabs(at - dig_template_absent(effect->id)) <= 0.0;
         const enum dig_status status = absent ? DIG_OK
                                               : dig_template_find(plain, effects, effect->id, at,
                                                                   gravel, dig->trajectory, &sum);
@@ -110,19 +98,18 @@ enum dig_status dig_effect_add(const struct dig_effect *const     effect,
             return status;
         }
     }
-    if (effect->reduce != NULL) {
+    if (effect->factor != NULL || effect->reduce != NULL) {
         struct dig_curve      curve;
         const enum dig_status status = plain_at(plain, gravel, dig->trajectory, &curve);
         if (status != DIG_OK) {
             return status;
         }
-        double                speed[DIG_CURVE_POINTS];
-        struct dig_effect_dig along = *dig;
-        if (along.speed == NULL) {
-            dig_effect_speeds(plain, dig->trajectory, speed);
-            along.speed = speed;
+        if (effect->factor != NULL) {
+            add_factor(effect, plain, value, dig->trajectory, share, &curve, sum.delta);
         }
-        effect->reduce(value, &along, &curve, sum.delta);
+        if (effect->reduce != NULL) {
+            effect->reduce(value, &curve, sum.delta);
+        }
     }
     *added = sum;
     return DIG_OK;

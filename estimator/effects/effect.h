@@ -1,12 +1,11 @@
-// The effects a model of digging may lack: parameters, where each can show, and its action. One
-// file each; this is the list.
+// What an effect that a model of digging may lack is and does. One file each; core/effect.h lists
+// them.
 //
 // An effect of the machine writes into a struct dig_correction, one of the soil adds to a curve. A
 // soil effect that a bed was dug with has templates (template.h): its parameter 0 is then their
-// magnitude, and it applies only where the set of effects holds it. Its further parameters, and
-// all of rate_dependence and wear, act in a reduced form that needs no bed and is documented in the
-// effect's file. Parameters stand in the order of the list wherever they are an array; their names
-// carry the unit and are what a model file and a report say.
+// magnitude, and it applies only where the set of effects holds it. What needs no bed is a factor
+// on the plain curve or a reduced form. Parameters stand in the order of the list wherever they are
+// an array; their names carry the unit and are what a model file and a report say.
 
 #ifndef DIG_ESTIMATOR_EFFECTS_EFFECT_H
 #define DIG_ESTIMATOR_EFFECTS_EFFECT_H
@@ -29,8 +28,9 @@ struct dig_effect_parameter {
     double      scale; // 1 sigma of the prior
 };
 
-/// Where in a dig an effect can show; a set of these.
-enum dig_effect_part { DIG_IN_AIR = 1, DIG_IN_SOIL = 2, DIG_IN_LIFT = 4 };
+/// In what the digs of one trajectory must differ for an effect to act on each otherwise. Its share
+/// in a dig: log(pace), order, or pass - 1; 1 for an effect that acts on all alike.
+enum dig_effect_by { DIG_BY_NOTHING, DIG_BY_PACE, DIG_BY_ORDER, DIG_BY_PASS };
 
 /// The dig an effect of the soil acts on.
 struct dig_effect_dig {
@@ -38,28 +38,40 @@ struct dig_effect_dig {
     unsigned pass;  // how often the ground was dug there, from 1
     size_t   order; // how many digs the tooth has done before
     double   pace;  // duration of the table's trajectory / of this dig, at rig scale
-
-    const double *speed; // [DIG_CURVE_POINTS], dig_effect_speeds(); NULL: dig_effect_add() asks
 };
 
 struct dig_effect {
     enum dig_effect_id          id;
-    const char                 *summary;   // one phrase for people
-    unsigned                    parts;     // of enum dig_effect_part
-    bool                        templated; // parameter 0 is the magnitude of templates
+    const char                 *summary; // one phrase for people
     size_t                      parameters;
     struct dig_effect_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
 
-    /// Of the machine: adds the parameters' values to *correction. NULL for the soil's.
+    // Of the machine.
+
+    /// Adds the parameters' values to *correction. NULL for the soil's.
     void (*correct)(const double value[], struct dig_correction *correction);
+    /// How far the formula may be wrong, which where the effect is strong is more than the sensors'
+    /// noise: a share of what it explains of a row, and of the step where it comes or goes within a
+    /// block, as friction does when a rod turns about.
+    double wrong_share, wrong_step;
 
-    /// Of the soil: the reduced form, added to what delta holds for this dig's plain curve. NULL
-    /// for the machine's, and for an effect that has templates alone.
-    void (*reduce)(const double value[], const struct dig_effect_dig *dig,
-                   const struct dig_curve *plain, double delta[DIG_CHANNELS][DIG_CURVE_POINTS]);
+    // Of the soil.
 
-    /// Of the soil: the template's magnitude in this dig. NULL: parameter 0.
-    double (*magnitude)(const double value[], const struct dig_effect_dig *dig);
+    enum dig_effect_by by;
+    bool               templated;    // parameter 0 is the magnitude of templates, times the share
+    bool               over_density; // acts by magnitude / density
+    bool               mirrored;     // has a meaning on both sides of absent, dug on one or on both
+    bool   unlike_sides; // magnitudes below absent are of another thing than those above
+    double likeness;     // 1 sigma of what a template may differ by, as a share of itself; 0: usual
+    double reach;        // without templates: the largest parameter 0 that a trace tries
+
+    /// What is added without a bed, as a share of the plain curve, in a dig of that share, where
+    /// the tooth has that speed over the mean of all trajectories. NULL: nothing.
+    double (*factor)(const double value[], double share, double speed);
+    /// What is added without a bed and is no factor, to what delta holds for this dig's plain
+    /// curve. NULL: nothing.
+    void (*reduce)(const double value[], const struct dig_curve *plain,
+                   double delta[DIG_CHANNELS][DIG_CURVE_POINTS]);
 };
 
 /// Speed of the tooth along a trajectory, smoothed as curves are, over the mean of all of the
@@ -69,6 +81,12 @@ void dig_effect_speeds(const struct dig_curve_set *set, size_t trajectory,
 
 /// The effect of that id; NULL for DIG_EFFECT_UNLISTED.
 const struct dig_effect *dig_effect_of(enum dig_effect_id id);
+
+/// True when it acts on the digs of one trajectory otherwise.
+bool dig_effect_is_by_dig(enum dig_effect_id id);
+
+/// Its share in a dig; 1 for DIG_EFFECT_UNLISTED.
+double dig_effect_share(enum dig_effect_id id, const struct dig_effect_dig *dig);
 
 /// All parameters at their absent value.
 void dig_effect_absent(const struct dig_effect *effect, double value[DIG_MODEL_PARAMETERS_MAX]);

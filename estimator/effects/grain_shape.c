@@ -5,7 +5,6 @@
 const struct dig_effect dig_effect_grain_shape = {
     .id         = DIG_EFFECT_GRAIN_SHAPE,
     .summary    = "grains that are not round",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
     .parameters = 1,
     .parameter  = { { "aspect", 1.0, 1.0, 4.0, 0.3 } },

@@ -5,8 +5,8 @@
 const struct dig_effect dig_effect_ground_slope = {
     .id         = DIG_EFFECT_GROUND_SLOPE,
     .summary    = "ground that rises or falls along the dig",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
+    .mirrored   = true,
     .parameters = 1,
     .parameter  = { { "slope_deg", 0.0, -45.0, 45.0, 10.0 } },
 };

@@ -4,10 +4,10 @@
 #include "estimator/effects/list.h"
 
 const struct dig_effect dig_effect_layering = {
-    .id         = DIG_EFFECT_LAYERING,
-    .summary    = "a layer of another gravel below, harder (+) or looser (-)",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
-    .templated  = true,
-    .parameters = 1,
-    .parameter  = { { "layer_m", 0.0, -10.0, 10.0, 0.03 } },
+    .id           = DIG_EFFECT_LAYERING,
+    .summary      = "a layer of another gravel below, harder (+) or looser (-)",
+    .templated    = true,
+    .unlike_sides = true,
+    .parameters   = 1,
+    .parameter    = { { "layer_m", 0.0, -10.0, 10.0, 0.03 } },
 };

@@ -50,7 +50,6 @@ static void correct(const double value[], struct dig_correction *const correctio
 const struct dig_effect dig_effect_linkage_geometry = {
     .id         = DIG_EFFECT_LINKAGE_GEOMETRY,
     .summary    = "pins or bars of the linkages that are not where the file says",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         [ROCKER]       = SHIFT("rocker_m"),
@@ -70,5 +69,6 @@ const struct dig_effect dig_effect_linkage_geometry = {
         [BOOM_EYE_X]   = SHIFT("boom_eye_x_m"),
         [BOOM_EYE_Y]   = SHIFT("boom_eye_y_m"),
     },
+    .wrong_share = 0.08, .wrong_step = 0.35,
     .correct = correct,
 };

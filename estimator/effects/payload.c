@@ -15,12 +15,12 @@ static void correct(const double value[], struct dig_correction *const correctio
 const struct dig_effect dig_effect_payload = {
     .id         = DIG_EFFECT_PAYLOAD,
     .summary    = "soil carried over from the dig before",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         [MASS]     = { "payload_kg", 0.0, -1e4, 1e4, 50.0 },
         [MOMENT_X] = { "payload_x_kgm", 0.0, -1e4, 1e4, 20.0 },
         [MOMENT_Y] = { "payload_y_kgm", 0.0, -1e4, 1e4, 20.0 },
     },
+    .wrong_share = 0.08, .wrong_step = 0.35,
     .correct = correct,
 };

@@ -5,7 +5,6 @@
 const struct dig_effect dig_effect_polydispersity = {
     .id         = DIG_EFFECT_POLYDISPERSITY,
     .summary    = "grains of several sizes",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .templated  = true,
     .parameters = 1,
     .parameter  = { { "size_ratio", 1.0, 1.0, 10.0, 0.5 } },

@@ -20,7 +20,6 @@ static void correct(const double value[], struct dig_correction *const correctio
 const struct dig_effect dig_effect_pressure_offset = {
     .id         = DIG_EFFECT_PRESSURE_OFFSET,
     .summary    = "a pressure sensor that reads too much or too little",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         { "boom_head_Pa", 0.0, -1e7, 1e7, 3e5 },    { "boom_rod_Pa", 0.0, -1e7, 1e7, 3e5 },
@@ -30,5 +29,6 @@ const struct dig_effect dig_effect_pressure_offset = {
         { "arm_head_gain", 0.0, -0.5, 0.5, 0.05 },  { "arm_rod_gain", 0.0, -0.5, 0.5, 0.05 },
         { "bucket_head_gain", 0.0, -0.5, 0.5, 0.05 }, { "bucket_rod_gain", 0.0, -0.5, 0.5, 0.05 },
     },
+    .wrong_share = 0.02, .wrong_step = 0.02,
     .correct = correct,
 };

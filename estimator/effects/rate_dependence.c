@@ -1,4 +1,4 @@
-// Ground that resists more when it is dug faster. Reduced form, no bed needed: every channel grows
+// Ground that resists more when it is dug faster. No bed needed: every force grows
 // as (pace speed^along)^exponent. pace 1 is the table's own; speed is that of the tooth at this
 // point of the path, over the mean of the table's trajectories: with along 1 the ground depends on
 // the tooth's local speed, with along 0 on the pace of the whole dig. It shows only over digs of
@@ -57,27 +57,20 @@ void dig_effect_speeds(const struct dig_curve_set *const set, const size_t traje
     }
 }
 
-static void reduce(const double value[], const struct dig_effect_dig *const dig,
-                   const struct dig_curve *const plain,
-                   double                        delta[DIG_CHANNELS][DIG_CURVE_POINTS])
+static double factor(const double value[], const double share, const double speed)
 {
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double speed = dig->speed != NULL ? pow(dig->speed[k], value[ALONG]) : 1.0;
-        const double share = pow(dig->pace * speed, value[EXPONENT]) - 1.0;
-        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            delta[c][k] += share * (double)plain->mean[c][k];
-        }
-    }
+    return expm1(value[EXPONENT] * (share + value[ALONG] * log(speed)));
 }
 
 const struct dig_effect dig_effect_rate_dependence = {
     .id         = DIG_EFFECT_RATE_DEPENDENCE,
     .summary    = "ground that resists more when dug faster",
-    .parts      = DIG_IN_SOIL | DIG_IN_LIFT,
     .parameters = PARAMETERS,
     .parameter  = {
         [EXPONENT] = { "exponent", 0.0, -2.0, 2.0, 0.3 },
         [ALONG]    = { "along", 0.0, 0.0, 1.0, 1.0 },
     },
-    .reduce = reduce,
+    .by = DIG_BY_PACE,
+    .reach = 1.0,
+    .factor = factor,
 };

@@ -8,10 +8,11 @@ static void correct(const double value[], struct dig_correction *const correctio
 }
 
 const struct dig_effect dig_effect_sensor_delay = {
-    .id         = DIG_EFFECT_SENSOR_DELAY,
-    .summary    = "pressures that are older than the angles beside them",
-    .parts      = DIG_IN_AIR | DIG_IN_SOIL | DIG_IN_LIFT,
-    .parameters = 1,
-    .parameter  = { { "delay_s", 0.0, -0.5, 0.5, 0.1 } },
-    .correct    = correct,
+    .id          = DIG_EFFECT_SENSOR_DELAY,
+    .summary     = "pressures that are older than the angles beside them",
+    .parameters  = 1,
+    .parameter   = { { "delay_s", 0.0, -0.5, 0.5, 0.1 } },
+    .wrong_share = 0.08,
+    .wrong_step  = 0.35,
+    .correct     = correct,
 };

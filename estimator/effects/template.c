@@ -1,6 +1,7 @@
 #include "estimator/effects/template.h"
 
 #include "estimator/approach/interpolate.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -26,18 +27,7 @@ struct between {
 
 double dig_template_absent(const enum dig_effect_id effect)
 {
-    return effect == DIG_EFFECT_POLYDISPERSITY || effect == DIG_EFFECT_GRAIN_SHAPE ? 1.0 : 0.0;
-}
-
-// Ground may fall as well as rise; the other magnitudes have no meaning beyond absent.
-static bool has_two_sides(const enum dig_effect_id effect)
-{
-    return effect == DIG_EFFECT_GROUND_SLOPE;
-}
-
-static bool acts_by_weight(const enum dig_effect_id effect)
-{
-    return effect == DIG_EFFECT_COHESION || effect == DIG_EFFECT_ADHESION;
+    return effect == DIG_EFFECT_UNLISTED ? 0.0 : dig_effect_of(effect)->parameter[0].absent;
 }
 
 // Widens the magnitudes from least to most, absent among them, by what may be extrapolated.
@@ -48,7 +38,7 @@ static void widen(const enum dig_effect_id effect, double *const least, double *
     const double below  = absent - *least;
     *most += DIG_TEMPLATE_BEYOND * above;
     *least -= DIG_TEMPLATE_BEYOND * below;
-    if (has_two_sides(effect)) {
+    if (dig_effect_of(effect)->mirrored) {
         *most += above > 0.0 ? 0.0 : DIG_TEMPLATE_BEYOND * below;
         *least -= below > 0.0 ? 0.0 : DIG_TEMPLATE_BEYOND * above;
     }
@@ -241,7 +231,7 @@ static double magnitude_at(const struct base *const base, const enum dig_effect_
                            const double magnitude, const struct dig_gravel *const gravel)
 {
     double scaled = magnitude;
-    if (acts_by_weight(effect)) {
+    if (dig_effect_of(effect)->over_density) {
         scaled *=
             base->gravel.value[DIG_AXIS_DENSITY_kgpm3] / gravel->value[DIG_AXIS_DENSITY_kgpm3];
     }

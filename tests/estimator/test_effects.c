@@ -156,10 +156,9 @@ static void a_templates_sigma_is_that_of_two_means(void **state)
 static void every_effect_is_listed_and_absent_changes_nothing(void **state)
 {
     (void)state;
-    const struct dig_machine    machine = model_machine();
-    const struct dig_effect_dig dig     = { .pass = 3, .order = 5, .pace = 2.0 };
-    struct dig_curve *const     curve   = calloc(1, sizeof *curve);
-    curve->mean[0][7]                   = 3.0F;
+    const struct dig_machine machine = model_machine();
+    struct dig_curve *const  curve   = calloc(1, sizeof *curve);
+    curve->mean[0][7]                = 3.0F;
     assert_null(dig_effect_of(DIG_EFFECT_UNLISTED));
     for (int e = 0; e < DIG_EFFECT_UNLISTED; e++) {
         const struct dig_effect *const effect = dig_effect_of((enum dig_effect_id)e);
@@ -184,9 +183,14 @@ static void every_effect_is_listed_and_absent_changes_nothing(void **state)
         }
         if (effect->reduce != NULL) {
             double delta[DIG_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
-            effect->reduce(value, &dig, curve, delta);
+            effect->reduce(value, curve, delta);
             assert_close(delta[0][7], 0.0, 0.0);
         }
+        if (effect->factor != NULL) {
+            assert_close(effect->factor(value, 5.0, 2.0), 0.0, 0.0);
+        }
+        assert_int_equal(effect->templated || effect->factor != NULL || effect->reduce != NULL,
+                         !dig_effect_is_of_machine(effect->id));
     }
     free(curve);
 }
