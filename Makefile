@@ -25,7 +25,7 @@ ALL_CFLAGS  = $(STD) $(WARN) -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -MMD -M
 # Expanded only by the rules that need the library, so a missing one stops that rule and no other.
 pkg_cflags  = $(shell $(PKG_CONFIG) --cflags $(1))
 pkg_libs    = $(shell $(PKG_CONFIG) --libs $(1))
-LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml) -lyaml -lpthread -lm
+LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml nettle) -lyaml -lpthread -lm
 
 # Goals that compile nothing, or install what is missing first. Before any other, a missing library is named.
 compile_nothing := setup demo test help clean format format-check layers uninstall arm64 spy deb deb-check
@@ -375,7 +375,7 @@ $(BUILD)/man/.made: $(bins) scripts/man_pages.sh
 	$(Q)rm -rf $(@D) && scripts/man_pages.sh $(@D) $(bins) && touch $@
 
 lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -DDIG_NUMERICS='"lint"' -fopenmp-simd \
-             $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml)
+             $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml nettle)
 
 clean: ## Remove the build folder
 	$(Q)rm -rf $(BUILD)

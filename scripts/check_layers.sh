@@ -36,6 +36,7 @@ curses.h     tools/digwatch/terminal.c
 cyaml/       files/ firmware_host/config/
 yaml.h       files/ firmware_host/config/
 sqlite3.h    tables/
+nettle/      core/sha256.h
 ode/         offline_dem/
 '
 

@@ -101,7 +101,7 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
 
 enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side,
                                        const size_t effects, const struct dig_model_effect effect[],
-                                       const bool holdouts, struct dig_measured measured[])
+                                       const enum dig_apply apply, struct dig_measured measured[])
 {
     assert(side != NULL && (side->digs == 0 || measured != NULL));
     struct dig_measured *const corrected = malloc(sizeof *corrected);
@@ -111,14 +111,14 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
     enum dig_status status = DIG_OK;
     for (size_t d = 0; d < side->digs && status == DIG_OK; d++) {
         struct dig_correction correction;
-        if (!holdouts && measured[d].use == DIG_USE_HOLDOUT) {
+        if (apply != DIG_APPLY_TO_ALL && measured[d].use == DIG_USE_HOLDOUT) {
             continue;
         }
         status = correction_of(side, effects, effect, d, &correction);
         if (status == DIG_OK) {
             *corrected = measured[d];
             status = dig_machine_dig_values(&side->machine, side->set, &side->dig[d], &correction,
-                                            corrected);
+                                            apply == DIG_APPLY_ROUGHLY, corrected);
         }
         for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
             const bool both = measured[d].measured[c] && corrected->measured[c];

@@ -25,7 +25,7 @@ dig_machine_side_create(const struct dig_machine *machine, const struct dig_curv
 void dig_machine_side_destroy(struct dig_machine_side *side);
 
 #define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
-#define DIG_MACHINE_ANSWERS (DIG_EFFECT_SENSOR_DELAY + 2)
+#define DIG_MACHINE_ANSWERS (DIG_MACHINE_EFFECTS + 1)
 #define DIG_MACHINE_NUMBERS (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX) // DIG_STEPS_MAX
 
 /// One answer of free air: effects with their values, and what it leaves open of these. With z of
@@ -68,13 +68,16 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
                                                       double false_alarm, uint64_t seed,
                                                       struct dig_machine_finding *finding);
 
+/// Which digs effects are applied to, and how carefully: ROUGHLY, to those fitted to, for
+/// differences of two such.
+enum dig_apply { DIG_APPLY_TO_ALL, DIG_APPLY_TO_FITTED, DIG_APPLY_ROUGHLY };
+
 /// Writes into measured[].machine what these effects (those of the machine among them) add to the
-/// measured curves of every dig (of the holdouts, too, where that is asked for); a payload, in a
-/// dig that was traced in, as much as that dig's was.
+/// measured curves; a payload, in a dig that was traced in, as much as that dig's was.
 DIG_MUST_CHECK enum dig_status dig_machine_side_apply(const struct dig_machine_side *side,
                                                       size_t                         effects,
                                                       const struct dig_model_effect  effect[],
-                                                      bool                           holdouts,
+                                                      enum dig_apply                 apply,
                                                       struct dig_measured            measured[]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H

@@ -2,6 +2,7 @@
 
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "closed_loop/numeric/vectors.h"
 
 #include <assert.h>
 #include <math.h>
@@ -66,7 +67,7 @@ static void smooth_part(const struct dig_whitened_digs_group *const group,
 }
 
 // Overwrites the lower triangle of k with that of W k W'; whiten[i] adds nothing to y before y[i].
-static void whiten_both(const struct dig_whitened_digs_group *const group, double k[])
+DIG_VECTORS static void whiten_both(const struct dig_whitened_digs_group *const group, double k[])
 {
     const size_t n = group->features;
     double       half[DIG_FEATURES * DIG_FEATURES]; // W k
@@ -94,25 +95,27 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     assert(group != NULL && error != NULL);
     const size_t n     = group->features;
     double       trace = 0.0;
-    smooth_part(group, error, error->lower);
-    whiten_both(group, error->lower);
+    double       covariance[DIG_FEATURES * DIG_FEATURES];
+    smooth_part(group, error, covariance);
+    whiten_both(group, covariance);
     for (size_t i = 0; i < n; i++) {
-        trace += error->lower[i * n + i] / (double)n;
-        error->lower[i * n + i] += 1.0 / (double)group->digs + error->even;
+        trace += covariance[i * n + i] / (double)n;
+        covariance[i * n + i] += 1.0 / (double)group->digs + error->even;
     }
     error->noise = error->even + trace;
     // Positive definite by what is on its diagonal.
-    const enum dig_status status = dig_cholesky(n, error->lower);
+    const enum dig_status status = dig_cholesky(n, covariance);
     assert(status == DIG_OK);
     (void)status;
-    error->log_det = dig_lower_log_det(n, error->lower);
+    error->log_det = dig_lower_log_det(n, covariance);
+    dig_lower_invert(n, covariance, error->inverse);
 }
 
 double dig_common_error_squares(const struct dig_whitened_digs_group *const group,
                                 const struct dig_common_error *const error, double residual[])
 {
     double sum = 0.0;
-    dig_lower_solve(group->features, error->lower, residual);
+    dig_lower_multiply(group->features, error->inverse, residual);
     for (size_t k = 0; k < group->features; k++) {
         sum += residual[k] * residual[k];
     }

@@ -20,12 +20,12 @@
 struct dig_common_error {
     double even;
     double size[DIG_COMMON_ERROR_PARTS][DIG_FEATURES]; // 1 sigma, units of the table
-    double lower[DIG_FEATURES * DIG_FEATURES];         // L of the group's covariance = L L'
+    double inverse[DIG_FEATURES * DIG_FEATURES];       // L^-1 of the group's covariance L L'
     double log_det;
     double noise; // variance beyond 1/n, mean over the features
 };
 
-/// Fills lower, log_det and noise from even and size. Some ten microseconds.
+/// Fills inverse, log_det and noise from even and size. Some ten microseconds.
 void dig_common_error_build(const struct dig_whitened_digs_group *group,
                             struct dig_common_error              *error);
 

@@ -13,7 +13,7 @@ enum {
     HALVES = 5, // of the way to where least squares lead
 };
 
-static const double enough = 1e-3; // a fall of the misfit that is none
+static const double enough = 1e-2; // a fall of the misfit that is none
 
 static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
 

@@ -11,63 +11,125 @@
 
 enum {
     NUMBERS = DIG_HYPOTHESIS_NUMBERS,
-    SETTLE  = 500,  // steps, in which the walk learns how far to go
-    STEPS   = 4000, // that are counted
+    POINTS  = 500, // of the cloud
+    SWEEPS  = 3,   // in which every point moves on, at each power
+    COUNTED = 8,   // sweeps at the posterior itself, whose points are counted
+    TAKEN   = POINTS * COUNTED,
 };
 
-// The share of steps that is best taken in some dimensions (Gelman and others 1996).
-static const double best_taken = 0.3;
+// Accepted between these, a step is neither too short nor too long.
+static const double few_accepted = 0.2, many_accepted = 0.4;
 
-struct walk {
+// A cloud of points that is distributed as (the likelihood)^power within the bounds.
+struct cloud {
     struct dig_likelihood likelihood;
     double                low[NUMBERS], high[NUMBERS];
-    double                lower[NUMBERS * NUMBERS]; // of the steps' covariance
-    double                reach;                    // times this
+    double                power;
+    double                x[POINTS][NUMBERS];
+    double                misfit[POINTS];
+    double                lower[NUMBERS * NUMBERS]; // L of the points' covariance = L L'
+    double                reach;                    // a step is so many of it
     double                residual[DIG_LIKELIHOOD_RESIDUALS];
-    double                moved[DIG_LIKELIHOOD_RESIDUALS * NUMBERS];
-    double                taken[NUMBERS][STEPS];
+    double                old_x[POINTS][NUMBERS];
+    double                old_misfit[POINTS];
+    double                taken[NUMBERS][TAKEN];
 };
 
-static double misfit_at(struct walk *const w, const double x[])
+static double misfit_at(struct cloud *const c, const double x[])
 {
     double squares;
-    dig_likelihood_residual(&w->likelihood, x, w->residual);
-    return dig_likelihood_misfit(&w->likelihood, w->residual, &squares);
+    dig_likelihood_residual(&c->likelihood, x, c->residual);
+    return dig_likelihood_misfit(&c->likelihood, c->residual, &squares);
 }
 
-// The steps' covariance: the inverse of the curvature, with a prior as wide as the bounds. A number
-// that is held has no width and takes no step.
-static void measure_curvature(struct walk *const w, const double x[])
+static void spread_out(struct cloud *const c, uint64_t *const seed)
 {
-    static const double step = 1e-3;
-    const size_t        n    = w->likelihood.numbers;
-    const size_t        rows = w->likelihood.residuals;
-    double              a[NUMBERS * NUMBERS];
-    (void)misfit_at(w, x);
-    for (size_t j = 0; j < n; j++) {
-        double       there[NUMBERS];
-        const double by = x[j] + step <= w->high[j] ? step : -step;
-        memcpy(there, x, n * sizeof there[0]);
-        there[j] += w->high[j] > w->low[j] ? by : 0.0;
-        dig_likelihood_residual(&w->likelihood, there, w->moved + j * rows);
-        for (size_t i = 0; i < rows; i++) {
-            w->moved[j * rows + i] = (w->moved[j * rows + i] - w->residual[i]) / by;
+    for (size_t p = 0; p < POINTS; p++) {
+        for (size_t j = 0; j < c->likelihood.numbers; j++) {
+            c->x[p][j] = c->low[j] + (c->high[j] - c->low[j]) * dig_chance_uniform(seed);
+        }
+        c->misfit[p] = misfit_at(c, c->x[p]);
+    }
+    c->power = 0.0;
+}
+
+// The points' weights at a higher power; how many points of equal weight they are worth.
+static double weigh(const struct cloud *const c, const double power, double weight[POINTS])
+{
+    double least   = INFINITY;
+    double sum     = 0.0;
+    double squares = 0.0;
+    for (size_t p = 0; p < POINTS; p++) {
+        least = fmin(least, c->misfit[p]);
+    }
+    for (size_t p = 0; p < POINTS; p++) {
+        weight[p] = exp(-0.5 * (power - c->power) * (c->misfit[p] - least));
+        sum += weight[p];
+        squares += weight[p] * weight[p];
+    }
+    return sum * sum / squares;
+}
+
+// The highest power at which the points are worth half of what they are.
+static double next_power(const struct cloud *const c, double weight[POINTS])
+{
+    double low  = c->power;
+    double high = 1.0;
+    if (weigh(c, high, weight) >= 0.5 * POINTS) {
+        return high;
+    }
+    for (int half = 0; half < 20; half++) {
+        const double middle                                        = 0.5 * (low + high);
+        *(weigh(c, middle, weight) >= 0.5 * POINTS ? &low : &high) = middle;
+    }
+    return high;
+}
+
+// Draws the points anew by their weights, evenly: one of weight w comes w times, rounded.
+static void draw_anew(struct cloud *const c, const double weight[POINTS], uint64_t *const seed)
+{
+    double sum = 0.0;
+    for (size_t p = 0; p < POINTS; p++) {
+        sum += weight[p];
+    }
+    const double every = sum / POINTS;
+    double       next  = every * dig_chance_uniform(seed);
+    double       at    = 0.0;
+    size_t       made  = 0;
+    memcpy(c->old_x, c->x, sizeof c->old_x);
+    memcpy(c->old_misfit, c->misfit, sizeof c->old_misfit);
+    for (size_t p = 0; p < POINTS; p++) {
+        for (at += weight[p]; made < POINTS && (next < at || p == POINTS - 1); next += every) {
+            memcpy(c->x[made], c->old_x[p], sizeof c->x[made]);
+            c->misfit[made++] = c->old_misfit[p];
+        }
+    }
+}
+
+// A number that is held, or of which all points agree, keeps a width that is nothing beside its
+// bounds'.
+static void measure_covariance(struct cloud *const c)
+{
+    const size_t n             = c->likelihood.numbers;
+    double       mean[NUMBERS] = { 0.0 };
+    for (size_t p = 0; p < POINTS; p++) {
+        for (size_t j = 0; j < n; j++) {
+            mean[j] += c->x[p][j] / POINTS;
         }
     }
     for (size_t j = 0; j < n; j++) {
         for (size_t k = 0; k <= j; k++) {
-            a[j * n + k] = 0.0;
-            for (size_t i = 0; i < rows; i++) {
-                a[j * n + k] += w->moved[j * rows + i] * w->moved[k * rows + i];
+            double sum = 0.0;
+            for (size_t p = 0; p < POINTS; p++) {
+                sum += (c->x[p][j] - mean[j]) * (c->x[p][k] - mean[k]) / POINTS;
             }
+            c->lower[j * n + k] = sum;
         }
-        a[j * n + j] += 12.0 / pow(fmax(w->high[j] - w->low[j], 1e-6), 2.0);
+        c->lower[j * n + j] += 1e-10 * fmax(pow(c->high[j] - c->low[j], 2.0), 1e-10);
     }
-    // With a = L L', a step L'^-1 z has the covariance a^-1.
-    const enum dig_status status = dig_cholesky(n, a);
+    const enum dig_status status = dig_cholesky(n, c->lower);
     assert(status == DIG_OK);
     (void)status;
-    memcpy(w->lower, a, sizeof a);
 }
 
 // Leaves bounds as a ray leaves a mirror, so that no place is favoured.
@@ -80,40 +142,51 @@ static double reflect(const double x, const double low, const double high)
     return fmin(fmax(at, low), high);
 }
 
-static void propose(const struct walk *const w, const double x[], uint64_t *const seed,
-                    double tried[])
+// One step of Metropolis' for every point.
+static void sweep(struct cloud *const c, uint64_t *const seed)
 {
-    const size_t n = w->likelihood.numbers;
-    double       step[NUMBERS];
-    for (size_t j = 0; j < n; j++) {
-        step[j] = dig_chance_normal(seed);
+    const size_t n        = c->likelihood.numbers;
+    double       accepted = 0.0;
+    for (size_t p = 0; p < POINTS; p++) {
+        double tried[NUMBERS];
+        for (size_t j = 0; j < n; j++) {
+            tried[j] = c->reach * dig_chance_normal(seed);
+        }
+        dig_lower_multiply(n, c->lower, tried);
+        for (size_t j = 0; j < n; j++) {
+            tried[j] = reflect(c->x[p][j] + tried[j], c->low[j], c->high[j]);
+        }
+        const double there = misfit_at(c, tried);
+        if (dig_chance_uniform(seed) < exp(0.5 * c->power * (c->misfit[p] - there))) {
+            memcpy(c->x[p], tried, n * sizeof tried[0]);
+            c->misfit[p] = there;
+            accepted += 1.0 / POINTS;
+        }
     }
-    dig_lower_transposed_solve(n, w->lower, step);
-    for (size_t j = 0; j < n; j++) {
-        tried[j] = reflect(x[j] + w->reach * step[j], w->low[j], w->high[j]);
-    }
+    c->reach *= accepted < few_accepted ? 0.7 : (accepted > many_accepted ? 1.4 : 1.0);
 }
 
-static void run(struct walk *const w, const double start[], uint64_t seed)
+// From the whole of the bounds to the posterior.
+static void anneal(struct cloud *const c, uint64_t seed)
 {
-    const size_t n = w->likelihood.numbers;
-    double       x[NUMBERS];
-    double       misfit = misfit_at(w, start);
-    memcpy(x, start, n * sizeof x[0]);
-    for (int i = -SETTLE; i < STEPS; i++) {
-        double tried[NUMBERS];
-        propose(w, x, &seed, tried);
-        const double there = misfit_at(w, tried);
-        const bool   take  = dig_chance_uniform(&seed) < exp(0.5 * (misfit - there));
-        if (take) {
-            memcpy(x, tried, n * sizeof x[0]);
-            misfit = there;
+    spread_out(c, &seed);
+    while (c->power < 1.0) {
+        double       weight[POINTS];
+        const double power = next_power(c, weight);
+        (void)weigh(c, power, weight);
+        draw_anew(c, weight, &seed);
+        c->power = power;
+        measure_covariance(c);
+        for (int s = 0; s < SWEEPS; s++) {
+            sweep(c, &seed);
         }
-        if (i < 0) {
-            w->reach *= exp((take ? 1.0 - best_taken : -best_taken) * 0.05);
-        }
-        for (size_t j = 0; i >= 0 && j < n; j++) {
-            w->taken[j][i] = x[j];
+    }
+    for (size_t s = 0; s < COUNTED; s++) {
+        sweep(c, &seed);
+        for (size_t p = 0; p < POINTS; p++) {
+            for (size_t j = 0; j < c->likelihood.numbers; j++) {
+                c->taken[j][s * POINTS + p] = c->x[p][j];
+            }
         }
     }
 }
@@ -125,35 +198,25 @@ static int ascending(const void *const a, const void *const b)
     return (x > y) - (x < y);
 }
 
-// The shortest interval that holds nine steps of ten. A bound is in it that the posterior leans on:
-// less than a twentieth lies between, and more than a fiftieth within a tenth of the interval of
-// it.
-static void set_interval(struct walk *const w, const size_t j, struct dig_fitted *const fitted)
+// The shortest interval that holds nine points of ten. A bound is in it that the posterior leans
+// on: less than a twentieth lies between, and more than a fiftieth within a tenth of the interval
+// of it.
+static void set_interval(struct cloud *const c, const size_t j, struct dig_fitted *const fitted)
 {
-    enum { INSIDE = STEPS / 10 * 9, FEW = STEPS / 20, SOME = STEPS / 50 };
-    double *const taken = w->taken[j];
+    enum { INSIDE = TAKEN / 10 * 9, FEW = TAKEN / 20, SOME = TAKEN / 50 };
+    double *const taken = c->taken[j];
     size_t        first = 0;
-    qsort(taken, STEPS, sizeof taken[0], ascending);
-    for (size_t i = 1; i + INSIDE <= STEPS; i++) {
+    qsort(taken, TAKEN, sizeof taken[0], ascending);
+    for (size_t i = 1; i + INSIDE <= TAKEN; i++) {
         const double wide = taken[i + INSIDE - 1] - taken[i];
         first             = wide < taken[first + INSIDE - 1] - taken[first] ? i : first;
     }
     const size_t last       = first + INSIDE - 1;
     const double near       = 0.1 * (taken[last] - taken[first]);
-    const bool   leans_low  = first < FEW && taken[SOME] < w->low[j] + near;
-    const bool   leans_high = STEPS - 1 - last < FEW && taken[STEPS - 1 - SOME] > w->high[j] - near;
-    fitted->low[j]          = fmin(leans_low ? w->low[j] : taken[first], fitted->number[j]);
-    fitted->high[j]         = fmax(leans_high ? w->high[j] : taken[last], fitted->number[j]);
-}
-
-static void begin(struct walk *const w, const struct dig_whitened_digs *const batch,
-                  const struct dig_soil *const soil, const struct dig_fitted *const fitted)
-{
-    dig_likelihood_init(&w->likelihood, batch, soil, &fitted->hypothesis);
-    dig_likelihood_weigh(&w->likelihood, fitted->number);
-    dig_hypothesis_bounds(soil, &fitted->hypothesis, w->low, w->high);
-    w->reach = 2.4 / sqrt((double)w->likelihood.numbers);
-    measure_curvature(w, fitted->number);
+    const bool   leans_low  = first < FEW && taken[SOME] < c->low[j] + near;
+    const bool   leans_high = TAKEN - 1 - last < FEW && taken[TAKEN - 1 - SOME] > c->high[j] - near;
+    fitted->low[j]          = fmin(leans_low ? c->low[j] : taken[first], fitted->number[j]);
+    fitted->high[j]         = fmax(leans_high ? c->high[j] : taken[last], fitted->number[j]);
 }
 
 enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const batch,
@@ -161,58 +224,18 @@ enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const ba
                                         struct dig_fitted *const fitted)
 {
     assert(batch != NULL && soil != NULL && fitted != NULL);
-    struct walk *const w = malloc(sizeof *w);
-    if (w == NULL) {
+    struct cloud *const c = malloc(sizeof *c);
+    if (c == NULL) {
         return DIG_ENOMEM;
     }
-    begin(w, batch, soil, fitted);
-    run(w, fitted->number, seed);
-    for (size_t j = 0; j < w->likelihood.numbers; j++) {
-        set_interval(w, j, fitted);
+    dig_likelihood_init(&c->likelihood, batch, soil, &fitted->hypothesis);
+    dig_likelihood_weigh(&c->likelihood, fitted->number);
+    dig_hypothesis_bounds(soil, &fitted->hypothesis, c->low, c->high);
+    c->reach = 2.4 / sqrt((double)c->likelihood.numbers);
+    anneal(c, seed);
+    for (size_t j = 0; j < c->likelihood.numbers; j++) {
+        set_interval(c, j, fitted);
     }
-    free(w);
-    return DIG_OK;
-}
-
-// At given numbers z has the covariance M^-1; with the numbers it moves as the residuals' tail
-// says.
-static void add_numbers_share(const struct walk *const w, const double z_of[], double covariance[])
-{
-    const struct dig_likelihood *const l = &w->likelihood;
-    for (size_t k = 0; k < l->steps; k++) {
-        double moves[NUMBERS];
-        for (size_t j = 0; j < l->numbers; j++) {
-            moves[j] = z_of[j * l->residuals + k];
-        }
-        dig_lower_solve(l->numbers, w->lower, moves);
-        dig_lower_transposed_solve(l->numbers, w->lower, moves);
-        for (size_t m = 0; m < l->steps; m++) {
-            for (size_t j = 0; j < l->numbers; j++) {
-                covariance[k * l->steps + m] += moves[j] * z_of[j * l->residuals + m];
-            }
-        }
-    }
-}
-
-enum dig_status dig_posterior_steps(const struct dig_whitened_digs *const batch,
-                                    const struct dig_soil *const          soil,
-                                    const struct dig_fitted *const fitted, double covariance[])
-{
-    assert(batch != NULL && soil != NULL && fitted != NULL && covariance != NULL);
-    struct walk *const w = malloc(sizeof *w);
-    if (w == NULL) {
-        return DIG_ENOMEM;
-    }
-    begin(w, batch, soil, fitted);
-    const struct dig_likelihood *const l = &w->likelihood;
-    for (size_t k = 0; k < l->steps; k++) {
-        double *const row = covariance + k * l->steps;
-        memset(row, 0, l->steps * sizeof row[0]);
-        row[k] = 1.0;
-        dig_lower_solve(l->steps, l->step_lower, row);
-        dig_lower_transposed_solve(l->steps, l->step_lower, row);
-    }
-    add_numbers_share(w, w->moved + l->residuals - l->steps, covariance);
-    free(w);
+    free(c);
     return DIG_OK;
 }

@@ -10,8 +10,10 @@
 #include <stdint.h>
 
 /// Fills fitted->low and high: the shortest interval that holds 90 % of each number's posterior,
-/// the fitted one in it. By a random walk (Metropolis and others 1953) whose steps follow the
-/// curvature at the fit, by the covariance there. Some hundredths of a second. DIG_ENOMEM.
+/// the fitted one in it. By a cloud of points that begins everywhere and follows powers of the
+/// likelihood up to the posterior (sequential Monte Carlo: Del Moral, Doucet & Jasra 2006), by the
+/// covariance at the fit: a single walk stays in one arm of a bent ridge. Some hundredths of a
+/// second. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *batch,
                                                        const struct dig_soil *soil, uint64_t seed,
                                                        struct dig_fitted *fitted);

@@ -1,6 +1,7 @@
 #include "closed_loop/model/response_surface.h"
 
 #include "closed_loop/numeric/dense.h"
+#include "closed_loop/numeric/vectors.h"
 #include "estimator/approach/interpolate.h"
 
 #include <assert.h>
@@ -243,10 +244,11 @@ enum dig_status dig_response_surface_fit(const struct dig_curve_set *const  set,
     return any ? DIG_OK : DIG_EINVAL;
 }
 
-void dig_response_surface_features(const struct dig_response_surface *const surface,
-                                   const size_t trajectory, const double place[DIG_AXES],
-                                   double feature[DIG_FEATURES],
-                                   double amplitude[DIG_FORCE_CHANNELS])
+DIG_VECTORS void dig_response_surface_features(const struct dig_response_surface *const surface,
+                                               const size_t                             trajectory,
+                                               const double place[DIG_AXES],
+                                               double       feature[DIG_FEATURES],
+                                               double       amplitude[DIG_FORCE_CHANNELS])
 {
     double term[DIG_RESPONSE_SURFACE_TERMS];
     terms_at(surface, place, term);

@@ -2,6 +2,7 @@
 
 #include "closed_loop/model/same_bed.h"
 #include "closed_loop/numeric/dense.h"
+#include "closed_loop/numeric/vectors.h"
 
 #include <assert.h>
 #include <math.h>
@@ -206,10 +207,11 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
 
 // The innermost of all that is fitted to digs: a few sums at a time, which a compiler keeps in
 // registers. whiten[k] adds nothing to y before y[k].
-void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *const group,
-                              const double feature[DIG_FEATURES], double y[DIG_FEATURES])
+DIG_VECTORS void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *const group,
+                                          const double feature[DIG_FEATURES],
+                                          double       y[DIG_FEATURES])
 {
-    enum { AT_ONCE = 6 };
+    enum { AT_ONCE = 10 };
     _Static_assert(DIG_FEATURES % AT_ONCE == 0, "no rest");
     double x[DIG_FEATURES];
     for (size_t k = 0; k < group->features; k++) {

@@ -1,60 +1,84 @@
 #include "closed_loop/numeric/dense.h"
 
+#include "closed_loop/numeric/vectors.h"
+
 #include <assert.h>
 #include <math.h>
 
-enum dig_status dig_cholesky(const size_t n, double a[])
+// Four sums side by side, of which none waits for another.
+static inline double dot(const size_t n, const double a[], const double b[])
+{
+    double sum[4] = { 0.0 };
+    size_t i      = 0;
+    for (; i + 4 <= n; i += 4) {
+        for (size_t k = 0; k < 4; k++) {
+            sum[k] += a[i + k] * b[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum[0] += a[i] * b[i];
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+DIG_VECTORS enum dig_status dig_cholesky(const size_t n, double a[])
 {
     assert(a != NULL);
     for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            double sum = a[i * n + j];
-            for (size_t k = 0; k < j; k++) {
-                sum -= a[i * n + k] * a[j * n + k];
-            }
-            if (i > j) {
-                a[i * n + j] = sum / a[j * n + j];
-            } else if (sum > 0.0) {
-                a[i * n + i] = sqrt(sum);
-            } else {
-                return DIG_EINVAL;
-            }
+        for (size_t j = 0; j < i; j++) {
+            const double sum = a[i * n + j] - dot(j, a + i * n, a + j * n);
+            a[i * n + j]     = sum / a[j * n + j];
         }
+        const double left = a[i * n + i] - dot(i, a + i * n, a + i * n);
+        if (!(left > 0.0)) {
+            return DIG_EINVAL;
+        }
+        a[i * n + i] = sqrt(left);
     }
     return DIG_OK;
 }
 
-// By columns: what each unknown takes off the others does not wait for one another.
-void dig_lower_solve(const size_t n, const double l[], double b[])
+DIG_VECTORS void dig_lower_solve(const size_t n, const double l[], double b[])
 {
-    for (size_t k = 0; k < n; k++) {
-        const double known = b[k] / l[k * n + k];
-        for (size_t i = k + 1; i < n; i++) {
-            b[i] -= l[i * n + k] * known;
-        }
-        b[k] = known;
+    for (size_t i = 0; i < n; i++) {
+        b[i] = (b[i] - dot(i, l + i * n, b)) / l[i * n + i];
     }
 }
 
-void dig_lower_transposed_solve(const size_t n, const double l[], double b[])
+// By columns of the transposed, which are rows of l.
+DIG_VECTORS void dig_lower_transposed_solve(const size_t n, const double l[], double b[])
 {
     for (size_t i = n; i-- > 0;) {
-        double sum = b[i];
-        for (size_t k = i + 1; k < n; k++) {
-            sum -= l[k * n + i] * b[k];
+        const double *const row = l + i * n;
+        b[i] /= row[i];
+        for (size_t k = 0; k < i; k++) {
+            b[k] -= row[k] * b[i];
         }
-        b[i] = sum / l[i * n + i];
     }
 }
 
-void dig_lower_multiply(const size_t n, const double l[], double b[])
+DIG_VECTORS void dig_lower_multiply(const size_t n, const double l[], double b[])
 {
     for (size_t i = n; i-- > 0;) {
-        double sum = 0.0;
-        for (size_t k = 0; k <= i; k++) {
-            sum += l[i * n + k] * b[k];
+        b[i] = dot(i + 1, l + i * n, b);
+    }
+}
+
+// Row by row: what is to the left of the diagonal times the rows above, which are inverted already.
+DIG_VECTORS void dig_lower_invert(const size_t n, const double l[], double inverse[])
+{
+    for (size_t i = 0; i < n; i++) {
+        double *const row = inverse + i * n;
+        for (size_t j = 0; j < i; j++) {
+            row[j] = 0.0;
         }
-        b[i] = sum;
+        for (size_t k = 0; k < i; k++) {
+            const double times = l[i * n + k] / l[i * n + i];
+            for (size_t j = 0; j <= k; j++) {
+                row[j] -= times * inverse[k * n + j];
+            }
+        }
+        row[i] = 1.0 / l[i * n + i];
     }
 }
 

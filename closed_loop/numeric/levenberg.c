@@ -9,7 +9,7 @@
 
 enum { SQUARE = DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS };
 
-static const double enough = 1e-4; // a fall of the sum of squares that is none
+static const double enough = 1e-3; // a fall of the sum of squares that is none
 
 static double sum_of_squares(const size_t n, const double r[])
 {

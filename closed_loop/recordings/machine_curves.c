@@ -73,12 +73,12 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
 static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const bool with_sigma,
-                      const double tooth_m, const size_t from, const size_t to,
+                      const double tooth_m, const size_t from, const size_t to, const size_t every,
                       struct reading reading[])
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
-    for (size_t i = from; i < to; i++) {
+    for (size_t i = from; i < to; i += every) {
         struct reading    r = { .solved = false };
         struct dig_front  front;
         struct dig_sample sample = dig->sample[i];
@@ -104,16 +104,16 @@ static void solve_all(const struct dig_machine *const     machine,
 
 // One channel through the estimator's window.
 static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
-                    const size_t from, const size_t to, const struct reading reading[],
-                    const enum dig_channel channel, struct dig_window *const window,
-                    struct dig_observation *const observation)
+                    const size_t from, const size_t to, const size_t every,
+                    const struct reading reading[], const enum dig_channel channel,
+                    struct dig_window *const window, struct dig_observation *const observation)
 {
     const double scale = pow(dig->lambda, channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
     size_t       told  = 0;
     size_t       of    = 0;
     dig_window_close(window);
     dig_window_open(window);
-    for (size_t i = from; i < to; i++) {
+    for (size_t i = from; i < to; i += every) {
         double       sigma;
         double       slow;
         bool         valid;
@@ -187,25 +187,26 @@ static enum dig_status measure(const struct dig_machine *const     machine,
                                const struct dig_curve_set *const   set,
                                const struct dig_machine_dig *const dig,
                                const struct dig_correction *const correction, const bool with_sigma,
-                               struct dig_measured *const measured)
+                               const bool roughly, struct dig_measured *const measured)
 {
     const size_t             from    = beside(dig, dig->contact, -beside_s);
     const size_t             to      = beside(dig, dig->end, beside_s);
     struct dig_window *const window  = calloc(1, sizeof *window);
     const size_t             rows    = to > from ? to - from : 0;
+    const size_t             every   = roughly ? rows / DIG_CURVE_POINTS + 1 : 1;
     struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
     if (window == NULL || reading == NULL) {
         free(window);
         free(reading);
         return DIG_ENOMEM;
     }
-    solve_all(machine, dig, correction, with_sigma, set->tooth_m, from, to, reading);
+    solve_all(machine, dig, correction, with_sigma, set->tooth_m, from, to, every, reading);
 
     enum dig_status status = DIG_OK;
     for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
         struct dig_observation o = { .first = 0.0 };
         measured->measured[c] =
-            observe(set, dig, from, to, reading, (enum dig_channel)c, window, &o);
+            observe(set, dig, from, to, every, reading, (enum dig_channel)c, window, &o);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             measured->value[c][k] = measured->measured[c] ? o.moment_Nm[k] : 0.0;
             measured->sigma[c][k] = measured->measured[c] ? o.sigma_Nm[k] : 0.0;
@@ -231,15 +232,15 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
                                         struct dig_measured *const          measured)
 {
     assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    return measure(machine, set, dig, correction, true, measured);
+    return measure(machine, set, dig, correction, true, false, measured);
 }
 
 enum dig_status dig_machine_dig_values(const struct dig_machine *const     machine,
                                        const struct dig_curve_set *const   set,
                                        const struct dig_machine_dig *const dig,
                                        const struct dig_correction *const  correction,
-                                       struct dig_measured *const          measured)
+                                       const bool roughly, struct dig_measured *const measured)
 {
     assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    return measure(machine, set, dig, correction, false, measured);
+    return measure(machine, set, dig, correction, false, roughly, measured);
 }

@@ -53,11 +53,12 @@ DIG_MUST_CHECK enum dig_status dig_machine_dig_measure(const struct dig_machine 
                                                        const struct dig_correction  *correction,
                                                        struct dig_measured          *measured);
 
-/// The same without sigma, which is 0: half the work.
+/// The same without sigma, which is 0: half the work. roughly: from as many samples as a curve has
+/// points, for what is a difference of two such; as many times less.
 DIG_MUST_CHECK enum dig_status dig_machine_dig_values(const struct dig_machine     *machine,
                                                       const struct dig_curve_set   *set,
                                                       const struct dig_machine_dig *dig,
                                                       const struct dig_correction  *correction,
-                                                      struct dig_measured          *measured);
+                                                      bool roughly, struct dig_measured *measured);
 
 #endif // DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ENOUGH = 50 }; // draws that tell a chance far from the level
+enum { AT_A_TIME = 25 }; // draws after which is asked whether more would change the answer
 
 double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
                                 const struct dig_soil *const          soil,
@@ -163,14 +163,17 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
     dig_whitened_digs_summarise(drawn);
 }
 
-// True when more draws would not change the answer: the chance is known from so few to a factor of
-// some units.
+// True when more draws would not change the answer: the fewer they are, the farther from the level
+// must the chance be.
 static bool is_answered(const struct dig_null_question *const   asked,
                         const struct dig_null_simulation *const null)
 {
-    static const double far = 20.0;
-    const double        p   = asked != NULL ? dig_null_simulation_p(null, 2, asked->gain) : 0.0;
-    return asked != NULL && (p > far * asked->level || p < asked->level / (far * far));
+    if (asked == NULL || null->draws % AT_A_TIME != 0 || null->draws == 0) {
+        return false;
+    }
+    const double far = 1000.0 / (double)null->draws;
+    const double p   = dig_null_simulation_p(null, 2, asked->gain);
+    return p > far * asked->level || p < asked->level / (far * far);
 }
 
 enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
@@ -192,7 +195,7 @@ enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const b
     *drawn                                = *batch;
     struct dig_null_simulation made       = { .draws = 0 };
     double                     squares[3] = { 0.0 };
-    while (made.draws < draws && !(made.draws == ENOUGH && is_answered(asked, &made))) {
+    while (made.draws < draws && !is_answered(asked, &made)) {
         struct dig_statistic s;
         dig_null_simulation_digs(batch, soil, fitted, seed, drawn);
         dig_null_simulation_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number,

@@ -46,8 +46,8 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *batch, const struc
                               const struct dig_fitted *fitted, uint64_t *seed,
                               struct dig_whitened_digs *drawn);
 
-/// Draws from fitted and fits again, draws times, or only 50 times where that answers what is asked
-/// (may be NULL): the chance is far from the level. DIG_ENOMEM.
+/// Draws from fitted and fits again, draws times, or fewer where they answer what is asked (may be
+/// NULL): the chance is far from the level. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                          const struct dig_fitted *fitted, size_t rivals,

@@ -96,7 +96,7 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
         allow_for_scatter(c, &statistic);
         const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
         c->s->p_complete = chance_of_either(p);
-        if (c->s->p_complete > 0.0) {
+        if (!(c->s->p_complete < c->false_alarm)) {
             const struct dig_null_question asked = { statistic.gain, c->false_alarm };
             struct dig_null_simulation     gains;
             status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
@@ -173,13 +173,14 @@ enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
     list_rivals(&c);
     enum dig_status status = decide_whether(&c);
     search->chosen         = search->plain;
-    if (status == DIG_OK) {
-        status = bootstrap(&c, draws / 4);
+    if (status != DIG_OK || !search->significant) {
+        return status;
     }
-    if (status == DIG_OK && search->significant) {
+    status = bootstrap(&c, draws / 4);
+    if (status == DIG_OK) {
         status = dig_search_which(&c);
     }
-    if (status != DIG_OK || !search->significant) {
+    if (status != DIG_OK) {
         return status;
     }
     search->outside = !search->is_rock && dig_search_is_outside(&c);

@@ -156,8 +156,8 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     if (scratch == NULL) {
         return DIG_ENOMEM;
     }
-    enum dig_status status =
-        dig_machine_side_apply(machine, answer->effects, answer->effect, true, measured);
+    enum dig_status status = dig_machine_side_apply(machine, answer->effects, answer->effect,
+                                                    DIG_APPLY_TO_ALL, measured);
     if (status == DIG_OK) {
         take_off_batch(w->batch, measured, NULL, &scratch->batch);
         keep_best(answer, from,
@@ -289,7 +289,7 @@ static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, con
     for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
         struct dig_model_effect *const effect = &w->air->effect[e];
 
-        status = dig_machine_side_apply(machine, 1, effect, false, alone);
+        status = dig_machine_side_apply(machine, 1, effect, DIG_APPLY_TO_FITTED, alone);
         if (status == DIG_OK) {
             w->size[e] = dig_effect_size_of_machine(w->batch, plain, alone);
             effect->probability *= fmax(dig_effect_size_chance(w->size[e]), DIG_TRACE_UNCONFIRMED);
@@ -315,11 +315,12 @@ enum dig_status dig_trace_machine(struct dig_machine_side *const         machine
         status = choose(machine, settings, digs, measured, w, choice);
     }
     if (status == DIG_OK) {
-        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, true, measured);
+        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, DIG_APPLY_TO_ALL,
+                                        measured);
     }
     if (is_no_answer(status)) { // a holdout is not told with what the digs made of it
         write_none(true, w->air);
-        status = dig_machine_side_apply(machine, 0, NULL, true, measured);
+        status = dig_machine_side_apply(machine, 0, NULL, DIG_APPLY_TO_ALL, measured);
     }
     if (status == DIG_OK) {
         status = dig_trace_batch(w, digs, measured, plain, error);

@@ -50,17 +50,17 @@ static void means_added(const struct dig_whitened_digs *const batch,
     }
 }
 
-// What the machine adds to the means at z. holdouts: whether they must be told, too.
+// What the machine adds to the means at z.
 static enum dig_status added_at(struct dig_machine_side *const         machine,
                                 const struct dig_machine_answer *const answer, const double z[],
-                                const bool holdouts, struct dig_measured measured[],
+                                const enum dig_apply apply, struct dig_measured measured[],
                                 const struct dig_whitened_digs *const batch,
                                 double                                y[][DIG_FEATURES])
 {
     struct dig_machine_answer there = *answer;
     dig_machine_steps_values(z, NULL, &there);
     const enum dig_status status =
-        dig_machine_side_apply(machine, there.effects, there.effect, holdouts, measured);
+        dig_machine_side_apply(machine, there.effects, there.effect, apply, measured);
     if (status == DIG_OK) {
         means_added(batch, measured, y);
     }
@@ -71,14 +71,16 @@ static enum dig_status added_at(struct dig_machine_side *const         machine,
 static enum dig_status find_steps(struct dig_machine_side *const         machine,
                                   const struct dig_machine_answer *const answer,
                                   const struct dig_whitened_digs *const  batch,
-                                  const double middle[][DIG_FEATURES], struct dig_measured other[],
-                                  struct dig_steps *const steps)
+                                  struct dig_measured other[], struct dig_steps *const steps)
 {
-    enum dig_status status = DIG_OK;
+    static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
+    double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    enum dig_status     status =
+        added_at(machine, answer, none, DIG_APPLY_ROUGHLY, other, batch, middle);
     for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
         double z[DIG_MACHINE_NUMBERS] = { 0.0 };
         z[k]                          = 1.0;
-        status = added_at(machine, answer, z, false, other, batch, steps->of[k]);
+        status = added_at(machine, answer, z, DIG_APPLY_ROUGHLY, other, batch, steps->of[k]);
         for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 steps->of[k][g][f] -= middle[g][f];
@@ -102,8 +104,9 @@ enum dig_status dig_machine_steps_make(struct dig_machine_side *const         ma
     if (answer->numbers == 0) {
         return DIG_ENOMATCH;
     }
-    steps->steps           = answer->numbers;
-    enum dig_status status = added_at(machine, answer, none, true, measured, batch, middle);
+    steps->steps = answer->numbers;
+    enum dig_status status =
+        added_at(machine, answer, none, DIG_APPLY_TO_ALL, measured, batch, middle);
     if (status != DIG_OK) {
         return status;
     }
@@ -112,8 +115,7 @@ enum dig_status dig_machine_steps_make(struct dig_machine_side *const         ma
         return DIG_ENOMEM;
     }
     memcpy(other, measured, digs * sizeof *other);
-    status =
-        find_steps(machine, answer, batch, (const double(*)[DIG_FEATURES])middle, other, steps);
+    status = find_steps(machine, answer, batch, other, steps);
     free(other);
     return status;
 }

@@ -154,7 +154,8 @@ static enum dig_status work_out(const struct dig_tracing *const         t,
     }
     dig_effect_of(id)->correct(value, &made->correction);
     memcpy(scratch, t->measured, t->digs * sizeof *scratch);
-    const enum dig_status status = dig_machine_side_apply(side, 1, &made->effect, true, scratch);
+    const enum dig_status status =
+        dig_machine_side_apply(side, 1, &made->effect, DIG_APPLY_TO_ALL, scratch);
     for (size_t i = 0; i < t->digs && status == DIG_OK; i++) {
         dig_features_of((const double(*)[DIG_CURVE_POINTS])scratch[i].machine, made->feature[i]);
     }

@@ -265,13 +265,30 @@ static enum dig_status weigh_soil(struct dig_trace_work *const w)
     return status;
 }
 
-// How well what was found is known, and what competed with it.
+static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id effect)
+{
+    bool is = false;
+    for (size_t e = 0; s->sets > 0 && e < s->set[0].effects; e++) {
+        is = is || s->set[0].effect[e] == effect;
+    }
+    return is;
+}
+
+// How well what was found is known, and what cannot be told from it. Of what has lost, nothing is
+// said.
 static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed)
 {
     struct dig_search *const s      = w->search;
     enum dig_status          status = dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen);
     for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
-        status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i]);
+        if (is_in_set(s, s->rival[i].hypothesis.effect[0])) {
+            status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i]);
+            continue;
+        }
+        for (size_t j = 0; j < DIG_HYPOTHESIS_NUMBERS; j++) {
+            s->rival[i].low[j]  = (double)NAN;
+            s->rival[i].high[j] = (double)NAN;
+        }
     }
     return status;
 }

@@ -63,6 +63,24 @@ static void multiplying_undoes_solving(void **state)
     }
 }
 
+static void a_product_with_the_inverse_solves(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    double   a[N * N], x[N], b[N], inverse[N * N];
+    make(&seed, a, x, b);
+    assert_int_equal(dig_cholesky(N, a), DIG_OK);
+    dig_lower_invert(N, a, inverse);
+    for (size_t i = 0; i < N; i++) {
+        x[i] = b[i];
+    }
+    dig_lower_multiply(N, inverse, x);
+    dig_lower_solve(N, a, b);
+    for (size_t i = 0; i < N; i++) {
+        assert_close(x[i], b[i], 1e-10);
+    }
+}
+
 static void the_determinant_is_that_of_a_known_matrix(void **state)
 {
     (void)state;
@@ -87,6 +105,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_system_is_solved),
         cmocka_unit_test(multiplying_undoes_solving),
+        cmocka_unit_test(a_product_with_the_inverse_solves),
         cmocka_unit_test(the_determinant_is_that_of_a_known_matrix),
         cmocka_unit_test(what_is_not_positive_definite_is_refused),
     };

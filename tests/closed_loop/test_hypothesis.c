@@ -95,30 +95,16 @@ static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
     }
 }
 
-// r' C^-1 r with C = L L', by Gauss and Jordan.
-static double over_covariance(const size_t n, const double lower[], const double r[])
+// r' C^-1 r, where C^-1 = M' M.
+static double over_covariance(const size_t n, const double inverse[], const double r[])
 {
-    double a[DIG_FEATURES][DIG_FEATURES + 1];
+    double sum = 0.0;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
-            a[i][j] = 0.0;
-            for (size_t k = 0; k <= i && k <= j; k++) {
-                a[i][j] += lower[i * n + k] * lower[j * n + k];
+            for (size_t k = i > j ? i : j; k < n; k++) {
+                sum += r[i] * inverse[k * n + i] * inverse[k * n + j] * r[j];
             }
         }
-        a[i][n] = r[i];
-    }
-    double sum = 0.0;
-    for (size_t p = 0; p < n; p++) {
-        for (size_t i = 0; i < n; i++) {
-            const double by = a[i][p] / a[p][p];
-            for (size_t j = p; j <= n && i != p; j++) {
-                a[i][j] -= by * a[p][j];
-            }
-        }
-    }
-    for (size_t i = 0; i < n; i++) {
-        sum += r[i] * a[i][n] / a[i][i];
     }
     return sum;
 }
@@ -154,7 +140,7 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
                            : 0.0;
             }
         }
-        sum += over_covariance(group->features, error[g].lower, rest);
+        sum += over_covariance(group->features, error[g].inverse, rest);
     }
     return sum;
 }

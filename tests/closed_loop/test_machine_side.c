@@ -97,7 +97,7 @@ static void each_effect_is_named_and_taken_off_the_digs(void **state)
         expect_found(c, cases[i].effect, cases[i].parameter, cases[i].value);
         const double before = apart(c, clean, false);
         assert_int_equal(dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect,
-                                                true, c->measured),
+                                                DIG_APPLY_TO_ALL, c->measured),
                          DIG_OK);
         const double after = apart(c, clean, true);
         print_message("%s: %.4f of the moment before, %.4f after\n",
@@ -148,9 +148,9 @@ static void a_payload_may_have_been_there_before_the_first_dig(void **state)
     struct campaign *const c     = trace(&laden, 16);
     double                 left, wrong;
     expect_found(c, DIG_EFFECT_PAYLOAD, NULL, 0.0);
-    assert_int_equal(
-        dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, true, c->measured),
-        DIG_OK);
+    assert_int_equal(dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect,
+                                            DIG_APPLY_TO_ALL, c->measured),
+                     DIG_OK);
     taken_off(c, clean, 0, &left, &wrong);
     print_message("%.3f Nm wrong, %.3f left\n", wrong, left);
     assert_true(wrong > 0.02 && left < 0.4 * wrong);
@@ -169,9 +169,9 @@ static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
     double                 left[DIGS];
     double                 wrong[DIGS];
     assert_true(is_reported(&c->finding, DIG_EFFECT_PAYLOAD));
-    assert_int_equal(
-        dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, true, c->measured),
-        DIG_OK);
+    assert_int_equal(dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect,
+                                            DIG_APPLY_TO_ALL, c->measured),
+                     DIG_OK);
     for (size_t d = 0; d < DIGS; d++) {
         taken_off(c, clean, d, &left[d], &wrong[d]);
         print_message("dig %zu: %.3f Nm wrong, %.3f left\n", d, wrong[d], left[d]);
