@@ -39,9 +39,9 @@ enum dig_effect_id {
 };
 #undef DIG_EFFECT_ID
 
-#define DIG_EFFECT_ONE(id, name) + 1
-enum { DIG_MACHINE_EFFECTS = 0 DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_ONE) };
-#undef DIG_EFFECT_ONE
+#define DIG_EFFECT_COUNTED(id, name) DIG_EFFECT_COUNTED_##id,
+enum { DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_COUNTED) DIG_MACHINE_EFFECTS };
+#undef DIG_EFFECT_COUNTED
 // clang-format on
 
 /// "cylinder_friction", …, "unlisted".
