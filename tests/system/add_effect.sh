@@ -59,9 +59,13 @@ check "ground that thaws is traced with it" \
 check "... and named" is "$(verdict with)" '"thaw"'
 check "... with what it softens by in its interval" within 0.6 "$(softening low)" "$(softening high)"
 check "... and to a tenth" within "$(softening value)" 0.54 0.66
+check "... and no beds are advised, which it needs not" eval '! grep -q "in its beds" "$work/err"'
 check "the model goes on from the eighth dig" eval 'tr -d " \n" <"$work/model.json" | grep -q "\"name\":\"digs\",\"value\":8,"'
 check "the page has its number and every dig before and after it" \
     eval 'grep -q "<th>thaw: softening" "$work/with.html" && [ "$(grep -c ">after</text>" "$work/with.html")" = 24 ]'
+ln -s "$(realpath "$table")" "$work/alone.sqlite"
+"$copy/build/bin/digloop" trace "$work/alone.sqlite" "$work/no_campaign" --json - >/dev/null 2>"$work/err"
+check "it is among those that need no table of effects" grep -q "need no beds (.*thaw.*)" "$work/err"
 "$BIN/digloop" trace "$table" "$work/thaw" --json "$work/without.json" 2>"$work/err"
 check "without it nothing of the list is named" is "$(verdict without)" '"unlisted"'
 
