@@ -6,21 +6,30 @@
 
 #include <stdbool.h>
 
-// Id and name; the names are fixed, people script against them. Those of the machine show in free
-// air, those of the soil do not.
-#define DIG_EFFECTS_OF_MACHINE(effect)                                                             \
-    effect(CYLINDER_FRICTION, cylinder_friction) effect(PRESSURE_OFFSET, pressure_offset)          \
-        effect(BUCKET_WEIGHT, bucket_weight) effect(BUCKET_INERTIA, bucket_inertia)                \
-            effect(PAYLOAD, payload) effect(LINKAGE_GEOMETRY, linkage_geometry)                    \
-                effect(SENSOR_DELAY, sensor_delay)
-#define DIG_EFFECTS_OF_SOIL(effect)                                                                \
-    effect(COHESION, cohesion) effect(ADHESION, adhesion) effect(POLYDISPERSITY, polydispersity)   \
-        effect(GRAIN_SHAPE, grain_shape) effect(GROUND_SLOPE, ground_slope)                        \
-            effect(LAYERING, layering) effect(OBSTACLE, obstacle) effect(COMPACTION, compaction)   \
-                effect(RATE_DEPENDENCE, rate_dependence) effect(WEAR, wear)                        \
-                    effect(BUCKET_FRICTION, bucket_friction)
-
+// Id and name, a line each; the names are fixed, people script against them. Those of the machine
+// show in free air, those of the soil do not.
 // clang-format off
+#define DIG_EFFECTS_OF_MACHINE(effect)           \
+    effect(CYLINDER_FRICTION, cylinder_friction) \
+    effect(PRESSURE_OFFSET, pressure_offset)     \
+    effect(BUCKET_WEIGHT, bucket_weight)         \
+    effect(BUCKET_INERTIA, bucket_inertia)       \
+    effect(PAYLOAD, payload)                     \
+    effect(LINKAGE_GEOMETRY, linkage_geometry)   \
+    effect(SENSOR_DELAY, sensor_delay)
+#define DIG_EFFECTS_OF_SOIL(effect)              \
+    effect(COHESION, cohesion)                   \
+    effect(ADHESION, adhesion)                   \
+    effect(POLYDISPERSITY, polydispersity)       \
+    effect(GRAIN_SHAPE, grain_shape)             \
+    effect(GROUND_SLOPE, ground_slope)           \
+    effect(LAYERING, layering)                   \
+    effect(OBSTACLE, obstacle)                   \
+    effect(COMPACTION, compaction)               \
+    effect(RATE_DEPENDENCE, rate_dependence)     \
+    effect(WEAR, wear)                           \
+    effect(BUCKET_FRICTION, bucket_friction)
+
 #define DIG_EFFECT_ID(id, name) DIG_EFFECT_##id,
 enum dig_effect_id {
     DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_ID)
@@ -30,9 +39,9 @@ enum dig_effect_id {
 };
 #undef DIG_EFFECT_ID
 
-#define DIG_EFFECT_ONE(id, name) + 1
-enum { DIG_MACHINE_EFFECTS = 0 DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_ONE) };
-#undef DIG_EFFECT_ONE
+#define DIG_EFFECT_COUNTED(id, name) DIG_EFFECT_COUNTED_##id,
+enum { DIG_EFFECTS_OF_MACHINE(DIG_EFFECT_COUNTED) DIG_MACHINE_EFFECTS };
+#undef DIG_EFFECT_COUNTED
 // clang-format on
 
 /// "cylinder_friction", …, "unlisted".

@@ -117,8 +117,7 @@ void dig_lines_finish(struct dig_lines *const lines)
 bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
 {
     const struct dig_lines_column *const c = &lines->column[column];
-    return c->effect == DIG_EFFECT_CYLINDER_FRICTION &&
-           c->parameter + 1 == dig_effect_of(c->effect)->parameters;
+    return dig_effect_of(c->effect)->parameter[c->parameter].bent;
 }
 
 // The correction of every segment at these values.

@@ -13,9 +13,9 @@
 // few gravels are left out, u^2 where there is one magnitude, hats at magnitudes that one gravel
 // alone was dug at; all but a_0 are drawn towards nothing as far as the beds allow, and with them
 // the curve over u towards a parabola or a line. A layer below zero is a loose one, above it a hard
-// one: two templates that meet where u is 0. Two effects have a reduced form instead, a factor on
-// the plain dig (estimator/effects/): rate_dependence (pace speed^along)^u, wear 1 + u order.
-// Compaction acts pass - 1 fold.
+// one: two templates that meet where u is 0. An effect without templates is a factor on the plain
+// dig instead, as its file in estimator/effects/ has it. One that differs from dig to dig acts by
+// its share: compaction pass - 1 fold.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SOIL_H
 #define DIG_CLOSED_LOOP_MODEL_SOIL_H

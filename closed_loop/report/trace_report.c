@@ -3,6 +3,7 @@
 #include "closed_loop/report/json.h"
 #include "closed_loop/report/residual_report.h"
 #include "closed_loop/verdict/tell_apart.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -236,18 +237,17 @@ static void put_error_line(FILE *const to, const char *const title,
     }
 }
 
-// The coefficients of a smoother bucket in the gravel found.
-static void put_bucket(FILE *const to, const struct dig_trace *const trace)
+// What applied effects mean in the gravel found.
+static void put_meanings(FILE *const to, const struct dig_trace *const trace)
 {
     for (size_t e = 0; e < trace->effects && trace->applied; e++) {
-        if (trace->effect[e].effect == DIG_EFFECT_BUCKET_FRICTION) {
-            const double left = 1.0 - trace->effect[e].parameter[0].value;
-            (void)fprintf(
-                to,
-                "  bucket: friction %.3g, rolling %.3g, if the table's is as rough as the "
-                "gravel\n",
-                left * trace->gravel.value[DIG_AXIS_FRICTION],
-                left * trace->gravel.value[DIG_AXIS_ROLLING]);
+        const struct dig_effect *const known = dig_effect_of(trace->effect[e].effect);
+        double                         value[DIG_MODEL_PARAMETERS_MAX];
+        char                           text[256];
+        if (known != NULL && known->say != NULL &&
+            dig_effect_values(&trace->effect[e], value) == DIG_OK) {
+            known->say(value, &trace->gravel, sizeof text, text);
+            (void)fprintf(to, "  %s\n", text);
         }
     }
 }
@@ -280,7 +280,7 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
     (void)fprintf(to, "  gravel: friction %.3g, rolling %.3g, density %.4g kg/m3\n",
                   trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
                   trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
-    put_bucket(to, trace);
+    put_meanings(to, trace);
     put_error_line(to, "before", &trace->before, trace->holdouts);
     put_error_line(to, "after ", &trace->after, trace->holdouts);
     (void)fprintf(to,

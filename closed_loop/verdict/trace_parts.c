@@ -292,7 +292,8 @@ void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const
                                                              : "nothing that was tried");
     } else if (trace->tells > 0 && trace->tell[0].how[0] != '\0') {
         dig_tell_apart_say(&trace->tell[0], sizeof trace->advice, trace->advice);
-    } else if (s->significant && s->chosen.hypothesis.effects > 0) {
+    } else if (s->significant && s->chosen.hypothesis.effects > 0 &&
+               dig_effect_of(s->chosen.hypothesis.effect[0])->templated) {
         (void)snprintf(trace->advice, sizeof trace->advice,
                        "a table computed with %s in its beds would serve better than a correction",
                        dig_effect_name(s->chosen.hypothesis.effect[0]));

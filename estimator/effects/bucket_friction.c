@@ -4,10 +4,23 @@
 
 #include "estimator/effects/list.h"
 
+#include <stdio.h>
+
+// What a person knows of a bucket is its friction, not what it lacks.
+static void say(const double value[], const struct dig_gravel *const gravel, const size_t size,
+                char text[])
+{
+    const double left = 1.0 - value[0];
+    (void)snprintf(text, size,
+                   "bucket: friction %.3g, rolling %.3g, if the table's is as rough as the gravel",
+                   left * gravel->value[DIG_AXIS_FRICTION], left * gravel->value[DIG_AXIS_ROLLING]);
+}
+
 const struct dig_effect dig_effect_bucket_friction = {
     .id         = DIG_EFFECT_BUCKET_FRICTION,
     .summary    = "a bucket smoother than the table's",
     .templated  = true,
     .parameters = 1,
     .parameter  = { { "bucket_smoothness", 0.0, 0.0, 1.0, 0.5 } },
+    .say        = say,
 };

@@ -41,7 +41,7 @@ const struct dig_effect dig_effect_cylinder_friction = {
         { "boom_viscous_Nspm", 0.0, -1e6, 1e6, 2e4 },
         { "boom_load_share", 0.0, -0.5, 0.5, 0.05 },
         { "boom_stribeck_N", 0.0, -1e5, 1e5, 1000.0 },
-        { "stribeck_mps", 0.02, 0.001, 0.5, 0.02 },
+        { "stribeck_mps", 0.02, 0.001, 0.5, 0.02, .bent = true },
     },
     .wrong_share = 0.08, .wrong_step = 0.35,
     .correct = correct,

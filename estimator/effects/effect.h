@@ -26,6 +26,7 @@ struct dig_effect_parameter {
     double      absent; // the value at which it does nothing
     double      low, high;
     double      scale; // 1 sigma of the prior
+    bool        bent;  // shapes what the others make, and is nothing by itself
 };
 
 /// In what the digs of one trajectory must differ for an effect to act on each otherwise. Its share
@@ -45,6 +46,9 @@ struct dig_effect {
     const char                 *summary; // one phrase for people
     size_t                      parameters;
     struct dig_effect_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
+    /// What the values mean in a gravel, in one line without its end, where a person knows the
+    /// thing by another number. NULL: the parameters say it.
+    void (*say)(const double value[], const struct dig_gravel *gravel, size_t size, char text[]);
 
     // Of the machine.
 
@@ -58,12 +62,15 @@ struct dig_effect {
     // Of the soil.
 
     enum dig_effect_by by;
-    bool               templated;    // parameter 0 is the magnitude of templates, times the share
-    bool               over_density; // acts by magnitude / density
-    bool               mirrored;     // has a meaning on both sides of absent, dug on one or on both
-    bool   unlike_sides; // magnitudes below absent are of another thing than those above
-    double likeness;     // 1 sigma of what a template may differ by, as a share of itself; 0: usual
-    double reach;        // without templates: the largest parameter 0 that a trace tries
+    size_t             digs_done; // by order: the parameter that holds the digs before counting
+                                  // began, which a saved model sets; 0: none
+    bool   templated;             // parameter 0 is the magnitude of templates, times the share
+    bool   whole;                 // beds are dug at whole magnitudes, from 1
+    bool   over_density;          // acts by magnitude / density
+    bool   mirrored;              // has a meaning on both sides of absent, dug on one or on both
+    bool   unlike_sides;          // magnitudes below absent are of another thing than those above
+    double likeness; // 1 sigma of what a template may differ by, as a share of itself; 0: usual
+    double reach;    // without templates: the largest parameter 0 that a trace tries
 
     /// What is added without a bed, as a share of the plain curve, in a dig of that share, where
     /// the tooth has that speed over the mean of all trajectories. NULL: nothing.

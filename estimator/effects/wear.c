@@ -21,6 +21,7 @@ const struct dig_effect dig_effect_wear = {
         [DIGS]  = { "digs", 0.0, 0.0, 1e6, 1.0 },
     },
     .by = DIG_BY_ORDER,
+    .digs_done = DIGS,
     .reach = 0.15,
     .factor = factor,
 };

@@ -189,10 +189,35 @@ static void every_effect_is_listed_and_absent_changes_nothing(void **state)
         if (effect->factor != NULL) {
             assert_close(effect->factor(value, 5.0, 2.0), 0.0, 0.0);
         }
+        assert_true(effect->templated || !effect->whole);
         assert_int_equal(effect->templated || effect->factor != NULL || effect->reduce != NULL,
                          !dig_effect_is_of_machine(effect->id));
     }
     free(curve);
+}
+
+// Two digs after three are the fifth.
+static void what_counts_digs_goes_on_where_it_was_left(void **state)
+{
+    (void)state;
+    size_t count = 0;
+    for (int e = 0; e < DIG_EFFECT_UNLISTED; e++) {
+        const struct dig_effect *const effect = dig_effect_of((enum dig_effect_id)e);
+        if (effect->digs_done == 0) {
+            continue;
+        }
+        double value[DIG_MODEL_PARAMETERS_MAX];
+        dig_effect_absent(effect, value);
+        assert_int_equal(effect->by, DIG_BY_ORDER);
+        assert_true(effect->digs_done < effect->parameters && effect->factor != NULL);
+        value[0]           = effect->parameter[0].scale;
+        const double fifth = effect->factor(value, 5.0, 1.0);
+        assert_true(fabs(fifth) > 0.0);
+        value[effect->digs_done] = 3.0;
+        assert_close(effect->factor(value, 2.0, 1.0), fifth, 1e-12);
+        count++;
+    }
+    assert_true(count > 0);
 }
 
 static void values_go_by_name_and_strangers_are_refused(void **state)
@@ -308,6 +333,7 @@ int main(void)
         cmocka_unit_test(where_there_is_no_bed_there_is_no_template),
         cmocka_unit_test(a_templates_sigma_is_that_of_two_means),
         cmocka_unit_test(every_effect_is_listed_and_absent_changes_nothing),
+        cmocka_unit_test(what_counts_digs_goes_on_where_it_was_left),
         cmocka_unit_test(values_go_by_name_and_strangers_are_refused),
         cmocka_unit_test(a_model_changes_the_tables_curves),
         cmocka_unit_test(reduced_forms_grow_as_they_say),

@@ -1,5 +1,6 @@
 // Writes the result of a trace as a model file that digsightd loads.
 
+#include "estimator/effects/effect.h"
 #include "files/model_json.h"
 #include "tools/digloop/commands.h"
 
@@ -8,13 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A tooth goes on wearing from where the campaign left it.
+// What changes from dig to dig, as a tooth wears, goes on from where the campaign left it.
 static void count_digs(const size_t digs, struct dig_model_effect *const effect)
 {
-    if (effect->effect == DIG_EFFECT_WEAR && effect->parameters < DIG_MODEL_PARAMETERS_MAX) {
-        const double done = (double)digs;
-        effect->parameter[effect->parameters++] =
-            (struct dig_model_parameter){ "digs", done, done, done };
+    const struct dig_effect *const known = dig_effect_of(effect->effect);
+    if (known != NULL && known->digs_done > 0 && effect->parameters < DIG_MODEL_PARAMETERS_MAX) {
+        struct dig_model_parameter *const done = &effect->parameter[effect->parameters++];
+        (void)snprintf(done->name, sizeof done->name, "%s",
+                       known->parameter[known->digs_done].name);
+        done->value = (double)digs;
+        done->low   = done->value;
+        done->high  = done->value;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "tools/digloop/next_table.h"
 
 #include "core/shell.h"
+#include "estimator/effects/effect.h"
 #include "files/campaign_yaml.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/variant.h"
@@ -57,7 +58,7 @@ static bool magnitude_of(const struct dig_model_effect *const effect, struct wor
         return false;
     }
     const double found = effect->parameter[0].value;
-    *magnitude = effect->effect == DIG_EFFECT_COMPACTION ? fmax(round(found), 1.0) : rounded(found);
+    *magnitude = dig_effect_of(effect->effect)->whole ? fmax(round(found), 1.0) : rounded(found);
     return dig_variant_make(&w->own, effect->effect, *magnitude, &w->varied, NULL) == DIG_OK;
 }
 

@@ -2,6 +2,7 @@
 
 #include "closed_loop/verdict/trace.h"
 #include "closed_loop/report/trace_report.h"
+#include "estimator/effects/effect.h"
 #include "files/whole.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"
@@ -22,6 +23,22 @@ static void name_effects(const char *const table, char path[const DIGLOOP_PATH_S
     (void)snprintf(path, DIGLOOP_PATH_SIZE, "%.*s_effects%s", stem, table, table + stem);
 }
 
+static void say_without_beds(const char *const path)
+{
+    (void)fprintf(stderr,
+                  "digloop: no %s: of the soil's effects only those are named that need no "
+                  "beds (",
+                  path);
+    const char *before = "";
+    for (int e = DIG_MACHINE_EFFECTS; e < DIG_EFFECT_UNLISTED; e++) {
+        if (!dig_effect_of((enum dig_effect_id)e)->templated) {
+            (void)fprintf(stderr, "%s%s", before, dig_effect_name((enum dig_effect_id)e));
+            before = ", ";
+        }
+    }
+    (void)fputs("), and anything else is \"unlisted\"\n", stderr);
+}
+
 enum dig_status digloop_load_effects(const struct digloop_options *const options,
                                      const struct dig_curve_set *const   set,
                                      char                          path[const DIGLOOP_PATH_SIZE],
@@ -34,10 +51,7 @@ enum dig_status digloop_load_effects(const struct digloop_options *const options
     } else {
         name_effects(options->table, path);
         if (stat(path, &found) != 0) {
-            (void)fprintf(stderr,
-                          "digloop: no %s: of the soil's effects only rate dependence and wear can "
-                          "be named, and anything else is \"unlisted\"\n",
-                          path);
+            say_without_beds(path);
             path[0] = '\0';
             return DIG_OK;
         }
