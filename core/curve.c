@@ -4,6 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+const char *dig_channel_name(const enum dig_channel channel)
+{
+    static const char *const name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N", "carried_kg" };
+    assert(channel < DIG_CHANNELS);
+    return name[channel];
+}
+
 static const char *const axis_names[DIG_AXES] = {
     [DIG_AXIS_FRICTION]      = "friction",
     [DIG_AXIS_ROLLING]       = "rolling",

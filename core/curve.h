@@ -31,6 +31,9 @@ enum dig_channel {
     DIG_CHANNELS
 };
 
+/// "My_Nm", "Fx_N", "Fz_N", "carried_kg".
+const char *dig_channel_name(enum dig_channel channel);
+
 /// The axes of a table, in this order wherever gravel is an array.
 enum dig_axis { DIG_AXIS_FRICTION, DIG_AXIS_ROLLING, DIG_AXIS_DENSITY_kgpm3, DIG_AXES };
 
