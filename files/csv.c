@@ -24,8 +24,7 @@ struct reader {
     size_t                       room; // rows allocated
 };
 
-// Cuts the next line off *rest, without its end; NULL at the end of the text.
-static char *next_line(char **const rest)
+char *dig_csv_line(char **const rest)
 {
     char *const line = *rest;
     if (line == NULL || *line == '\0') {
@@ -43,8 +42,7 @@ static char *next_line(char **const rest)
     return line;
 }
 
-// Cuts the next field off *rest, without the blanks around it; NULL at the end of the line.
-static char *next_field(char **const rest)
+char *dig_csv_field(char **const rest)
 {
     char *field = *rest;
     if (field == NULL) {
@@ -65,7 +63,7 @@ static char *next_field(char **const rest)
 
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
-static bool is_comment_or_blank(const char *const line)
+bool dig_csv_is_comment_or_blank(const char *const line)
 {
     const char first = line[strspn(line, " \t")];
     return first == '#' || first == '\0';
@@ -88,7 +86,7 @@ static enum dig_status read_header(struct reader *const r, char *line)
 {
     char known[256];
     bool seen[DIG_CSV_COLUMNS_MAX] = { false };
-    for (const char *field; (field = next_field(&line)) != NULL; r->fields++) {
+    for (const char *field; (field = dig_csv_field(&line)) != NULL; r->fields++) {
         size_t at = 0;
         while (at < r->columns && strcmp(r->column[at].name, field) != 0) {
             at++;
@@ -168,7 +166,7 @@ static enum dig_status read_row(struct reader *const r, char *line)
     }
 
     size_t fields = 0;
-    for (const char *field; (field = next_field(&line)) != NULL; fields++) {
+    for (const char *field; (field = dig_csv_field(&line)) != NULL; fields++) {
         if (fields >= r->fields) {
             continue;
         }
@@ -203,9 +201,9 @@ static enum dig_status read_lines(struct reader *const r, char *text)
     }
     bool            header = false;
     enum dig_status status = DIG_OK;
-    for (char *line; status == DIG_OK && (line = next_line(&text)) != NULL;) {
+    for (char *line; status == DIG_OK && (line = dig_csv_line(&text)) != NULL;) {
         r->line++;
-        if (!is_comment_or_blank(line)) {
+        if (!dig_csv_is_comment_or_blank(line)) {
             status = header ? read_row(r, line) : read_header(r, line);
             header = true;
         }
@@ -263,10 +261,10 @@ bool dig_csv_has(const char *const path, const char *const column)
     for (size_t room = 0; header == NULL && getline(&line, &room, file) > 0;) {
         char *const text            = strncmp(line, byte_order_mark, 3) == 0 ? line + 3 : line;
         text[strcspn(text, "\r\n")] = '\0';
-        header                      = is_comment_or_blank(text) ? NULL : text;
+        header                      = dig_csv_is_comment_or_blank(text) ? NULL : text;
     }
     bool has = false;
-    for (const char *field; header != NULL && !has && (field = next_field(&header)) != NULL;) {
+    for (const char *field; header != NULL && !has && (field = dig_csv_field(&header)) != NULL;) {
         has = strcmp(field, column) == 0;
     }
     free(line);

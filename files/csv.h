@@ -39,4 +39,12 @@ bool dig_csv_has(const char *path, const char *column);
 
 void dig_csv_finish(struct dig_csv *csv);
 
+/// Cuts the next line off *rest, without its end; NULL at the end of the text.
+char *dig_csv_line(char **rest);
+
+/// Cuts the next field off the rest of a line, without the blanks around it; NULL at its end.
+char *dig_csv_field(char **rest);
+
+bool dig_csv_is_comment_or_blank(const char *line);
+
 #endif // DIG_FILES_CSV_H

@@ -137,6 +137,30 @@ enum dig_status dig_lcm_log_next(struct dig_lcm_log *const          log,
     return DIG_OK;
 }
 
+enum dig_status dig_lcm_log_walk(const char *const path,
+                                 enum dig_status (*const take)(void                       *context,
+                                                               const struct dig_lcm_log   *log,
+                                                               const struct dig_lcm_event *event,
+                                                               struct dig_error           *error),
+                                 void *const context, struct dig_error *const error)
+{
+    assert(path != NULL && take != NULL);
+    struct dig_lcm_log         *log    = NULL;
+    const struct dig_lcm_event *event  = NULL;
+    enum dig_status             status = dig_lcm_log_open(path, &log, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    do {
+        status = dig_lcm_log_next(log, &event, error);
+        if (status == DIG_OK && event != NULL) {
+            status = take(context, log, event, error);
+        }
+    } while (status == DIG_OK && event != NULL);
+    dig_lcm_log_close(log);
+    return status;
+}
+
 static enum dig_status refuse_message(const struct dig_lcm_log *const log,
                                       struct dig_error *const         error)
 {
@@ -157,12 +181,16 @@ struct rows {
 // As many as samples had before there were force sensors; what came after is added at the end.
 static const int32_t least_signals = DIG_SIGNAL_TEMPERATURE_degC + 1;
 
-// The log's event, a DIGSIGHT_SAMPLE, as the next row.
-static enum dig_status add_row(const struct dig_lcm_log *const log, struct rows *const rows,
-                               struct dig_error *const error)
+// A DIGSIGHT_SAMPLE as the next row.
+static enum dig_status add_row(void *const context, const struct dig_lcm_log *const log,
+                               const struct dig_lcm_event *const event,
+                               struct dig_error *const           error)
 {
-    const struct dig_lcm_event *const event = &log->event;
-    digsight_sample_t                 message;
+    struct rows *const rows = context;
+    digsight_sample_t  message;
+    if (strcmp(event->channel, "DIGSIGHT_SAMPLE") != 0) {
+        return DIG_OK;
+    }
     if (!dig_lcm_fits(DIG_LCM_SAMPLE_LAYOUT, event->data, event->size) ||
         digsight_sample_t_decode(event->data, 0, (int)event->size, &message) < 0) {
         return refuse_message(log, error);
@@ -210,23 +238,8 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
                                  struct dig_error *const             error)
 {
     assert(path != NULL && recording != NULL);
-    struct rows                 rows   = { 0 };
-    struct dig_lcm_log         *log    = NULL;
-    const struct dig_lcm_event *event  = NULL;
-    enum dig_status             status = dig_lcm_log_open(path, &log, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    while (status == DIG_OK) {
-        status = dig_lcm_log_next(log, &event, error);
-        if (status != DIG_OK || event == NULL) {
-            break;
-        }
-        if (strcmp(event->channel, "DIGSIGHT_SAMPLE") == 0) {
-            status = add_row(log, &rows, error);
-        }
-    }
-    dig_lcm_log_close(log);
+    struct rows     rows   = { 0 };
+    enum dig_status status = dig_lcm_log_walk(path, add_row, &rows, error);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
@@ -244,25 +257,17 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
     return DIG_OK;
 }
 
-enum dig_status dig_lcm_log_each(const char *const path, const struct dig_lcm_reader *const reader,
+static enum dig_status hand_on(void *const context, const struct dig_lcm_log *const log,
+                               const struct dig_lcm_event *const event,
+                               struct dig_error *const           error)
+{
+    const struct dig_lcm_reader *const *const reader = context;
+    return dig_lcm_message_read(event, *reader) == DIG_OK ? DIG_OK : refuse_message(log, error);
+}
+
+enum dig_status dig_lcm_log_each(const char *const path, const struct dig_lcm_reader *reader,
                                  struct dig_error *const error)
 {
-    assert(path != NULL && reader != NULL);
-    struct dig_lcm_log         *log    = NULL;
-    const struct dig_lcm_event *event  = NULL;
-    enum dig_status             status = dig_lcm_log_open(path, &log, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    while (status == DIG_OK) {
-        status = dig_lcm_log_next(log, &event, error);
-        if (status != DIG_OK || event == NULL) {
-            break;
-        }
-        if (dig_lcm_message_read(event, reader) != DIG_OK) {
-            status = refuse_message(log, error);
-        }
-    }
-    dig_lcm_log_close(log);
-    return status;
+    assert(reader != NULL);
+    return dig_lcm_log_walk(path, hand_on, &reader, error);
 }

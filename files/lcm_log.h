@@ -40,8 +40,16 @@ DIG_MUST_CHECK enum dig_status dig_lcm_log_next(struct dig_lcm_log          *log
 /// NULL is allowed.
 void dig_lcm_log_close(struct dig_lcm_log *log);
 
-/// All messages of the daemon's channels in the order they were logged. Errors as above, an empty
-/// log is none.
+/// Hands take(context, log, event) every event in the order they were logged, until one is not
+/// DIG_OK, which is returned; log is as dig_lcm_log_next() has it. Errors as above, an empty log is
+/// none.
+DIG_MUST_CHECK enum dig_status dig_lcm_log_walk(
+    const char *path,
+    enum dig_status (*take)(void *context, const struct dig_lcm_log *log,
+                            const struct dig_lcm_event *event, struct dig_error *error),
+    void *context, struct dig_error *error);
+
+/// All messages of the daemon's channels likewise. DIG_ESCHEMA: one of another version of its type.
 DIG_MUST_CHECK enum dig_status
 dig_lcm_log_each(const char *path, const struct dig_lcm_reader *reader, struct dig_error *error);
 

@@ -232,15 +232,18 @@ static void take_health(void *const context, const int64_t time_us,
     shift->any_health = true;
 }
 
-static enum dig_status take(struct digreport_shift *const     shift,
-                            const struct dig_lcm_event *const event)
+static enum dig_status take(void *const context, const struct dig_lcm_log *const log,
+                            const struct dig_lcm_event *const event, struct dig_error *const error)
 {
-    const struct dig_lcm_reader reader = { .context    = shift,
-                                           .estimate   = take_estimate,
-                                           .match      = take_match,
-                                           .prediction = take_prediction,
-                                           .health     = take_health };
-    shift->status                      = DIG_OK;
+    struct digreport_shift *const shift  = context;
+    const struct dig_lcm_reader   reader = { .context    = shift,
+                                             .estimate   = take_estimate,
+                                             .match      = take_match,
+                                             .prediction = take_prediction,
+                                             .health     = take_health };
+    (void)log;
+    (void)error;
+    shift->status = DIG_OK;
     if (event->size == 0 || event->time_us < 0 || event->time_us > INT64_C(1) << 53) {
         return DIG_OK; // of another channel, or of no time
     }
@@ -258,28 +261,15 @@ enum dig_status digreport_shift_log(struct digreport_shift *const shift, const c
                                     struct dig_error *const error)
 {
     assert(shift != NULL && log != NULL);
-    struct dig_lcm_log         *reading = NULL;
-    const struct dig_lcm_event *event   = NULL;
-    enum dig_status             status  = dig_lcm_log_open(log, &reading, error);
-    if (status != DIG_OK) {
-        return status;
-    }
     digreport_track_finish(&shift->track);
     shift->any_health = false;
     shift->log_digs   = shift->digs;
     shift->match_ns   = 0;
-    while (status == DIG_OK) {
-        status = dig_lcm_log_next(reading, &event, error);
-        if (status != DIG_OK || event == NULL) {
-            break;
-        }
-        status = take(shift, event);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: out of memory", log);
-        }
-    }
-    dig_lcm_log_close(reading);
-    return status;
+    shift->status     = DIG_OK;
+
+    const enum dig_status status = dig_lcm_log_walk(log, take, shift, error);
+    return shift->status == DIG_OK ? status
+                                   : dig_error_set(error, status, "%s: out of memory", log);
 }
 
 const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *const shift,
