@@ -1,7 +1,8 @@
 #include "core/sample.h"
 
+#include "core/text.h"
+
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char *const names[DIG_SIGNALS] = {
@@ -97,12 +98,10 @@ void dig_signal_name_missing(const bool valid[const DIG_SIGNALS], const size_t s
 {
     assert(valid != NULL && size > 0 && text != NULL);
     const enum dig_sensing sensing = dig_signals_sensing(valid);
-    size_t                 used    = 0;
     text[0]                        = '\0';
-    for (int i = 0; i < DIG_SIGNALS && used < size; i++) {
+    for (int i = 0; i < DIG_SIGNALS; i++) {
         if (!valid[i] && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
-            (void)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", names[i]);
-            used = strlen(text);
+            dig_text_list(size, text, names[i]);
         }
     }
 }

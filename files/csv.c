@@ -1,6 +1,7 @@
 #include "files/csv.h"
 
 #include "core/regular.h"
+#include "core/text.h"
 #include "files/whole.h"
 
 #include <assert.h>
@@ -72,12 +73,9 @@ bool dig_csv_is_comment_or_blank(const char *const line)
 // The names asked for, for people: "t_s, pin_x_m, …".
 static const char *names(const struct reader *const r, const size_t size, char text[const])
 {
-    size_t used = 0;
-    text[0]     = '\0';
-    for (size_t i = 0; i < r->columns && used < size; i++) {
-        const int n =
-            snprintf(text + used, size - used, "%s%s", i == 0 ? "" : ", ", r->column[i].name);
-        used += n > 0 ? (size_t)n : 0;
+    text[0] = '\0';
+    for (size_t i = 0; i < r->columns; i++) {
+        dig_text_list(size, text, r->column[i].name);
     }
     return text;
 }

@@ -1,6 +1,7 @@
 #include "files/grid_yaml.h"
 
 #include "core/did_you_mean.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "files/grid_check.h"
 #include "files/yaml.h"
@@ -217,11 +218,9 @@ enum dig_status dig_grid_read(const char *const path, struct dig_grid *const gri
 static const char *names_of(const struct dig_scene *const scene, const size_t size,
                             char text[const])
 {
-    size_t used = 0;
-    for (size_t i = 0; i < scene->trajectories && used < size; i++) {
-        const int n = snprintf(text + used, size - used, "%s%s", i == 0 ? "" : ", ",
-                               scene->trajectory[i].name);
-        used += n > 0 ? (size_t)n : 0;
+    text[0] = '\0';
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        dig_text_list(size, text, scene->trajectory[i].name);
     }
     return text;
 }

@@ -18,8 +18,7 @@ static double finite(const double value)
 static void put_text(FILE *const to, const char *const key, const char *const text)
 {
     char clean[DIG_MODEL_PATH_SIZE];
-    (void)snprintf(clean, sizeof clean, "%s", text);
-    dig_text_clean(clean);
+    dig_text_copy(sizeof clean, clean, text);
     for (char *c = clean; *c != '\0'; c++) {
         if (*c == '\n' || *c == '\t') {
             *c = '?';

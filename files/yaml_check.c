@@ -137,18 +137,13 @@ static enum dig_status check_word(const struct check *const check, const yaml_no
                                   const cyaml_schema_value_t *const schema,
                                   const struct key *const           key)
 {
-    char   list[200] = "";
-    size_t used      = 0;
+    char list[200] = "";
     for (uint32_t i = 0; i < schema->enumeration.count; i++) {
         const char *const word = schema->enumeration.strings[i].str;
         if (strcmp(word, dig_yaml_text_of(node)) == 0) {
             return DIG_OK;
         }
-        if (used < sizeof list) {
-            const int n =
-                snprintf(list + used, sizeof list - used, "%s%s", used == 0 ? "" : ", ", word);
-            used += n > 0 ? (size_t)n : 0;
-        }
+        dig_text_list(sizeof list, list, word);
     }
     return refuse(check, dig_yaml_line_of(node), key, "\"%.60s\", expected one of %s",
                   dig_yaml_text_of(node), list);
@@ -233,11 +228,9 @@ static const cyaml_schema_field_t *field_of(const cyaml_schema_value_t *const sc
 static const char *keys_of(const cyaml_schema_value_t *const schema, const size_t size,
                            char text[const])
 {
-    size_t used = 0;
-    for (const cyaml_schema_field_t *f = schema->mapping.fields; f->key != NULL && used < size;
-         f++) {
-        const int n = snprintf(text + used, size - used, "%s%s", used == 0 ? "" : ", ", f->key);
-        used += n > 0 ? (size_t)n : 0;
+    text[0] = '\0';
+    for (const cyaml_schema_field_t *f = schema->mapping.fields; f->key != NULL; f++) {
+        dig_text_list(size, text, f->key);
     }
     return text;
 }

@@ -1,5 +1,6 @@
 #include "estimator/match/match.h"
 
+#include "core/text.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/nearest.h"
 #include "estimator/match/pool.h"
@@ -9,7 +10,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 void dig_match_find_family(const struct dig_curve_set *const set, struct dig_match *const match)
 {
@@ -31,12 +31,10 @@ bool dig_match_is_family(const struct dig_match *const match)
 void dig_match_untold(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
 {
     assert(match != NULL && text != NULL);
-    int at  = 0;
     text[0] = '\0';
     for (int a = 0; a < DIG_AXES; a++) {
         if (match->untold[a]) {
-            at += snprintf(text + at, (size_t)(DIG_UNTOLD_SIZE - at), "%s%s", at > 0 ? ", " : "",
-                           dig_axis_name((enum dig_axis)a));
+            dig_text_list(DIG_UNTOLD_SIZE, text, dig_axis_name((enum dig_axis)a));
         }
     }
 }

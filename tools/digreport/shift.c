@@ -48,19 +48,13 @@ static int64_t growth(const int64_t before, const int64_t now)
     return before >= 0 && now > before && now <= COUNT_MOST ? now - before : 0;
 }
 
-static void take_text(char text[DIGREPORT_TEXT], const char *const said)
-{
-    (void)snprintf(text, DIGREPORT_TEXT, "%s", said);
-    dig_text_clean(text);
-}
-
 // Extends an event of the same text, or words, or begins one.
 static void add_event(struct digreport_shift *const shift, const int64_t time_us,
                       const struct dig_health_text *const text, const char *const said,
                       const int64_t count)
 {
     struct digreport_event e = { time_us, time_us, count, text, "" };
-    take_text(e.said, said);
+    dig_text_copy(DIGREPORT_TEXT, e.said, said);
     for (size_t back = 0; back < LOOK_BACK && back < shift->events; back++) {
         struct digreport_event *const old = &shift->event[shift->events - 1 - back];
         if (old->text == text && strcmp(old->said, e.said) == 0 &&
@@ -175,8 +169,8 @@ static void take_match(void *const context, const int64_t time_us,
         .high    = { { said->friction_high, said->rolling_high, said->density_high_kgpm3 } },
         .digs    = said->digs,
     };
-    take_text(g.untold, said->untold);
-    take_text(g.wanted, said->wanted);
+    dig_text_copy(DIGREPORT_TEXT, g.untold, said->untold);
+    dig_text_copy(DIGREPORT_TEXT, g.wanted, said->wanted);
     if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
         return;
     }
