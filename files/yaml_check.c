@@ -5,6 +5,7 @@
 #include "core/did_you_mean.h"
 #include "core/text.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -57,27 +58,17 @@ __attribute__((format(printf, 4, 5))) static enum dig_status refuse(const struct
                          key->text[0] == '\0' ? "" : ": ", why);
 }
 
-// What the schema wants, and what stands there instead, for people.
-static const char *wanted(const cyaml_schema_value_t *const schema)
-{
-    switch (schema->type) {
-    case CYAML_INT: return "a whole number";
-    case CYAML_UINT: return "a whole number, not negative";
-    case CYAML_BOOL: return "true or false";
-    case CYAML_ENUM:
-    case CYAML_STRING: return "a text";
-    case CYAML_FLOAT: return "a number";
-    case CYAML_MAPPING:
-    case CYAML_BITFIELD: return "a mapping";
-    case CYAML_FLAGS:
-    case CYAML_SEQUENCE:
-    case CYAML_SEQUENCE_FIXED: return "a list";
-    case CYAML_IGNORE:
-    case CYAML__TYPE_COUNT: break;
-    }
-    return "a value";
-}
+// What a schema wants, for people.
+static const char *const wanted[CYAML__TYPE_COUNT] = {
+    [CYAML_INT] = "a whole number",    [CYAML_UINT] = "a whole number, not negative",
+    [CYAML_BOOL] = "true or false",    [CYAML_ENUM] = "a text",
+    [CYAML_STRING] = "a text",         [CYAML_FLOAT] = "a number",
+    [CYAML_MAPPING] = "a mapping",     [CYAML_SEQUENCE] = "a list",
 
+    [CYAML_SEQUENCE_FIXED] = "a list",
+};
+
+// What stands there instead.
 static const char *stands(const yaml_node_t *const node, const size_t size, char text[const])
 {
     if (node->type == YAML_MAPPING_NODE) {
@@ -186,28 +177,22 @@ static enum dig_status check_scalar(const struct check *const check, const yaml_
     char seen[80];
     if (node->type != YAML_SCALAR_NODE) {
         return refuse(check, dig_yaml_line_of(node), key, "%s, expected %s",
-                      stands(node, sizeof seen, seen), wanted(schema));
+                      stands(node, sizeof seen, seen), wanted[schema->type]);
+    }
+    if (schema->type == CYAML_ENUM) {
+        return check_word(check, node, schema, key);
+    }
+    if (schema->type == CYAML_STRING) {
+        return check_length(check, node, schema, key);
     }
     const char *const text = dig_yaml_text_of(node);
-    bool              fits = true;
-    switch (schema->type) {
-    case CYAML_ENUM: return check_word(check, node, schema, key);
-    case CYAML_STRING: return check_length(check, node, schema, key);
-    case CYAML_INT: fits = is_signed(text, schema->data_size); break;
-    case CYAML_UINT: fits = is_unsigned(text, schema->data_size); break;
-    case CYAML_BOOL: fits = is_bool(text); break;
-    case CYAML_FLOAT: fits = is_number(text); break;
-    case CYAML_FLAGS:
-    case CYAML_MAPPING:
-    case CYAML_BITFIELD:
-    case CYAML_SEQUENCE:
-    case CYAML_SEQUENCE_FIXED:
-    case CYAML_IGNORE:
-    case CYAML__TYPE_COUNT: break;
-    }
+    const bool        fits = schema->type == CYAML_INT    ? is_signed(text, schema->data_size)
+                             : schema->type == CYAML_UINT ? is_unsigned(text, schema->data_size)
+                             : schema->type == CYAML_BOOL ? is_bool(text)
+                                                          : is_number(text);
     return fits ? DIG_OK
                 : refuse(check, dig_yaml_line_of(node), key, "%s, expected %s",
-                         stands(node, sizeof seen, seen), wanted(schema));
+                         stands(node, sizeof seen, seen), wanted[schema->type]);
 }
 
 // These call each other as deep as the schema nests, which is finite; the document, with its
@@ -294,7 +279,7 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
             dig_yaml_value(check->document, map, f->key) == NULL) {
             const struct key key = member_of(at, f->key);
             return refuse(check, dig_yaml_line_of(map), &key, "missing, expected %s",
-                          wanted(&f->value));
+                          wanted[f->value.type]);
         }
     }
     return DIG_OK;
@@ -340,22 +325,15 @@ static enum dig_status check_value(const struct check *const check, const yaml_n
     if (may_be_null && node->type == YAML_SCALAR_NODE && dig_yaml_text_of(node)[0] == '\0') {
         return DIG_OK;
     }
-    switch (schema->type) {
-    case CYAML_MAPPING: return check_mapping(check, node, schema, key);
-    case CYAML_SEQUENCE:
-    case CYAML_SEQUENCE_FIXED: return check_list(check, node, schema, key);
-    case CYAML_INT:
-    case CYAML_UINT:
-    case CYAML_BOOL:
-    case CYAML_ENUM:
-    case CYAML_FLOAT:
-    case CYAML_STRING: return check_scalar(check, node, schema, key);
-    case CYAML_FLAGS:    // libcyaml's own words have to do for these two,
-    case CYAML_BITFIELD: // which no file of ours uses
-    case CYAML_IGNORE:
-    case CYAML__TYPE_COUNT: break;
+    // No file of ours has flags or bit fields.
+    assert(schema->type != CYAML_FLAGS && schema->type != CYAML_BITFIELD);
+    if (schema->type == CYAML_MAPPING) {
+        return check_mapping(check, node, schema, key);
     }
-    return DIG_OK;
+    if (schema->type == CYAML_SEQUENCE || schema->type == CYAML_SEQUENCE_FIXED) {
+        return check_list(check, node, schema, key);
+    }
+    return schema->type == CYAML_IGNORE ? DIG_OK : check_scalar(check, node, schema, key);
 }
 
 enum dig_status dig_yaml_check(const char *const path, yaml_document_t *const document,

@@ -130,7 +130,7 @@ static void take_pool(const struct dig_curve_set *const set,
         dig.first       = from->first;
         dig.last        = from->last;
         dig.forces      = from->forces;
-        const bool held = dig_observation_check(set, &dig) == DIG_OK &&
+        const bool held = dig_observations_check(set, 1, &dig) == DIG_OK &&
                           (dig_approach_is_plain(&dig.approach) ||
                            dig_approach_varies(set, (size_t)dig.trajectory));
         if (!held) {

@@ -1,39 +1,21 @@
 #include "tools/rig/serve_modbus.h"
 
-#include "tools/rig/wire.h"
+#include "tools/rig/modbus_server.h"
 
 #include <arpa/inet.h>
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <modbus/modbus.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#define CLIENTS_MAX 16
-
 // How long a thread sleeps before it looks whether it is to end.
 static const int look_up_ms = 50;
-
-struct dig_rig_modbus {
-    struct dig_rig_board   *board;
-    modbus_t               *context;
-    modbus_mapping_t       *map;
-    int                     listening; // -1: RTU
-    bool                    open;      // RTU: the line is
-    int                     clients;
-    int                     client[CLIENTS_MAX];
-    struct dig_rig_requests requests;
-    uint64_t                random; // for faults
-    pthread_t               thread;
-};
 
 static void destroy(struct dig_rig_modbus *const server)
 {
@@ -77,106 +59,6 @@ static struct dig_rig_modbus *create(struct dig_rig_board *const board, modbus_t
     return server;
 }
 
-// On a serial line what a disturbed one would bring before the answer; over TCP, whose own checksum
-// lets no flipped bit through, an answer that is not one to this request: of another transaction,
-// of another function, or of one register where more were asked for. True: it stands for the
-// answer.
-static bool damage(const struct dig_rig_modbus *const server, const uint8_t request[])
-{
-    const int line = modbus_get_socket(server->context);
-    if (server->listening < 0) {
-        static const uint8_t rubbish[] = { 0x01, 0x04, 0x55 };
-        const ssize_t        written   = write(line, rubbish, sizeof rubbish);
-        (void)written; // lost on the line is lost
-        return false;
-    }
-    uint8_t answer[] = {
-        request[0], request[1], 0, 0, 0, 5, request[6], request[7], 2, 0x12, 0x34
-    };
-    switch (server->requests.damaged % 3) {
-    case 0: answer[1] ^= 0x55; break;
-    case 1: answer[7] ^= 0x07; break;
-    default: break;
-    }
-    (void)send(line, answer, sizeof answer, MSG_NOSIGNAL);
-    return true;
-}
-
-// What a fault makes of a request: true when it is not to be answered as it should.
-static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[], const bool far)
-{
-    const struct dig_rig_manner manner = dig_rig_board_manner(server->board);
-    if (manner.slow_s > 0.0) {
-        (void)poll(NULL, 0, (int)(1e3 * manner.slow_s));
-    }
-    if ((manner.far_silent && far) ||
-        (manner.drop > 0.0 && dig_rig_wire_random(&server->random) < manner.drop)) {
-        server->requests.unanswered++;
-        return true;
-    }
-    if ((manner.far && far) ||
-        (manner.exception > 0.0 && dig_rig_wire_random(&server->random) < manner.exception)) {
-        server->requests.excepted++;
-        (void)modbus_reply_exception(server->context, request,
-                                     MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
-        return true;
-    }
-    if (manner.corrupt > 0.0 && dig_rig_wire_random(&server->random) < manner.corrupt) {
-        server->requests.damaged++;
-        return damage(server, request);
-    }
-    return false;
-}
-
-// What libmodbus replies when the first register asked for is this one.
-static int reply(struct dig_rig_modbus *const server, const uint8_t request[], const int length,
-                 const int header, const int first)
-{
-    uint8_t near[MODBUS_TCP_MAX_ADU_LENGTH];
-    assert(length <= (int)sizeof near);
-    memcpy(near, request, (size_t)length);
-    near[header + 1] = (uint8_t)(first >> 8);
-    near[header + 2] = (uint8_t)(first & 0xFF);
-    return modbus_reply(server->context, near, length, server->map);
-}
-
-// One request: data for a read, exception 1 for anything else. False: the connection is to end.
-static bool answer(struct dig_rig_modbus *const server, const uint8_t request[], const int length)
-{
-    const int     header   = modbus_get_header_length(server->context);
-    const uint8_t function = request[header];
-    const bool    rtu      = server->listening < 0;
-    const bool    reads =
-        function == MODBUS_FC_READ_HOLDING_REGISTERS || function == MODBUS_FC_READ_INPUT_REGISTERS;
-    const int asked = reads ? request[header + 1] << 8 | request[header + 2] : 0;
-
-    if (dig_rig_board_read(server->board, server->map->tab_registers)) {
-        server->requests.unanswered++;
-        return true;
-    }
-    if (misbehave(server, request, asked >= DIG_RIG_FAR)) {
-        return true;
-    }
-    if (!reads) {
-        server->requests.refused[function]++;
-        // What libmodbus does not know, it does not know the length of either. Before the reply:
-        // the client's next request may come right behind it.
-        (void)modbus_flush(server->context);
-        // A broadcast is never answered.
-        return (rtu && request[0] == MODBUS_BROADCAST_ADDRESS) ||
-               modbus_reply_exception(server->context, request, MODBUS_EXCEPTION_ILLEGAL_FUNCTION) >
-                   0;
-    }
-    memcpy(server->map->tab_input_registers, server->map->tab_registers,
-           sizeof server->map->tab_registers[0] * DIG_RIG_REGISTERS);
-    const int       first = asked >= DIG_RIG_FAR ? asked - DIG_RIG_FAR : asked;
-    const int       count = request[header + 3] << 8 | request[header + 4];
-    const bool      fits  = count >= 1 && first + count <= DIG_RIG_REGISTERS;
-    uint64_t *const tally = fits ? server->requests.served : server->requests.refused;
-    tally[function]++;
-    return reply(server, request, length, header, fits ? first : asked) > 0;
-}
-
 static void drop_client(struct dig_rig_modbus *const server, const int index)
 {
     (void)close(server->client[index]);
@@ -190,7 +72,7 @@ static void accept_client(struct dig_rig_modbus *const server)
         return;
     }
     // The oldest makes room: it may be one that went away without a word.
-    if (server->clients == CLIENTS_MAX) {
+    if (server->clients == DIG_RIG_CLIENTS_MAX) {
         drop_client(server, 0);
     }
     server->client[server->clients++] = fd;
@@ -201,8 +83,9 @@ static void *serve_tcp(void *const argument)
 {
     struct dig_rig_modbus *const server = argument;
     while (!dig_rig_board_is_stopped(server->board)) {
-        struct pollfd wait[CLIENTS_MAX + 1] = { { .fd = server->listening, .events = POLLIN } };
-        const int     clients               = server->clients;
+        struct pollfd wait[DIG_RIG_CLIENTS_MAX + 1] = { { .fd     = server->listening,
+                                                          .events = POLLIN } };
+        const int     clients                       = server->clients;
         for (int i = 0; i < clients; i++) {
             wait[1 + i] = (struct pollfd){ .fd = server->client[i], .events = POLLIN };
         }
@@ -217,7 +100,7 @@ static void *serve_tcp(void *const argument)
             uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
             (void)modbus_set_socket(server->context, server->client[i]);
             const int length = modbus_receive(server->context, request);
-            if (length < 0 || (length > 0 && !answer(server, request, length))) {
+            if (length < 0 || (length > 0 && !dig_rig_modbus_answer(server, request, length))) {
                 drop_client(server, i);
             }
         }
@@ -250,7 +133,7 @@ static void *serve_rtu(void *const argument)
         uint8_t   request[MODBUS_RTU_MAX_ADU_LENGTH];
         const int length = modbus_receive(server->context, request);
         if (length > 0) {
-            (void)answer(server, request, length);
+            (void)dig_rig_modbus_answer(server, request, length);
         } else if (length == 0) {
             // For another slave. libmodbus takes what comes next for that slave's reply: let it
             // wait for it now, or it would swallow the next request to us where there is no such
@@ -316,7 +199,7 @@ enum dig_status dig_rig_modbus_start_tcp(const char *const           address,
     if (made == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: %s", address, modbus_strerror(errno));
     }
-    made->listening = modbus_tcp_listen(made->context, CLIENTS_MAX);
+    made->listening = modbus_tcp_listen(made->context, DIG_RIG_CLIENTS_MAX);
     struct sockaddr_in bound;
     socklen_t          length = sizeof bound;
     if (made->listening < 0 || fcntl(made->listening, F_SETFL, O_NONBLOCK) != 0 ||
