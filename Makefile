@@ -45,7 +45,7 @@ say  = @printf '  %-6s %s\n' $(1) $(2)
 # A program's main is the one source of its folder that has the program's name.
 modules   := closed_loop firmware_host offline_dem estimator tables files core
 src        = $(filter-out firmware_host/digsightd.c,$(wildcard $(1)/*.c $(1)/*/*.c))
-rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c))
+rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c tools/rig/*/*.c))
 tool_src  := $(wildcard tools/*.c)
 # The rest of a program too large for one file: tools/NAME/*.c belongs to tools/NAME.c.
 tool_parts := $(foreach t,$(tool_src),$(wildcard $(t:.c=)/*.c))

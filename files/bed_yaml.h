@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/scene.h"
-#include "files/yaml_schema.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <stdint.h>
 

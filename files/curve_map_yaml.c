@@ -1,8 +1,8 @@
 #include "files/curve_map_yaml.h"
 
 #include "core/name.h"
-#include "files/yaml.h"
-#include "files/yaml_schema.h"
+#include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <math.h>

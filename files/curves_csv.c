@@ -2,8 +2,8 @@
 
 #include "core/name.h"
 #include "core/units.h"
-#include "files/csv.h"
-#include "files/whole.h"
+#include "files/text/csv.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <math.h>

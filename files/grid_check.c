@@ -1,7 +1,7 @@
 #include "files/grid_check.h"
 
 #include "core/units.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 
 #include <assert.h>
 #include <math.h>

@@ -4,8 +4,8 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "files/grid_check.h"
-#include "files/yaml.h"
-#include "files/yaml_schema.h"
+#include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <math.h>

@@ -2,8 +2,8 @@
 
 #include "core/geometry.h"
 #include "core/units.h"
-#include "files/yaml.h"
-#include "files/yaml_schema.h"
+#include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 

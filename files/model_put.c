@@ -2,7 +2,7 @@
 
 #include "core/text.h"
 #include "files/model_json.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <math.h>

@@ -25,8 +25,11 @@ rooms='
 core                   approach approach_set bed_plan command_line contact curve did_you_mean effect effect_set
                        error geometry ground help linkage log_normal machine model name part recording regular
                        sample scene sha256 shell similar status table_step text units vec2
-files                  bed_csv campaign_yaml curves_csv grid_yaml health_text identity_json lcm_log lcm_message
-                       machine_yaml model_json predicted_curve recording_csv scene_yaml whole yaml
+files/text             whole | csv
+files/yaml             yaml | yaml_schema
+files/lcm              health_text lcm_log lcm_message predicted_curve
+files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json machine_yaml model_json
+                       recording_csv scene_yaml
 estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
 estimator/track        inertia_error observation phase route settings track window | abort_detection ending
@@ -36,6 +39,7 @@ estimator/approach     approach_error approach_fit approach_slots approaches int
 estimator/effects      effect template
 estimator/match        gravel_match match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
+tables/schema          | canonical_scene schema seal
 tables                 derive export listed load load_effects merge queue scene store
 offline_dem/law        | both law law_general period random rigid wall
 offline_dem/shapes     | bucket_surface clump rock_surface tool
@@ -63,6 +67,8 @@ firmware_host/tick     | loop
 firmware_host/matching | fit
 firmware_host/publish  | publish
 firmware_host
+tools/rig/motion
+tools/rig/bus
 '
 
 # A foreign library is included only where it is wrapped: one file, or one folder (by its prefix).
@@ -70,7 +76,7 @@ owners='
 nlopt.h      estimator/match/fit_nlopt.c
 modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tools/rig/
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
-lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c tools/digwatch/source.c
+lcm/         firmware_host/publish/output_lcm.c files/lcm/lcm_log.c tools/digwatch/source.c
 curses.h     tools/digwatch/terminal.c
 cyaml/       files/ firmware_host/config/
 yaml.h       files/ firmware_host/config/

@@ -6,7 +6,7 @@
 #include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
-#include "tables/schema.h"
+#include "tables/schema/schema.h"
 
 #include <stdbool.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/effect.h"
 #include "core/name.h"
-#include "tables/seal.h"
+#include "tables/schema/seal.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
 

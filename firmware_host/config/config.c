@@ -1,6 +1,6 @@
 #include "firmware_host/config/config.h"
 
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/config/config_parts.h"
 
 #include <assert.h>

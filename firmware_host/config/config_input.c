@@ -2,7 +2,7 @@
 
 #include "firmware_host/config/config_parts.h"
 
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 
 #include <assert.h>
 #include <stdio.h>

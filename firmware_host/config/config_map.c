@@ -1,7 +1,7 @@
 // Reads and checks the signal map's YAML.
 
 #include "core/did_you_mean.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/bus/register_plan.h"
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config_map_parts.h"

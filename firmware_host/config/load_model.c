@@ -3,7 +3,7 @@
 #include "core/approach_set.h"
 #include "estimator/effects/effect.h"
 #include "files/model_json.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "tables/load.h"
 #include "tables/load_effects.h"
 

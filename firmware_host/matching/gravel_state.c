@@ -3,7 +3,7 @@
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 #include "files/identity_json.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
-// Tests for files/lcm_log.c, against logs written by LCM's own library.
+// Tests for files/lcm/lcm_log.c, against logs written by LCM's own library.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include "messages/digsight_sample_t.h"
 #include "tests/logged.h"

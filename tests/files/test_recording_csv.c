@@ -1,8 +1,8 @@
-// Tests for files/recording_csv.c, files/csv.c and files/whole.c
+// Tests for files/recording_csv.c, files/text/csv.c and files/text/whole.c
 
 #include "files/recording_csv.h"
 
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tests/scratch.h"
 
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 
 #include "firmware_host/publish/output.h"
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "tests/scratch.h"
 
 static const struct dig_curve_set *set(void)

@@ -1,9 +1,9 @@
-// Tests for tools/rig/serve_modbus.c and board.c with libmodbus clients: TCP on a free port of the
-// loopback, RTU over a pseudo terminal.
+// Tests for tools/rig/bus/serve_modbus.c and board.c with libmodbus clients: TCP on a free port of
+// the loopback, RTU over a pseudo terminal.
 
 #define _XOPEN_SOURCE 600 // posix_openpt() and its kin
 
-#include "tools/rig/serve_modbus.h"
+#include "tools/rig/bus/serve_modbus.h"
 
 #include "tests/testlib.h"
 

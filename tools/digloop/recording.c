@@ -5,7 +5,7 @@
 #include "core/sample.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/track/inertia_error.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "firmware_host/config/load_model.h"

@@ -1,7 +1,7 @@
 #include "tools/digreport/shift.h"
 
 #include "core/text.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <assert.h>
 #include <math.h>

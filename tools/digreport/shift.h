@@ -4,8 +4,8 @@
 #define DIG_TOOLS_DIGREPORT_SHIFT_H
 
 #include "core/error.h"
-#include "files/health_text.h"
-#include "files/lcm_message.h"
+#include "files/lcm/health_text.h"
+#include "files/lcm/lcm_message.h"
 #include "tools/digreport/shift_dig.h"
 
 #define DIGREPORT_TEXT 256

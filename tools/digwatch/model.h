@@ -6,9 +6,9 @@
 #define DIG_TOOLS_DIGWATCH_MODEL_H
 
 #include "core/curve.h"
-#include "files/health_text.h"
-#include "files/lcm_message.h"
-#include "files/predicted_curve.h"
+#include "files/lcm/health_text.h"
+#include "files/lcm/lcm_message.h"
+#include "files/lcm/predicted_curve.h"
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 #include "tools/rig/buses.h"
 
-#include "tools/rig/can_layout.h"
-#include "tools/rig/serve_can.h"
+#include "tools/rig/bus/can_layout.h"
+#include "tools/rig/bus/serve_can.h"
 
 #include <stdio.h>
 

@@ -5,10 +5,10 @@
 
 #include "core/error.h"
 #include "core/sample.h"
-#include "tools/rig/board.h"
+#include "tools/rig/bus/board.h"
+#include "tools/rig/bus/serve_modbus.h"
+#include "tools/rig/bus/wire.h"
 #include "tools/rig/options.h"
-#include "tools/rig/serve_modbus.h"
-#include "tools/rig/wire.h"
 
 #include <stdbool.h>
 #include <stdint.h>

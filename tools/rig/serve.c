@@ -1,7 +1,7 @@
 #include "tools/rig/serve.h"
 
+#include "tools/rig/bus/fault.h"
 #include "tools/rig/buses.h"
-#include "tools/rig/fault.h"
 #include "tools/rig/sensors.h"
 
 #include <errno.h>
