@@ -226,8 +226,8 @@ static enum dig_status read_lines(struct reader *const r, char *text)
             started = true;
             continue;
         }
-        struct sample sample;
-        status = read_sample(r, line, &sample);
+        struct sample sample = { .of = { .packing = 0 } };
+        status               = read_sample(r, line, &sample);
         if (status == DIG_OK) {
             status = take_sample(r, &sample);
         }

@@ -181,10 +181,35 @@ struct rows {
 // As many as samples had before there were force sensors; what came after is added at the end.
 static const int32_t least_signals = DIG_SIGNAL_TEMPERATURE_degC + 1;
 
-// A DIGSIGHT_SAMPLE as the next row.
-static enum dig_status add_row(void *const context, const struct dig_lcm_log *const log,
-                               const struct dig_lcm_event *const event,
-                               struct dig_error *const           error)
+// A message as the next row.
+static enum dig_status add_row(struct rows *const rows, const digsight_sample_t *const message,
+                               const char *const path, struct dig_error *const error)
+{
+    if (rows->count >= ROWS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%s: more than %zu samples, expected fewer", path,
+                             ROWS_MAX);
+    }
+    if (rows->count == rows->room) {
+        const size_t             room  = rows->room == 0 ? 1024 : 2 * rows->room;
+        struct dig_sample *const grown = realloc(rows->row, room * sizeof *grown);
+        if (grown == NULL) {
+            return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        }
+        rows->row  = grown;
+        rows->room = room;
+    }
+    struct dig_sample sample = { .time_ns = message->time_ns };
+    for (int i = 0; i < message->signals; i++) {
+        sample.valid[i] = message->valid[i] != 0 && isfinite(message->value[i]);
+        sample.value[i] = sample.valid[i] ? message->value[i] : 0.0;
+    }
+    rows->row[rows->count++] = sample;
+    return DIG_OK;
+}
+
+static enum dig_status take_sample(void *const context, const struct dig_lcm_log *const log,
+                                   const struct dig_lcm_event *const event,
+                                   struct dig_error *const           error)
 {
     struct rows *const rows = context;
     digsight_sample_t  message;
@@ -204,30 +229,9 @@ static enum dig_status add_row(void *const context, const struct dig_lcm_log *co
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: event %" PRIu64 ": time_ns %" PRId64 ", expected 0 to 2^62",
                                log->path, event->number, message.time_ns);
-    } else if (rows->count > 0 && message.time_ns <= rows->row[rows->count - 1].time_ns) {
-        // A repetition, or a second daemon's: a recording ascends.
-    } else {
-        if (rows->count >= ROWS_MAX) {
-            digsight_sample_t_decode_cleanup(&message);
-            return dig_error_set(error, DIG_EINVAL, "%s: more than %zu samples, expected fewer",
-                                 log->path, ROWS_MAX);
-        }
-        if (rows->count == rows->room) {
-            const size_t             room  = rows->room == 0 ? 1024 : 2 * rows->room;
-            struct dig_sample *const grown = realloc(rows->row, room * sizeof *grown);
-            if (grown == NULL) {
-                digsight_sample_t_decode_cleanup(&message);
-                return dig_error_set(error, DIG_ENOMEM, "%s: no memory", log->path);
-            }
-            rows->row  = grown;
-            rows->room = room;
-        }
-        struct dig_sample sample = { .time_ns = message.time_ns };
-        for (int i = 0; i < message.signals; i++) {
-            sample.valid[i] = message.valid[i] != 0 && isfinite(message.value[i]);
-            sample.value[i] = sample.valid[i] ? message.value[i] : 0.0;
-        }
-        rows->row[rows->count++] = sample;
+    } else if (rows->count == 0 || message.time_ns > rows->row[rows->count - 1].time_ns) {
+        // Else a repetition, or a second daemon's: a recording ascends.
+        status = add_row(rows, &message, log->path, error);
     }
     digsight_sample_t_decode_cleanup(&message);
     return status;
@@ -239,7 +243,7 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
 {
     assert(path != NULL && recording != NULL);
     struct rows     rows   = { 0 };
-    enum dig_status status = dig_lcm_log_walk(path, add_row, &rows, error);
+    enum dig_status status = dig_lcm_log_walk(path, take_sample, &rows, error);
     if (status == DIG_OK && rows.count < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,

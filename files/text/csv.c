@@ -118,8 +118,9 @@ static enum dig_status make_room(struct reader *const r)
         return DIG_OK;
     }
     if (r->room >= ROWS_MAX) {
-        return dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
-                             r->path, r->line, ROWS_MAX);
+        (void)dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
+                            r->path, r->line, ROWS_MAX);
+        return DIG_EINVAL;
     }
     const size_t  room  = r->room == 0 ? 1024 : r->room * 2;
     double *const value = realloc(r->csv.value, room * r->columns * sizeof *value);
@@ -131,7 +132,8 @@ static enum dig_status make_room(struct reader *const r)
         r->csv.line = line;
     }
     if (value == NULL || line == NULL) {
-        return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
+        (void)dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
+        return DIG_ENOMEM;
     }
     r->room = room;
     return DIG_OK;
