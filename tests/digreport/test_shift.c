@@ -3,6 +3,7 @@
 
 #include "tools/digreport/shift.h"
 
+#include "tests/blank_messages.h"
 #include "tests/logged.h"
 #include "tests/scratch.h"
 #include "tools/digreport/shift_page.h"
@@ -15,7 +16,6 @@ LOG_TYPE(health)
 #define START_us INT64_C(1700000000000000) // 2023-11-14 22:13:20 UTC
 #define MINUTE   INT64_C(60000000)
 
-static char no_text[] = "";
 static char actual[]  = "actual";
 static char running[] = "running";
 static char hostile[] = "\033[2J<script>alert('x')<img src=x>\"&\xff /home/somebody/run.csv";
@@ -48,24 +48,22 @@ static lcm_eventlog_t *begin(const char *const name)
 static digsight_match_t a_match(const int64_t time_us, const double friction, const bool valid,
                                 char *const text)
 {
-    return (digsight_match_t){ .time_ns            = time_us, // any that differs
-                               .valid              = valid ? 1 : 0,
-                               .friction           = friction,
-                               .friction_low       = friction - 0.1,
-                               .friction_high      = friction + 0.1,
-                               .rolling            = 0.5,
-                               .rolling_low        = 0.3,
-                               .rolling_high       = 0.8,
-                               .density_kgpm3      = 2500.0,
-                               .density_low_kgpm3  = 2000.0,
-                               .density_high_kgpm3 = 3000.0,
-                               .digs               = 1,
-                               .trajectory         = no_text,
-                               .table              = no_text,
-                               .wanted             = text,
-                               .hint_trajectory    = no_text,
-                               .advice             = no_text,
-                               .untold             = text };
+    digsight_match_t m   = blank_match();
+    m.time_ns            = time_us; // any that differs
+    m.valid              = valid ? 1 : 0;
+    m.friction           = friction;
+    m.friction_low       = friction - 0.1;
+    m.friction_high      = friction + 0.1;
+    m.rolling            = 0.5;
+    m.rolling_low        = 0.3;
+    m.rolling_high       = 0.8;
+    m.density_kgpm3      = 2500.0;
+    m.density_low_kgpm3  = 2000.0;
+    m.density_high_kgpm3 = 3000.0;
+    m.digs               = 1;
+    m.wanted             = text;
+    m.untold             = text;
+    return m;
 }
 
 static void put_match(lcm_eventlog_t *const log, const int64_t time_us, const double friction,
@@ -77,51 +75,32 @@ static void put_match(lcm_eventlog_t *const log, const int64_t time_us, const do
 
 static digsight_health_t healthy(void)
 {
-    return (digsight_health_t){ .state           = running,
-                                .input           = no_text,
-                                .note            = no_text,
-                                .missing_signals = no_text,
-                                .table           = no_text,
-                                .advice          = no_text };
+    digsight_health_t h = blank_health();
+    h.state             = running;
+    return h;
 }
 
 // A dig of one second at this moment, where 10 kNm +- 1 kNm and 20 kJ +- 2 kJ were predicted.
 static void put_dig(lcm_eventlog_t *const log, const int64_t time_us, const int32_t digs,
                     const double moment_Nm)
 {
-    double moment[DIG_PREDICTED_POINTS];
-    double sigma[DIG_PREDICTED_POINTS];
-    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
-        moment[i] = 10000.0;
-        sigma[i]  = 1000.0;
-    }
-    const digsight_prediction_t p = { .valid           = 1,
-                                      .trajectory      = actual,
-                                      .to_progress     = 1.0,
-                                      .points          = DIG_PREDICTED_POINTS,
-                                      .moment_Nm       = moment,
-                                      .sigma_Nm        = sigma,
-                                      .force_x_N       = sigma,
-                                      .force_z_N       = sigma,
-                                      .sigma_force_x_N = sigma,
-                                      .sigma_force_z_N = sigma,
-                                      .peak_Nm         = 10000.0,
-                                      .peak_sigma_Nm   = 1000.0,
-                                      .energy_J        = 20000.0,
-                                      .energy_sigma_J  = 2000.0,
-                                      .reason          = no_text,
-                                      .advice          = no_text };
+    double                moment[DIG_PREDICTED_POINTS];
+    double                sigma[DIG_PREDICTED_POINTS];
+    digsight_prediction_t p = blank_prediction(actual, 10000.0, 10000.0, 1000.0, moment, sigma);
+    p.peak_Nm               = 10000.0;
+    p.peak_sigma_Nm         = 1000.0;
+    p.energy_J              = 20000.0;
+    p.energy_sigma_J        = 2000.0;
     for (int i = 0; i <= 11; i++) {
-        const digsight_estimate_t e = { .time_ns      = 1000 * (time_us + 100000 * i),
-                                        .moment_valid = 1,
-                                        .force_valid  = 1,
-                                        .moment_Nm    = moment_Nm,
-                                        .phase        = i <= 10 ? 2 : 3,
-                                        .dig_count    = i <= 10 ? digs : digs + 1,
-                                        .trajectory   = actual,
-                                        .progress     = 0.1 * i,
-                                        .missing      = no_text,
-                                        .advice       = no_text };
+        digsight_estimate_t e = blank_estimate();
+        e.time_ns             = 1000 * (time_us + 100000 * i);
+        e.moment_valid        = 1;
+        e.force_valid         = 1;
+        e.moment_Nm           = moment_Nm;
+        e.phase               = i <= 10 ? 2 : 3;
+        e.dig_count           = i <= 10 ? digs : digs + 1;
+        e.trajectory          = actual;
+        e.progress            = 0.1 * i;
         log_estimate(log, "DIGSIGHT_ESTIMATE", time_us + 100000 * i, &e);
         if (i == 0) {
             log_prediction(log, "DIGSIGHT_PREDICTION", time_us, &p);
