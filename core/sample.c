@@ -65,7 +65,7 @@ bool dig_signal_is_needed(const enum dig_sensing sensing, const enum dig_signal 
                : signal == DIG_SIGNAL_BUCKET_rad || signal >= DIG_SIGNAL_PIN_X_m;
 }
 
-bool dig_signal_tells_moment(const enum dig_sensing sensing, const enum dig_signal signal)
+bool dig_signal_gives_moment(const enum dig_sensing sensing, const enum dig_signal signal)
 {
     const bool of_others = signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_ARM_ROD_Pa;
     return dig_signal_is_needed(sensing, signal) && !of_others;
@@ -77,7 +77,7 @@ bool dig_sample_has_moment(const struct dig_sample *const sample)
     const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
     bool                   has     = true;
     for (int i = 0; i < DIG_SIGNALS; i++) {
-        has = has && (sample->valid[i] || !dig_signal_tells_moment(sensing, (enum dig_signal)i));
+        has = has && (sample->valid[i] || !dig_signal_gives_moment(sensing, (enum dig_signal)i));
     }
     return has;
 }

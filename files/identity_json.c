@@ -105,9 +105,10 @@ static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DI
 // Depth 0 is none given.
 static bool is_approach(const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_normalized(approach);
-    return told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST &&
-           fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
+    const struct dig_approach normalized = dig_approach_normalized(approach);
+    return normalized.depth >= DIG_APPROACH_DEPTH_LEAST &&
+           normalized.depth <= DIG_APPROACH_DEPTH_MOST &&
+           fabs(normalized.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
 }
 
 static bool is_dig(const struct dig_identity_dig *const dig)

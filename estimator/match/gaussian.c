@@ -180,13 +180,13 @@ static struct half half_of(const struct dig_pooled *const group, const size_t ch
 }
 
 // Order of the blocks: the inner ones, which discriminate best, first.
-static const size_t telling[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
+static const size_t block_order[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
 
 static void measure(const struct dig_pooled *const group, const double variance[NUMBERS],
                     struct dig_gaussian *const g)
 {
     for (size_t next = 0; next < BLOCKS * g->channels; next++) {
-        const size_t      block   = telling[next % BLOCKS];
+        const size_t      block   = block_order[next % BLOCKS];
         const size_t      channel = next / BLOCKS;
         const struct half half[2] = { half_of(group, channel, 2 * block),
                                       half_of(group, channel, 2 * block + 1) };

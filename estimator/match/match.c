@@ -28,7 +28,7 @@ bool dig_match_is_family(const struct dig_match *const match)
     return match->untold[0] || match->untold[1] || match->untold[2];
 }
 
-void dig_match_untold(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
+void dig_match_unresolved(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
 {
     assert(match != NULL && text != NULL);
     text[0] = '\0';

@@ -92,7 +92,7 @@ bool dig_match_is_family(const struct dig_match *match);
 
 /// The undetermined axes, "rolling, density_kgpm3"; "" when none.
 #define DIG_UNTOLD_SIZE 48
-void dig_match_untold(const struct dig_match *match, char text[DIG_UNTOLD_SIZE]);
+void dig_match_unresolved(const struct dig_match *match, char text[DIG_UNTOLD_SIZE]);
 
 /// Refines a nearest match of these digs between the grid points, and computes the posterior of the
 /// gravel (low and high are widened to hold the gravel). Decides again by the smallest distance

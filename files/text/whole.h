@@ -33,7 +33,7 @@ DIG_MUST_CHECK enum dig_status dig_out_open(struct dig_out *out, const char *pat
 /// Flushes to the disk and renames. On failure nothing is left behind.
 DIG_MUST_CHECK enum dig_status dig_out_commit(struct dig_out *out, struct dig_error *error);
 
-/// The end of what put_status tells: commits where it is DIG_OK, else cancels and returns it.
+/// Ends what was written with put_status: commits where it is DIG_OK, else cancels and returns it.
 DIG_MUST_CHECK enum dig_status dig_out_end(struct dig_out *out, enum dig_status put_status,
                                            struct dig_error *error);
 

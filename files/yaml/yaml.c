@@ -16,7 +16,7 @@ struct log {
 };
 
 __attribute__((format(printf, 3, 0))) static void
-keep_log(const cyaml_log_t level, void *const context, const char *const format, va_list args)
+collect_log(const cyaml_log_t level, void *const context, const char *const format, va_list args)
 {
     struct log *const log = context;
     (void)level;
@@ -32,7 +32,7 @@ static enum dig_status load_text(const char *const path, const char *const text,
 {
     struct log           log    = { .used = 0 };
     const cyaml_config_t config = {
-        .log_fn    = keep_log,
+        .log_fn    = collect_log,
         .log_ctx   = &log,
         .mem_fn    = cyaml_mem,
         .log_level = CYAML_LOG_ERROR,

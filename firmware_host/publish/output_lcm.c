@@ -164,7 +164,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
     const struct dig_approach matched = dig_approach_normalized(&k->matched);
     char                      untold[DIG_UNTOLD_SIZE];
     double                    sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
-    dig_match_untold(m, untold);
+    dig_match_unresolved(m, untold);
     for (size_t s = 0; s < m->samples; s++) {
         for (int a = 0; a < DIG_AXES; a++) {
             sample[a][s] = m->sample[s].value[a];

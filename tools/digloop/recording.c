@@ -27,7 +27,7 @@ bool digloop_is_force_recording(const char *const path)
     return !dig_machine_recording_is(path);
 }
 
-// What tells the forces must be what the machine has: else not one sample could be used.
+// The signals must be those the machine has: else not one sample could be used.
 static enum dig_status check_kind(const struct dig_machine *const           machine,
                                   const struct dig_machine_recording *const recording,
                                   const char *const file, struct dig_error *const error)

@@ -42,7 +42,7 @@ static void *with_room(void *const array, const size_t n, const size_t size)
     return full ? realloc(array, (2 * n + 1) * size) : array;
 }
 
-// By how much a counter has grown; a daemon that began anew, or another's message, tells nothing.
+// By how much a counter has grown; a daemon that began anew, or another's message, says nothing.
 static int64_t growth(const int64_t before, const int64_t now)
 {
     return before >= 0 && now > before && now <= COUNT_MOST ? now - before : 0;
@@ -105,10 +105,10 @@ static void take_prediction(void *const context, const int64_t time_us,
 }
 
 // A match names the simple dig it came from, and how that ended.
-static void tell_ending(struct digreport_shift *const shift, const digsight_match_t *const said)
+static void take_ending(struct digreport_shift *const shift, const digsight_match_t *const said)
 {
-    const bool told = said->ending == DIGREPORT_WHOLE || said->ending == DIGREPORT_ABORTED;
-    for (size_t i = shift->digs; i > shift->log_digs && told && !said->restored; i--) {
+    const bool known = said->ending == DIGREPORT_WHOLE || said->ending == DIGREPORT_ABORTED;
+    for (size_t i = shift->digs; i > shift->log_digs && known && !said->restored; i--) {
         if (shift->dig[i - 1].number == said->dig_count) {
             shift->dig[i - 1].ended = (enum digreport_ending)said->ending;
         }
@@ -155,7 +155,7 @@ static void take_match(void *const context, const int64_t time_us,
 {
     struct digreport_shift *const shift = context;
     const bool                    known = said->valid != 0;
-    tell_ending(shift, said);
+    take_ending(shift, said);
     if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
         return;
     }

@@ -91,7 +91,7 @@ void digwatch_model_take(struct digwatch_model *model, const struct dig_lcm_even
 struct digwatch_slot digwatch_model_slot(const struct digwatch_model *model, int64_t back);
 
 /// True when the match, or the prediction, may be used by the controller's clock, which HEALTH
-/// tells: estimates of a recording that is played fast have a faster one.
+/// says: estimates of a recording that is played fast have a faster one.
 bool digwatch_model_match_holds(const struct digwatch_model *model);
 bool digwatch_model_prediction_holds(const struct digwatch_model *model);
 

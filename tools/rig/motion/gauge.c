@@ -47,20 +47,20 @@ struct dig_rig_load dig_rig_gauge_read(const struct dig_machine *const    machin
                                        const struct dig_rig_motion *const motion,
                                        const struct dig_rig_wrench *const soil)
 {
-    const double x_rad      = pose->phi_rad + machine->sensor.turn_rad;
-    const double way[3][3]  = { { cos(x_rad), sin(x_rad), 0.0 },
-                                { -sin(x_rad), cos(x_rad), 0.0 },
-                                { 0.0, 0.0, 1.0 } };
-    double       per_way[3] = { 0.0 };
+    const double x_rad           = pose->phi_rad + machine->sensor.turn_rad;
+    const double direction[3][3] = { { cos(x_rad), sin(x_rad), 0.0 },
+                                     { -sin(x_rad), cos(x_rad), 0.0 },
+                                     { 0.0, 0.0, 1.0 } };
+    double       load[3]         = { 0.0 };
     for (int i = 0; i < 3; i++) {
-        const double              X    = step_m * way[i][0];
-        const double              Z    = step_m * way[i][1];
-        const double              turn = step_m * way[i][2];
+        const double              X    = step_m * direction[i][0];
+        const double              Z    = step_m * direction[i][1];
+        const double              turn = step_m * direction[i][2];
         const struct dig_rig_pose to   = yielded(machine, pose, X, Z, turn);
         const struct dig_rig_pose from = yielded(machine, pose, -X, -Z, -turn);
-        per_way[i]                     = work_J(machine, motion, soil, &from, &to) / (2.0 * step_m);
+        load[i]                        = work_J(machine, motion, soil, &from, &to) / (2.0 * step_m);
     }
-    return (struct dig_rig_load){ per_way[0], per_way[1], per_way[2] };
+    return (struct dig_rig_load){ load[0], load[1], load[2] };
 }
 
 struct dig_rig_motion dig_rig_gauge_motion(const struct dig_machine *const machine,
