@@ -1,4 +1,4 @@
-// Whether grains lay still at the time step a table's digs were computed with. Light gravel
+// Checks the time step of a table's digs against its lightest gravel. Light gravel
 // trembles at a step that heavy gravel bears, and then resists too little (docs/numerics/dem.md, "A
 // step that heats").
 

@@ -1,4 +1,4 @@
-// What a shift was like, from the daemon's messages: its digs, the gravel over time, the troubles.
+// A shift by the daemon's messages: its digs, the gravel over time, the troubles.
 
 #ifndef DIG_TOOLS_DIGREPORT_SHIFT_H
 #define DIG_TOOLS_DIGREPORT_SHIFT_H

@@ -1,4 +1,4 @@
-// What is known of a daemon from its messages: the last of each kind, and the moment of the last
+// The state of a daemon by its messages: the last of each kind, and the moment of the last
 // seconds, measured and predicted. Messages may hold anything; numbers that are none and names that
 // are none are not taken.
 
