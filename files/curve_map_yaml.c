@@ -92,15 +92,6 @@ static enum dig_status check(const char *const path, const struct dig_curve_map 
     return status;
 }
 
-// The folder of the map goes before a relative scene.
-static bool resolve(const char *const path, const char *const scene, char out[DIG_MAP_PATH_SIZE])
-{
-    const char *const slash  = strrchr(path, '/');
-    const int         folder = scene[0] == '/' || slash == NULL ? 0 : (int)(slash - path + 1);
-    const int         length = snprintf(out, DIG_MAP_PATH_SIZE, "%.*s%s", folder, path, scene);
-    return length > 0 && length < DIG_MAP_PATH_SIZE;
-}
-
 enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map *const map,
                                    struct dig_error *const error)
 {
@@ -116,7 +107,8 @@ enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map 
         const double given     = loaded.field[f].factor;
         loaded.field[f].factor = fabs(given) > 0.0 ? given : 1.0;
     }
-    const bool fits = resolve(path, ((const struct dig_curve_map *)data)->scene, loaded.scene);
+    const bool fits = dig_path_beside(path, ((const struct dig_curve_map *)data)->scene,
+                                      sizeof loaded.scene, loaded.scene);
     dig_yaml_free(&schema, data);
     status = fits ? check(path, &loaded, error)
                   : dig_yaml_refuse(path, "scene", error, "expected a shorter path");

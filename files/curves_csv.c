@@ -164,14 +164,9 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
 static bool is_same_dig(const struct dig_foreign_dig *const a,
                         const struct dig_foreign_dig *const b)
 {
-    bool same = a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0 &&
-                dig_approach_is_same(&a->approach, &b->approach);
-    for (int i = 0; i < DIG_AXES; i++) {
-        const double u = a->gravel.value[i];
-        const double v = b->gravel.value[i];
-        same           = same && !(u < v) && !(u > v);
-    }
-    return same;
+    return a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0 &&
+           dig_approach_is_same(&a->approach, &b->approach) &&
+           dig_gravel_is_same(&a->gravel, &b->gravel);
 }
 
 static enum dig_status end_dig(struct reader *const r)

@@ -71,15 +71,6 @@ enum dig_status dig_grid_check_packings(const char *const path, const char *cons
                : dig_yaml_refuse(path, key, error, "%zu, expected 1 to %d", packings, PACKINGS_MAX);
 }
 
-static bool same_gravel(const struct dig_gravel *const a, const struct dig_gravel *const b)
-{
-    size_t equal = 0;
-    for (int i = 0; i < DIG_AXES; i++) {
-        equal += !(a->value[i] < b->value[i]) && !(a->value[i] > b->value[i]) ? 1 : 0;
-    }
-    return equal == DIG_AXES;
-}
-
 static enum dig_status check_point(const char *const path, const struct dig_grid *const grid,
                                    const size_t i, struct dig_error *const error)
 {
@@ -93,7 +84,7 @@ static enum dig_status check_point(const char *const path, const struct dig_grid
         }
     }
     for (size_t k = 0; k < i; k++) {
-        if (same_gravel(&grid->point[i].gravel, &grid->point[k].gravel) &&
+        if (dig_gravel_is_same(&grid->point[i].gravel, &grid->point[k].gravel) &&
             dig_approach_is_same(&grid->point[i].approach, &grid->point[k].approach)) {
             (void)snprintf(key, sizeof key, "points[%zu]", i);
             return dig_yaml_refuse(path, key, error, "the gravel of points[%zu], expected another",
