@@ -58,7 +58,7 @@ system_tests := $(wildcard tests/system/*.sh)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c)) \
              $(BUILD)/tests/simclock/simclock $(BUILD)/tests/simclock/preload.so
 # Tests whose subject runs threads.
-threaded_tests := $(shell grep -l pthread tests/*/test_*.c)
+threaded_tests := $(shell grep -lE 'pthread|modbus_client\.h' tests/*/test_*.c)
 threaded       := firmware_host estimator tables files core
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) $(tool_parts) \
