@@ -45,7 +45,7 @@ say  = @printf '  %-6s %s\n' $(1) $(2)
 # A program's main is the one source of its folder that has the program's name.
 modules   := closed_loop firmware_host offline_dem estimator tables files core
 src        = $(filter-out firmware_host/digsightd.c,$(wildcard $(1)/*.c $(1)/*/*.c))
-rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c))
+rig_src   := $(filter-out tools/rig/digrig.c,$(wildcard tools/rig/*.c tools/rig/*/*.c))
 tool_src  := $(wildcard tools/*.c)
 # The rest of a program too large for one file: tools/NAME/*.c belongs to tools/NAME.c.
 tool_parts := $(foreach t,$(tool_src),$(wildcard $(t:.c=)/*.c))
@@ -58,7 +58,7 @@ system_tests := $(wildcard tests/system/*.sh)
 helpers   := $(patsubst tests/system/%.c,$(BUILD)/tests/system/%,$(wildcard tests/system/*.c)) \
              $(BUILD)/tests/simclock/simclock $(BUILD)/tests/simclock/preload.so
 # Tests whose subject runs threads.
-threaded_tests := $(shell grep -l pthread tests/*/test_*.c)
+threaded_tests := $(shell grep -lE 'pthread|modbus_client\.h' tests/*/test_*.c)
 threaded       := firmware_host estimator tables files core
 JOBS      := $(shell nproc 2>/dev/null || echo 1)
 all_src   := $(foreach m,$(modules),$(call src,$(m))) $(rig_src) $(tool_src) $(tool_parts) \

@@ -18,9 +18,9 @@ struct dig_approach dig_approach_plain(void)
 struct dig_approach dig_approach_normalized(const struct dig_approach *const approach)
 {
     assert(approach != NULL);
-    struct dig_approach told = *approach;
-    told.depth               = fabs(told.depth) <= 0.0 ? 1.0 : told.depth;
-    return told;
+    struct dig_approach normalized = *approach;
+    normalized.depth               = fabs(normalized.depth) <= 0.0 ? 1.0 : normalized.depth;
+    return normalized;
 }
 
 int dig_approach_compare(const struct dig_approach *const a, const struct dig_approach *const b)
@@ -46,11 +46,11 @@ bool dig_approach_is_plain(const struct dig_approach *const approach)
 
 void dig_approach_text(const struct dig_approach *const approach, char text[DIG_APPROACH_TEXT_SIZE])
 {
-    const struct dig_approach told = dig_approach_normalized(approach);
-    text[0]                        = '\0';
-    if (!dig_approach_is_plain(&told)) {
-        (void)snprintf(text, DIG_APPROACH_TEXT_SIZE, ", depth %.6g, attack %.6g deg", told.depth,
-                       told.attack_rad / DIG_RAD_PER_DEG);
+    const struct dig_approach normalized = dig_approach_normalized(approach);
+    text[0]                              = '\0';
+    if (!dig_approach_is_plain(&normalized)) {
+        (void)snprintf(text, DIG_APPROACH_TEXT_SIZE, ", depth %.6g, attack %.6g deg",
+                       normalized.depth, normalized.attack_rad / DIG_RAD_PER_DEG);
     }
 }
 
@@ -97,28 +97,28 @@ enum dig_status dig_approach_apply(const struct dig_trajectory *const trajectory
                                    struct dig_trajectory *const made, struct dig_error *const error)
 {
     assert(trajectory != NULL && approach != NULL && made != NULL && trajectory->phases >= 1);
-    const struct dig_approach told   = dig_approach_normalized(approach);
-    const enum dig_status     status = check_range(&told, trajectory, error);
+    const struct dig_approach normalized = dig_approach_normalized(approach);
+    const enum dig_status     status     = check_range(&normalized, trajectory, error);
     if (status != DIG_OK) {
         return status;
     }
     struct dig_trajectory   dug   = *trajectory;
     struct dig_phase *const first = &dug.phase[0];
-    if (told.depth < 1.0 || told.depth > 1.0) {
+    if (normalized.depth < 1.0 || normalized.depth > 1.0) {
         const double down_m = -first->vz_mps * first->duration_s;
-        const double scale  = 1.0 + (told.depth - 1.0) * depth_m / down_m;
+        const double scale  = 1.0 + (normalized.depth - 1.0) * depth_m / down_m;
         if (!(down_m > 0.0 && depth_m > 0.0 && scale > 0.0)) {
             return dig_error_set(error, DIG_EINVAL,
                                  "trajectory %s: depth %g, expected 1: its first phase does not go "
                                  "down below the ground",
-                                 trajectory->name, told.depth);
+                                 trajectory->name, normalized.depth);
         }
         first->vx_mps *= scale;
         first->vz_mps *= scale;
     }
-    if (fabs(told.attack_rad) > 0.0) {
+    if (fabs(normalized.attack_rad) > 0.0) {
         const struct dig_pose plain = { dug.start_x_m, dug.start_z_m, dug.theta0_rad };
-        dug.theta0_rad += told.attack_rad;
+        dug.theta0_rad += normalized.attack_rad;
         dug.start_x_m = tooth_x_m(&plain, tooth_m) - tooth_m * sin(dug.theta0_rad);
         dug.start_z_m = tooth_z_m(&plain, tooth_m) + tooth_m * cos(dug.theta0_rad);
     }

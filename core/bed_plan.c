@@ -312,30 +312,14 @@ enum dig_status dig_bed_plan_check(const struct dig_scene *const scene,
         { "bed.preload_Pa", scene->bed.preload_Pa, 0.0, 1e9 },
     };
     enum dig_status status = check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
-    if (status == DIG_OK) {
-        status = check_counts(&scene->bed, error);
-    }
-    if (status == DIG_OK) {
-        status = check_sizes(scene, error);
-    }
-    if (status == DIG_OK) {
-        status = check_materials(&scene->bed, error);
-    }
-    if (status == DIG_OK) {
-        status = check_layers(&scene->bed, error);
-    }
-    if (status == DIG_OK) {
-        status = check_surface(scene, error);
-    }
-    if (status == DIG_OK) {
-        status = check_clump(&scene->bed.clump, error);
-    }
-    if (status == DIG_OK) {
-        status = check_obstacles(&scene->bed, error);
-    }
-    if (status == DIG_OK) {
-        status = check_period(scene, error);
-    }
+    status                 = status == DIG_OK ? check_counts(&scene->bed, error) : status;
+    status                 = status == DIG_OK ? check_sizes(scene, error) : status;
+    status                 = status == DIG_OK ? check_materials(&scene->bed, error) : status;
+    status                 = status == DIG_OK ? check_layers(&scene->bed, error) : status;
+    status                 = status == DIG_OK ? check_surface(scene, error) : status;
+    status                 = status == DIG_OK ? check_clump(&scene->bed.clump, error) : status;
+    status                 = status == DIG_OK ? check_obstacles(&scene->bed, error) : status;
+    status                 = status == DIG_OK ? check_period(scene, error) : status;
     return status == DIG_OK ? check_earlier(scene, error) : status;
 }
 

@@ -1,4 +1,4 @@
-// The command line of a program: its commands and options, each told once, in a table. getopt_long
+// The command line of a program: its commands and options, each once, in a table. getopt_long
 // reads by it, --help (core/help.h) prints it, and what --help prints becomes manual pages
 // (scripts/man_pages.sh) and bash completion (scripts/completion.bash).
 

@@ -4,6 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+const char *dig_channel_name(const enum dig_channel channel)
+{
+    static const char *const name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N", "carried_kg" };
+    assert(channel < DIG_CHANNELS);
+    return name[channel];
+}
+
 static const char *const axis_names[DIG_AXES] = {
     [DIG_AXIS_FRICTION]      = "friction",
     [DIG_AXIS_ROLLING]       = "rolling",
@@ -14,6 +21,26 @@ const char *dig_axis_name(const enum dig_axis axis)
 {
     assert(axis < DIG_AXES);
     return axis_names[axis];
+}
+
+bool dig_gravel_is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
+{
+    assert(a != NULL && b != NULL);
+    bool same = true;
+    for (int i = 0; i < DIG_AXES; i++) {
+        same = same && fabs(a->value[i] - b->value[i]) <= 0.0;
+    }
+    return same;
+}
+
+double dig_curve_mean_square(const float y[const DIG_CURVE_POINTS])
+{
+    assert(y != NULL);
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += (double)y[k] * (double)y[k];
+    }
+    return sum / DIG_CURVE_POINTS;
 }
 
 double dig_trajectory_duration_s(const struct dig_trajectory *const trajectory)

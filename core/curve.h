@@ -12,6 +12,7 @@
 
 #include "core/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #define DIG_CURVE_POINTS   256 // points of a curve on the path-progress grid 0 … 1
@@ -31,6 +32,9 @@ enum dig_channel {
     DIG_CHANNELS
 };
 
+/// "My_Nm", "Fx_N", "Fz_N", "carried_kg".
+const char *dig_channel_name(enum dig_channel channel);
+
 /// The axes of a table, in this order wherever gravel is an array.
 enum dig_axis { DIG_AXIS_FRICTION, DIG_AXIS_ROLLING, DIG_AXIS_DENSITY_kgpm3, DIG_AXES };
 
@@ -40,6 +44,9 @@ const char *dig_axis_name(enum dig_axis axis);
 struct dig_gravel {
     double value[DIG_AXES];
 };
+
+/// True where each axis has the same value in both.
+bool dig_gravel_is_same(const struct dig_gravel *a, const struct dig_gravel *b);
 
 struct dig_phase {
     char   name[DIG_NAME_SIZE];
@@ -90,6 +97,9 @@ struct dig_curve {
     float mean[DIG_CHANNELS][DIG_CURVE_POINTS];
     float sd[DIG_CHANNELS][DIG_CURVE_POINTS];
 };
+
+/// Mean of the squares over the points of one channel.
+double dig_curve_mean_square(const float y[DIG_CURVE_POINTS]);
 
 #define DIG_COVARIANCE_BLOCKS  8 // of a path, equally long
 #define DIG_COVARIANCE_NUMBERS (DIG_FORCE_CHANNELS * DIG_COVARIANCE_BLOCKS)

@@ -75,7 +75,7 @@ struct dig_force_sensor {
     double          limit_Nm;
     double          step_N, step_Nm;   // quantisation of the readings as they arrive; 0: none
     double          sigma_N, sigma_Nm; // 1 sigma of one reading, quantisation not included
-    double          path_sigma_m;      // 1 sigma of the pin's place along each axis, as it is told
+    double          path_sigma_m; // 1 sigma of the pin's place along each axis, as it is measured
 };
 
 /// By how much the machine may differ from its file, 1 sigma each, independent. The same in every

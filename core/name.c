@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char name_characters[] =
@@ -54,4 +55,20 @@ bool dig_path_stays(const char *const path)
         part                  = end != NULL ? end + 1 : NULL;
     }
     return !up;
+}
+
+const char *dig_path_last(const char *const path)
+{
+    assert(path != NULL);
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+bool dig_path_beside(const char *const beside, const char *const name, const size_t size,
+                     char path[])
+{
+    assert(beside != NULL && name != NULL && path != NULL);
+    const int folder = name[0] == '/' ? 0 : (int)(dig_path_last(beside) - beside);
+    const int length = snprintf(path, size, "%.*s%s", folder, beside, name);
+    return length >= 0 && (size_t)length < size;
 }

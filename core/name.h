@@ -6,6 +6,7 @@
 #define DIG_CORE_NAME_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /// For "expected …" where one of these is false.
 #define DIG_NAME_RULE "a name of letters, digits, '_', '.' and '-' that begins with none of . -"
@@ -27,5 +28,12 @@ bool dig_path_ok(const char *path);
 
 /// True when a path that is not absolute has no `..` in it: it stays in the folder it is of.
 bool dig_path_stays(const char *path);
+
+/// What stands behind the last '/' of a path.
+const char *dig_path_last(const char *path);
+
+/// Puts the folder that the file `beside` lies in before a name, unless that is absolute. False
+/// when the path is too long; it is cut off then.
+bool dig_path_beside(const char *beside, const char *name, size_t size, char path[]);
 
 #endif // DIG_CORE_NAME_H

@@ -1,4 +1,4 @@
-// Files that appear whole or not at all are written beside their name, as NAME.part.
+// Opens NAME.part: a file that is to appear whole or not at all is written under that name first.
 
 #ifndef DIG_CORE_PART_H
 #define DIG_CORE_PART_H

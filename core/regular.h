@@ -1,5 +1,4 @@
-// What is read is a regular file: a pipe without a writer or a device would be waited for, or never
-// end.
+// Opens regular files only: a pipe without a writer, or a device, would block or never end.
 
 #ifndef DIG_CORE_REGULAR_H
 #define DIG_CORE_REGULAR_H

@@ -1,7 +1,8 @@
 #include "core/sample.h"
 
+#include "core/text.h"
+
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char *const names[DIG_SIGNALS] = {
@@ -64,7 +65,7 @@ bool dig_signal_is_needed(const enum dig_sensing sensing, const enum dig_signal 
                : signal == DIG_SIGNAL_BUCKET_rad || signal >= DIG_SIGNAL_PIN_X_m;
 }
 
-bool dig_signal_tells_moment(const enum dig_sensing sensing, const enum dig_signal signal)
+bool dig_signal_gives_moment(const enum dig_sensing sensing, const enum dig_signal signal)
 {
     const bool of_others = signal >= DIG_SIGNAL_BOOM_HEAD_Pa && signal <= DIG_SIGNAL_ARM_ROD_Pa;
     return dig_signal_is_needed(sensing, signal) && !of_others;
@@ -76,7 +77,7 @@ bool dig_sample_has_moment(const struct dig_sample *const sample)
     const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
     bool                   has     = true;
     for (int i = 0; i < DIG_SIGNALS; i++) {
-        has = has && (sample->valid[i] || !dig_signal_tells_moment(sensing, (enum dig_signal)i));
+        has = has && (sample->valid[i] || !dig_signal_gives_moment(sensing, (enum dig_signal)i));
     }
     return has;
 }
@@ -97,12 +98,10 @@ void dig_signal_name_missing(const bool valid[const DIG_SIGNALS], const size_t s
 {
     assert(valid != NULL && size > 0 && text != NULL);
     const enum dig_sensing sensing = dig_signals_sensing(valid);
-    size_t                 used    = 0;
     text[0]                        = '\0';
-    for (int i = 0; i < DIG_SIGNALS && used < size; i++) {
+    for (int i = 0; i < DIG_SIGNALS; i++) {
         if (!valid[i] && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
-            (void)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", names[i]);
-            used = strlen(text);
+            dig_text_list(size, text, names[i]);
         }
     }
 }

@@ -33,7 +33,7 @@ enum dig_signal {
 /// Every signal up to here is needed for force and moment of a machine with cylinders.
 #define DIG_SIGNALS_NEEDED DIG_SIGNAL_PITCH_rad
 
-/// What tells force and moment: a machine's cylinders, or a rig's force sensor.
+/// Where force and moment come from: a machine's cylinders, or a rig's force sensor.
 enum dig_sensing { DIG_SENSING_CYLINDERS, DIG_SENSING_SENSOR };
 
 /// Room for the names of all of those.
@@ -60,8 +60,8 @@ enum dig_sensing dig_signals_sensing(const bool valid[DIG_SIGNALS]);
 bool dig_signal_is_needed(enum dig_sensing sensing, enum dig_signal signal);
 
 /// True for what the moment needs: the three angles and the bucket's pressures. The other
-/// cylinders' pressures tell the force. With a force sensor all that is needed.
-bool dig_signal_tells_moment(enum dig_sensing sensing, enum dig_signal signal);
+/// cylinders' pressures give the force. With a force sensor all that is needed.
+bool dig_signal_gives_moment(enum dig_sensing sensing, enum dig_signal signal);
 
 /// True for what can always be done without: pitch and temperature.
 bool dig_signal_is_optional(enum dig_signal signal);

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <stdbool.h>
+#include <string.h>
 
 // The bytes that a character beginning with c has; 0: none begins so.
 static size_t length_of(const unsigned char c)
@@ -61,6 +62,21 @@ void dig_text_clean(char text[])
         }
         c += n == 0 ? 1 : n;
     }
+}
+
+void dig_text_copy(const size_t size, char to[], const char *const text)
+{
+    assert(size > 0 && to != NULL && text != NULL);
+    (void)snprintf(to, size, "%s", text);
+    dig_text_clean(to);
+}
+
+void dig_text_list(const size_t size, char list[], const char *const word)
+{
+    assert(list != NULL && word != NULL);
+    const size_t used = strlen(list);
+    assert(used < size);
+    (void)snprintf(list + used, size - used, "%s%s", used == 0 ? "" : ", ", word);
 }
 
 void dig_text_put(FILE *const to, const char *const text)

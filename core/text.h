@@ -16,6 +16,12 @@ size_t dig_text_character(const char *text);
 /// reaches a terminal or a log.
 void dig_text_clean(char text[]);
 
+/// Copies text, cut to size, as dig_text_clean() makes it.
+void dig_text_copy(size_t size, char to[], const char *text);
+
+/// Puts word at the end of list, behind a comma where it is not the first; cut to size.
+void dig_text_list(size_t size, char list[], const char *word);
+
 /// text as dig_text_clean() makes it, and in one line: a line break or a tab becomes '?', too.
 void dig_text_put(FILE *to, const char *text);
 

@@ -1,7 +1,7 @@
 #include "files/bed_csv.h"
 
-#include "files/csv.h"
-#include "files/whole.h"
+#include "files/text/csv.h"
+#include "files/text/whole.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -5,10 +5,6 @@
 
 #include <string.h>
 
-#define REQUIRED CYAML_FLAG_DEFAULT
-#define OPTIONAL CYAML_FLAG_OPTIONAL
-#define SOURCE   CYAML_FIELD_IGNORE("source", CYAML_FLAG_OPTIONAL)
-
 static const cyaml_strval_t normal_laws[] = {
     { "hooke", DIG_NORMAL_HOOKE },
     { "hertz", DIG_NORMAL_HERTZ },
@@ -24,116 +20,102 @@ static const cyaml_strval_t shapes[] = {
 };
 
 const cyaml_schema_field_t dig_laws_fields[] = {
-    CYAML_FIELD_ENUM("normal", OPTIONAL, struct laws_text, normal, normal_laws, 2),
-    CYAML_FIELD_ENUM("rolling", OPTIONAL, struct laws_text, rolling, rolling_laws, 3),
-    CYAML_FIELD_FLOAT("cohesion_Jpm3", OPTIONAL, struct laws_text, cohesion_Jpm3),
-    CYAML_FIELD_FLOAT("adhesion_Jpm3", OPTIONAL, struct laws_text, adhesion_Jpm3),
-    CYAML_FIELD_FLOAT("bucket_smoothness", OPTIONAL, struct laws_text, bucket_smoothness),
+    CYAML_FIELD_ENUM("normal", OPTIONAL, struct dig_laws, normal, normal_laws, 2),
+    CYAML_FIELD_ENUM("rolling", OPTIONAL, struct dig_laws, rolling, rolling_laws, 3),
+    CYAML_FIELD_FLOAT("cohesion_Jpm3", OPTIONAL, struct dig_laws, cohesion_Jpm3),
+    CYAML_FIELD_FLOAT("adhesion_Jpm3", OPTIONAL, struct dig_laws, adhesion_Jpm3),
+    CYAML_FIELD_FLOAT("bucket_smoothness", OPTIONAL, struct dig_laws, bucket_smoothness),
     SOURCE,
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
-static const cyaml_schema_value_t name   = { CYAML_VALUE_STRING(REQUIRED, struct name_text, 1,
-                                                                DIG_NAME_SIZE - 1) };
-static const cyaml_schema_value_t point  = { CYAML_VALUE_SEQUENCE_FIXED(REQUIRED, double, &number,
-                                                                        2) };
-
 static const cyaml_schema_field_t size_fields[] = {
-    CYAML_FIELD_FLOAT("diameter_m", REQUIRED, struct size_text, diameter_m),
-    CYAML_FIELD_FLOAT("mass_fraction", REQUIRED, struct size_text, mass_fraction),
+    NUMBER(dig_size, diameter_m),
+    NUMBER(dig_size, mass_fraction),
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t size = { CYAML_VALUE_MAPPING(REQUIRED, struct size_text,
-                                                               size_fields) };
+static const cyaml_schema_value_t size = ENTRY(dig_size, size_fields);
 
 static const cyaml_schema_field_t log_normal_fields[] = {
-    CYAML_FIELD_FLOAT("median_m", REQUIRED, struct log_normal_text, median_m),
-    CYAML_FIELD_FLOAT("sigma", REQUIRED, struct log_normal_text, sigma),
-    CYAML_FIELD_UINT("classes", REQUIRED, struct log_normal_text, classes),
+    NUMBER(bed_text, median_m),
+    NUMBER(bed_text, sigma),
+    CYAML_FIELD_UINT("classes", REQUIRED, struct bed_text, classes),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t material_fields[] = {
-    CYAML_FIELD_STRING("name", REQUIRED, struct material_text, name, 1),
-    CYAML_FIELD_FLOAT("friction", REQUIRED, struct material_text, friction),
-    CYAML_FIELD_FLOAT("rolling", REQUIRED, struct material_text, rolling),
-    CYAML_FIELD_FLOAT("density_kgpm3", REQUIRED, struct material_text, density_kgpm3),
-    CYAML_FIELD_FLOAT("restitution", REQUIRED, struct material_text, restitution),
+    TEXT(dig_other_material, name),
+    NUMBER(dig_other_material, friction),
+    NUMBER(dig_other_material, rolling),
+    NUMBER(dig_other_material, density_kgpm3),
+    NUMBER(dig_other_material, restitution),
     SOURCE,
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t material = { CYAML_VALUE_MAPPING(REQUIRED, struct material_text,
-                                                                   material_fields) };
+static const cyaml_schema_value_t material = ENTRY(dig_other_material, material_fields);
 
 static const cyaml_schema_field_t pair_fields[] = {
-    CYAML_FIELD_SEQUENCE_FIXED("between", REQUIRED, struct pair_text, between, &name, 2),
-    CYAML_FIELD_FLOAT("friction", REQUIRED, struct pair_text, friction),
-    CYAML_FIELD_FLOAT("rolling", REQUIRED, struct pair_text, rolling),
-    CYAML_FIELD_FLOAT("restitution", REQUIRED, struct pair_text, restitution),
+    CYAML_FIELD_SEQUENCE_FIXED("between", REQUIRED, struct pair_text, between, &dig_yaml_name, 2),
+    NUMBER(pair_text, friction),
+    NUMBER(pair_text, rolling),
+    NUMBER(pair_text, restitution),
     SOURCE,
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t pair = { CYAML_VALUE_MAPPING(REQUIRED, struct pair_text,
-                                                               pair_fields) };
+static const cyaml_schema_value_t pair = ENTRY(pair_text, pair_fields);
 
 static const cyaml_schema_field_t layer_fields[] = {
-    CYAML_FIELD_STRING("material", REQUIRED, struct layer_text, material, 1),
-    CYAML_FIELD_SEQUENCE_FIXED("z_m", REQUIRED, struct layer_text, z_m, &number, 2),
+    TEXT(layer_text, material),
+    NUMBERS("z_m", REQUIRED, layer_text, z_m),
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t layer = { CYAML_VALUE_MAPPING(REQUIRED, struct layer_text,
-                                                                layer_fields) };
+static const cyaml_schema_value_t layer = ENTRY(layer_text, layer_fields);
 
 static const cyaml_schema_field_t profile_fields[] = {
-    CYAML_FIELD_FLOAT("y_m", REQUIRED, struct profile_text, y_m),
-    CYAML_FIELD_SEQUENCE("surface_m", REQUIRED, struct profile_text, surface_m, &point, 2,
-                         DIG_SURFACE_MAX),
+    NUMBER(profile_text, y_m),
+    LIST("surface_m", REQUIRED, profile_text, surface_m, points, &dig_yaml_point, 2,
+         DIG_SURFACE_MAX),
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t profile = { CYAML_VALUE_MAPPING(REQUIRED, struct profile_text,
-                                                                  profile_fields) };
+static const cyaml_schema_value_t profile = ENTRY(profile_text, profile_fields);
 
 static const cyaml_schema_field_t sphere_fields[] = {
-    CYAML_FIELD_SEQUENCE_FIXED("centre", REQUIRED, struct sphere_text, centre, &number, 3),
-    CYAML_FIELD_FLOAT("radius", REQUIRED, struct sphere_text, radius),
+    NUMBERS("centre", REQUIRED, sphere_text, centre),
+    NUMBER(sphere_text, radius),
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t sphere = { CYAML_VALUE_MAPPING(REQUIRED, struct sphere_text,
-                                                                 sphere_fields) };
+static const cyaml_schema_value_t sphere = ENTRY(sphere_text, sphere_fields);
 
 static const cyaml_schema_field_t obstacle_fields[] = {
-    CYAML_FIELD_ENUM("shape", REQUIRED, struct obstacle_text, shape, shapes, 2),
-    CYAML_FIELD_SEQUENCE_FIXED("centre_m", REQUIRED, struct obstacle_text, centre_m, &number, 3),
+    CYAML_FIELD_ENUM("shape", REQUIRED, struct obstacle_text, obstacle.shape, shapes, 2),
+    NUMBERS("centre_m", REQUIRED, obstacle_text, obstacle.centre_m),
     CYAML_FIELD_FLOAT("diameter_m", OPTIONAL, struct obstacle_text, diameter_m),
-    CYAML_FIELD_SEQUENCE_FIXED("edges_m", OPTIONAL, struct obstacle_text, edges_m, &number, 3),
-    CYAML_FIELD_BOOL("movable", OPTIONAL, struct obstacle_text, movable),
-    CYAML_FIELD_FLOAT("density_kgpm3", OPTIONAL, struct obstacle_text, density_kgpm3),
+    NUMBERS("edges_m", OPTIONAL, obstacle_text, edges_m),
+    CYAML_FIELD_BOOL("movable", OPTIONAL, struct obstacle_text, obstacle.movable),
+    CYAML_FIELD_FLOAT("density_kgpm3", OPTIONAL, struct obstacle_text, obstacle.density_kgpm3),
     SOURCE,
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t obstacle = { CYAML_VALUE_MAPPING(REQUIRED, struct obstacle_text,
-                                                                   obstacle_fields) };
+static const cyaml_schema_value_t obstacle = ENTRY(obstacle_text, obstacle_fields);
+
+#define OF_BED(key, member, count, entry, least, most)                                             \
+    LIST(key, OPTIONAL, bed_text, member, bed.count, entry, least, most)
 
 const cyaml_schema_field_t dig_bed_fields[] = {
-    CYAML_FIELD_SEQUENCE("sizes", OPTIONAL, struct bed_text, sizes, &size, 1, DIG_SIZES_MAX),
-    CYAML_FIELD_MAPPING("log_normal", OPTIONAL, struct bed_text, log_normal, log_normal_fields),
-    CYAML_FIELD_SEQUENCE("materials", OPTIONAL, struct bed_text, materials, &material, 1,
-                         DIG_MATERIALS_MAX),
-    CYAML_FIELD_SEQUENCE("pairs", OPTIONAL, struct bed_text, pairs, &pair, 1, DIG_PAIRS_MAX),
-    CYAML_FIELD_SEQUENCE("layers", OPTIONAL, struct bed_text, layers, &layer, 1, DIG_LAYERS_MAX),
-    CYAML_FIELD_SEQUENCE("surface_m", OPTIONAL, struct bed_text, surface_m, &point, 2,
-                         DIG_SURFACE_MAX),
-    CYAML_FIELD_SEQUENCE("surfaces", OPTIONAL, struct bed_text, surfaces, &profile, 2,
-                         DIG_PROFILES_MAX),
-    CYAML_FIELD_SEQUENCE("clump", OPTIONAL, struct bed_text, clump, &sphere, 2, DIG_CLUMP_MAX),
-    CYAML_FIELD_SEQUENCE("obstacles", OPTIONAL, struct bed_text, obstacles, &obstacle, 1,
-                         DIG_OBSTACLES_MAX),
-    CYAML_FIELD_BOOL("periodic_y", OPTIONAL, struct bed_text, periodic_y),
-    CYAML_FIELD_FLOAT("preload_Pa", OPTIONAL, struct bed_text, preload_Pa),
-    CYAML_FIELD_UINT("earlier_digs", OPTIONAL, struct bed_text, earlier_digs),
-    CYAML_FIELD_STRING("earlier", OPTIONAL, struct bed_text, earlier, 1),
-    CYAML_FIELD_BOOL("earlier_as_dug", OPTIONAL, struct bed_text, earlier_as_dug),
+    OF_BED("sizes", bed.size, sizes, &size, 1, DIG_SIZES_MAX),
+    ACROSS("log_normal", OPTIONAL, bed_text, log_normal_fields),
+    OF_BED("materials", bed.material, materials, &material, 1, DIG_MATERIALS_MAX),
+    OF_BED("pairs", pairs, pairs, &pair, 1, DIG_PAIRS_MAX),
+    OF_BED("layers", layers, layers, &layer, 1, DIG_LAYERS_MAX),
+    OF_BED("surface_m", surface_m, surface, &dig_yaml_point, 2, DIG_SURFACE_MAX),
+    OF_BED("surfaces", surfaces, profiles, &profile, 2, DIG_PROFILES_MAX),
+    OF_BED("clump", clump, clump.spheres, &sphere, 2, DIG_CLUMP_MAX),
+    OF_BED("obstacles", obstacles, obstacles, &obstacle, 1, DIG_OBSTACLES_MAX),
+    CYAML_FIELD_BOOL("periodic_y", OPTIONAL, struct bed_text, bed.periodic_y),
+    CYAML_FIELD_FLOAT("preload_Pa", OPTIONAL, struct bed_text, bed.preload_Pa),
+    CYAML_FIELD_UINT("earlier_digs", OPTIONAL, struct bed_text, bed.earlier_digs),
+    CYAML_FIELD_STRING("earlier", OPTIONAL, struct bed_text, bed.earlier, 1),
+    CYAML_FIELD_BOOL("earlier_as_dug", OPTIONAL, struct bed_text, bed.earlier_as_dug),
     SOURCE,
     CYAML_FIELD_END,
 };
@@ -152,12 +134,7 @@ static size_t find_material(const struct dig_bed_plan *const bed, const char *co
 static enum dig_status convert_sizes(const struct bed_text *const text,
                                      struct dig_bed_plan *const bed, struct dig_error *const error)
 {
-    bed->sizes = text->sizes_count;
-    for (size_t i = 0; i < bed->sizes; i++) {
-        bed->size[i] = (struct dig_size){ text->sizes[i].diameter_m, text->sizes[i].mass_fraction };
-    }
-    const struct log_normal_text *const l = &text->log_normal;
-    if (l->classes == 0) {
+    if (text->classes == 0) {
         return DIG_OK;
     }
     if (bed->sizes > 0) {
@@ -165,40 +142,29 @@ static enum dig_status convert_sizes(const struct bed_text *const text,
                              "bed.log_normal: beside bed.sizes, expected one of both");
     }
     const enum dig_status status =
-        dig_log_normal_classes(l->median_m, l->sigma, l->classes, bed->size);
+        dig_log_normal_classes(text->median_m, text->sigma, text->classes, bed->size);
     if (status != DIG_OK) {
         return dig_error_set(error, status,
                              "bed.log_normal: median_m %g, sigma %g, %u classes, expected > 0, > 0 "
                              "and <= 2, 2 to %d",
-                             l->median_m, l->sigma, l->classes, DIG_SIZES_MAX);
+                             text->median_m, text->sigma, text->classes, DIG_SIZES_MAX);
     }
-    bed->sizes = l->classes;
+    bed->sizes = text->classes;
     return DIG_OK;
 }
 
 static void convert_materials(const struct bed_text *const text, struct dig_bed_plan *const bed)
 {
-    bed->materials = text->materials_count;
-    for (size_t i = 0; i < bed->materials; i++) {
-        const struct material_text *const m = &text->materials[i];
-        bed->material[i]                    = (struct dig_other_material){ .friction      = m->friction,
-                                                                           .rolling       = m->rolling,
-                                                                           .density_kgpm3 = m->density_kgpm3,
-                                                                           .restitution   = m->restitution };
-        memcpy(bed->material[i].name, m->name, sizeof m->name);
-    }
-    bed->pairs = text->pairs_count;
     for (size_t i = 0; i < bed->pairs; i++) {
         const struct pair_text *const p = &text->pairs[i];
         bed->pair[i]                    = (struct dig_material_pair){
-                               .a           = find_material(bed, p->between[0].text),
-                               .b           = find_material(bed, p->between[1].text),
+                               .a           = find_material(bed, p->between[0]),
+                               .b           = find_material(bed, p->between[1]),
                                .friction    = p->friction,
                                .rolling     = p->rolling,
                                .restitution = p->restitution,
         };
     }
-    bed->layers = text->layers_count;
     for (size_t i = 0; i < bed->layers; i++) {
         const struct layer_text *const l = &text->layers[i];
         bed->layer[i] = (struct dig_layer){ find_material(bed, l->material), l->z_m[0], l->z_m[1] };
@@ -209,15 +175,11 @@ static enum dig_status convert_obstacles(const struct bed_text *const text,
                                          struct dig_bed_plan *const   bed,
                                          struct dig_error *const      error)
 {
-    bed->obstacles = text->obstacles_count;
     for (size_t i = 0; i < bed->obstacles; i++) {
-        const struct obstacle_text *const o   = &text->obstacles[i];
-        struct dig_obstacle *const        to  = &bed->obstacle[i];
-        const bool                        box = o->shape == DIG_OBSTACLE_BOX;
-        *to               = (struct dig_obstacle){ .shape   = (enum dig_obstacle_shape)o->shape,
-                                                   .movable = o->movable };
-        to->density_kgpm3 = o->density_kgpm3;
-        memcpy(to->centre_m, o->centre_m, sizeof to->centre_m);
+        const struct obstacle_text *const o  = &text->obstacles[i];
+        struct dig_obstacle *const        to = &bed->obstacle[i];
+        *to                                  = o->obstacle;
+        const bool box                       = to->shape == DIG_OBSTACLE_BOX;
         if (box) {
             memcpy(to->size_m, o->edges_m, sizeof to->size_m);
         } else {
@@ -233,42 +195,27 @@ static enum dig_status convert_obstacles(const struct bed_text *const text,
     return DIG_OK;
 }
 
-static void convert_profiles(const struct bed_text *const text, struct dig_bed_plan *const bed)
+static void convert_surface(const size_t points, const struct dig_yaml_point text[], double x_m[],
+                            double z_m[])
 {
-    bed->profiles = text->surfaces_count;
-    for (size_t k = 0; k < bed->profiles; k++) {
-        const struct profile_text *const p = &text->surfaces[k];
-        bed->profile[k] =
-            (struct dig_ground_profile){ .y_m = p->y_m, .points = p->surface_m_count };
-        for (size_t i = 0; i < p->surface_m_count; i++) {
-            bed->profile[k].x_m[i] = p->surface_m[i].xz_m[0];
-            bed->profile[k].z_m[i] = p->surface_m[i].xz_m[1];
-        }
+    for (size_t i = 0; i < points; i++) {
+        x_m[i] = text[i].xz_m[0];
+        z_m[i] = text[i].xz_m[1];
     }
 }
 
-enum dig_status dig_bed_convert(const struct laws_text *const laws,
-                                const struct bed_text *const text, struct dig_scene *const scene,
+enum dig_status dig_bed_convert(const struct bed_text *const text, struct dig_bed_plan *const bed,
                                 struct dig_error *const error)
 {
-    struct dig_bed_plan *const bed = &scene->bed;
-    scene->laws                    = (struct dig_laws){ .normal            = (enum dig_normal_law)laws->normal,
-                                                        .rolling           = (enum dig_rolling_law)laws->rolling,
-                                                        .cohesion_Jpm3     = laws->cohesion_Jpm3,
-                                                        .adhesion_Jpm3     = laws->adhesion_Jpm3,
-                                                        .bucket_smoothness = laws->bucket_smoothness };
-    *bed                           = (struct dig_bed_plan){ .surface        = text->surface_m_count,
-                                                            .clump.spheres  = text->clump_count,
-                                                            .periodic_y     = text->periodic_y,
-                                                            .preload_Pa     = text->preload_Pa,
-                                                            .earlier_digs   = text->earlier_digs,
-                                                            .earlier_as_dug = text->earlier_as_dug };
-    memcpy(bed->earlier, text->earlier, sizeof bed->earlier);
-    for (size_t i = 0; i < bed->surface; i++) {
-        bed->surface_x_m[i] = text->surface_m[i].xz_m[0];
-        bed->surface_z_m[i] = text->surface_m[i].xz_m[1];
+    *bed = text->bed;
+    convert_surface(bed->surface, text->surface_m, bed->surface_x_m, bed->surface_z_m);
+    for (size_t k = 0; k < bed->profiles; k++) {
+        const struct profile_text *const p  = &text->surfaces[k];
+        struct dig_ground_profile *const to = &bed->profile[k];
+        to->y_m                             = p->y_m;
+        to->points                          = p->points;
+        convert_surface(p->points, p->surface_m, to->x_m, to->z_m);
     }
-    convert_profiles(text, bed);
     for (size_t i = 0; i < bed->clump.spheres; i++) {
         bed->clump.x[i]      = text->clump[i].centre[0];
         bed->clump.y[i]      = text->clump[i].centre[1];

@@ -6,36 +6,13 @@
 
 #include "core/error.h"
 #include "core/scene.h"
+#include "files/yaml/yaml_schema.h"
 
-#include <cyaml/cyaml.h>
 #include <stdint.h>
 
-struct laws_text {
-    int    normal, rolling; // enum dig_normal_law, enum dig_rolling_law
-    double cohesion_Jpm3, adhesion_Jpm3, bucket_smoothness;
-};
-
-struct size_text {
-    double diameter_m, mass_fraction;
-};
-
-struct log_normal_text {
-    double   median_m, sigma;
-    uint32_t classes;
-};
-
-struct material_text {
-    char   name[DIG_NAME_SIZE];
-    double friction, rolling, density_kgpm3, restitution;
-};
-
-struct name_text {
-    char text[DIG_NAME_SIZE];
-};
-
 struct pair_text {
-    struct name_text between[2];
-    double           friction, rolling, restitution;
+    char   between[2][DIG_NAME_SIZE]; // materials
+    double friction, rolling, restitution;
 };
 
 struct layer_text {
@@ -43,14 +20,10 @@ struct layer_text {
     double z_m[2];
 };
 
-struct surface_text {
-    double xz_m[2];
-};
-
 struct profile_text {
-    double              y_m;
-    struct surface_text surface_m[DIG_SURFACE_MAX];
-    uint32_t            surface_m_count;
+    double                y_m;
+    struct dig_yaml_point surface_m[DIG_SURFACE_MAX];
+    size_t                points;
 };
 
 struct sphere_text {
@@ -59,40 +32,30 @@ struct sphere_text {
 };
 
 struct obstacle_text {
-    int    shape; // enum dig_obstacle_shape
-    double centre_m[3];
-    double diameter_m;
-    double edges_m[3];
-    bool   movable;
-    double density_kgpm3;
+    struct dig_obstacle obstacle;
+    double              diameter_m;
+    double              edges_m[3];
 };
 
+/// A bed, beside the lists that name materials, or that it keeps in another order.
 struct bed_text {
-    struct size_text       sizes[DIG_SIZES_MAX];
-    struct log_normal_text log_normal;
-    struct material_text   materials[DIG_MATERIALS_MAX];
-    struct pair_text       pairs[DIG_PAIRS_MAX];
-    struct layer_text      layers[DIG_LAYERS_MAX];
-    struct surface_text    surface_m[DIG_SURFACE_MAX];
-    struct profile_text    surfaces[DIG_PROFILES_MAX];
-    struct sphere_text     clump[DIG_CLUMP_MAX];
-    struct obstacle_text   obstacles[DIG_OBSTACLES_MAX];
-    double                 preload_Pa;
-    char                   earlier[DIG_NAME_SIZE];
-    // How many of the lists above, in their order.
-    uint32_t sizes_count, materials_count, pairs_count, layers_count, surface_m_count,
-        surfaces_count, clump_count, obstacles_count;
-    uint32_t earlier_digs;
-    bool     periodic_y, earlier_as_dug;
+    struct dig_bed_plan   bed;
+    double                median_m, sigma; // of a log-normal distribution
+    uint32_t              classes;
+    struct pair_text      pairs[DIG_PAIRS_MAX];
+    struct layer_text     layers[DIG_LAYERS_MAX];
+    struct dig_yaml_point surface_m[DIG_SURFACE_MAX];
+    struct profile_text   surfaces[DIG_PROFILES_MAX];
+    struct sphere_text    clump[DIG_CLUMP_MAX];
+    struct obstacle_text  obstacles[DIG_OBSTACLES_MAX];
 };
 
-extern const cyaml_schema_field_t dig_laws_fields[];
-extern const cyaml_schema_field_t dig_bed_fields[];
+extern const cyaml_schema_field_t dig_laws_fields[]; // into a struct dig_laws
+extern const cyaml_schema_field_t dig_bed_fields[];  // into a struct bed_text
 
-/// Into the scene's laws and bed. DIG_EINVAL names the key of a material that is not there, of an
-/// obstacle whose size does not fit its shape, or of a distribution that cannot be.
-DIG_MUST_CHECK enum dig_status dig_bed_convert(const struct laws_text *laws,
-                                               const struct bed_text *bed, struct dig_scene *scene,
-                                               struct dig_error *error);
+/// The whole bed. DIG_EINVAL names the key of a material that is not there, of an obstacle whose
+/// size does not fit its shape, or of a distribution that cannot be.
+DIG_MUST_CHECK enum dig_status dig_bed_convert(const struct bed_text *text,
+                                               struct dig_bed_plan *bed, struct dig_error *error);
 
 #endif // DIG_FILES_BED_YAML_H

@@ -1,7 +1,8 @@
 #include "files/campaign_yaml.h"
 
 #include "core/name.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <stdint.h>
@@ -24,9 +25,6 @@ struct campaign_text {
     uint32_t              recordings_count;
 };
 
-#define REQUIRED CYAML_FLAG_DEFAULT
-#define OPTIONAL CYAML_FLAG_OPTIONAL
-
 static const cyaml_strval_t roles[] = {
     { "identify", DIG_ROLE_IDENTIFY },
     { "fit", DIG_ROLE_FIT },
@@ -34,28 +32,25 @@ static const cyaml_strval_t roles[] = {
 };
 
 static const cyaml_schema_field_t recording_fields[] = {
-    CYAML_FIELD_STRING("file", REQUIRED, struct recording_text, file, 1),
-    CYAML_FIELD_STRING("trajectory", REQUIRED, struct recording_text, trajectory, 1),
+    TEXT(recording_text, file),
+    TEXT(recording_text, trajectory),
     CYAML_FIELD_ENUM("role", CYAML_FLAG_STRICT, struct recording_text, role, roles,
                      sizeof roles / sizeof roles[0]),
     CYAML_FIELD_UINT("pass", OPTIONAL, struct recording_text, pass),
     CYAML_FIELD_END,
 };
-
-static const cyaml_schema_value_t recording = { CYAML_VALUE_MAPPING(REQUIRED, struct recording_text,
-                                                                    recording_fields) };
+static const cyaml_schema_value_t recording = ENTRY(recording_text, recording_fields);
 
 static const cyaml_schema_field_t fields[] = {
-    CYAML_FIELD_STRING("scene", REQUIRED, struct campaign_text, scene, 1),
+    TEXT(campaign_text, scene),
     CYAML_FIELD_STRING("machine", OPTIONAL, struct campaign_text, machine, 0),
     CYAML_FIELD_SEQUENCE("recordings", REQUIRED, struct campaign_text, recordings, &recording, 1,
                          DIG_CAMPAIGN_MAX),
-    CYAML_FIELD_IGNORE("source", OPTIONAL),
+    SOURCE,
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
-                                                                 struct campaign_text, fields) };
+static const cyaml_schema_value_t schema = FILE_OF(campaign_text, fields);
 
 // Puts the folder before a relative path. False when the result is too long, or the name is none.
 static bool resolve(const char *const folder, const char *const name, char path[DIG_CAMPAIGN_PATH])

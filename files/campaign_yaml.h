@@ -31,7 +31,7 @@ struct dig_campaign {
     struct dig_campaign_recording recording[DIG_CAMPAIGN_MAX];
 };
 
-/// True when path is a folder, which is how a campaign is told from a recording.
+/// True when path is a folder: a campaign is one, a recording is a file.
 bool dig_campaign_is(const char *path);
 
 /// Reads FOLDER/campaign.yaml. *error names file, line, key and what was expected; the files it

@@ -2,7 +2,8 @@
 
 #include "core/name.h"
 #include "core/units.h"
-#include "files/whole.h"
+#include "files/text/csv.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <math.h>
@@ -30,22 +31,12 @@ struct sample {
     struct dig_force_row   row;
 };
 
-// Cuts a line into fields without the blanks around them; how many there are.
+// Cuts a line into fields; how many there are.
 static size_t split(char *rest, char *field[const FIELDS_MAX])
 {
     size_t n = 0;
-    while (rest != NULL && n < FIELDS_MAX) {
-        char *const comma = strchr(rest, ',');
-        if (comma != NULL) {
-            *comma = '\0';
-        }
-        field[n] = rest + strspn(rest, " \t");
-        for (size_t length = strlen(field[n]);
-             length > 0 && strchr(" \t\r", field[n][length - 1]) != NULL; length--) {
-            field[n][length - 1] = '\0';
-        }
+    while (n < FIELDS_MAX && (field[n] = dig_csv_field(&rest)) != NULL) {
         n++;
-        rest = comma != NULL ? comma + 1 : NULL;
     }
     return n;
 }
@@ -173,14 +164,9 @@ static enum dig_status read_sample(const struct reader *const r, char *const lin
 static bool is_same_dig(const struct dig_foreign_dig *const a,
                         const struct dig_foreign_dig *const b)
 {
-    bool same = a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0 &&
-                dig_approach_is_same(&a->approach, &b->approach);
-    for (int i = 0; i < DIG_AXES; i++) {
-        const double u = a->gravel.value[i];
-        const double v = b->gravel.value[i];
-        same           = same && !(u < v) && !(u > v);
-    }
-    return same;
+    return a->packing == b->packing && strcmp(a->trajectory, b->trajectory) == 0 &&
+           dig_approach_is_same(&a->approach, &b->approach) &&
+           dig_gravel_is_same(&a->gravel, &b->gravel);
 }
 
 static enum dig_status end_dig(struct reader *const r)
@@ -225,16 +211,9 @@ static enum dig_status read_lines(struct reader *const r, char *text)
 {
     enum dig_status status  = DIG_OK;
     bool            started = false;
-    while (status == DIG_OK && text != NULL && *text != '\0') {
-        char *const line = text;
-        char *const end  = strchr(text, '\n');
-        text             = end != NULL ? end + 1 : NULL;
-        if (end != NULL) {
-            *end = '\0';
-        }
+    for (char *line; status == DIG_OK && (line = dig_csv_line(&text)) != NULL;) {
         r->line++;
-        const char first = line[strspn(line, " \t\r")];
-        if (first == '#' || first == '\0') {
+        if (dig_csv_is_comment_or_blank(line)) {
             continue;
         }
         if (!started) {
@@ -242,8 +221,8 @@ static enum dig_status read_lines(struct reader *const r, char *text)
             started = true;
             continue;
         }
-        struct sample sample;
-        status = read_sample(r, line, &sample);
+        struct sample sample = { .of = { .packing = 0 } };
+        status               = read_sample(r, line, &sample);
         if (status == DIG_OK) {
             status = take_sample(r, &sample);
         }

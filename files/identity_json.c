@@ -2,18 +2,12 @@
 
 #include "core/name.h"
 #include "core/units.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
-
-#define REQUIRED CYAML_FLAG_DEFAULT
-
-struct gravel_text {
-    double friction, rolling, density_kgpm3;
-};
 
 struct force_text {
     double x_N[DIG_CURVE_POINTS], z_N[DIG_CURVE_POINTS];
@@ -21,113 +15,76 @@ struct force_text {
 };
 
 struct dig_text {
-    char               trajectory[DIG_NAME_SIZE];
-    double             first, last;
-    double             depth, attack_deg; // depth 0: not given
-    double             moment_Nm[DIG_CURVE_POINTS];
-    double             sigma_Nm[DIG_CURVE_POINTS];
-    struct force_text *force; // NULL: not measured
+    struct dig_identity_dig dig;   // but for its forces; attack in degrees, depth 0: not given
+    struct force_text      *force; // NULL: not measured
 };
 
+// Attacks in degrees, depth 0: not given.
 struct identity_text {
-    char                scene_hash[65];
-    char                trajectory[DIG_NAME_SIZE];
-    uint32_t            digs;
-    bool                forces;
-    double              depth, attack_deg;                 // depth 0: not given
-    double              matched_depth, matched_attack_deg; // the same
-    struct gravel_text  gravel, mean, low, high, nearest;
-    struct gravel_text *weighted_nearest; // NULL: from before there was one
-    double              weighted_distance;
-    double              distance, nearest_distance, noise_floor;
-    bool                outside;
-    bool                family;
-    struct gravel_text  samples[DIG_IDENTITY_SAMPLES_MAX];
-    uint32_t            samples_count;
-
-    struct dig_text recorded[DIG_IDENTITY_DIGS_MAX];
-    uint32_t        recorded_count;
+    struct dig_identity identity;
+    struct dig_gravel  *weighted_nearest; // NULL: from before there was one
+    struct dig_text     recorded[DIG_IDENTITY_DIGS_MAX];
 };
 
-static const cyaml_schema_field_t gravel_fields[] = {
-    CYAML_FIELD_FLOAT("friction", REQUIRED, struct gravel_text, friction),
-    CYAML_FIELD_FLOAT("rolling", REQUIRED, struct gravel_text, rolling),
-    CYAML_FIELD_FLOAT("density_kgpm3", REQUIRED, struct gravel_text, density_kgpm3),
-    CYAML_FIELD_END,
-};
+static const cyaml_schema_value_t sample = ENTRY(dig_gravel, dig_yaml_gravel);
 
-static const cyaml_schema_value_t sample = { CYAML_VALUE_MAPPING(REQUIRED, struct gravel_text,
-                                                                 gravel_fields) };
-
-static const cyaml_schema_value_t number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
-
-#define NUMBERS(name, type)                                                                        \
-    CYAML_FIELD_SEQUENCE_FIXED(#name, REQUIRED, type, name, &number, DIG_CURVE_POINTS)
+#define CURVE(type, member) NUMBERS(#member, REQUIRED, type, member)
 
 static const cyaml_schema_field_t force_fields[] = {
-    NUMBERS(x_N, struct force_text),
-    NUMBERS(z_N, struct force_text),
-    NUMBERS(sigma_x_N, struct force_text),
-    NUMBERS(sigma_z_N, struct force_text),
-    CYAML_FIELD_END,
+    CURVE(force_text, x_N),       CURVE(force_text, z_N), CURVE(force_text, sigma_x_N),
+    CURVE(force_text, sigma_z_N), CYAML_FIELD_END,
 };
+
+#define NUMBER_PERHAPS(key, type, member) CYAML_FIELD_FLOAT(key, OPTIONAL, struct type, member)
 
 static const cyaml_schema_field_t dig_fields[] = {
-    CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_text, trajectory, 1),
-    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_text, first),
-    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, last),
-    NUMBERS(moment_Nm, struct dig_text),
-    NUMBERS(sigma_Nm, struct dig_text),
-    CYAML_FIELD_FLOAT("depth", CYAML_FLAG_OPTIONAL, struct dig_text, depth),
-    CYAML_FIELD_FLOAT("attack_deg", CYAML_FLAG_OPTIONAL, struct dig_text, attack_deg),
-    CYAML_FIELD_MAPPING_PTR("force", CYAML_FLAG_OPTIONAL, struct dig_text, force, force_fields),
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_text, dig.trajectory, 1),
+    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_text, dig.first),
+    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, dig.last),
+    NUMBERS("moment_Nm", REQUIRED, dig_text, dig.moment_Nm),
+    NUMBERS("sigma_Nm", REQUIRED, dig_text, dig.sigma_Nm),
+    NUMBER_PERHAPS("depth", dig_text, dig.approach.depth),
+    NUMBER_PERHAPS("attack_deg", dig_text, dig.approach.attack_rad),
+    CYAML_FIELD_MAPPING_PTR("force", OPTIONAL, struct dig_text, force, force_fields),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t recorded = { CYAML_VALUE_MAPPING(REQUIRED, struct dig_text,
-                                                                   dig_fields) };
+static const cyaml_schema_value_t recorded = ENTRY(dig_text, dig_fields);
 
-#define NUMBER_PERHAPS(name)                                                                       \
-    CYAML_FIELD_FLOAT(#name, CYAML_FLAG_OPTIONAL, struct identity_text, name)
-
-#define GRAVEL(name) CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, name, gravel_fields)
+#define GRAVEL(name)                                                                               \
+    CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, identity.name, dig_yaml_gravel)
+#define DISTANCE(name) CYAML_FIELD_FLOAT(#name, REQUIRED, struct identity_text, identity.name)
 
 static const cyaml_schema_field_t fields[] = {
-    CYAML_FIELD_STRING("scene_hash", REQUIRED, struct identity_text, scene_hash, 64),
-    CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, trajectory, 1),
-    CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, digs),
-    CYAML_FIELD_BOOL("forces", CYAML_FLAG_OPTIONAL, struct identity_text, forces),
-    NUMBER_PERHAPS(depth),
-    NUMBER_PERHAPS(attack_deg),
-    NUMBER_PERHAPS(matched_depth),
-    NUMBER_PERHAPS(matched_attack_deg),
+    CYAML_FIELD_STRING("scene_hash", REQUIRED, struct identity_text, identity.scene_hash, 64),
+    CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, identity.trajectory, 1),
+    CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, identity.digs),
+    CYAML_FIELD_BOOL("forces", OPTIONAL, struct identity_text, identity.forces),
+    NUMBER_PERHAPS("depth", identity_text, identity.made.depth),
+    NUMBER_PERHAPS("attack_deg", identity_text, identity.made.attack_rad),
+    NUMBER_PERHAPS("matched_depth", identity_text, identity.matched.depth),
+    NUMBER_PERHAPS("matched_attack_deg", identity_text, identity.matched.attack_rad),
     GRAVEL(gravel),
     GRAVEL(mean),
     GRAVEL(low),
     GRAVEL(high),
     GRAVEL(nearest),
-    CYAML_FIELD_MAPPING_PTR("weighted_nearest", CYAML_FLAG_OPTIONAL, struct identity_text,
-                            weighted_nearest, gravel_fields),
-    NUMBER_PERHAPS(weighted_distance),
-    CYAML_FIELD_FLOAT("distance", REQUIRED, struct identity_text, distance),
-    CYAML_FIELD_FLOAT("nearest_distance", REQUIRED, struct identity_text, nearest_distance),
-    CYAML_FIELD_FLOAT("noise_floor", REQUIRED, struct identity_text, noise_floor),
-    CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, outside),
-    CYAML_FIELD_BOOL("family", CYAML_FLAG_OPTIONAL, struct identity_text, family),
-    CYAML_FIELD_SEQUENCE("samples", REQUIRED, struct identity_text, samples, &sample, 0,
-                         DIG_IDENTITY_SAMPLES_MAX),
-    CYAML_FIELD_SEQUENCE("recorded", CYAML_FLAG_OPTIONAL, struct identity_text, recorded, &recorded,
-                         0, DIG_IDENTITY_DIGS_MAX),
+    CYAML_FIELD_MAPPING_PTR("weighted_nearest", OPTIONAL, struct identity_text, weighted_nearest,
+                            dig_yaml_gravel),
+    NUMBER_PERHAPS("weighted_distance", identity_text, identity.weighted_distance),
+    DISTANCE(distance),
+    DISTANCE(nearest_distance),
+    DISTANCE(noise_floor),
+    CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, identity.outside),
+    CYAML_FIELD_BOOL("family", OPTIONAL, struct identity_text, identity.family),
+    LIST("samples", REQUIRED, identity_text, identity.sample, identity.samples, &sample, 0,
+         DIG_IDENTITY_SAMPLES_MAX),
+    LIST("recorded", OPTIONAL, identity_text, recorded, identity.recorded, &recorded, 0,
+         DIG_IDENTITY_DIGS_MAX),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
-                                                                 struct identity_text, fields) };
-
-static struct dig_gravel gravel_of(const struct gravel_text *const text)
-{
-    return (struct dig_gravel){ { text->friction, text->rolling, text->density_kgpm3 } };
-}
+static const cyaml_schema_value_t schema = FILE_OF(identity_text, fields);
 
 static bool is_gravel(const struct dig_gravel *const g)
 {
@@ -148,9 +105,10 @@ static bool is_curve(const double value[DIG_CURVE_POINTS], const double sigma[DI
 // Depth 0 is none given.
 static bool is_approach(const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_normalized(approach);
-    return told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST &&
-           fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
+    const struct dig_approach normalized = dig_approach_normalized(approach);
+    return normalized.depth >= DIG_APPROACH_DEPTH_LEAST &&
+           normalized.depth <= DIG_APPROACH_DEPTH_MOST &&
+           fabs(normalized.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
 }
 
 static bool is_dig(const struct dig_identity_dig *const dig)
@@ -163,15 +121,10 @@ static bool is_dig(const struct dig_identity_dig *const dig)
 
 static void take_dig(const struct dig_text *const text, struct dig_identity_dig *const dig)
 {
-    *dig =
-        (struct dig_identity_dig){ .first    = text->first,
-                                   .last     = text->last,
-                                   .approach = { text->depth, text->attack_deg * DIG_RAD_PER_DEG },
-                                   .forces   = text->force != NULL };
-    memcpy(dig->trajectory, text->trajectory, sizeof dig->trajectory);
-    memcpy(dig->moment_Nm, text->moment_Nm, sizeof dig->moment_Nm);
-    memcpy(dig->sigma_Nm, text->sigma_Nm, sizeof dig->sigma_Nm);
-    if (text->force != NULL) {
+    *dig = text->dig;
+    dig->approach.attack_rad *= DIG_RAD_PER_DEG;
+    dig->forces = text->force != NULL;
+    if (dig->forces) {
         memcpy(dig->force_N[0], text->force->x_N, sizeof dig->force_N[0]);
         memcpy(dig->force_N[1], text->force->z_N, sizeof dig->force_N[1]);
         memcpy(dig->force_sigma_N[0], text->force->sigma_x_N, sizeof dig->force_sigma_N[0]);
@@ -179,29 +132,18 @@ static void take_dig(const struct dig_text *const text, struct dig_identity_dig 
     }
 }
 
-// False when it is out of range, or an attack comes without a depth.
-static bool take_approach(const double depth, const double attack_deg,
-                          struct dig_approach *const approach)
+// Refused when it is out of range, or an attack comes without a depth.
+static enum dig_status take_approach(const char *const path, const char *const key,
+                                     struct dig_approach *const approach,
+                                     struct dig_error *const    error)
 {
-    *approach = (struct dig_approach){ depth, attack_deg * DIG_RAD_PER_DEG };
-    return is_approach(approach) && (depth > 0.0 || fabs(attack_deg) <= 0.0);
-}
-
-static enum dig_status take_made(const char *const path, const struct identity_text *const text,
-                                 struct dig_identity *const identity, struct dig_error *const error)
-{
-    static const char expected[] =
-        "expected a depth of 0.2 to 3 with an attack of at most 45 deg either way";
-    if (!take_approach(text->depth, text->attack_deg, &identity->made)) {
-        return dig_yaml_refuse(path, "depth", error, "%s", expected);
-    }
-    if (!take_approach(text->matched_depth, text->matched_attack_deg, &identity->matched)) {
-        return dig_yaml_refuse(path, "matched_depth", error, "%s", expected);
-    }
-    if (!(text->matched_depth > 0.0)) {
-        identity->matched = identity->made;
-    }
-    return DIG_OK;
+    const double attack_deg = approach->attack_rad;
+    approach->attack_rad *= DIG_RAD_PER_DEG;
+    return is_approach(approach) && (approach->depth > 0.0 || fabs(attack_deg) <= 0.0)
+               ? DIG_OK
+               : dig_yaml_refuse(path, key, error,
+                                 "expected a depth of 0.2 to 3 with an attack of at most 45 deg "
+                                 "either way");
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
@@ -215,30 +157,18 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     }
 
     const struct identity_text *const text = data;
-    struct dig_identity               read = {
-                      .digs             = text->digs,
-                      .forces           = text->forces,
-                      .gravel           = gravel_of(&text->gravel),
-                      .mean             = gravel_of(&text->mean),
-                      .low              = gravel_of(&text->low),
-                      .high             = gravel_of(&text->high),
-                      .nearest          = gravel_of(&text->nearest),
-                      .distance         = text->distance,
-                      .nearest_distance = text->nearest_distance,
-                      .noise_floor      = text->noise_floor,
-                      .outside          = text->outside,
-                      .family           = text->family,
-                      .samples          = text->samples_count,
-                      .recorded         = text->recorded_count,
-    };
-    memcpy(read.scene_hash, text->scene_hash, sizeof read.scene_hash);
-    memcpy(read.trajectory, text->trajectory, sizeof read.trajectory);
-    if (text->weighted_nearest != NULL) {
-        read.weighted          = true;
-        read.weighted_nearest  = gravel_of(text->weighted_nearest);
-        read.weighted_distance = text->weighted_distance;
+    struct dig_identity               read = text->identity;
+    status                                 = take_approach(path, "depth", &read.made, error);
+    if (status == DIG_OK) {
+        status = take_approach(path, "matched_depth", &read.matched, error);
     }
-    status = take_made(path, text, &read, error);
+    if (!(read.matched.depth > 0.0)) {
+        read.matched = read.made;
+    }
+    read.weighted = text->weighted_nearest != NULL;
+    if (read.weighted) {
+        read.weighted_nearest = *text->weighted_nearest;
+    }
     if (status == DIG_OK && read.weighted &&
         !(is_gravel(&read.weighted_nearest) && read.weighted_distance >= 0.0)) {
         status = dig_yaml_refuse(path, "weighted_nearest", error,
@@ -246,7 +176,6 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
                                  "a weighted_distance >= 0");
     }
     for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
-        read.sample[i] = gravel_of(&text->samples[i]);
         if (!is_gravel(&read.sample[i])) {
             status = dig_yaml_refuse(path, "samples", error,
                                      "the %zu-th is no gravel, expected friction and rolling >= 0, "

@@ -31,20 +31,20 @@ struct dig_identity {
     char                scene_hash[65];            // of the table it was identified with
     char                trajectory[DIG_NAME_SIZE]; // of the dig it was identified on
     size_t              digs;                      // how many were pooled
-    bool                forces;                    // they told moment and forces; else the moment
-    struct dig_approach made;    // how that dig was made, as it tells itself; depth 0: not told
+    bool                forces;  // matched by moment and forces; else by the moment
+    struct dig_approach made;    // how that dig was made, from its own path; depth 0: not known
     struct dig_approach matched; // the nearest to that the table knows; zeroed: the plain one
     struct dig_gravel   gravel;  // between the grid points
     struct dig_gravel   mean, low, high;   // posterior mean and 5 %, 95 % of each axis
     struct dig_gravel   nearest;           // entry of the table
     double              distance;          // relative Euclidean norm to the fitted curve
     double              nearest_distance;  // to the nearest entry
-    bool                weighted;          // the next two are told
+    bool                weighted;          // the next two are known
     struct dig_gravel   weighted_nearest;  // entry nearest by the noise-weighted distance,
     double              weighted_distance; // which is expected to be 1
     double              noise_floor;       // what another packing would be away
     bool                outside;           // none of the table's gravels
-    bool                family;            // an axis is not told: one of a family
+    bool                family;            // the digs do not resolve an axis: one of a family
     size_t              samples;           // gravels that stand for the posterior
     struct dig_gravel   sample[DIG_IDENTITY_SAMPLES_MAX];
     // The last of the digs, oldest first, for who goes on with them; 0: they are not kept.

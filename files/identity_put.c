@@ -51,9 +51,9 @@ static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
 static void put_approach(FILE *const to, const char *const prefix,
                          const struct dig_approach *const approach)
 {
-    const struct dig_approach told = dig_approach_normalized(approach);
-    (void)fprintf(to, "\"%sdepth\": %.9g, \"%sattack_deg\": %.9g", prefix, told.depth, prefix,
-                  told.attack_rad / DIG_RAD_PER_DEG);
+    const struct dig_approach normalized = dig_approach_normalized(approach);
+    (void)fprintf(to, "\"%sdepth\": %.9g, \"%sattack_deg\": %.9g", prefix, normalized.depth, prefix,
+                  normalized.attack_rad / DIG_RAD_PER_DEG);
 }
 
 static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)

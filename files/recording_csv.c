@@ -1,7 +1,7 @@
 #include "files/recording_csv.h"
 
-#include "files/csv.h"
-#include "files/whole.h"
+#include "files/text/csv.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <math.h>
@@ -48,7 +48,7 @@ static struct machine_columns machine_columns(const enum dig_sensing sensing)
         of.signal[of.count]   = signal;
         of.column[of.count++] = (struct dig_csv_column){
             .name      = dig_signal_name(signal),
-            .optional  = !dig_signal_tells_moment(sensing, signal),
+            .optional  = !dig_signal_gives_moment(sensing, signal),
             .may_empty = true,
         };
     }

@@ -1,6 +1,7 @@
 #!/bin/sh
-# scripts/check_layers.sh [BUILD]: fails where a source includes a header it must not, where headers
-# include each other in a circle, or sources call each other in one (told by the objects in BUILD).
+# scripts/check_layers.sh [BUILD]: fails where a source includes a header it must not, be it of a folder or room
+# above it or private to another room; where headers include each other in a circle, or sources call each other in
+# one (told by the objects in BUILD); and where a header is listed as public that no one outside its room includes.
 # The picture of this is docs/architecture.md.
 set -eu
 
@@ -17,13 +18,57 @@ tools/rig     core files tools/rig
 tools         core files tables estimator offline_dem closed_loop firmware_host tools
 '
 
-# The rooms of a folder, from the ground up: a room may include those before it. What stands in the
-# folder itself is its roof.
+# The rooms from the ground up: a room may include those of its folder before it. What stands in the folder itself
+# is its roof. Behind each the headers that other folders may include, and after | those that only the rooms above
+# may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
-estimator     wrench track approach effects match predict
-offline_dem   law shapes kernel world dig sweep device reference cuda
-closed_loop   numeric recordings model machine search accuracy verdict design report
-firmware_host threads bus config tick matching publish
+core                   approach approach_set bed_plan command_line contact curve did_you_mean effect effect_set
+                       error geometry ground help linkage log_normal machine model name part recording regular
+                       sample scene sha256 shell similar status table_step text units vec2
+files/text             whole | csv
+files/yaml             yaml | yaml_schema
+files/lcm              health_text lcm_log lcm_message predicted_curve
+files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json machine_yaml model_json
+                       recording_csv scene_yaml
+estimator              estimator estimator_tick
+estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
+estimator/track        inertia_error observation phase route settings track window | abort_detection ending
+                       estimate followed motion recorded_dig
+estimator/approach     approach_error approach_fit approach_slots approaches interpolate live_recording
+                       observe_dig | approach_response approach_route approached
+estimator/effects      effect template
+estimator/match        gravel_match match pool prefilter | entry_scatter
+estimator/predict      forecast peak_energy | predict prediction
+tables/schema          | canonical_scene schema seal
+tables                 derive export listed load load_effects merge queue scene store
+offline_dem/law        | both law law_general period random rigid wall
+offline_dem/shapes     | bucket_surface clump rock_surface tool
+offline_dem/kernel     bed | clump_body contacts grains kernel neighbour
+offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world
+offline_dem/dig        checked_pour dig input_checks variant | setup
+offline_dem/sweep      sweep
+offline_dem/device     engine_cuda | device_grain device_surfaces
+offline_dem/reference  engine_ode
+offline_dem/cuda
+closed_loop/numeric    | chance dense levenberg
+closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
+                       regressors
+closed_loop/model      | candidate hypothesis posterior response_surface scatter soil whitened_digs
+closed_loop/machine    machine_side | machine_lines machine_motion machine_side_private
+closed_loop/search     | cross_validation portmanteau search search_work unlisted
+closed_loop/accuracy   coverage score | before_after decision effect_size judge trend
+closed_loop/verdict    trace | residuals tell_apart
+closed_loop/design     design design_report
+closed_loop/report     html json plot report trace_report
+firmware_host/threads  | handoff log_limit notify rt
+firmware_host/bus      | frame_watch input reading register_plan signal_map stuck
+firmware_host/config   load_model | config describe load
+firmware_host/tick     | loop
+firmware_host/matching | fit
+firmware_host/publish  | publish
+firmware_host
+tools/rig/motion
+tools/rig/bus
 '
 
 # A foreign library is included only where it is wrapped: one file, or one folder (by its prefix).
@@ -31,7 +76,7 @@ owners='
 nlopt.h      estimator/match/fit_nlopt.c
 modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tools/rig/
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
-lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c tools/digwatch/source.c
+lcm/         firmware_host/publish/output_lcm.c files/lcm/lcm_log.c tools/digwatch/source.c
 curses.h     tools/digwatch/terminal.c
 cyaml/       files/ firmware_host/config/
 yaml.h       files/ firmware_host/config/
@@ -51,25 +96,41 @@ in_a_circle() { # WHAT: says each circle of the pairs in $edges
 }
 
 # shellcheck disable=SC2086 # a list of folders
-find $folders -name '*.[ch]' | sort | xargs awk -v may="$may_include" -v rooms="$rooms" -v owners="$owners" -v edges="$edges" '
+find $folders -name '*.[ch]' -o -name '*.cu' | sort | xargs awk -v may="$may_include" -v rooms="$rooms" -v owners="$owners" -v edges="$edges" '
     function folder_of(path) { return path ~ /^tools\/rig\// ? "tools/rig" : substr(path, 1, index(path "/", "/") - 1) }
-    function room_of(path, a, n) { n = split(path, a, "/"); return n > 2 && (a[1] "/" a[2]) in room ? room[a[1] "/" a[2]] : 99 }
+    function place_of(path) { sub(/\/[^\/]*$/, "", path); return path }
+    function floor_of(place) { return place ~ /\// && place in floor ? floor[place] : 999 }
+    function program_of(path, a) { split(path, a, "/"); sub(/\.c$/, "", a[2]); return a[2] }
     function say(text) { print FILENAME ": " text; bad = 1 }
     BEGIN {
         n = split(may, line, "\n")
         for (i = 1; i <= n; i++) { m = split(line[i], a, " "); for (k = 2; k <= m; k++) allowed[a[1] " " a[k]] = 1 }
         n = split(rooms, line, "\n")
-        for (i = 1; i <= n; i++) { m = split(line[i], a, " "); for (k = 2; k <= m; k++) room[a[1] "/" a[k]] = k }
+        for (i = 1; i <= n; i++) {
+            m = split(line[i], a, " ")
+            if (line[i] ~ /^[a-z]/) { place = a[1]; floor[place] = i; offer = "other folders"; a[1] = "" }
+            for (k = 1; k <= m; k++)
+                if (a[k] == "|") offer = "rooms above"
+                else if (a[k] != "") offered[place "/" a[k] ".h"] = offer
+        }
         foreign = split(owners, owner, "\n")
     }
+    FNR == 1 && FILENAME !~ /^tools\// && !(place_of(FILENAME) in floor) { say("stands in no room of the list") }
     /^#include "/ {
         split($0, quoted, "\"")
         header = quoted[2]
         # The rig has levers of its own, by virtual work: the estimator is judged by it.
         if (!((folder_of(FILENAME) " " folder_of(header)) in allowed) || (FILENAME ~ /^tools\/rig\// && header == "core/linkage.h"))
             say("must not include \"" header "\"")
-        if (folder_of(header) == folder_of(FILENAME) && room_of(header) > room_of(FILENAME))
+        same_folder = folder_of(header) == folder_of(FILENAME)
+        place = place_of(header)
+        if (same_folder && floor_of(place) > floor_of(place_of(FILENAME)))
             say("\"" header "\" stands above it")
+        if (header ~ /^tools\// ? program_of(header) != program_of(FILENAME) : place in floor && place != place_of(FILENAME)) {
+            if (!(header in offered) || (offered[header] == "rooms above" && !same_folder))
+                say("\"" header "\" is private")
+            used[header, same_folder ? "rooms above" : "other folders"] = 1
+        }
         if (FILENAME ~ /\.h$/) print FILENAME, header > edges
     }
     /^#include </ {
@@ -82,7 +143,10 @@ find $folders -name '*.[ch]' | sort | xargs awk -v may="$may_include" -v rooms="
             if (!mine) say("<" quoted[2] "> belongs in" substr(owner[i], length(a[1]) + 1) " only")
         }
     }
-    END { exit bad }' || bad=1
+    END {
+        for (header in offered) if (!((header, offered[header]) in used)) { print header ": no " offered[header] " include it"; bad = 1 }
+        exit bad
+    }' || bad=1
 in_a_circle "headers include each other"
 
 if [ -n "${1:-}" ]; then

@@ -1,7 +1,7 @@
 #!/bin/bash
 # scripts/floors.sh FOLDER: draws the floors of the house, FOLDER/floor1.svg to floor4.svg: each folder with its
-# rooms, the first one at the bottom, and the sources of each. Folders, rooms and what a folder may include are
-# those of scripts/check_layers.sh.
+# rooms, the first one at the bottom, and the sources of each, in grey what is private to its room. Folders, rooms,
+# public headers and what a folder may include are those of scripts/check_layers.sh.
 set -euo pipefail
 export LC_ALL=C
 to=${1:?usage: floors.sh FOLDER}
@@ -9,8 +9,18 @@ cd "$(dirname "$0")/.."
 mkdir -p "$to"
 eval "$(sed -n "/^may_include='/,/^'/p; /^rooms='/,/^'/p" scripts/check_layers.sh)"
 
-sources() { # FOLDER: the names of its sources and headers, each once
-    find "$1" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cu' | sed 's#.*/##; s#\.[a-z]*$##' | sort -u | tr '\n' ' '
+sources() { # FOLDER: the names of its sources and headers, each once; behind a ~ what no other room may include
+    find "$1" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cu' | sed 's#.*/##; s#\.[a-z]*$##' | sort -u |
+        awk -v place="$1" -v rooms="$rooms" '
+            BEGIN {
+                n = split(rooms, line, "\n")
+                for (i = 1; i <= n; i++) {
+                    m = split(line[i], word, " ")
+                    if (line[i] ~ /^[a-z]/) { at = word[1]; word[1] = "" }
+                    for (k = 1; k <= m; k++) if (at == place) public[word[k]] = 1
+                }
+            }
+            { printf "%s%s ", place ~ /^tools/ || $1 in public ? "" : "~", $1 }'
 }
 
 list_of() { # LIST FOLDER: what the list says of it
@@ -26,7 +36,7 @@ rooms_in() { # FOLDER: ROOM SOURCE… a line, the top first
         return
     fi
     echo "- $(sources "$folder")"
-    for room in $(list_of "$rooms" "$folder"); do reversed=("$room" "${reversed[@]}"); done
+    for room in $(sed -n "s#^$folder/\([a-z_]*\).*#\1#p" <<<"$rooms"); do reversed=("$room" "${reversed[@]}"); done
     for room in "${reversed[@]}"; do echo "$room $(sources "$folder/$room")"; done
 }
 
@@ -48,12 +58,15 @@ floor() { # NUMBER TITLE FOLDER…
             y += 44; next
         }
         {
-            top = y; lines = 0; line = ""
+            top = y; line = ""; length_of = -1
             y += 20
             if ($2 != "-") { text(x + 16, y - 3, " font-weight=\"bold\" fill=\"#1f5fa8\"", $2); y += 16 }
             for (i = 3; i <= NF; i++) {
-                if (line != "" && length(line) + length($i) + 1 > letters) { text(x + 16, y - 3, "", line); y += 16; line = "" }
-                line = line (line == "" ? "" : " ") $i
+                name = $i
+                private = sub(/^~/, "", name)
+                if (line != "" && length_of + length(name) + 1 > letters) { text(x + 16, y - 3, "", line); y += 16; line = ""; length_of = -1 }
+                line = line (line == "" ? "" : " ") (private ? "<tspan fill=\"#8a8a8a\">" name "</tspan>" : name)
+                length_of += length(name) + 1
             }
             if (line != "") { text(x + 16, y - 3, "", line); y += 16 }
             if (NF > 2) frame = frame sprintf("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" rx=\"3\" fill=\"%s\" stroke=\"#c3cfdf\"/>\n", x + 8, top + 2, wide - 16, y - top - 14, $2 == "-" ? "#fbf6ea" : "#f4f7fb")

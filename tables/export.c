@@ -8,13 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const channel_name[DIG_CHANNELS] = {
-    [DIG_CHANNEL_MY_Nm]      = "My_Nm",
-    [DIG_CHANNEL_FX_N]       = "Fx_N",
-    [DIG_CHANNEL_FZ_N]       = "Fz_N",
-    [DIG_CHANNEL_CARRIED_kg] = "carried_kg",
-};
-
 static double progress_of(const size_t k)
 {
     return (double)k / (DIG_CURVE_POINTS - 1);
@@ -294,11 +287,10 @@ void dig_export_curve_json(const struct dig_curve_set *const set, const size_t e
                       time_of(&one.trajectory, set->tooth_m, k));
     }
     (void)fputc(']', file);
-    static const char *const mean_name[DIG_CHANNELS] = { "My_Nm", "Fx_N", "Fz_N", "carried_kg" };
-    static const char *const sd_name[DIG_CHANNELS]   = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N",
-                                                         "carried_sd_kg" };
+    static const char *const sd_name[DIG_CHANNELS] = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N",
+                                                       "carried_sd_kg" };
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        put_json_array(mean_name[c], one.curve->mean[c], file);
+        put_json_array(dig_channel_name((enum dig_channel)c), one.curve->mean[c], file);
         put_json_array(sd_name[c], one.curve->sd[c], file);
     }
     (void)fputs("}\n", file);
@@ -328,7 +320,7 @@ void dig_export_curve_plot(const struct dig_curve_set *const set, const size_t e
     dig_approach_text(&one.approach, how);
     (void)fprintf(file, "entry %zu: friction %g, rolling %g, %g kg/m3; %s%s, %d packings\n%s\n",
                   entry, v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING], v[DIG_AXIS_DENSITY_kgpm3],
-                  one.trajectory.name, how, one.packings, channel_name[channel]);
+                  one.trajectory.name, how, one.packings, dig_channel_name(channel));
     for (int row = PLOT_ROWS - 1; row >= 0; row--) {
         const double level = low + step * row;
         (void)fprintf(file, "%9.3g |", level);

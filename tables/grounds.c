@@ -249,15 +249,6 @@ void dig_grounds_finish(struct dig_grounds *const grounds)
     }
 }
 
-static double mean_square(const float y[const DIG_CURVE_POINTS])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += (double)y[k] * (double)y[k];
-    }
-    return sum / DIG_CURVE_POINTS;
-}
-
 // Variances at each point, relative to the curve's mean square, times their degrees of freedom.
 struct pool {
     double variance[DIG_CURVE_POINTS];
@@ -270,7 +261,7 @@ static void add_channel(const struct dig_grounds *const g, const size_t trajecto
     for (size_t e = 0; e < g->grounds; e++) {
         const size_t                  at    = e * g->trajectories + trajectory;
         const struct dig_curve *const curve = &g->curve[at];
-        const double                  scale = mean_square(curve->mean[c]);
+        const double                  scale = dig_curve_mean_square(curve->mean[c]);
         if (g->packings[at] < 2 || !(scale > 0.0)) {
             continue;
         }
@@ -292,7 +283,7 @@ static void spread_channel(struct dig_grounds *const g, const size_t trajectory,
         if (g->packings[at] != 1) {
             continue;
         }
-        const double rms = sqrt(mean_square(curve->mean[c]));
+        const double rms = sqrt(dig_curve_mean_square(curve->mean[c]));
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double relative = pool->freedom > 0.0 ? sqrt(pool->variance[k] / pool->freedom)
                                                         : SPREAD_WITHOUT_PACKINGS;

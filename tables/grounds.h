@@ -1,4 +1,5 @@
-// The rows of a table in memory: what was dug in, and the curves of each. Internal to tables/.
+// The grounds of a table in memory (gravel, effect, approach), and the curves of each. Internal to
+// tables/.
 
 #ifndef DIG_TABLES_GROUNDS_H
 #define DIG_TABLES_GROUNDS_H
@@ -6,7 +7,7 @@
 #include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
-#include "tables/schema.h"
+#include "tables/schema/schema.h"
 
 #include <stdbool.h>
 

@@ -6,7 +6,7 @@
 
 #include "core/approach_set.h"
 #include "core/error.h"
-#include "tables/schema.h"
+#include "tables/schema/schema.h"
 
 /// NULL into *set where the table holds none. Where an entry has one packing, its spread is pooled
 /// from all that were dug without an effect. Call it in a transaction. Free with

@@ -5,7 +5,7 @@
 
 #include "core/curve.h"
 #include "core/error.h"
-#include "tables/schema.h"
+#include "tables/schema/schema.h"
 
 /// Fills set->covariance from all runs without an effect, as the trajectories stand. Of a gravel
 /// that was dug once nothing is learnt. Reads every such run: 0.1 ms each. DIG_EINVAL: a run that

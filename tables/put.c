@@ -2,7 +2,7 @@
 
 #include "core/effect.h"
 #include "core/name.h"
-#include "tables/seal.h"
+#include "tables/schema/seal.h"
 #include "tables/store.h"
 #include "tables/store_private.h"
 
@@ -29,12 +29,13 @@ static enum dig_status check_origin(const struct dig_run_origin *const o,
                              "expected " DIG_LABEL_RULE,
                              o->engine, o->version, o->made_utc);
     }
-    const struct dig_approach told = dig_approach_normalized(&o->approach);
-    if (!(told.depth >= DIG_APPROACH_DEPTH_LEAST && told.depth <= DIG_APPROACH_DEPTH_MOST) ||
-        !(fabs(told.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
+    const struct dig_approach normalized = dig_approach_normalized(&o->approach);
+    if (!(normalized.depth >= DIG_APPROACH_DEPTH_LEAST &&
+          normalized.depth <= DIG_APPROACH_DEPTH_MOST) ||
+        !(fabs(normalized.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
         return dig_error_set(error, DIG_EINVAL,
                              "run: depth %g, attack %g rad, expected %g to %g and at most %g",
-                             told.depth, told.attack_rad, DIG_APPROACH_DEPTH_LEAST,
+                             normalized.depth, normalized.attack_rad, DIG_APPROACH_DEPTH_LEAST,
                              DIG_APPROACH_DEPTH_MOST, DIG_APPROACH_ATTACK_MOST_rad);
     }
     return DIG_OK;
@@ -233,7 +234,7 @@ static enum dig_status put_in_transaction(struct dig_store *const            sto
 }
 
 // The first run added to a table of an older version makes it one of today's.
-static enum dig_status bring_up(struct dig_store *const store, struct dig_error *const error)
+static enum dig_status upgrade(struct dig_store *const store, struct dig_error *const error)
 {
     if (store->head.version == DIG_TABLE_VERSION) {
         return DIG_OK;
@@ -249,7 +250,7 @@ static enum dig_status bring_up(struct dig_store *const store, struct dig_error 
 enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error *const error)
 {
     assert(store != NULL && store->lock_fd >= 0 && !store->gathers);
-    enum dig_status status = bring_up(store, error);
+    enum dig_status status = upgrade(store, error);
     if (status == DIG_OK) {
         status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
     }
@@ -291,7 +292,7 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     if (bytes == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
     }
-    status = bring_up(store, error);
+    status = upgrade(store, error);
     if (status == DIG_OK) {
         status = dig_sql_run(store->db, store->path,
                              store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE", error);

@@ -16,9 +16,9 @@ void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const o
     }
     (void)sqlite3_bind_text(s, DIG_AXES + 1, origin->effect, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, DIG_AXES + 2, origin->magnitude);
-    const struct dig_approach told = dig_approach_normalized(&origin->approach);
-    (void)sqlite3_bind_double(s, DIG_AXES + 3, told.depth);
-    (void)sqlite3_bind_double(s, DIG_AXES + 4, told.attack_rad);
+    const struct dig_approach normalized = dig_approach_normalized(&origin->approach);
+    (void)sqlite3_bind_double(s, DIG_AXES + 3, normalized.depth);
+    (void)sqlite3_bind_double(s, DIG_AXES + 4, normalized.attack_rad);
 }
 
 #define SAME_GROUND                                                                                \

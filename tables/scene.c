@@ -1,6 +1,6 @@
 #include "tables/scene.h"
 
-#include "tables/canonical_scene.h"
+#include "tables/schema/canonical_scene.h"
 #include "tables/store_private.h"
 
 #include <assert.h>

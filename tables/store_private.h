@@ -5,7 +5,7 @@
 
 #include "core/effect_set.h"
 #include "tables/derive.h"
-#include "tables/schema.h"
+#include "tables/schema/schema.h"
 #include "tables/store.h"
 
 #include <limits.h>

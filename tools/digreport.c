@@ -3,7 +3,7 @@
 #include "closed_loop/report/report.h"
 #include "estimator/wrench/correction.h"
 #include "files/machine_yaml.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "firmware_host/config/load_model.h"
 #include "tables/load.h"
 #include "tools/digreport/options.h"

@@ -1,5 +1,6 @@
 // digwatch: what digsightd knows, in a terminal, live or from a log.
 
+#include "core/name.h"
 #include "tools/digwatch/model.h"
 #include "tools/digwatch/options.h"
 #include "tools/digwatch/prometheus.h"
@@ -75,9 +76,8 @@ static void show(const struct watch *const w, const struct digwatch_options *con
     char                        source[160];
     const bool                  ended = digwatch_source_ended(w->source);
     if (options->log != NULL) {
-        const char *const slash = strrchr(options->log, '/');
-        (void)snprintf(source, sizeof source, "%.100s, %gx",
-                       slash != NULL ? slash + 1 : options->log, options->speed);
+        (void)snprintf(source, sizeof source, "%.100s, %gx", dig_path_last(options->log),
+                       options->speed);
     } else {
         (void)snprintf(source, sizeof source, "%.150s", options->url);
     }

@@ -45,15 +45,6 @@ static double read_off(const float curve[const DIG_CURVE_POINTS], const double p
     return (1.0 - f) * (double)curve[k] + f * (double)curve[k + 1];
 }
 
-static double rms_of(const float curve[const DIG_CURVE_POINTS])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += (double)curve[k] * (double)curve[k];
-    }
-    return sqrt(sum / DIG_CURVE_POINTS);
-}
-
 // Adds weight times one node's curves, and the scatter of their mean.
 static void add_node(const struct dig_curve *const curve, const double weight, const int packings,
                      const double               place[const DIG_CURVE_POINTS],
@@ -101,7 +92,7 @@ bool dig_response_own(const struct dig_curve_set *const set, const size_t entry,
         made.inverse_packings += weight[i] * weight[i] / (double)nodes.packings[i];
     }
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        made.rms[c]        = rms_of(nodes.curve[0]->mean[c]);
+        made.rms[c]        = sqrt(dig_curve_mean_square(nodes.curve[0]->mean[c]));
         const double scale = made.rms[c] > 0.0 ? 1.0 / made.rms[c] : 0.0;
         made.scatter2[c] *= scale * scale;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {

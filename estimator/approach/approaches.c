@@ -22,12 +22,9 @@ void dig_nodes_of(const struct dig_curve_set *const set, const size_t entry,
     nodes->curve[0]    = &set->curve[slot];
     nodes->nodes       = 1;
     for (size_t i = 0; other != NULL && i < other->entries && nodes->nodes < DIG_NODES_MAX; i++) {
-        const size_t at   = i * other->trajectories + trajectory;
-        bool         mine = other->packings[at] > 0;
-        for (int a = 0; mine && a < DIG_AXES; a++) {
-            mine = fabs(other->entry[i].gravel.value[a] - set->gravel[entry].value[a]) <= 0.0;
-        }
-        if (mine) {
+        const size_t at = i * other->trajectories + trajectory;
+        if (other->packings[at] > 0 &&
+            dig_gravel_is_same(&other->entry[i].gravel, &set->gravel[entry])) {
             nodes->approach[nodes->nodes] = other->entry[i].approach;
             nodes->packings[nodes->nodes] = other->packings[at];
             nodes->curve[nodes->nodes++]  = &other->curve[at];

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 enum { STARTS = 3, EXCESS_EVALUATIONS = 100 };
 
@@ -113,14 +114,10 @@ static void add_start(struct starts *const starts, const double distance, const 
     starts->count = starts->count < STARTS ? starts->count + 1 : STARTS;
     for (size_t s = starts->count - 1; s > place; s--) {
         starts->distance[s] = starts->distance[s - 1];
-        for (unsigned d = 0; d < DIG_AXES; d++) {
-            starts->x[s][d] = starts->x[s - 1][d];
-        }
+        memcpy(starts->x[s], starts->x[s - 1], sizeof starts->x[s]);
     }
     starts->distance[place] = distance;
-    for (unsigned d = 0; d < DIG_AXES; d++) {
-        starts->x[place][d] = x[d];
-    }
+    memcpy(starts->x[place], x, sizeof starts->x[place]);
 }
 
 // Index of a gravel of the table on an axis.
@@ -185,17 +182,16 @@ static struct starts choose_starts(const struct problem *const    problem,
 
 // Minimises from one start; *x and *least improve or stay.
 static enum dig_status improve(struct problem *const problem, const nlopt_func minimised,
-                               const double start[], const double step[], const int max_evaluations,
-                               double x[], double *const least)
+                               const double start[const DIG_AXES], const double step[],
+                               const int max_evaluations, double x[const DIG_AXES],
+                               double *const least)
 {
     struct nlopt_opt_s *const opt = nlopt_create(NLOPT_LN_SBPLX, problem->dimensions);
     if (opt == NULL) {
         return DIG_ENOMEM;
     }
-    double at[DIG_AXES] = { 0.0 };
-    for (unsigned d = 0; d < problem->dimensions; d++) {
-        at[d] = start[d];
-    }
+    double at[DIG_AXES];
+    memcpy(at, start, sizeof at);
     double       found = INFINITY;
     nlopt_result result =
         nlopt_set_min_objective(opt, minimised, problem) < 0 ||
@@ -212,9 +208,7 @@ static enum dig_status improve(struct problem *const problem, const nlopt_func m
     }
     if (found < *least) {
         *least = found;
-        for (unsigned d = 0; d < problem->dimensions; d++) {
-            x[d] = at[d];
-        }
+        memcpy(x, at, sizeof at);
     }
     return DIG_OK;
 }
@@ -347,13 +341,8 @@ enum dig_status dig_fit_refine(const struct dig_curve_set *const set,
     assert(set != NULL && dig != NULL && match != NULL);
     assert(prefilter == NULL || prefilter->set == set);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
-        max_evaluations < 1 || digs < 1) {
+        max_evaluations < 1 || digs < 1 || dig_observations_check(set, digs, dig) != DIG_OK) {
         return DIG_EINVAL;
-    }
-    for (size_t d = 0; d < digs; d++) {
-        if (dig_observation_check(set, &dig[d]) != DIG_OK) {
-            return DIG_EINVAL;
-        }
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);

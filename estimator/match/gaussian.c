@@ -180,44 +180,41 @@ static struct half half_of(const struct dig_pooled *const group, const size_t ch
 }
 
 // Order of the blocks: the inner ones, which discriminate best, first.
-static const size_t telling[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
+static const size_t block_order[BLOCKS] = { 4, 2, 6, 3, 5, 1, 7, 0 };
 
 static void measure(const struct dig_pooled *const group, const double variance[NUMBERS],
                     struct dig_gaussian *const g)
 {
     for (size_t next = 0; next < BLOCKS * g->channels; next++) {
-        const size_t      block   = telling[next % BLOCKS];
+        const size_t      block   = block_order[next % BLOCKS];
         const size_t      channel = next / BLOCKS;
-        const struct half first   = half_of(group, channel, 2 * block);
-        const struct half second  = half_of(group, channel, 2 * block + 1);
-        const double      halves  = (first.whole ? 1.0 : 0.0) + (second.whole ? 1.0 : 0.0);
+        const struct half half[2] = { half_of(group, channel, 2 * block),
+                                      half_of(group, channel, 2 * block + 1) };
+        const double      halves  = (half[0].whole ? 1.0 : 0.0) + (half[1].whole ? 1.0 : 0.0);
         if (!(halves > 0.0)) {
             continue;
         }
-        const double               one = first.whole ? 1.0 / halves : 0.0;
-        const double               two = second.whole ? 1.0 / halves : 0.0;
-        struct dig_compared *const to  = &g->compared[g->numbers++];
-        *to                            = (struct dig_compared){ .channel = channel,
-                                                                .block   = block,
-                                                                .first   = first.whole,
-                                                                .second  = second.whole,
-                                                                .spread  = sqrt(variance[channel * BLOCKS + block]) };
-        if (first.whole) {
-            to->mean += one * first.mean;
-            to->sigma2 += one * first.sigma2 * first.inverse_digs;
-            to->inverse_digs += one * first.inverse_digs;
-        }
-        if (second.whole) {
-            to->mean += two * second.mean;
-            to->sigma2 += two * second.sigma2 * second.inverse_digs;
-            to->inverse_digs += two * second.inverse_digs;
+        struct dig_compared *const to = &g->compared[g->numbers++];
+        *to                           = (struct dig_compared){ .channel = channel,
+                                                               .block   = block,
+                                                               .first   = half[0].whole,
+                                                               .second  = half[1].whole,
+                                                               .spread  = sqrt(variance[channel * BLOCKS + block]) };
+        for (size_t h = 0; h < 2; h++) {
+            if (half[h].whole) {
+                const double weight = 1.0 / halves;
+                to->mean += weight * half[h].mean;
+                to->sigma2 += weight * half[h].sigma2 * half[h].inverse_digs;
+                to->inverse_digs += weight * half[h].inverse_digs;
+            }
         }
     }
 }
 
-static bool make(const struct dig_curve_set *const set, const struct dig_prefilter *const prefilter,
-                 const struct dig_pooled *const group, const bool assume,
-                 struct dig_gaussian *const g)
+bool dig_gaussian_make(const struct dig_curve_set *const set,
+                       const struct dig_prefilter *const prefilter,
+                       const struct dig_pooled *const group, const bool assume,
+                       struct dig_gaussian *const g)
 {
     assert(set != NULL && (prefilter == NULL || prefilter->set == set) && group != NULL &&
            g != NULL);
@@ -242,21 +239,6 @@ static bool make(const struct dig_curve_set *const set, const struct dig_prefilt
         g->numbers = 0;
     }
     return g->numbers > 0;
-}
-
-bool dig_gaussian_make(const struct dig_curve_set *const set,
-                       const struct dig_prefilter *const prefilter,
-                       const struct dig_pooled *const group, struct dig_gaussian *const gaussian)
-{
-    return make(set, prefilter, group, false, gaussian);
-}
-
-bool dig_gaussian_make_default(const struct dig_curve_set *const set,
-                               const struct dig_prefilter *const prefilter,
-                               const struct dig_pooled *const    group,
-                               struct dig_gaussian *const        gaussian)
-{
-    return make(set, prefilter, group, true, gaussian);
 }
 
 // Means of the cell over an outline's blocks.

@@ -20,6 +20,8 @@
 #include "estimator/match/pool.h"
 #include "estimator/match/prefilter.h"
 
+#include <stdbool.h>
+
 /// Degrees of freedom a table's own covariance needs: several for each number compared.
 #define DIG_GAUSSIAN_FREEDOM (4.0 * DIG_COVARIANCE_NUMBERS)
 
@@ -38,18 +40,12 @@ struct dig_gaussian {
     double lower[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
 };
 
-/// False, and *gaussian is not usable, when the set has no covariance of the trajectory, or one of
-/// fewer degrees of freedom than DIG_GAUSSIAN_FREEDOM, or no half of a block was measured
-/// completely. The set, and the prefilter of it where one is given, must outlive it. 30
-/// microseconds.
+/// False, and *gaussian is not usable, when no half of a block was measured completely, or the set
+/// has no covariance of the trajectory with DIG_GAUSSIAN_FREEDOM degrees of freedom. With assume
+/// such a set gets the covariance of entry_scatter.h, with the table's pooled spread. The set, and
+/// the prefilter of it where one is given, must outlive it. 30 microseconds.
 bool dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
-                       const struct dig_pooled *group, struct dig_gaussian *gaussian);
-
-/// The same; a set without such a covariance gets the one of entry_scatter.h with the table's
-/// pooled spread. False when nothing was measured.
-bool dig_gaussian_make_default(const struct dig_curve_set *set,
-                               const struct dig_prefilter *prefilter,
-                               const struct dig_pooled *group, struct dig_gaussian *gaussian);
+                       const struct dig_pooled *group, bool assume, struct dig_gaussian *gaussian);
 
 /// Squared Mahalanobis distance of digs from a cell of the trajectory.
 struct dig_mahalanobis {

@@ -232,7 +232,7 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
     *l             = (struct dig_likelihood){ .trajectory = group->trajectory,
                                               .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
                                               .count      = DIG_CURVE_POINTS };
-    l->is_gaussian = dig_gaussian_make(set, prefilter, group, &l->gaussian);
+    l->is_gaussian = dig_gaussian_make(set, prefilter, group, false, &l->gaussian);
     for (size_t c = 0; c < l->channels; c++) {
         l->relative2[c] = prefilter != NULL ? prefilter->relative2[group->trajectory][c]
                                             : dig_prefilter_relative2(set, group->trajectory,

@@ -1,5 +1,6 @@
 #include "estimator/match/match.h"
 
+#include "core/text.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/nearest.h"
 #include "estimator/match/pool.h"
@@ -9,7 +10,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 void dig_match_find_family(const struct dig_curve_set *const set, struct dig_match *const match)
 {
@@ -28,15 +28,13 @@ bool dig_match_is_family(const struct dig_match *const match)
     return match->untold[0] || match->untold[1] || match->untold[2];
 }
 
-void dig_match_untold(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
+void dig_match_unresolved(const struct dig_match *const match, char text[const DIG_UNTOLD_SIZE])
 {
     assert(match != NULL && text != NULL);
-    int at  = 0;
     text[0] = '\0';
     for (int a = 0; a < DIG_AXES; a++) {
         if (match->untold[a]) {
-            at += snprintf(text + at, (size_t)(DIG_UNTOLD_SIZE - at), "%s%s", at > 0 ? ", " : "",
-                           dig_axis_name((enum dig_axis)a));
+            dig_text_list(DIG_UNTOLD_SIZE, text, dig_axis_name((enum dig_axis)a));
         }
     }
 }
@@ -47,30 +45,40 @@ static bool is_measured(const struct dig_observation *const o, const size_t poin
     return at >= o->first && at <= o->last;
 }
 
-enum dig_status dig_observation_check(const struct dig_curve_set *const   set,
-                                      const struct dig_observation *const observation)
+static bool is_sound(const struct dig_curve_set *const   set,
+                     const struct dig_observation *const observation)
 {
-    assert(set != NULL && observation != NULL);
     if (observation->trajectory < 0 || (size_t)observation->trajectory >= set->trajectories ||
         !(observation->first >= 0.0 && observation->last <= 1.0)) {
-        return DIG_EINVAL;
+        return false;
     }
     double sum = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         if (!isfinite(observation->moment_Nm[k]) ||
             !(observation->sigma_Nm[k] >= 0.0 && isfinite(observation->sigma_Nm[k]))) {
-            return DIG_EINVAL;
+            return false;
         }
         for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
             if (!isfinite(observation->force_N[c][k]) ||
                 !(observation->force_sigma_N[c][k] >= 0.0 &&
                   isfinite(observation->force_sigma_N[c][k]))) {
-                return DIG_EINVAL;
+                return false;
             }
         }
         sum += is_measured(observation, k) ? pow(observation->moment_Nm[k], 2.0) : 0.0;
     }
-    return sum > 0.0 && isfinite(sum) ? DIG_OK : DIG_EINVAL;
+    return sum > 0.0 && isfinite(sum);
+}
+
+enum dig_status dig_observations_check(const struct dig_curve_set *const set, const size_t digs,
+                                       const struct dig_observation dig[])
+{
+    assert(set != NULL && dig != NULL);
+    bool sound = true;
+    for (size_t d = 0; d < digs && sound; d++) {
+        sound = is_sound(set, &dig[d]);
+    }
+    return sound ? DIG_OK : DIG_EINVAL;
 }
 
 struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
@@ -161,13 +169,8 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const set,
 {
     assert(set != NULL && dig != NULL && match != NULL);
     assert(prefilter == NULL || prefilter->set == set);
-    if (digs < 1 || !(outside_floors > 0.0)) {
+    if (digs < 1 || !(outside_floors > 0.0) || dig_observations_check(set, digs, dig) != DIG_OK) {
         return DIG_EINVAL;
-    }
-    for (size_t d = 0; d < digs; d++) {
-        if (dig_observation_check(set, &dig[d]) != DIG_OK) {
-            return DIG_EINVAL;
-        }
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);

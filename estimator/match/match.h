@@ -43,9 +43,10 @@ struct dig_prefilter; // estimator/match/prefilter.h
 /// chance only.
 struct dig_misfit dig_cell_misfit(const struct dig_cell *cell, const struct dig_pooled *group);
 
-/// DIG_EINVAL: not finite, 0 everywhere, a range outside 0 … 1, or a trajectory the set lacks.
-DIG_MUST_CHECK enum dig_status dig_observation_check(const struct dig_curve_set   *set,
-                                                     const struct dig_observation *observation);
+/// DIG_EINVAL: one is not finite, 0 everywhere, of a range outside 0 … 1, or of a trajectory the
+/// set lacks.
+DIG_MUST_CHECK enum dig_status dig_observations_check(const struct dig_curve_set *set, size_t digs,
+                                                      const struct dig_observation dig[]);
 
 /// Interpolates the table's curves of one trajectory at gravel: multilinear in friction, rolling
 /// friction and log density within the grid cell around it. DIG_ENOMATCH when the gravel is outside
@@ -61,7 +62,7 @@ DIG_MUST_CHECK enum dig_status dig_match_interpolate(const struct dig_curve_set 
 ///   sqrt(sum (sd^2 (1 + 1/packings) + sigma^2)) / ||measured||
 ///
 /// An entry that lacks a trajectory that was dug is skipped. DIG_ENOMATCH: every entry lacks one.
-/// DIG_EINVAL: an observation fails dig_observation_check(). By a prefilter of the set the same
+/// DIG_EINVAL: an observation fails dig_observations_check(). By a prefilter of the set the same
 /// result sooner (estimator/match/nearest.h); NULL is allowed. O(entries); 120 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set,
                                                  const struct dig_prefilter *prefilter, size_t digs,
@@ -91,7 +92,7 @@ bool dig_match_is_family(const struct dig_match *match);
 
 /// The undetermined axes, "rolling, density_kgpm3"; "" when none.
 #define DIG_UNTOLD_SIZE 48
-void dig_match_untold(const struct dig_match *match, char text[DIG_UNTOLD_SIZE]);
+void dig_match_unresolved(const struct dig_match *match, char text[DIG_UNTOLD_SIZE]);
 
 /// Refines a nearest match of these digs between the grid points, and computes the posterior of the
 /// gravel (low and high are widened to hold the gravel). Decides again by the smallest distance

@@ -1,7 +1,7 @@
 // Exact search for the nearest of many entries: the outlines of a prefilter bound the distances
 // from below, and only entries that may be nearer than the best so far are compared in full. After
 // the bounds of nearest-neighbour search by block means (Keogh et al. 2001, "piecewise aggregate
-// approximation"); docs/numerics/estimator.md proves that nothing is missed.
+// approximation"); docs/numerics/match.md proves that nothing is missed.
 
 #ifndef DIG_ESTIMATOR_MATCH_NEAREST_H
 #define DIG_ESTIMATOR_MATCH_NEAREST_H

@@ -41,7 +41,7 @@ struct dig_pool_sums {
     struct dig_pooled group[DIG_TRAJECTORY_MAX];
 };
 
-/// Sums of digs that each passed dig_observation_check(), youngest last; any number from 1 on.
+/// Sums of digs that each passed dig_observations_check(), youngest last; any number from 1 on.
 /// About 6 kB a trajectory are written. O(digs).
 void dig_pool_sum(size_t digs, const struct dig_observation dig[], struct dig_pool_sums *sums);
 

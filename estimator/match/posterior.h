@@ -38,7 +38,7 @@
 
 /// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
 /// each of three gravels and three trajectories (tables/rig.sqlite;
-/// tests/estimator/test_posterior.c).
+/// tests/estimator/test_force_correlation.c).
 #define DIG_POSTERIOR_MY_FX (-0.93)
 #define DIG_POSTERIOR_MY_FZ 0.63
 #define DIG_POSTERIOR_FX_FZ (-0.49)

@@ -1,6 +1,6 @@
 // Force error from unmodelled inertia: the balance is quasi-static, and the bucket accelerates at
 // the corners of its path. The effect on the moment about the bucket's pin is negligible
-// (docs/numerics/estimator.md).
+// (docs/numerics/match.md).
 
 #ifndef DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H
 #define DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H

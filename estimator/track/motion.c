@@ -22,7 +22,7 @@ static const double more_rad  = 5.0 * DIG_RAD_PER_DEG;
 
 // Tows the tail; false: the rope is slack, and has no direction.
 static bool tow(struct dig_motion_state *const state, const double rope_m, const double share,
-                const struct dig_path_point *const point, struct dig_path_point *const way)
+                const struct dig_path_point *const point, struct dig_path_point *const step)
 {
     if (!state->towed) {
         *state = (struct dig_motion_state){ .towed = true, .point = *point, .tail = *point };
@@ -36,24 +36,24 @@ static bool tow(struct dig_motion_state *const state, const double rope_m, const
         return false;
     }
     state->tail = dig_path_point_add_scaled(state->tail, (far_m - rope_m) / far_m, off);
-    *way        = off;
+    *step       = off;
     return true;
 }
 
 static enum dig_motion classify(const enum dig_motion now, const double theta_rad,
-                                const struct dig_path_point *const way)
+                                const struct dig_path_point *const step)
 {
-    const double turned_rad  = atan2(fabs(way->turn_m), hypot(way->x_m, way->z_m));
+    const double turned_rad  = atan2(fabs(step->turn_m), hypot(step->x_m, step->z_m));
     const double to_turn_rad = now == DIG_MOTION_NONE   ? 0.0
                                : now == DIG_MOTION_CURL ? -more_rad
                                                         : more_rad;
     if (turned_rad > turns_rad + to_turn_rad) {
-        return way->turn_m > 0.0 ? DIG_MOTION_CURL : now;
+        return step->turn_m > 0.0 ? DIG_MOTION_CURL : now;
     }
 
     // The tooth is at pin + L (sin theta, -cos theta).
-    const double forth_m      = way->x_m + way->turn_m * cos(theta_rad);
-    const double up_m         = way->z_m + way->turn_m * sin(theta_rad);
+    const double forth_m      = step->x_m + step->turn_m * cos(theta_rad);
+    const double up_m         = step->z_m + step->turn_m * sin(theta_rad);
     const double up_rad       = atan2(up_m, fabs(forth_m));
     const bool   steep        = now == DIG_MOTION_PENETRATION || now == DIG_MOTION_LIFT;
     const double to_steep_rad = steep ? -more_rad : now == DIG_MOTION_DRAG ? more_rad : 0.0;
@@ -68,15 +68,15 @@ enum dig_motion dig_motion_step(struct dig_motion_state *const state, const doub
                                 const struct dig_path_point *const point)
 {
     assert(state != NULL && tooth_m > 0.0 && point != NULL);
-    struct dig_path_point way   = { 0.0, 0.0, 0.0 };
+    struct dig_path_point step  = { 0.0, 0.0, 0.0 };
     const double          share = dt_s / (settle_s + dt_s);
-    const bool            moved = tow(state, rope_share * tooth_m, share, point, &way);
+    const bool            moved = tow(state, rope_share * tooth_m, share, point, &step);
     if (phase == DIG_PHASE_AIR) {
         state->motion = DIG_MOTION_NONE;
         return DIG_MOTION_NONE;
     }
     if (moved) {
-        state->motion = classify(state->motion, state->point.turn_m / tooth_m, &way);
+        state->motion = classify(state->motion, state->point.turn_m / tooth_m, &step);
     }
     return phase == DIG_PHASE_EXIT ? DIG_MOTION_NONE : state->motion;
 }

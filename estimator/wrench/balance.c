@@ -125,7 +125,7 @@ static void add_force(struct dig_balance *const b, const struct dig_vec2 r_arm,
     }
 }
 
-bool dig_balance_tells_force(const struct dig_front *const front)
+bool dig_balance_gives_force(const struct dig_front *const front)
 {
     assert(front != NULL);
     const struct dig_vec2 pin    = front->pin_m[DIG_JOINT_BUCKET];
@@ -162,7 +162,7 @@ struct dig_balance dig_balance_solve(const struct dig_machine *const  machine,
         b.by_moment[DIG_PART_MY][DIG_JOINT_BUCKET] = -1.0;
     }
 
-    b.force_ok = b.force_ok && dig_balance_tells_force(front);
+    b.force_ok = b.force_ok && dig_balance_gives_force(front);
     if (b.force_ok) {
         const struct dig_vec2 pin = front->pin_m[DIG_JOINT_BUCKET];
         add_force(&b, dig_vec2_sub(pin, front->pin_m[DIG_JOINT_ARM]),

@@ -53,6 +53,6 @@ struct dig_balance dig_balance_solve(const struct dig_machine  *machine,
                                      const struct dig_front    *front);
 
 /// Whether the pose determines the force: boom and arm not in one line.
-bool dig_balance_tells_force(const struct dig_front *front);
+bool dig_balance_gives_force(const struct dig_front *front);
 
 #endif // DIG_ESTIMATOR_WRENCH_BALANCE_H

@@ -74,7 +74,7 @@ static void check_angle(const struct dig_machine *const  machine,
             balance->moment_ok = balance->moment_ok && solved;
         } else if (balance->force_ok) {
             const struct dig_front front = dig_front_place(machine, near.joint_rad);
-            balance->force_ok            = dig_balance_tells_force(&front);
+            balance->force_ok            = dig_balance_gives_force(&front);
         }
     }
 }

@@ -1,7 +1,7 @@
 #include "firmware_host/bus/dbc.h"
 
 #include "core/text.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <ctype.h>

@@ -1,6 +1,6 @@
 #include "firmware_host/config/config.h"
 
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/config/config_parts.h"
 
 #include <assert.h>
@@ -97,35 +97,19 @@ static enum dig_status take_match(const struct dig_config_work *const work,
     return status;
 }
 
-// A part that is absent takes its defaults: nothing of it is given.
 static enum dig_status take_parts(const struct dig_config_work *const work,
                                   const struct dig_config_text *const text)
 {
-    const struct dig_estimator_text no_estimator = { 0 };
-    const struct dig_realtime_text  no_realtime  = { 0 };
-    const struct dig_identify_text  no_identify  = { 0 };
-    const struct dig_publish_text   no_publish   = { 0 };
-    const struct dig_match_text     no_match     = { 0 };
-
-    enum dig_status status =
-        take_estimator(work, text->estimator != NULL ? text->estimator : &no_estimator);
-    if (status == DIG_OK) {
-        status = take_realtime(work, text->realtime != NULL ? text->realtime : &no_realtime);
-    }
-    if (status == DIG_OK) {
-        status = take_identify(work, text->identify != NULL ? text->identify : &no_identify);
-    }
-    if (status == DIG_OK) {
-        status = take_publish(work, text->publish != NULL ? text->publish : &no_publish);
-    }
-    if (status == DIG_OK) {
-        status = take_match(work, text->match != NULL ? text->match : &no_match);
-    }
-    if (status == DIG_OK && text->lcm != NULL && text->lcm->url != NULL) {
-        status = dig_config_take_text(work, "lcm.url", text->lcm->url, sizeof work->config->lcm_url,
-                                      work->config->lcm_url);
-    }
-    return status;
+    struct dig_config *const config = work->config;
+    enum dig_status          status = take_estimator(work, &text->estimator);
+    status = status == DIG_OK ? take_realtime(work, &text->realtime) : status;
+    status = status == DIG_OK ? take_identify(work, &text->identify) : status;
+    status = status == DIG_OK ? take_publish(work, &text->publish) : status;
+    status = status == DIG_OK ? take_match(work, &text->match) : status;
+    return status == DIG_OK && text->lcm.url != NULL
+               ? dig_config_take_text(work, "lcm.url", text->lcm.url, sizeof config->lcm_url,
+                                      config->lcm_url)
+               : status;
 }
 
 static enum dig_status take_top(const struct dig_config_work *const work,

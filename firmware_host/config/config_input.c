@@ -2,7 +2,8 @@
 
 #include "firmware_host/config/config_parts.h"
 
-#include "files/yaml.h"
+#include "core/name.h"
+#include "files/yaml/yaml.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -59,13 +60,9 @@ enum dig_status dig_config_take_path(const struct dig_config_work *const work,
                                      const char *const key, const char *const from,
                                      struct dig_file_name *const to)
 {
-    const char *const slash  = strrchr(work->path, '/');
-    const int         folder = from[0] == '/' || slash == NULL ? 0 : (int)(slash + 1 - work->path);
-    const int length = snprintf(to->text, sizeof to->text, "%.*s%s", folder, work->path, from);
-    if (length < 0 || (size_t)length >= sizeof to->text) {
-        return dig_yaml_refuse(work->path, key, work->error, "too long a path");
-    }
-    return DIG_OK;
+    return dig_path_beside(work->path, from, sizeof to->text, to->text)
+               ? DIG_OK
+               : dig_yaml_refuse(work->path, key, work->error, "too long a path");
 }
 
 // "127.0.0.1:1502" or "[::1]:1502"

@@ -1,7 +1,7 @@
 // Reads and checks the signal map's YAML.
 
 #include "core/did_you_mean.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/bus/register_plan.h"
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config_map_parts.h"
@@ -217,7 +217,7 @@ static enum dig_status check_signals(const struct dig_config_map_work *const wor
     const bool                        sensor  = sensing == DIG_SENSING_SENSOR;
     for (int i = 0; i < DIG_SIGNALS; i++) {
         const enum dig_signal signal = (enum dig_signal)i;
-        if (!entry[i].used && dig_signal_tells_moment(sensing, signal)) {
+        if (!entry[i].used && dig_signal_gives_moment(sensing, signal)) {
             return dig_yaml_refuse(work->path, "signals", work->error, "no entry %s, expected %s",
                                    dig_signal_name(signal),
                                    sensor ? "the pin's place, the bucket's angle and all that the "
@@ -279,7 +279,7 @@ static enum dig_status read_map(const struct dig_config_map_work *const work,
         if (map->entry[i].used && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
             struct dig_map_group *const group = &map->group[map->entry[i].group];
             group->dispensable                = (group->dispensable || !group->needed) &&
-                                 !dig_signal_tells_moment(sensing, (enum dig_signal)i);
+                                 !dig_signal_gives_moment(sensing, (enum dig_signal)i);
             group->needed = true;
         }
     }

@@ -1,7 +1,7 @@
 // The CAN side of the signal map: entries found in a DBC, and what the map says of messages.
 
 #include "core/units.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config_map_parts.h"
 

@@ -10,8 +10,10 @@
     CYAML_FIELD_STRING_PTR(#name, flags, struct dig_##type, name, 1, 1000)
 #define NUMBER(type, name) CYAML_FIELD_FLOAT_PTR(#name, OPTIONAL, struct dig_##type, name)
 #define WHOLE(type, name)  CYAML_FIELD_INT_PTR(#name, OPTIONAL, struct dig_##type, name)
-#define PART(type, name)                                                                           \
-    CYAML_FIELD_MAPPING_PTR(#name, OPTIONAL, struct dig_##type, name, name##_fields)
+#define KIND(name)                                                                                 \
+    CYAML_FIELD_MAPPING_PTR(#name, OPTIONAL, struct dig_input_text, name, name##_fields)
+#define PART(name)                                                                                 \
+    CYAML_FIELD_MAPPING(#name, CYAML_FLAG_OPTIONAL, struct dig_config_text, name, name##_fields)
 
 static const cyaml_strval_t kinds[] = {
     { "can", DIG_INPUT_CAN },
@@ -46,9 +48,9 @@ static const cyaml_schema_field_t replay_fields[] = {
 
 static const cyaml_schema_field_t input_fields[] = {
     CYAML_FIELD_ENUM("kind", REQUIRED, struct dig_input_text, kind, kinds, CYAML_ARRAY_LEN(kinds)),
-    PART(input_text, can),
-    PART(input_text, modbus),
-    PART(input_text, replay),
+    KIND(can),
+    KIND(modbus),
+    KIND(replay),
     CYAML_FIELD_END,
 };
 
@@ -105,12 +107,12 @@ static const cyaml_schema_field_t config_fields[] = {
     NUMBER(config_text, tick_Hz),
     NUMBER(config_text, stale_ms),
     NUMBER(config_text, time_scale),
-    PART(config_text, realtime),
-    PART(config_text, lcm),
-    PART(config_text, estimator),
-    PART(config_text, match),
-    PART(config_text, identify),
-    PART(config_text, publish),
+    PART(realtime),
+    PART(lcm),
+    PART(estimator),
+    PART(match),
+    PART(identify),
+    PART(publish),
     CYAML_FIELD_END,
 };
 

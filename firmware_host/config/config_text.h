@@ -63,15 +63,16 @@ struct dig_publish_text {
 };
 
 struct dig_config_text {
-    char                      *table, *machine, *scene, *model;
-    struct dig_input_text      input;
-    double                    *tick_Hz, *stale_ms, *time_scale;
-    struct dig_realtime_text  *realtime;
-    struct dig_lcm_text       *lcm;
-    struct dig_estimator_text *estimator;
-    struct dig_match_text     *match;
-    struct dig_identify_text  *identify;
-    struct dig_publish_text   *publish;
+    char                 *table, *machine, *scene, *model;
+    struct dig_input_text input;
+    double               *tick_Hz, *stale_ms, *time_scale;
+    // Where a part is absent, nothing of it is given.
+    struct dig_realtime_text  realtime;
+    struct dig_lcm_text       lcm;
+    struct dig_estimator_text estimator;
+    struct dig_match_text     match;
+    struct dig_identify_text  identify;
+    struct dig_publish_text   publish;
 };
 
 /// Of a struct dig_config_text.

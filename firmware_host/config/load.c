@@ -1,9 +1,9 @@
 #include "firmware_host/config/load.h"
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "firmware_host/config/load_model.h"
 #include "tables/load.h"
 

@@ -1,9 +1,10 @@
 #include "firmware_host/config/load_model.h"
 
 #include "core/approach_set.h"
+#include "core/name.h"
 #include "estimator/effects/effect.h"
 #include "files/model_json.h"
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 #include "tables/load.h"
 #include "tables/load_effects.h"
 
@@ -18,12 +19,7 @@
 static void find_beside(const char *const beside, const char *const name, const size_t size,
                         char path[])
 {
-    const char *const slash  = strrchr(beside, '/');
-    const char *const last   = strrchr(name, '/');
-    const int         folder = slash == NULL ? 0 : (int)(slash - beside) + 1;
-    const int         length =
-        snprintf(path, size, "%.*s%s", folder, beside, last == NULL ? name : last + 1);
-    if (length < 0 || (size_t)length >= size || access(path, R_OK) != 0) {
+    if (!dig_path_beside(beside, dig_path_last(name), size, path) || access(path, R_OK) != 0) {
         (void)snprintf(path, size, "%s", name);
     }
 }
@@ -37,37 +33,20 @@ static bool needs_curves(const struct dig_model *const model)
     return needs;
 }
 
-static double rms(const float y[const DIG_CURVE_POINTS])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += (double)y[k] * (double)y[k];
-    }
-    return sqrt(sum / DIG_CURVE_POINTS);
-}
-
 // Applies the change of the plain curve to one at another depth or attack, in proportion to its
 // size.
 static void follow(const struct dig_curve *const before, const struct dig_curve *const after,
                    struct dig_curve *const curve)
 {
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        const double plain = rms(before->mean[c]);
-        const double scale = plain > 0.0 ? rms(curve->mean[c]) / plain : 0.0;
+        const double plain = sqrt(dig_curve_mean_square(before->mean[c]));
+        const double scale =
+            plain > 0.0 ? sqrt(dig_curve_mean_square(curve->mean[c])) / plain : 0.0;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double change = (double)after->mean[c][k] - (double)before->mean[c][k];
             curve->mean[c][k] += (float)(scale * change);
         }
     }
-}
-
-static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
-{
-    bool same = true;
-    for (int i = 0; i < DIG_AXES; i++) {
-        same = same && fabs(a->value[i] - b->value[i]) <= 0.0;
-    }
-    return same;
 }
 
 static void change_approaches(const struct dig_curve_set *const before,
@@ -76,7 +55,8 @@ static void change_approaches(const struct dig_curve_set *const before,
     const struct dig_approach_set *const other = after->approaches;
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         size_t e = 0;
-        while (e < after->entries && !is_same(&after->gravel[e], &other->entry[i].gravel)) {
+        while (e < after->entries &&
+               !dig_gravel_is_same(&after->gravel[e], &other->entry[i].gravel)) {
             e++;
         }
         for (size_t t = 0; e < after->entries && t < after->trajectories; t++) {

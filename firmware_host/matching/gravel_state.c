@@ -3,7 +3,7 @@
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 #include "files/identity_json.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -130,7 +130,7 @@ static void take_pool(const struct dig_curve_set *const set,
         dig.first       = from->first;
         dig.last        = from->last;
         dig.forces      = from->forces;
-        const bool held = dig_observation_check(set, &dig) == DIG_OK &&
+        const bool held = dig_observations_check(set, 1, &dig) == DIG_OK &&
                           (dig_approach_is_plain(&dig.approach) ||
                            dig_approach_varies(set, (size_t)dig.trajectory));
         if (!held) {

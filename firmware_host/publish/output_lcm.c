@@ -11,12 +11,10 @@
 #include <assert.h>
 #include <lcm/lcm.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-// lcm-gen's C structs hold text as char * and flags as int8_t.
 #define TEXT_SIZE 256
 
 struct dig_output {
@@ -96,10 +94,13 @@ static enum dig_status publish_sample(struct dig_output *const       output,
 }
 
 // lcm-gen's structs hold text as char *; publishing does not write to it.
-static char *advice(void)
+static char *text(const char *const said)
 {
-    static char text[] = DIG_ADVICE;
-    return text;
+    const union {
+        const char *said;
+        char       *held;
+    } as = { .said = said };
+    return as.held;
 }
 
 static enum dig_status publish_estimate(struct dig_output *const          output,
@@ -107,9 +108,7 @@ static enum dig_status publish_estimate(struct dig_output *const          output
                                         const struct dig_record *const    record)
 {
     const struct dig_estimate *const e = &record->estimate;
-    char                             name[TEXT_SIZE];
     char                             missing[DIG_SIGNAL_NAMES_SIZE];
-    (void)snprintf(name, sizeof name, "%s", trajectory_name(set, e->trajectory));
     dig_signal_name_missing(record->sample.valid, sizeof missing, missing);
     const digsight_estimate_t message = {
         .time_ns         = e->time_ns,
@@ -127,12 +126,12 @@ static enum dig_status publish_estimate(struct dig_output *const          output
         .bucket_phi_rad  = e->phi_rad,
         .phase           = (int8_t)e->phase,
         .dig_count       = (int32_t)e->dig_count,
-        .trajectory      = name,
+        .trajectory      = text(trajectory_name(set, e->trajectory)),
         .progress        = e->progress,
         .off_path_m      = e->off_path_m,
         .expires_ns      = record->expires_ns,
         .missing         = missing,
-        .advice          = advice(),
+        .advice          = text(DIG_ADVICE),
         .motion          = (int8_t)e->motion,
 
         .geometry_sigma_moment_Nm = e->wrench.geometry_sigma_My_Nm,
@@ -163,17 +162,9 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         m->weighted >= 0 ? k->weighted
                                       : (struct dig_gravel){ { (double)NAN, (double)NAN, (double)NAN } };
     const struct dig_approach matched = dig_approach_normalized(&k->matched);
-    char                      name[TEXT_SIZE];
-    char                      table[TEXT_SIZE];
-    char                      wanted[TEXT_SIZE];
-    char                      hint[TEXT_SIZE];
     char                      untold[DIG_UNTOLD_SIZE];
     double                    sample[DIG_AXES][DIG_MATCH_SAMPLES] = { { 0 } };
-    (void)snprintf(name, sizeof name, "%s", k->trajectory);
-    (void)snprintf(table, sizeof table, "%s", k->table);
-    (void)snprintf(wanted, sizeof wanted, "%s", k->wanted);
-    dig_match_untold(m, untold);
-    (void)snprintf(hint, sizeof hint, "%s", result->hint_trajectory);
+    dig_match_unresolved(m, untold);
     for (size_t s = 0; s < m->samples; s++) {
         for (int a = 0; a < DIG_AXES; a++) {
             sample[a][s] = m->sample[s].value[a];
@@ -185,8 +176,8 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .valid                 = k->valid ? 1 : 0,
         .outside               = m->outside ? 1 : 0,
         .dig_count             = (int32_t)m->dig_count,
-        .trajectory            = name,
-        .table                 = table,
+        .trajectory            = text(k->trajectory),
+        .table                 = text(k->table),
         .nearest_entry         = m->nearest,
         .nearest_friction      = nearest->value[DIG_AXIS_FRICTION],
         .nearest_rolling       = nearest->value[DIG_AXIS_ROLLING],
@@ -206,12 +197,12 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .expires_ns            = k->expires_ns,
         .restored              = k->restored ? 1 : 0,
         .drift                 = k->drift,
-        .wanted                = wanted,
+        .wanted                = text(k->wanted),
         .samples               = (int32_t)m->samples,
         .sample_friction       = sample[DIG_AXIS_FRICTION],
         .sample_rolling        = sample[DIG_AXIS_ROLLING],
         .sample_density_kgpm3  = sample[DIG_AXIS_DENSITY_kgpm3],
-        .hint_trajectory       = hint,
+        .hint_trajectory       = text(result->hint_trajectory),
         .hint_J_per_kg         = result->hint_J_per_kg,
         .digs                  = (int32_t)m->digs,
         .path_measured         = k->path_measured,
@@ -221,7 +212,7 @@ enum dig_status dig_output_match(struct dig_output *const           output,
         .attack_rad            = k->made.depth > 0.0 ? k->made.attack_rad : (double)NAN,
         .matched_depth         = matched.depth,
         .matched_attack_rad    = matched.attack_rad,
-        .advice                = advice(),
+        .advice                = text(DIG_ADVICE),
         .family                = dig_match_is_family(m) ? 1 : 0,
         .untold                = untold,
         .ending                = (int8_t)k->ending,
@@ -240,39 +231,34 @@ enum dig_status dig_output_prediction(struct dig_output *const                  
                                       const struct dig_prediction_record *const record)
 {
     assert(output != NULL && set != NULL && record != NULL);
-    struct dig_prediction     prediction = record->prediction;
-    const struct dig_approach dug        = dig_approach_normalized(&prediction.approach);
-    char                      name[TEXT_SIZE];
-    char                      reason[TEXT_SIZE];
-    (void)snprintf(reason, sizeof reason, "%s", dig_prediction_state_str(record->state));
-    (void)snprintf(name, sizeof name, "%s",
-                   prediction.valid ? trajectory_name(set, prediction.trajectory) : "");
-    const digsight_prediction_t message = {
-        .time_ns         = record->time_ns,
-        .utc_us          = utc_us(record->time_ns),
-        .valid           = prediction.valid ? 1 : 0,
-        .expires_ns      = record->expires_ns,
-        .trajectory      = name,
-        .dig_count       = (int32_t)record->dig_count,
-        .progress_now    = prediction.progress_now,
-        .from_progress   = prediction.from_progress,
-        .to_progress     = prediction.to_progress,
-        .points          = prediction.valid ? DIG_PREDICTION_POINTS : 0,
-        .moment_Nm       = prediction.moment_Nm,
-        .sigma_Nm        = prediction.sigma_Nm,
-        .force_x_N       = prediction.Fx_N,
-        .force_z_N       = prediction.Fz_N,
-        .peak_Nm         = prediction.peak_Nm,
-        .energy_J        = prediction.energy_J,
-        .outside         = record->outside ? 1 : 0,
-        .depth           = prediction.valid ? dug.depth : (double)NAN,
-        .attack_rad      = prediction.valid ? dug.attack_rad : (double)NAN,
-        .reason          = reason,
-        .advice          = advice(),
-        .peak_sigma_Nm   = prediction.peak_sigma_Nm,
-        .energy_sigma_J  = prediction.energy_sigma_J,
-        .sigma_force_x_N = prediction.sigma_Fx_N,
-        .sigma_force_z_N = prediction.sigma_Fz_N,
+    struct dig_prediction       prediction = record->prediction;
+    const struct dig_approach   dug        = dig_approach_normalized(&prediction.approach);
+    const digsight_prediction_t message    = {
+           .time_ns        = record->time_ns,
+           .utc_us         = utc_us(record->time_ns),
+           .valid          = prediction.valid ? 1 : 0,
+           .expires_ns     = record->expires_ns,
+           .trajectory     = text(prediction.valid ? trajectory_name(set, prediction.trajectory) : ""),
+           .dig_count      = (int32_t)record->dig_count,
+           .progress_now   = prediction.progress_now,
+           .from_progress  = prediction.from_progress,
+           .to_progress    = prediction.to_progress,
+           .points         = prediction.valid ? DIG_PREDICTION_POINTS : 0,
+           .moment_Nm      = prediction.moment_Nm,
+           .sigma_Nm       = prediction.sigma_Nm,
+           .force_x_N      = prediction.Fx_N,
+           .force_z_N      = prediction.Fz_N,
+           .peak_Nm        = prediction.peak_Nm,
+           .energy_J       = prediction.energy_J,
+           .outside        = record->outside ? 1 : 0,
+           .depth          = prediction.valid ? dug.depth : (double)NAN,
+           .attack_rad     = prediction.valid ? dug.attack_rad : (double)NAN,
+           .reason         = text(dig_prediction_state_str(record->state)),
+           .advice         = text(DIG_ADVICE),
+           .peak_sigma_Nm  = prediction.peak_sigma_Nm,
+           .energy_sigma_J = prediction.energy_sigma_J,
+           .sigma_force_x_N = prediction.sigma_Fx_N,
+           .sigma_force_z_N = prediction.sigma_Fz_N,
     };
     return sent(digsight_prediction_t_publish(output->lcm, "DIGSIGHT_PREDICTION", &message));
 }
@@ -281,29 +267,22 @@ enum dig_status dig_output_health(struct dig_output *const       output,
                                   const struct dig_health *const health)
 {
     assert(output != NULL && health != NULL);
-    char    state[TEXT_SIZE];
     char    input[TEXT_SIZE];
     char    note[TEXT_SIZE];
-    char    table[TEXT_SIZE];
-    char    missing[DIG_SIGNAL_NAMES_SIZE];
     double  latency_to_us[DIG_LATENCY_BINS];
     int64_t latency_count[DIG_LATENCY_BINS];
     for (int i = 0; i < DIG_LATENCY_BINS; i++) {
         latency_to_us[i] = dig_latency_to_us(i);
         latency_count[i] = health->latency.count[i];
     }
-    (void)snprintf(table, sizeof table, "%s", health->table);
-    (void)snprintf(missing, sizeof missing, "%s", health->missing);
-    (void)snprintf(state, sizeof state, "%s", health->state);
-    (void)snprintf(input, sizeof input, "%s", health->input);
-    (void)snprintf(note, sizeof note, "%s", health->note);
-    dig_text_clean(input); // names of files, cut perhaps within a character
-    dig_text_clean(note);
+    // Names of files among it, cut perhaps within a character.
+    dig_text_copy(sizeof input, input, health->input);
+    dig_text_copy(sizeof note, note, health->note);
     const struct dig_tick_status *const tick    = &health->tick_status;
     const digsight_health_t             message = {
                     .time_ns               = health->time_ns,
                     .utc_us                = utc_us(health->time_ns),
-                    .state                 = state,
+                    .state                 = text(health->state),
                     .input                 = input,
                     .note                  = note,
                     .realtime              = health->rt.realtime ? 1 : 0,
@@ -339,10 +318,10 @@ enum dig_status dig_output_health(struct dig_output *const       output,
                     .latency_bins          = DIG_LATENCY_BINS,
                     .latency_to_us         = latency_to_us,
                     .latency_count         = latency_count,
-                    .missing_signals       = missing,
-                    .table                 = table,
+                    .missing_signals       = text(health->missing),
+                    .table                 = text(health->table),
                     .without_force         = tick->drops.without_force,
-                    .advice                = advice(),
+                    .advice                = text(DIG_ADVICE),
                     .digs_whole            = health->whole,
                     .digs_aborted          = health->aborted,
                     .digs_unknown          = health->unknown,

@@ -92,7 +92,7 @@ void dig_publisher_log_match(const struct dig_publisher *const p)
                        k->weighted.value[DIG_AXIS_DENSITY_kgpm3], m->weighted_distance);
     }
     approach_text(k, sizeof how, how);
-    dig_match_untold(m, untold);
+    dig_match_unresolved(m, untold);
     dig_publisher_log(
         p,
         "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "

@@ -19,9 +19,9 @@
 
 #include <signal.h>
 
-/// An engine as functions; tests use one that takes no time. version tells two builds apart that
-/// may compute differently. vary applies an effect to a scene (offline_dem/dig/variant.h); NULL:
-/// the engine has no effects.
+/// An engine as functions; tests use one that takes no time. version differs between two builds
+/// that may compute differently. vary applies an effect to a scene (offline_dem/dig/variant.h);
+/// NULL: the engine has no effects.
 struct dig_engine {
     const char *name;
     const char *version;

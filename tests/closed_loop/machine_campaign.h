@@ -10,9 +10,9 @@
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
-#include "tools/rig/mechanism.h"
+#include "tools/rig/motion/mechanism.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
-#include "tools/rig/track.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/residual_report.h"
-#include "files/yaml_tree.h"
+#include "files/yaml/yaml_tree.h"
 #include "tests/made_table.h"
 #include "tests/scratch.h"
 

@@ -124,10 +124,34 @@ static void smoothing_keeps_lines_and_zero_width_keeps_all(void **state)
     }
 }
 
+static void gravels_are_the_same_where_every_axis_is(void **state)
+{
+    (void)state;
+    const struct dig_gravel a = { { 0.5, 0.0, 2500.0 } };
+    struct dig_gravel       b = { { 0.5, -0.0, 2500.0 } };
+    assert_true(dig_gravel_is_same(&a, &b));
+    for (int axis = 0; axis < DIG_AXES; axis++) {
+        b             = a;
+        b.value[axis] = a.value[axis] + 1e-12 * (1.0 + a.value[axis]);
+        assert_false(dig_gravel_is_same(&a, &b));
+    }
+}
+
+static void a_mean_square_is_over_all_points(void **state)
+{
+    (void)state;
+    float y[DIG_CURVE_POINTS] = { 0.0F };
+    y[0]                      = 3.0F;
+    y[DIG_CURVE_POINTS - 1]   = -4.0F;
+    assert_close(dig_curve_mean_square(y), 25.0 / DIG_CURVE_POINTS, 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pose_and_path_are_the_integral_of_the_rates),
+        cmocka_unit_test(gravels_are_the_same_where_every_axis_is),
+        cmocka_unit_test(a_mean_square_is_over_all_points),
         cmocka_unit_test(time_of_progress_inverts_the_path),
         cmocka_unit_test(smoothing_is_the_mean_over_the_window_at_uneven_times),
         cmocka_unit_test(smoothing_keeps_lines_and_zero_width_keeps_all),

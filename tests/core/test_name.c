@@ -112,6 +112,26 @@ static void a_relative_path_with_dots_leaves_its_folder(void **state)
     assert_true(dig_path_stays("/srv/a/../b.csv"));
 }
 
+static void a_path_beside_a_file_begins_with_its_folder(void **state)
+{
+    (void)state;
+    static const char *const all[][3] = { { "maps/can.yaml", "a.dbc", "maps/a.dbc" },
+                                          { "/srv/maps/can.yaml", "up/a.dbc",
+                                            "/srv/maps/up/a.dbc" },
+                                          { "can.yaml", "a.dbc", "a.dbc" },
+                                          { "maps/can.yaml", "/srv/a.dbc", "/srv/a.dbc" } };
+    char                     path[32];
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        assert_true(dig_path_beside(all[i][0], all[i][1], sizeof path, path));
+        assert_string_equal(path, all[i][2]);
+    }
+    assert_true(dig_path_beside("maps/can.yaml", "a.dbc", 11, path));
+    assert_false(dig_path_beside("maps/can.yaml", "a.dbc", 10, path));
+    assert_string_equal(dig_path_last("maps/can.yaml"), "can.yaml");
+    assert_string_equal(dig_path_last("can.yaml"), "can.yaml");
+    assert_string_equal(dig_path_last("maps/"), "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -120,6 +140,7 @@ int main(void)
         cmocka_unit_test(every_byte_but_those_told_is_refused_within_a_name),
         cmocka_unit_test(labels_for_people_may_have_blanks),
         cmocka_unit_test(files_are_named_in_one_printable_line),
+        cmocka_unit_test(a_path_beside_a_file_begins_with_its_folder),
         cmocka_unit_test(a_relative_path_with_dots_leaves_its_folder),
     };
     return cmocka_run_group_tests_name("name", tests, NULL, NULL);

@@ -1,7 +1,7 @@
 // Tests for core/part.c, and for those who write with it: a link where their file should go.
 
 #include "core/part.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tables/merge.h"
 #include "tests/tables_fixture.h"
 

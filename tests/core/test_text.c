@@ -8,6 +8,28 @@
 #include <stdio.h>
 #include <string.h>
 
+static void a_list_has_commas_between_its_words_and_ends_where_there_is_no_room(void **state)
+{
+    (void)state;
+    char list[12] = "";
+    dig_text_list(sizeof list, list, "boom");
+    assert_string_equal(list, "boom");
+    dig_text_list(sizeof list, list, "arm");
+    assert_string_equal(list, "boom, arm");
+    dig_text_list(sizeof list, list, "bucket");
+    assert_string_equal(list, "boom, arm, ");
+    dig_text_list(sizeof list, list, "swing");
+    assert_string_equal(list, "boom, arm, ");
+}
+
+static void a_copy_is_cut_and_clean(void **state)
+{
+    (void)state;
+    char to[8] = "";
+    dig_text_copy(sizeof to, to, "ab\x1b[31mcd");
+    assert_string_equal(to, "ab?[31m");
+}
+
 static void characters_are_told_from_bytes_that_are_none(void **state)
 {
     (void)state;
@@ -100,6 +122,8 @@ static void a_text_put_is_one_line_of_characters(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_list_has_commas_between_its_words_and_ends_where_there_is_no_room),
+        cmocka_unit_test(a_copy_is_cut_and_clean),
         cmocka_unit_test(characters_are_told_from_bytes_that_are_none),
         cmocka_unit_test(cleaned_text_keeps_its_length_and_its_characters),
         cmocka_unit_test(json_strings_end_where_they_should_and_are_utf8),

@@ -2,12 +2,12 @@
 
 #include "tools/digreport/shift_dig.h"
 
+#include "tests/blank_messages.h"
 #include "tests/testlib.h"
 
 #include <string.h>
 
-static char no_text[] = "";
-static char actual[]  = "actual";
+static char actual[] = "actual";
 
 static struct digreport_dig_track track;
 static struct digreport_dig       dig;
@@ -24,15 +24,14 @@ static int fresh(void **state)
 static digsight_estimate_t estimate_at(const int64_t time_ms, const int8_t phase,
                                        const double moment_Nm)
 {
-    return (digsight_estimate_t){ .time_ns      = time_ms * 1000000,
-                                  .phase        = phase,
-                                  .moment_valid = 1,
-                                  .force_valid  = 1,
-                                  .moment_Nm    = moment_Nm,
-                                  .progress     = (double)NAN,
-                                  .trajectory   = no_text,
-                                  .missing      = no_text,
-                                  .advice       = no_text };
+    digsight_estimate_t e = blank_estimate();
+    e.time_ns             = time_ms * 1000000;
+    e.phase               = phase;
+    e.moment_valid        = 1;
+    e.force_valid         = 1;
+    e.moment_Nm           = moment_Nm;
+    e.progress            = (double)NAN;
+    return e;
 }
 
 static bool take(const digsight_estimate_t *const e)
@@ -46,23 +45,14 @@ static bool take(const digsight_estimate_t *const e)
 // Of "actual" from 0 to 1, 2000 N·m throughout with sigma 100.
 static void predict(const int32_t gravel_of_dig)
 {
-    double moment[DIG_PREDICTED_POINTS];
-    double sigma[DIG_PREDICTED_POINTS];
-    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
-        moment[i] = 2000.0;
-        sigma[i]  = 100.0;
-    }
-    const digsight_prediction_t p = { .valid          = 1,
-                                      .trajectory     = actual,
-                                      .dig_count      = gravel_of_dig,
-                                      .to_progress    = 1.0,
-                                      .points         = DIG_PREDICTED_POINTS,
-                                      .moment_Nm      = moment,
-                                      .sigma_Nm       = sigma,
-                                      .peak_Nm        = 2100.0,
-                                      .peak_sigma_Nm  = 90.0,
-                                      .energy_J       = 5000.0,
-                                      .energy_sigma_J = 300.0 };
+    double                moment[DIG_PREDICTED_POINTS];
+    double                sigma[DIG_PREDICTED_POINTS];
+    digsight_prediction_t p = blank_prediction(actual, 2000.0, 2000.0, 100.0, moment, sigma);
+    p.dig_count             = gravel_of_dig;
+    p.peak_Nm               = 2100.0;
+    p.peak_sigma_Nm         = 90.0;
+    p.energy_J              = 5000.0;
+    p.energy_sigma_J        = 300.0;
     digreport_track_prediction(&track, &p);
 }
 

@@ -4,6 +4,7 @@
 #ifndef DIG_TESTS_DIGWATCH_SAID_H
 #define DIG_TESTS_DIGWATCH_SAID_H
 
+#include "tests/blank_messages.h"
 #include "tests/testlib.h"
 #include "tools/digwatch/model.h"
 
@@ -29,7 +30,6 @@ SAY(match, "DIGSIGHT_MATCH")
 SAY(prediction, "DIGSIGHT_PREDICTION")
 SAY(health, "DIGSIGHT_HEALTH")
 
-static char no_text[]       = "";
 static char actual[]        = "actual";
 static char running_state[] = "running";
 static char can_input[]     = "can can0";
@@ -38,85 +38,64 @@ static char can_input[]     = "can can0";
 static inline digsight_estimate_t estimate_at(const int64_t time_ns, const double progress,
                                               const double moment_Nm)
 {
-    return (digsight_estimate_t){ .time_ns                  = time_ns,
-                                  .moment_valid             = 1,
-                                  .moment_Nm                = moment_Nm,
-                                  .sigma_moment_Nm          = 300.0,
-                                  .geometry_sigma_moment_Nm = 400.0,
-                                  .phase                    = 2,
-                                  .motion                   = 3,
-                                  .trajectory               = actual,
-                                  .progress                 = progress,
-                                  .missing                  = no_text,
-                                  .advice                   = no_text };
+    digsight_estimate_t e      = blank_estimate();
+    e.time_ns                  = time_ns;
+    e.moment_valid             = 1;
+    e.moment_Nm                = moment_Nm;
+    e.sigma_moment_Nm          = 300.0;
+    e.geometry_sigma_moment_Nm = 400.0;
+    e.phase                    = 2;
+    e.motion                   = 3;
+    e.trajectory               = actual;
+    e.progress                 = progress;
+    return e;
 }
 
 /// Of "actual", from 0 to 1: rising from 0 to 10 kNm, sigma 1 kNm.
 static inline void say_rising_prediction(struct digwatch_model *const model)
 {
-    double moment[DIG_PREDICTED_POINTS];
-    double sigma[DIG_PREDICTED_POINTS];
-    for (int i = 0; i < DIG_PREDICTED_POINTS; i++) {
-        moment[i] = 10000.0 * i / (DIG_PREDICTED_POINTS - 1);
-        sigma[i]  = 1000.0;
-    }
-    const digsight_prediction_t p = { .valid           = 1,
-                                      .expires_ns      = 60000000000,
-                                      .trajectory      = actual,
-                                      .to_progress     = 1.0,
-                                      .points          = DIG_PREDICTED_POINTS,
-                                      .moment_Nm       = moment,
-                                      .sigma_Nm        = sigma,
-                                      .force_x_N       = moment,
-                                      .force_z_N       = moment,
-                                      .sigma_force_x_N = sigma,
-                                      .sigma_force_z_N = sigma,
-                                      .peak_Nm         = 10500.0,
-                                      .peak_sigma_Nm   = 900.0,
-                                      .energy_J        = 21000.0,
-                                      .energy_sigma_J  = 1500.0,
-                                      .reason          = no_text,
-                                      .advice          = no_text };
+    double                moment[DIG_PREDICTED_POINTS];
+    double                sigma[DIG_PREDICTED_POINTS];
+    digsight_prediction_t p = blank_prediction(actual, 0.0, 10000.0, 1000.0, moment, sigma);
+    p.expires_ns            = 60000000000;
+    p.peak_Nm               = 10500.0;
+    p.peak_sigma_Nm         = 900.0;
+    p.energy_J              = 21000.0;
+    p.energy_sigma_J        = 1500.0;
     say_prediction(model, &p);
 }
 
 static inline digsight_match_t match_of(const double friction)
 {
-    return (digsight_match_t){ .valid              = 1,
-                               .friction           = friction,
-                               .friction_low       = 0.41,
-                               .friction_high      = 0.61,
-                               .rolling            = 0.5,
-                               .rolling_low        = 0.32,
-                               .rolling_high       = 0.82,
-                               .density_kgpm3      = 2848.0,
-                               .density_low_kgpm3  = 2435.0,
-                               .density_high_kgpm3 = 3311.0,
-                               .expires_ns         = 60000000000,
-                               .digs               = 2,
-                               .forces             = 1,
-                               .trajectory         = no_text,
-                               .table              = no_text,
-                               .wanted             = no_text,
-                               .hint_trajectory    = no_text,
-                               .advice             = no_text,
-                               .untold             = no_text };
+    digsight_match_t m   = blank_match();
+    m.valid              = 1;
+    m.friction           = friction;
+    m.friction_low       = 0.41;
+    m.friction_high      = 0.61;
+    m.rolling            = 0.5;
+    m.rolling_low        = 0.32;
+    m.rolling_high       = 0.82;
+    m.density_kgpm3      = 2848.0;
+    m.density_low_kgpm3  = 2435.0;
+    m.density_high_kgpm3 = 3311.0;
+    m.expires_ns         = 60000000000;
+    m.digs               = 2;
+    m.forces             = 1;
+    return m;
 }
 
 static inline digsight_health_t health_at(const int64_t time_ns, char *const state)
 {
-    return (digsight_health_t){ .time_ns         = time_ns,
-                                .state           = state,
-                                .input           = can_input,
-                                .note            = no_text,
-                                .missing_signals = no_text,
-                                .table           = no_text,
-                                .advice          = no_text,
-                                .realtime        = 1,
-                                .memory_locked   = 1,
-                                .digs            = 5,
-                                .digs_aborted    = 1,
-                                .matches         = 2 };
+    digsight_health_t h = blank_health();
+    h.time_ns           = time_ns;
+    h.state             = state;
+    h.input             = can_input;
+    h.realtime          = 1;
+    h.memory_locked     = 1;
+    h.digs              = 5;
+    h.digs_aborted      = 1;
+    h.matches           = 2;
+    return h;
 }
 
 #endif // DIG_TESTS_DIGWATCH_SAID_H

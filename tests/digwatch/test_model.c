@@ -190,18 +190,9 @@ static void numbers_that_are_none_and_names_that_are_none_are_not_taken(void **s
     say_match(&model, &m);
     assert_string_equal(model.match.wanted, "?]0;owned?dig");
 
-    double                moment[DIG_PREDICTED_POINTS] = { 0 };
-    digsight_prediction_t p                            = { .valid           = 1,
-                                                           .trajectory      = actual,
-                                                           .to_progress     = 1.0,
-                                                           .moment_Nm       = moment,
-                                                           .sigma_Nm        = moment,
-                                                           .force_x_N       = moment,
-                                                           .force_z_N       = moment,
-                                                           .sigma_force_x_N = moment,
-                                                           .sigma_force_z_N = moment,
-                                                           .reason          = no_text,
-                                                           .advice          = no_text };
+    double                moment[DIG_PREDICTED_POINTS];
+    double                sigma[DIG_PREDICTED_POINTS];
+    digsight_prediction_t p = blank_prediction(actual, 0.0, 0.0, 0.0, moment, sigma);
     for (p.points = 0; p.points < DIG_PREDICTED_POINTS; p.points++) {
         say_prediction(&model, &p);
     }

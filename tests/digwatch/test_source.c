@@ -2,7 +2,7 @@
 
 #include "tools/digwatch/source.h"
 
-#include "messages/digsight_health_t.h"
+#include "tests/blank_messages.h"
 #include "tests/logged.h"
 #include "tests/scratch.h"
 
@@ -10,13 +10,7 @@ LOG_TYPE(health)
 
 static void put(lcm_eventlog_t *const log, const int64_t time_us)
 {
-    char                    empty[] = "";
-    const digsight_health_t h       = { .state           = empty,
-                                        .input           = empty,
-                                        .note            = empty,
-                                        .missing_signals = empty,
-                                        .table           = empty,
-                                        .advice          = empty };
+    const digsight_health_t h = blank_health();
     log_health(log, "DIGSIGHT_HEALTH", time_us, &h);
 }
 

@@ -139,10 +139,10 @@ static void what_cannot_be_told_apart_has_a_wide_interval(void **state)
     assert_true(point.high.value[0] - point.low.value[0] < 0.2);
     assert_true(point.high.value[1] - point.low.value[1] < 0.3);
     assert_false(dig_match_is_family(&point));
-    dig_match_untold(&point, names);
+    dig_match_unresolved(&point, names);
     assert_string_equal(names, "");
     assert_true(dig_match_is_family(&unsure));
-    dig_match_untold(&unsure, names);
+    dig_match_unresolved(&unsure, names);
     assert_string_equal(names, "friction, rolling");
 
     // All of them lie along the family, though.

@@ -109,7 +109,7 @@ static void misses_are_as_large_as_digs_make_them(void **state)
             struct dig_gaussian            g;
             struct dig_cell                cell;
             dig_pool_sum(1, &dig, &sums);
-            assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+            assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
             assert_int_equal(g.numbers, forces ? N : BLOCKS);
             assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
             sum += dig_gaussian_mahalanobis(&g, &cell).square / (double)g.numbers / TRIALS;
@@ -164,15 +164,15 @@ static void a_covariance_of_too_few_packings_is_not_believed(void **state)
     struct dig_likelihood        few, enough, none;
     dig_pool_sum(1, &dig, &sums);
     assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
-    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], &g));
-    assert_true(dig_gaussian_make_default(set, NULL, &sums.group[0], &g));
+    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
+    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], true, &g));
     dig_likelihood_make(set, NULL, &sums.group[0], &few);
     set->covariance[MADE_SIMPLE_A].freedom += 1.0;
-    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
     dig_likelihood_make(set, NULL, &sums.group[0], &enough);
     struct dig_covariance *const covariance = set->covariance;
     set->covariance                         = NULL;
-    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
     dig_likelihood_make(set, NULL, &sums.group[0], &none);
     set->covariance = covariance;
     assert_close(dig_likelihood_log(&few, &cell), dig_likelihood_log(&none, &cell), 0.0);
@@ -205,7 +205,8 @@ static void what_was_not_measured_is_not_compared(void **state)
         dig.first = cases[i].first;
         dig.last  = cases[i].last;
         dig_pool_sum(1, &dig, &sums);
-        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g) == (cases[i].numbers > 0));
+        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g) ==
+                    (cases[i].numbers > 0));
         assert_int_equal(g.numbers, cases[i].numbers);
         if (cases[i].numbers == 0) {
             continue;
@@ -219,7 +220,7 @@ static void what_was_not_measured_is_not_compared(void **state)
             }
         }
         dig_pool_sum(1, &dig, &sums);
-        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], &g));
+        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
         assert_close(dig_gaussian_mahalanobis(&g, &cell).square, before.square, 0.0);
         assert_close(dig_gaussian_mahalanobis(&g, &cell).log_det, before.log_det, 0.0);
     }

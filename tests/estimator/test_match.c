@@ -207,7 +207,7 @@ static void an_axis_is_told_by_the_width_of_its_interval(void **state)
         match.high.value[a] = set->axis[a][set->axis_count[a] - 1];
     }
     dig_match_find_family(set, &match);
-    dig_match_untold(&match, names);
+    dig_match_unresolved(&match, names);
     assert_true(dig_match_is_family(&match));
     assert_string_equal(names, "friction, rolling, density_kgpm3");
 
@@ -215,7 +215,7 @@ static void an_axis_is_told_by_the_width_of_its_interval(void **state)
     match.low.value[DIG_AXIS_ROLLING]        = 0.56;
     match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 1.01;
     dig_match_find_family(set, &match);
-    dig_match_untold(&match, names);
+    dig_match_unresolved(&match, names);
     assert_string_equal(names, "density_kgpm3");
     match.high.value[DIG_AXIS_DENSITY_kgpm3] = sqrt(first * last) * 0.99;
     dig_match_find_family(set, &match);

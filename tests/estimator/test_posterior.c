@@ -2,13 +2,9 @@
 
 #include "estimator/match/posterior.h"
 
-#include "closed_loop/recordings/observe.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"
-#include "files/recording_csv.h"
-#include "tables/derive.h"
-#include "tables/load.h"
-#include "tables/store.h"
+#include "tests/estimator/fitted_match.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -16,95 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHANNELS = DIG_FORCE_CHANNELS, PACKINGS = 3, MANY = 8, MOST = 16 };
+enum { CHANNELS = DIG_FORCE_CHANNELS, PACKINGS = 3 };
 static const double              scatter = 0.1;
 static const struct made_options flat    = { .relative_sd = 0.1,
                                              .packings    = PACKINGS,
                                              .one_density = true };
-
-// Runs of one gravel along one trajectory after the other, and what they say of correlation.
-struct beds {
-    const struct dig_curve_set *set;
-    struct dig_run_origin       origin;
-    size_t                      digs;
-    double                      curve[MOST][DIG_CHANNELS][DIG_CURVE_POINTS];
-    double                      sum[CHANNELS][CHANNELS], points;
-};
-
-// Mean over points of the correlation of what digs are off their mean.
-static void close_gravel(struct beds *const b)
-{
-    for (int k = 0; b->digs >= MANY && k < DIG_CURVE_POINTS; k++) {
-        double product[CHANNELS][CHANNELS] = { { 0.0 } }, mean[CHANNELS] = { 0.0 };
-        for (size_t d = 0; d < b->digs; d++) {
-            for (int c = 0; c < CHANNELS; c++) {
-                mean[c] += b->curve[d][c][k] / (double)b->digs;
-            }
-        }
-        for (size_t d = 0; d < b->digs; d++) {
-            for (int c = 0; c < CHANNELS; c++) {
-                for (int o = 0; o < CHANNELS; o++) {
-                    product[c][o] += (b->curve[d][c][k] - mean[c]) * (b->curve[d][o][k] - mean[o]);
-                }
-            }
-        }
-        if (product[0][0] > 1e-12 && product[1][1] > 1e-9 && product[2][2] > 1e-9) {
-            for (int c = 0; c < CHANNELS; c++) {
-                for (int o = 0; o < CHANNELS; o++) {
-                    b->sum[c][o] += product[c][o] / sqrt(product[c][c] * product[o][o]);
-                }
-            }
-            b->points += 1.0;
-        }
-    }
-    b->digs = 0;
-}
-
-static enum dig_status take_run(void *const context, const struct dig_run *const run,
-                                struct dig_error *const error)
-{
-    (void)error;
-    struct beds *const b = context;
-    if (run->origin.trajectory != b->origin.trajectory ||
-        memcmp(&run->origin.gravel, &b->origin.gravel, sizeof run->origin.gravel) != 0) {
-        close_gravel(b);
-        b->origin = run->origin;
-    }
-    if (b->digs < MOST && run->origin.effect[0] == '\0') {
-        assert_int_equal(dig_derive_run(&b->set->trajectory[run->origin.trajectory],
-                                        b->set->tooth_m, b->set->smooth_half_s, run->windows,
-                                        run->first_s, run->step_s, run->value, b->curve[b->digs]),
-                         DIG_OK);
-        b->digs++;
-    }
-    return DIG_OK;
-}
-
-static void errors_of_moment_and_forces_go_together_as_packings_show(void **state)
-{
-    (void)state;
-    static const char     table[] = "tables/rig.sqlite";
-    struct dig_store     *store   = NULL;
-    struct dig_curve_set *set     = NULL;
-    struct beds *const    b       = calloc(1, sizeof *b);
-    assert_int_equal(dig_table_load(table, &set, NULL), DIG_OK);
-    assert_int_equal(dig_store_open(table, &store, NULL), DIG_OK);
-    b->set                               = set;
-    const struct dig_run_visitor visitor = { take_run, b };
-    assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
-    close_gravel(b);
-    const double My_Fx = b->sum[0][1] / b->points;
-    const double My_Fz = b->sum[0][2] / b->points;
-    const double Fx_Fz = b->sum[1][2] / b->points;
-    print_message("over %.0f points: My, Fx %.3f; My, Fz %.3f; Fx, Fz %.3f\n", b->points, My_Fx,
-                  My_Fz, Fx_Fz);
-    assert_close(My_Fx, DIG_POSTERIOR_MY_FX, 0.03);
-    assert_close(My_Fz, DIG_POSTERIOR_MY_FZ, 0.06);
-    assert_close(Fx_Fz, DIG_POSTERIOR_FX_FZ, 0.06);
-    dig_store_close(store);
-    dig_curve_set_destroy(set);
-    free(b);
-}
 
 // Forces that tell what the moment does not: Fx of friction alone, Fz of rolling friction alone.
 static double force_N(const struct dig_gravel *const gravel, const int force, const int point)
@@ -180,15 +92,6 @@ static void dig_there(const struct dig_gravel *const gravel, const size_t digs,
             }
         }
     }
-}
-
-static struct dig_match fit(const struct dig_curve_set *const set, const size_t digs,
-                            const struct dig_observation dig[])
-{
-    struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, NULL, digs, dig, 100, &match), DIG_OK);
-    return match;
 }
 
 static void forces_tell_more_and_never_too_much(void **state)
@@ -349,110 +252,12 @@ static void excess_has_one_scale_for_digs_of_any_length(void **state)
     made_table_destroy(set);
 }
 
-static struct dig_observation reference(const struct dig_curve_set *const set,
-                                        const char *const path, const bool forces)
-{
-    struct dig_recording recording;
-    struct dig_observed  seen;
-    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
-    assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
-    dig_recording_finish(&recording);
-    struct dig_observation dig = { .trajectory = seen.trajectory, .last = 1.0, .forces = forces };
-    memcpy(dig.moment_Nm, seen.value[0], sizeof dig.moment_Nm);
-    memcpy(dig.force_N, seen.value[1], sizeof dig.force_N);
-    return dig;
-}
-
-// Gravels of LIGGGHTS: one without rolling friction, which the table does not have, and three that
-// it has. The limit was lowered from 4 to 3 because the first of them had come to lie below it;
-// that 3 is no false alarm was measured on the table's own digs.
-static void a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts(void **state)
-{
-    (void)state;
-    static const char *const gravels[] = { "mu0.5_mur0.0", "mu0.3_mur0.3", "mu0.5_mur0.5",
-                                           "mu0.9_mur0.9" };
-    struct dig_curve_set    *set       = NULL;
-    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
-    for (size_t g = 0; g < sizeof gravels / sizeof gravels[0]; g++) {
-        char path[128];
-        (void)snprintf(path, sizeof path, "tests/data/reference/%s_rho2500__simpleA.csv",
-                       gravels[g]);
-        const struct dig_observation dig = reference(set, path, true);
-        const struct dig_match       m   = fit(set, 1, &dig);
-        assert_true(m.outside == (g == 0) && m.forces == (g != 0));
-    }
-    dig_curve_set_destroy(set);
-}
-
-// Digs of LIGGGHTS, all packings of a gravel together; off: how far the posterior's mean is from
-// the truth, axis by axis, as a share of the axis.
-static void add_reference(const struct dig_curve_set *const set, const char *const trajectory,
-                          const double both, const int packings, const bool forces,
-                          double off[DIG_AXES])
-{
-    struct dig_observation dig[DIG_POOL_MAX] = { { 0 } };
-    for (int p = 0; p < packings; p++) {
-        char path[128], seed[16] = "";
-        if (p > 0) {
-            (void)snprintf(seed, sizeof seed, "_seed%d", p + 1);
-        }
-        (void)snprintf(path, sizeof path, "tests/data/reference/mu%.1f_mur%.1f_rho2500%s__%s.csv",
-                       both, both, seed, trajectory);
-        dig[p] = reference(set, path, forces);
-    }
-    const struct dig_match m = fit(set, (size_t)packings, dig);
-    print_message("%.1f/%.1f/2500 %-8s %s: %.2f (%.2f to %.2f), %.2f (%.2f to %.2f), %.0f (%.0f to "
-                  "%.0f)\n",
-                  both, both, trajectory, forces ? "moment and forces" : "moment alone     ",
-                  m.mean.value[0], m.low.value[0], m.high.value[0], m.mean.value[1], m.low.value[1],
-                  m.high.value[1], m.mean.value[2], m.low.value[2], m.high.value[2]);
-    const double truth[] = { both, both, 2500.0 };
-    for (int a = 0; a < DIG_AXES; a++) {
-        off[a] += fabs(dig_axis_position(set, (enum dig_axis)a, m.mean.value[a]) -
-                       dig_axis_position(set, (enum dig_axis)a, truth[a]));
-    }
-}
-
-// Density and friction, which the moment cannot tell apart, the forces can: on digs of another
-// code, which had no part in anything here.
-static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
-{
-    (void)state;
-    struct dig_curve_set *set = NULL;
-    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
-    static const struct {
-        double both;
-        int    packings;
-    } gravels[] = { { 0.3, 4 }, { 0.5, 5 }, { 0.9, 4 } };
-    // Half of what the moment alone is off by, without what the packings tell of errors along a
-    // dig.
-    static const double most[DIG_AXES]   = { 0.041, 0.108, 0.079 };
-    double              off[2][DIG_AXES] = { { 0.0 } };
-    for (int forces = 0; forces < 2; forces++) {
-        for (int g = 0; g < 3; g++) {
-            add_reference(set, "simpleA", gravels[g].both, gravels[g].packings, forces == 1,
-                          off[forces]);
-            add_reference(set, "actual", gravels[g].both, gravels[g].packings, forces == 1,
-                          off[forces]);
-        }
-    }
-    for (int a = 0; a < DIG_AXES; a++) {
-        print_message("axis %d: off by %.3f of it with the moment, %.3f with forces\n", a,
-                      off[0][a] / 6.0, off[1][a] / 6.0);
-        assert_true(off[1][a] < off[0][a] && off[1][a] / 6.0 < most[a]);
-    }
-    dig_curve_set_destroy(set);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_of_moment_and_forces_go_together_as_packings_show),
         cmocka_unit_test(forces_tell_more_and_never_too_much),
-        cmocka_unit_test(forces_tell_the_family_apart_on_digs_of_liggghts),
         cmocka_unit_test(forces_that_no_gravel_has_are_told_and_done_without),
         cmocka_unit_test(excess_has_one_scale_for_digs_of_any_length),
-        cmocka_unit_test(a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts),
         cmocka_unit_test(forces_count_only_where_every_dig_has_them),
     };
     return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);

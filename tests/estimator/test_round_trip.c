@@ -8,8 +8,8 @@
 #include "files/recording_csv.h"
 #include "tests/made_table.h"
 #include "tests/testlib.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
-#include "tools/rig/track.h"
 
 #include <stdlib.h>
 #include <string.h>

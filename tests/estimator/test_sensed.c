@@ -1,5 +1,5 @@
 // Tests for estimator/wrench/sensed.c: a rig's force sensor read by virtual work
-// (tools/rig/gauge.c), and back by a balance of forces.
+// (tools/rig/motion/gauge.c), and back by a balance of forces.
 
 #include "estimator/wrench/sensed.h"
 
@@ -8,9 +8,9 @@
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
-#include "tools/rig/gauge.h"
+#include "tools/rig/motion/gauge.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
-#include "tools/rig/track.h"
 
 #include <stdlib.h>
 #include <string.h>

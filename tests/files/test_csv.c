@@ -1,6 +1,6 @@
-// Tests for files/csv.c: files without end, and files that change while they are read.
+// Tests for files/text/csv.c: files without end, and files that change while they are read.
 
-#include "files/csv.h"
+#include "files/text/csv.h"
 
 #include "tests/scratch.h"
 

@@ -1,6 +1,6 @@
-// Tests for files/health_text.c
+// Tests for files/lcm/health_text.c
 
-#include "files/health_text.h"
+#include "files/lcm/health_text.h"
 
 #include "firmware_host/publish/publish.h"
 #include "tests/testlib.h"

@@ -1,6 +1,6 @@
-// Tests for files/lcm_layout.c
+// Tests for files/lcm/lcm_layout.c
 
-#include "files/lcm_layout.h"
+#include "files/lcm/lcm_layout.h"
 
 #include "tests/testlib.h"
 

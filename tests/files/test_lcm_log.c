@@ -1,8 +1,9 @@
-// Tests for files/lcm_log.c, against logs written by LCM's own library.
+// Tests for files/lcm/lcm_log.c, against logs written by LCM's own library.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include "messages/digsight_sample_t.h"
+#include "tests/blank_messages.h"
 #include "tests/logged.h"
 #include "tests/scratch.h"
 
@@ -122,18 +123,12 @@ static void count_match(void *const context, const int64_t time_us, const digsig
 static void other_messages_are_handed_on_one_by_one(void **state)
 {
     (void)state;
-    char                   trajectory[] = "simpleA", table[] = "hash";
-    lcm_eventlog_t *const  log   = begin("match.lcm");
-    const digsight_match_t match = {
-        .valid           = 1,
-        .friction        = 0.45,
-        .trajectory      = trajectory,
-        .table           = table,
-        .wanted          = table,
-        .hint_trajectory = table,
-        .advice          = table,
-        .untold          = table,
-    };
+    char                  trajectory[] = "simpleA";
+    lcm_eventlog_t *const log          = begin("match.lcm");
+    digsight_match_t      match        = blank_match();
+    match.valid                        = 1;
+    match.friction                     = 0.45;
+    match.trajectory                   = trajectory;
     put_sample(log, 1, DIG_SIGNALS);
     log_match(log, "DIGSIGHT_MATCH", 1, &match);
     log_match(log, "SOMETHING_ELSE", 1, &match);

@@ -1,6 +1,6 @@
-// Tests for files/predicted_curve.c
+// Tests for files/lcm/predicted_curve.c
 
-#include "files/predicted_curve.h"
+#include "files/lcm/predicted_curve.h"
 
 #include "tests/testlib.h"
 

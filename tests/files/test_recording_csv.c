@@ -1,12 +1,8 @@
-// Tests for files/recording_csv.c, files/csv.c and files/whole.c
+// Tests for files/recording_csv.c and files/text/csv.c
 
 #include "files/recording_csv.h"
 
-#include "files/whole.h"
 #include "tests/scratch.h"
-
-#include <fcntl.h>
-#include <sys/stat.h>
 
 #define FORCE "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n"
 #define MACHINE                                                                                    \
@@ -353,95 +349,6 @@ static void a_machine_recording_is_read_back_with_its_gaps(void **state)
     free(text);
 }
 
-static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state)
-{
-    (void)state;
-    struct dig_error  error = { "" };
-    struct dig_out    out;
-    const char *const path = scratch_write("kept.txt", "old");
-    assert_int_equal(dig_out_open(&out, path, &error), DIG_OK);
-    (void)fputs("new", out.file);
-    dig_out_cancel(&out);
-    dig_out_cancel(&out);
-    size_t size = 0;
-    char  *text = scratch_read(path, &size);
-    assert_string_equal(text, "old");
-    free(text);
-    assert_false(scratch_exists("kept.txt.part"));
-
-    assert_int_equal(dig_out_open(&out, path, &error), DIG_OK);
-    (void)fputs("new", out.file);
-    assert_int_equal(dig_out_commit(&out, &error), DIG_OK);
-    dig_out_cancel(&out);
-    text = scratch_read(path, &size);
-    assert_string_equal(text, "new");
-    free(text);
-
-    assert_int_equal(dig_out_open(&out, scratch_path("no/such/folder.csv"), &error), DIG_EIO);
-    assert_contains(error.text, "No such file");
-
-    // A folder that turns up under the name meanwhile: rename must fail, and the part go.
-    assert_int_equal(dig_out_open(&out, scratch_path("folder"), &error), DIG_OK);
-    assert_int_equal(mkdir(scratch_path("folder"), 0777), 0);
-    assert_int_equal(dig_out_commit(&out, &error), DIG_EIO);
-    assert_contains(error.text, "folder: ");
-    assert_false(scratch_exists("folder.part"));
-    assert_int_equal(rmdir(scratch_path("folder")), 0);
-}
-
-// The program's output is written where it points to, after what stands there, and stays what it
-// is.
-static void standard_output_is_written_to_and_not_replaced(void **state)
-{
-    (void)state;
-    struct stat before, after;
-    assert_int_equal(lstat("/dev/stdout", &before), 0);
-    const int kept = dup(STDOUT_FILENO);
-    const int file = open(scratch_path("stdout.txt"), O_WRONLY | O_CREAT, 0666);
-    assert_true(kept >= 0 && file >= 0);
-    (void)fflush(stdout);
-    assert_int_equal(dup2(file, STDOUT_FILENO), STDOUT_FILENO);
-    static const char *const names[] = { "/dev/stdout", "-" };
-    enum dig_status          status  = DIG_OK;
-    for (size_t i = 0; i < 2 && status == DIG_OK; i++) {
-        struct dig_out out;
-        status = dig_out_open(&out, names[i], NULL);
-        if (status == DIG_OK) {
-            (void)fprintf(out.file, "line %zu\n", i);
-            status = dig_out_commit(&out, NULL);
-        }
-    }
-    (void)dup2(kept, STDOUT_FILENO);
-    (void)close(kept);
-    (void)close(file);
-    assert_int_equal(status, DIG_OK);
-    size_t      size = 0;
-    char *const text = scratch_read(scratch_path("stdout.txt"), &size);
-    assert_string_equal(text, "line 0\nline 1\n");
-    free(text);
-    assert_int_equal(lstat("/dev/stdout", &after), 0);
-    assert_int_equal(before.st_mode, after.st_mode);
-    assert_true(before.st_ino == after.st_ino);
-}
-
-static void a_link_is_followed_and_stays_a_link(void **state)
-{
-    (void)state;
-    struct dig_out out;
-    struct stat    link;
-    assert_int_equal(symlink(scratch_write("target.txt", "old"), scratch_path("link.txt")), 0);
-    assert_int_equal(dig_out_open(&out, scratch_path("link.txt"), NULL), DIG_OK);
-    assert_true(scratch_exists("target.txt.part"));
-    (void)fputs("new", out.file);
-    assert_int_equal(dig_out_commit(&out, NULL), DIG_OK);
-    size_t      size = 0;
-    char *const text = scratch_read(scratch_path("target.txt"), &size);
-    assert_string_equal(text, "new");
-    free(text);
-    assert_int_equal(lstat(scratch_path("link.txt"), &link), 0);
-    assert_true(S_ISLNK(link.st_mode));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -457,9 +364,6 @@ int main(void)
         cmocka_unit_test(forces_may_be_missing_here_and_there_or_altogether),
         cmocka_unit_test(what_is_written_is_read_back),
         cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
-        cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
-        cmocka_unit_test(standard_output_is_written_to_and_not_replaced),
-        cmocka_unit_test(a_link_is_followed_and_stays_a_link),
     };
     return cmocka_run_group_tests_name("recording_csv", tests, scratch_setup, scratch_teardown);
 }

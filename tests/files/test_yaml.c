@@ -1,6 +1,6 @@
-// Tests for files/yaml.c and files/yaml_tree.c
+// Tests for files/yaml/yaml.c and files/yaml/yaml_tree.c
 
-#include "files/yaml.h"
+#include "files/yaml/yaml.h"
 
 #include "tests/scratch.h"
 

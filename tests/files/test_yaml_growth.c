@@ -1,4 +1,4 @@
-// Tests for files/yaml_growth.c: small texts that stand for more than memory holds.
+// Tests for files/yaml/yaml_growth.c: small texts that stand for more than memory holds.
 
 #include "files/campaign_yaml.h"
 

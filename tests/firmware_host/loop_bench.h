@@ -14,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BENCH_ESTIMATES 8 // that wait at most
+#define MS              1000000LL // in ns
+#define BENCH_ESTIMATES 8         // that wait at most
 
 // Everything a loop needs, and the other ends of its handoffs.
 struct bench {
@@ -124,6 +125,31 @@ static inline struct dig_tick_status bench_tick_status(struct bench *const b)
     struct dig_tick_status tick_status = { 0 };
     assert_true(dig_latest_take(&b->wires.tick_status, &tick_status));
     return tick_status;
+}
+
+// The bucket held in the air for two seconds; counts the outlooks, the valid ones by trajectory.
+static inline int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
+                                      bool seen[DIG_TRAJECTORY_MAX])
+{
+    int                          outlooks = 0;
+    struct dig_prediction_record predictions;
+    for (int64_t i = 0; i < 400; i++) {
+        const struct dig_reading r = bench_still((from_ms + i * 5) * MS);
+        assert_true(dig_ring_push(&b->wires.readings, &r));
+        dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
+        if (dig_latest_take(&b->wires.predictions, &predictions)) {
+            outlooks++;
+            assert_true(predictions.prediction.valid);
+            assert_int_equal(predictions.state, DIG_PREDICTION_VALID);
+            assert_close(predictions.prediction.from_progress, 0.0, 0.0);
+            assert_close(predictions.prediction.to_progress, 1.0, 0.0);
+            assert_true(predictions.time_ns == (from_ms + i * 5) * MS);
+            assert_true(predictions.expires_ns > predictions.time_ns);
+            assert_int_equal(predictions.dig_count, 7);
+            seen[predictions.prediction.trajectory] = true;
+        }
+    }
+    return outlooks;
 }
 
 #endif // DIG_TESTS_LOOP_BENCH_H

@@ -4,7 +4,7 @@
 #include "firmware_host/bus/checksum.h"
 
 #include "tests/testlib.h"
-#include "tools/rig/can_layout.h"
+#include "tools/rig/bus/can_layout.h"
 
 #include <string.h>
 

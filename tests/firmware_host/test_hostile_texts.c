@@ -6,10 +6,10 @@
 #include "core/shell.h"
 #include "core/text.h"
 #include "files/identity_json.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "files/model_json.h"
 #include "files/scene_yaml.h"
-#include "files/yaml_tree.h"
+#include "files/yaml/yaml_tree.h"
 #include "firmware_host/publish/output.h"
 #include "tests/tables_fixture.h"
 

@@ -5,12 +5,8 @@
 #include "tests/count_allocations.h"
 #include "tests/firmware_host/loop_bench.h"
 
-#include <math.h>
 #include <pthread.h>
-#include <stdlib.h>
 #include <time.h>
-
-#define MS 1000000LL
 
 static void a_whole_sample_becomes_an_estimate(void **state)
 {
@@ -147,31 +143,6 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     bench_destroy(b);
 }
 
-// The bucket held in the air for two seconds; counts the outlooks, the valid ones by trajectory.
-static int outlooks_in_the_air(struct bench *const b, const int64_t from_ms,
-                               bool seen[DIG_TRAJECTORY_MAX])
-{
-    int                          outlooks = 0;
-    struct dig_prediction_record predictions;
-    for (int64_t i = 0; i < 400; i++) {
-        const struct dig_reading r = bench_still((from_ms + i * 5) * MS);
-        assert_true(dig_ring_push(&b->wires.readings, &r));
-        dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
-        if (dig_latest_take(&b->wires.predictions, &predictions)) {
-            outlooks++;
-            assert_true(predictions.prediction.valid);
-            assert_int_equal(predictions.state, DIG_PREDICTION_VALID);
-            assert_close(predictions.prediction.from_progress, 0.0, 0.0);
-            assert_close(predictions.prediction.to_progress, 1.0, 0.0);
-            assert_true(predictions.time_ns == (from_ms + i * 5) * MS);
-            assert_true(predictions.expires_ns > predictions.time_ns);
-            assert_int_equal(predictions.dig_count, 7);
-            seen[predictions.prediction.trajectory] = true;
-        }
-    }
-    return outlooks;
-}
-
 static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void **state)
 {
     (void)state;
@@ -194,124 +165,6 @@ static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
     bench_set_basis(b, &b->wires.basis, 3, 1, 2000 * MS);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
     assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
-    bench_destroy(b);
-}
-
-// Along the trajectory predicted last, of a gravel of the table.
-static double peak_told_of(const struct bench *const b, const int gravel)
-{
-    static struct dig_forecast forecast;
-    const struct dig_match     match = { .valid   = true,
-                                         .gravel  = b->cube.gravel[gravel],
-                                         .nearest = gravel };
-    dig_forecast_make(&b->cube.set, 10.0, &match, &forecast);
-    return forecast.expected[b->loop.published.prediction.trajectory].peak_Nm;
-}
-
-// Another table: what belongs to the one before is not used with it, and the other way round.
-static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **state)
-{
-    (void)state;
-    struct bench *const b                        = bench_create();
-    bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
-    assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
-    assert_int_equal(atomic_load(&b->loop.generation), 1);
-    bench_set_basis(b, &b->wires.table, 5, 2, INT64_MAX);
-    assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
-    assert_int_equal(atomic_load(&b->loop.generation), 2);
-    assert_int_equal(bench_tick_status(b).generation, 2);
-    assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
-    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX); // late: of the table before
-    assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
-    assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
-    assert_true(fabs(peak_told_of(b, 3) / peak_told_of(b, 5) - 1.0) > 0.1);
-    bench_destroy(b);
-}
-
-// The moment that an estimator of the file's machine tells of a bucket held still, with a
-// correction from the start or without, after so many samples.
-static double moment_of_Nm(const struct bench *const b, const struct dig_correction *const by,
-                           const int samples)
-{
-    struct dig_estimator *const e = calloc(1, dig_estimator_size());
-    struct dig_estimate         estimate;
-    assert_non_null(e);
-    assert_int_equal(dig_estimator_init(e, &b->machine, &b->cube.set, &b->estimator_settings),
-                     DIG_OK);
-    assert_int_equal(dig_estimator_set_correction(e, by), DIG_OK);
-    for (int64_t i = 0; i < samples; i++) {
-        const struct dig_reading r      = bench_still((1000 + i * 5) * MS);
-        struct dig_sample        sample = { .time_ns = r.time_ns };
-        for (size_t s = 0; s < DIG_SIGNALS; s++) {
-            sample.value[s] = r.value[s];
-            sample.valid[s] = true;
-        }
-        assert_int_equal(dig_estimator_step(e, &sample, &estimate), DIG_OK);
-    }
-    free(e);
-    return estimate.wrench.My_Nm;
-}
-
-// So many ticks with the bucket in the air, or in soil that pushes; the moment of the last.
-static double moment_after_Nm(struct bench *const b, int64_t *const at_ms, const int ticks,
-                              const double push_Pa)
-{
-    for (int i = 0; i < ticks; i++) {
-        struct dig_reading r = bench_still(*at_ms * MS);
-        r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += push_Pa;
-        assert_true(dig_ring_push(&b->wires.readings, &r));
-        dig_loop_tick(&b->loop, (*at_ms + 1) * MS);
-        *at_ms += 5;
-    }
-    return b->loop.estimate.wrench.My_Nm;
-}
-
-// What a reload brings: a machine that a model corrects, with the table it comes with.
-static void offer_machine(struct bench *const b, const struct dig_correction *const by,
-                          const int64_t generation)
-{
-    struct dig_prediction_basis *const made = calloc(1, sizeof *made);
-    assert_non_null(made);
-    made->set        = &b->cube.set;
-    made->generation = generation;
-    assert_int_equal(dig_correction_apply(&b->machine, by, &made->machine), DIG_OK);
-    dig_latest_put(&b->wires.table, made);
-    free(made);
-}
-
-static void a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start(void **state)
-{
-    (void)state;
-    struct bench *const         b     = bench_create();
-    const struct dig_correction heavy = { .bucket = { .mass_kg = 250.0 } };
-    int64_t                     at_ms = 1000;
-
-    // In a dig the machine stays as it is; push_Pa makes the moment of another sample.
-    (void)moment_after_Nm(b, &at_ms, 200, 0.0);
-    const double digging_Nm = moment_after_Nm(b, &at_ms, 100, 15e6);
-    assert_int_not_equal(b->loop.estimate.phase, DIG_PHASE_AIR);
-    offer_machine(b, &heavy, 2);
-    assert_close(moment_after_Nm(b, &at_ms, 100, 15e6), digging_Nm, 1e-9);
-    assert_int_equal(b->loop.tick_status.generation, 1);
-
-    // In the air the new one is used, as by an estimator that has had it from the start.
-    int waited = 0;
-    while (b->loop.tick_status.generation == 1 && waited++ < 1000) {
-        (void)moment_after_Nm(b, &at_ms, 1, 0.0);
-    }
-    assert_int_equal(b->loop.tick_status.generation, 2);
-    assert_true(fabs(moment_of_Nm(b, &heavy, 100) - moment_of_Nm(b, NULL, 100)) > 100.0);
-    assert_close(moment_after_Nm(b, &at_ms, 99, 0.0), moment_of_Nm(b, &heavy, 100), 1e-6);
-
-    // The same again is nothing new: what free air taught stays learnt.
-    offer_machine(b, &heavy, 3);
-    assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, &heavy, 200), 1e-6);
-    assert_int_equal(b->loop.tick_status.generation, 3);
-
-    // And taken off again.
-    offer_machine(b, NULL, 4);
-    assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, NULL, 100), 1e-6);
     bench_destroy(b);
 }
 
@@ -404,8 +257,6 @@ int main(void)
         cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),
         cmocka_unit_test(in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known),
         cmocka_unit_test(nothing_is_predicted_from_a_gravel_that_expired),
-        cmocka_unit_test(a_table_is_exchanged_with_the_forecast_that_belongs_to_it),
-        cmocka_unit_test(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start),
         cmocka_unit_test(a_tick_allocates_nothing),
         cmocka_unit_test(the_loop_runs_beside_its_neighbours),
     };

@@ -22,8 +22,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define MS 1000000LL
-
 struct calls {
     unsigned long takes, gives, locks, words;
 };

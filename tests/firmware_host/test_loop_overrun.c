@@ -6,7 +6,6 @@
 
 #include <time.h>
 
-#define MS     1000000LL
 #define BEATS  40
 #define PERIOD (5 * MS)
 

@@ -13,7 +13,7 @@
 #include "files/curves_csv.h"
 #include "files/grid_yaml.h"
 #include "files/identity_json.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/model_json.h"
 #include "files/recording_csv.h"

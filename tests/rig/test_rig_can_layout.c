@@ -1,6 +1,6 @@
-// Tests for tools/rig/can_layout.c: frames worked out by hand from the layout's table.
+// Tests for tools/rig/bus/can_layout.c: frames worked out by hand from the layout's table.
 
-#include "tools/rig/can_layout.h"
+#include "tools/rig/bus/can_layout.h"
 
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for tools/rig/fault.c
+// Tests for tools/rig/bus/fault.c
 
-#include "tools/rig/fault.h"
+#include "tools/rig/bus/fault.h"
 
 #include "tests/testlib.h"
 

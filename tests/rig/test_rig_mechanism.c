@@ -1,6 +1,6 @@
-// Tests for tools/rig/mechanism.c
+// Tests for tools/rig/motion/mechanism.c
 
-#include "tools/rig/mechanism.h"
+#include "tools/rig/motion/mechanism.h"
 
 #include "core/units.h"
 #include "files/machine_yaml.h"

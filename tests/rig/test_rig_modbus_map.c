@@ -1,6 +1,6 @@
-// Tests for tools/rig/modbus_map.c: registers worked out by hand.
+// Tests for tools/rig/bus/modbus_map.c: registers worked out by hand.
 
-#include "tools/rig/modbus_map.h"
+#include "tools/rig/bus/modbus_map.h"
 
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for tools/rig/path.c and tools/rig/blend.c
+// Tests for tools/rig/motion/path.c and tools/rig/motion/blend.c
 
-#include "tools/rig/path.h"
+#include "tools/rig/motion/path.h"
 
 #include "core/units.h"
 #include "tests/testlib.h"

@@ -1,6 +1,6 @@
-// Tests for tools/rig/track.c, placement.c and state.c
+// Tests for tools/rig/motion/track.c, placement.c and state.c
 
-#include "tools/rig/track.h"
+#include "tools/rig/motion/track.h"
 
 #include "core/units.h"
 #include "files/machine_yaml.h"

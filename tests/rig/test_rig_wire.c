@@ -1,6 +1,6 @@
-// Tests for tools/rig/wire.c: what each fault makes of a stream of frames.
+// Tests for tools/rig/bus/wire.c: what each fault makes of a stream of frames.
 
-#include "tools/rig/wire.h"
+#include "tools/rig/bus/wire.h"
 
 #include "tests/testlib.h"
 

@@ -1,6 +1,6 @@
-// Tests for tools/rig/work.c
+// Tests for tools/rig/motion/work.c
 
-#include "tools/rig/work.h"
+#include "tools/rig/motion/work.h"
 
 #include "core/units.h"
 #include "files/machine_yaml.h"

@@ -13,7 +13,7 @@
 // sigma. A match said to be valid and not outside is wrong when an axis' interval, widened by half,
 // misses the truth; a prediction when its peak is off the truth's by more than a third.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -19,7 +19,7 @@
 // late of the health.
 
 #include "core/units.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 // Errors are relative: rms of the difference over rms of the truth. What was there is the moment at
 // the truth's nearest pose of the bucket, so no clocks are compared.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <math.h>
 #include <stdbool.h>

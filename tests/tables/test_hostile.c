@@ -1,5 +1,5 @@
-// Tests for tables/guard.c and what reads a table: files that mean harm. Every one is refused by
-// every reader and by the writer, and stays as it was.
+// Tests for tables/schema/guard.c and what reads a table: files that mean harm. Every one is
+// refused by every reader and by the writer, and stays as it was.
 
 #include "tests/tables_fixture.h"
 

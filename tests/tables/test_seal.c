@@ -1,4 +1,4 @@
-// Tests for tables/seal.c: nothing of a table changes in silence.
+// Tests for tables/schema/seal.c: nothing of a table changes in silence.
 
 #include "tests/table_content.h"
 #include "tests/tables_fixture.h"

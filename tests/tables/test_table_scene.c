@@ -1,7 +1,7 @@
 // Tests for tables/scene.c: a scene through a file and back.
 
-#include "tables/canonical_scene.h"
 #include "tables/scene.h"
+#include "tables/schema/canonical_scene.h"
 
 #include "core/sha256.h"
 #include "core/similar.h"

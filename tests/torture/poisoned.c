@@ -3,7 +3,7 @@
 // A poisoned pressure is 4660 kPa in all cylinders at once (0x1234 on Modbus, and the CAN flood's
 // second sender's). Prints SAMPLES POISONED.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <math.h>
 #include <stdio.h>

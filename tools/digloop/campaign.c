@@ -1,6 +1,7 @@
 #include "tools/digloop/campaign.h"
 
 #include "closed_loop/recordings/observe.h"
+#include "core/name.h"
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -13,13 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static const char *last_part(const char *const path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
-}
+#include <unistd.h>
 
 static enum dig_status fill_heads(const struct dig_campaign *const  from,
                                   const struct dig_curve_set *const set,
@@ -27,7 +22,7 @@ static enum dig_status fill_heads(const struct dig_campaign *const  from,
 {
     for (size_t i = 0; i < from->recordings; i++) {
         const struct dig_campaign_recording *const r = &from->recording[i];
-        (void)snprintf(measured[i].name, sizeof measured[i].name, "%.63s", last_part(r->file));
+        (void)snprintf(measured[i].name, sizeof measured[i].name, "%.63s", dig_path_last(r->file));
         measured[i].order      = i;
         measured[i].trajectory = dig_curve_set_find(set, r->trajectory);
         measured[i].use        = (enum dig_use)r->role;
@@ -137,12 +132,6 @@ static enum dig_status load_machine(const struct dig_campaign *const from, const
     return status;
 }
 
-static bool exists(const char *const path)
-{
-    struct stat found;
-    return stat(path, &found) == 0;
-}
-
 // A file that is not there is of no kind; reading it says so.
 static enum dig_status check_kinds(const struct dig_campaign *const from,
                                    struct dig_error *const          error)
@@ -150,13 +139,14 @@ static enum dig_status check_kinds(const struct dig_campaign *const from,
     static const char *const kind[] = { "a machine recording", "a force recording" };
     const char *const        first  = from->recording[0].file;
     const bool               force  = digloop_is_force_recording(first);
-    for (size_t i = 1; i < from->recordings && exists(first); i++) {
+    for (size_t i = 1; i < from->recordings && access(first, F_OK) == 0; i++) {
         const char *const file = from->recording[i].file;
-        if (exists(file) && digloop_is_force_recording(file) != force) {
+        if (access(file, F_OK) == 0 && digloop_is_force_recording(file) != force) {
             return dig_error_set(error, DIG_EINVAL,
                                  "%s: %s, but %s is %s; expected one kind in a campaign: trace "
                                  "each in one of its own",
-                                 file, kind[force ? 0 : 1], last_part(first), kind[force ? 1 : 0]);
+                                 file, kind[force ? 0 : 1], dig_path_last(first),
+                                 kind[force ? 1 : 0]);
         }
     }
     return DIG_OK;

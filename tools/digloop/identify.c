@@ -54,7 +54,7 @@ static enum dig_status collect(const struct digloop_options *const options,
     return status;
 }
 
-// Which trajectories identify in a daemon that is not told others.
+// Which trajectories identify in a daemon by default.
 static bool is_simple(const struct dig_trajectory *const t)
 {
     return strncmp(t->name, "simple", 6) == 0;
@@ -194,7 +194,7 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
 static void show_family(const struct dig_match *const match, FILE *const to)
 {
     char untold[DIG_UNTOLD_SIZE];
-    dig_match_untold(match, untold);
+    dig_match_unresolved(match, untold);
     if (untold[0] != '\0') {
         (void)fprintf(
             to, "  a FAMILY of gravels that resist alike, of which this is one: %s not told\n",

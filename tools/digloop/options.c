@@ -3,7 +3,7 @@
 #include "core/did_you_mean.h"
 #include "core/help.h"
 #include "core/units.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tools/digloop/help.h"
 
 #include <getopt.h>

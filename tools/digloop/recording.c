@@ -5,7 +5,7 @@
 #include "core/sample.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/track/inertia_error.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "firmware_host/config/load_model.h"
@@ -27,7 +27,7 @@ bool digloop_is_force_recording(const char *const path)
     return !dig_machine_recording_is(path);
 }
 
-// What tells the forces must be what the machine has: else not one sample could be used.
+// The signals must be those the machine has: else not one sample could be used.
 static enum dig_status check_kind(const struct dig_machine *const           machine,
                                   const struct dig_machine_recording *const recording,
                                   const char *const file, struct dig_error *const error)

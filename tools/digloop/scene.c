@@ -1,5 +1,6 @@
 #include "tools/digloop/scene.h"
 
+#include "core/name.h"
 #include "core/similar.h"
 #include "files/scene_yaml.h"
 #include "tables/scene.h"
@@ -8,19 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static bool exists(const char *const path)
-{
-    struct stat found;
-    return stat(path, &found) == 0;
-}
-
-static const char *last_part(const char *const path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
-}
+#include <unistd.h>
 
 static enum dig_status check_file(const char *const path, const char *const table,
                                   struct dig_scene *const scene, struct dig_scene *const own,
@@ -46,8 +35,8 @@ enum dig_status digloop_check_scene(const char *const path, const char *const ta
     assert(path != NULL && table != NULL && set != NULL && scale != NULL);
 
     // A scene may be named instead of given: then by the name the table has.
-    if (!exists(path)) {
-        const bool same = strcmp(last_part(path), set->scene_name) == 0;
+    if (access(path, F_OK) != 0) {
+        const bool same = strcmp(dig_path_last(path), set->scene_name) == 0;
         *scale          = same ? 1.0 : *scale;
         return same ? DIG_OK
                     : dig_error_set(error, DIG_EINVAL,

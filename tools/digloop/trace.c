@@ -3,7 +3,7 @@
 #include "closed_loop/verdict/trace.h"
 #include "closed_loop/report/trace_report.h"
 #include "estimator/effects/effect.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"
 #include "tools/digloop/commands.h"

@@ -2,7 +2,7 @@
 
 #include "core/did_you_mean.h"
 #include "core/help.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <getopt.h>
 #include <math.h>

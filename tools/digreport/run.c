@@ -5,8 +5,8 @@
 #include "core/name.h"
 #include "estimator/estimator.h"
 #include "estimator/match/match.h"
-#include "files/lcm_log.h"
-#include "files/predicted_curve.h"
+#include "files/lcm/lcm_log.h"
+#include "files/lcm/predicted_curve.h"
 #include "files/recording_csv.h"
 
 #include <math.h>

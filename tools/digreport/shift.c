@@ -1,7 +1,7 @@
 #include "tools/digreport/shift.h"
 
 #include "core/text.h"
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <assert.h>
 #include <math.h>
@@ -42,16 +42,10 @@ static void *with_room(void *const array, const size_t n, const size_t size)
     return full ? realloc(array, (2 * n + 1) * size) : array;
 }
 
-// By how much a counter has grown; a daemon that began anew, or another's message, tells nothing.
+// By how much a counter has grown; a daemon that began anew, or another's message, says nothing.
 static int64_t growth(const int64_t before, const int64_t now)
 {
     return before >= 0 && now > before && now <= COUNT_MOST ? now - before : 0;
-}
-
-static void take_text(char text[DIGREPORT_TEXT], const char *const said)
-{
-    (void)snprintf(text, DIGREPORT_TEXT, "%s", said);
-    dig_text_clean(text);
 }
 
 // Extends an event of the same text, or words, or begins one.
@@ -60,7 +54,7 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
                       const int64_t count)
 {
     struct digreport_event e = { time_us, time_us, count, text, "" };
-    take_text(e.said, said);
+    dig_text_copy(DIGREPORT_TEXT, e.said, said);
     for (size_t back = 0; back < LOOK_BACK && back < shift->events; back++) {
         struct digreport_event *const old = &shift->event[shift->events - 1 - back];
         if (old->text == text && strcmp(old->said, e.said) == 0 &&
@@ -111,10 +105,10 @@ static void take_prediction(void *const context, const int64_t time_us,
 }
 
 // A match names the simple dig it came from, and how that ended.
-static void tell_ending(struct digreport_shift *const shift, const digsight_match_t *const said)
+static void take_ending(struct digreport_shift *const shift, const digsight_match_t *const said)
 {
-    const bool told = said->ending == DIGREPORT_WHOLE || said->ending == DIGREPORT_ABORTED;
-    for (size_t i = shift->digs; i > shift->log_digs && told && !said->restored; i--) {
+    const bool known = said->ending == DIGREPORT_WHOLE || said->ending == DIGREPORT_ABORTED;
+    for (size_t i = shift->digs; i > shift->log_digs && known && !said->restored; i--) {
         if (shift->dig[i - 1].number == said->dig_count) {
             shift->dig[i - 1].ended = (enum digreport_ending)said->ending;
         }
@@ -161,7 +155,7 @@ static void take_match(void *const context, const int64_t time_us,
 {
     struct digreport_shift *const shift = context;
     const bool                    known = said->valid != 0;
-    tell_ending(shift, said);
+    take_ending(shift, said);
     if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
         return;
     }
@@ -175,8 +169,8 @@ static void take_match(void *const context, const int64_t time_us,
         .high    = { { said->friction_high, said->rolling_high, said->density_high_kgpm3 } },
         .digs    = said->digs,
     };
-    take_text(g.untold, said->untold);
-    take_text(g.wanted, said->wanted);
+    dig_text_copy(DIGREPORT_TEXT, g.untold, said->untold);
+    dig_text_copy(DIGREPORT_TEXT, g.wanted, said->wanted);
     if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
         return;
     }
@@ -232,15 +226,18 @@ static void take_health(void *const context, const int64_t time_us,
     shift->any_health = true;
 }
 
-static enum dig_status take(struct digreport_shift *const     shift,
-                            const struct dig_lcm_event *const event)
+static enum dig_status take(void *const context, const struct dig_lcm_log *const log,
+                            const struct dig_lcm_event *const event, struct dig_error *const error)
 {
-    const struct dig_lcm_reader reader = { .context    = shift,
-                                           .estimate   = take_estimate,
-                                           .match      = take_match,
-                                           .prediction = take_prediction,
-                                           .health     = take_health };
-    shift->status                      = DIG_OK;
+    struct digreport_shift *const shift  = context;
+    const struct dig_lcm_reader   reader = { .context    = shift,
+                                             .estimate   = take_estimate,
+                                             .match      = take_match,
+                                             .prediction = take_prediction,
+                                             .health     = take_health };
+    (void)log;
+    (void)error;
+    shift->status = DIG_OK;
     if (event->size == 0 || event->time_us < 0 || event->time_us > INT64_C(1) << 53) {
         return DIG_OK; // of another channel, or of no time
     }
@@ -258,28 +255,15 @@ enum dig_status digreport_shift_log(struct digreport_shift *const shift, const c
                                     struct dig_error *const error)
 {
     assert(shift != NULL && log != NULL);
-    struct dig_lcm_log         *reading = NULL;
-    const struct dig_lcm_event *event   = NULL;
-    enum dig_status             status  = dig_lcm_log_open(log, &reading, error);
-    if (status != DIG_OK) {
-        return status;
-    }
     digreport_track_finish(&shift->track);
     shift->any_health = false;
     shift->log_digs   = shift->digs;
     shift->match_ns   = 0;
-    while (status == DIG_OK) {
-        status = dig_lcm_log_next(reading, &event, error);
-        if (status != DIG_OK || event == NULL) {
-            break;
-        }
-        status = take(shift, event);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: out of memory", log);
-        }
-    }
-    dig_lcm_log_close(reading);
-    return status;
+    shift->status     = DIG_OK;
+
+    const enum dig_status status = dig_lcm_log_walk(log, take, shift, error);
+    return shift->status == DIG_OK ? status
+                                   : dig_error_set(error, status, "%s: out of memory", log);
 }
 
 const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *const shift,

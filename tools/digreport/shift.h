@@ -1,11 +1,11 @@
-// What a shift was like, from the daemon's messages: its digs, the gravel over time, the troubles.
+// A shift by the daemon's messages: its digs, the gravel over time, the troubles.
 
 #ifndef DIG_TOOLS_DIGREPORT_SHIFT_H
 #define DIG_TOOLS_DIGREPORT_SHIFT_H
 
 #include "core/error.h"
-#include "files/health_text.h"
-#include "files/lcm_message.h"
+#include "files/lcm/health_text.h"
+#include "files/lcm/lcm_message.h"
 #include "tools/digreport/shift_dig.h"
 
 #define DIGREPORT_TEXT 256
@@ -54,7 +54,7 @@ struct digreport_shift {
 /// takes 0.16 s of rig time, for a machine of unknown size as if it were ten times the rig.
 void digreport_shift_begin(struct digreport_shift *shift, double lambda);
 
-/// "whole", "aborted", "unknown", "" for one that is not told.
+/// "whole", "aborted", "unknown", "" for one that is not known.
 const char *digreport_ending_name(enum digreport_ending ended);
 
 /// Takes all messages of a log. A message that is not understood is counted; a log that is cut off

@@ -3,7 +3,7 @@
 #include "core/help.h"
 #include "files/machine_yaml.h"
 #include "files/model_json.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tables/load.h"
 #include "tools/digreport/options.h"
 #include "tools/digreport/shift_page.h"

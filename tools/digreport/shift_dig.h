@@ -6,8 +6,8 @@
 
 #include "core/curve.h"
 #include "core/error.h"
-#include "files/lcm_message.h"
-#include "files/predicted_curve.h"
+#include "files/lcm/lcm_message.h"
+#include "files/lcm/predicted_curve.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,7 +3,7 @@
 #include "core/did_you_mean.h"
 #include "core/table_step.h"
 #include "core/text.h"
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tables/export.h"
 #include "tables/listed.h"
 #include "tables/load.h"

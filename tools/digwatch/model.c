@@ -25,12 +25,6 @@ static bool are_finite(const int n, const double number[])
     return i == n;
 }
 
-static void take_text(char text[DIGWATCH_TEXT], const char *const said)
-{
-    (void)snprintf(text, DIGWATCH_TEXT, "%s", said);
-    dig_text_clean(text);
-}
-
 static void take_name(char name[DIG_NAME_SIZE], const char *const said)
 {
     (void)snprintf(name, DIG_NAME_SIZE, "%s",
@@ -159,8 +153,8 @@ static void take_match(void *const context, const int64_t time_us,
           are_finite(DIG_AXES, match.high.value))) {
         return;
     }
-    take_text(match.untold, said->untold);
-    take_text(match.wanted, said->wanted);
+    dig_text_copy(DIGWATCH_TEXT, match.untold, said->untold);
+    dig_text_copy(DIGWATCH_TEXT, match.wanted, said->wanted);
     m->match     = match;
     m->any_match = true;
 }
@@ -173,7 +167,7 @@ static void take_prediction(void *const context, const int64_t time_us,
     struct digwatch_prediction p = { .valid      = said->valid != 0,
                                      .outside    = said->outside != 0,
                                      .expires_ns = said->expires_ns };
-    take_text(p.reason, said->reason);
+    dig_text_copy(DIGWATCH_TEXT, p.reason, said->reason);
     if (p.valid && !dig_predicted_curve_take(said, &p.curve)) {
         return;
     }
@@ -204,10 +198,10 @@ static void take_health(void *const context, const int64_t time_us,
         const bool grew = m->any_health && h.count[i] > m->health.count[i];
         h.grew_ns[i]    = grew ? h.time_ns : m->health.grew_ns[i];
     }
-    take_text(h.state, said->state);
-    take_text(h.input, said->input);
-    take_text(h.note, said->note);
-    take_text(h.missing, said->missing_signals);
+    dig_text_copy(DIGWATCH_TEXT, h.state, said->state);
+    dig_text_copy(DIGWATCH_TEXT, h.input, said->input);
+    dig_text_copy(DIGWATCH_TEXT, h.note, said->note);
+    dig_text_copy(DIGWATCH_TEXT, h.missing, said->missing_signals);
     m->health     = h;
     m->health_us  = time_us;
     m->any_health = true;

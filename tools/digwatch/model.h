@@ -1,4 +1,4 @@
-// What is known of a daemon from its messages: the last of each kind, and the moment of the last
+// The state of a daemon by its messages: the last of each kind, and the moment of the last
 // seconds, measured and predicted. Messages may hold anything; numbers that are none and names that
 // are none are not taken.
 
@@ -6,9 +6,9 @@
 #define DIG_TOOLS_DIGWATCH_MODEL_H
 
 #include "core/curve.h"
-#include "files/health_text.h"
-#include "files/lcm_message.h"
-#include "files/predicted_curve.h"
+#include "files/lcm/health_text.h"
+#include "files/lcm/lcm_message.h"
+#include "files/lcm/predicted_curve.h"
 
 #include <stdbool.h>
 
@@ -91,7 +91,7 @@ void digwatch_model_take(struct digwatch_model *model, const struct dig_lcm_even
 struct digwatch_slot digwatch_model_slot(const struct digwatch_model *model, int64_t back);
 
 /// True when the match, or the prediction, may be used by the controller's clock, which HEALTH
-/// tells: estimates of a recording that is played fast have a faster one.
+/// says: estimates of a recording that is played fast have a faster one.
 bool digwatch_model_match_holds(const struct digwatch_model *model);
 bool digwatch_model_prediction_holds(const struct digwatch_model *model);
 

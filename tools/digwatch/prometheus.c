@@ -1,6 +1,6 @@
 #include "tools/digwatch/prometheus.h"
 
-#include "files/whole.h"
+#include "files/text/whole.h"
 #include "tools/digwatch/trouble.h"
 
 #include <assert.h>

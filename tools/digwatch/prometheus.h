@@ -1,4 +1,4 @@
-// Health as fleets read it: Prometheus' text format, for the textfile collector of node_exporter.
+// HEALTH in Prometheus' text format, for the textfile collector of node_exporter.
 
 #ifndef DIG_TOOLS_DIGWATCH_PROMETHEUS_H
 #define DIG_TOOLS_DIGWATCH_PROMETHEUS_H

@@ -1,6 +1,6 @@
 #include "tools/digwatch/source.h"
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 
 #include <assert.h>
 #include <lcm/lcm.h>

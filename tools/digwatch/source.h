@@ -4,7 +4,7 @@
 #define DIG_TOOLS_DIGWATCH_SOURCE_H
 
 #include "core/error.h"
-#include "files/lcm_message.h"
+#include "files/lcm/lcm_message.h"
 
 #include <stdbool.h>
 

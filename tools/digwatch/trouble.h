@@ -1,4 +1,4 @@
-// What is wrong with the daemon and its digs now, and what to do about it, the worst first.
+// The present troubles of the daemon and its digs, and what to do about them, the worst first.
 
 #ifndef DIG_TOOLS_DIGWATCH_TROUBLE_H
 #define DIG_TOOLS_DIGWATCH_TROUBLE_H

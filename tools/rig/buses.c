@@ -1,7 +1,7 @@
 #include "tools/rig/buses.h"
 
-#include "tools/rig/can_layout.h"
-#include "tools/rig/serve_can.h"
+#include "tools/rig/bus/can_layout.h"
+#include "tools/rig/bus/serve_can.h"
 
 #include <stdio.h>
 
@@ -99,7 +99,7 @@ static struct dig_rig_manner manner_at(const struct dig_rig_buses *const buses, 
     };
 }
 
-void dig_rig_buses_tell(struct dig_rig_buses *const buses, const int64_t tick,
+void dig_rig_buses_send(struct dig_rig_buses *const buses, const int64_t tick,
                         const struct dig_sample *const sample, const bool moving, const bool silent)
 {
     uint16_t registers[DIG_RIG_REGISTERS];

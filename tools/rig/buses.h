@@ -5,10 +5,10 @@
 
 #include "core/error.h"
 #include "core/sample.h"
-#include "tools/rig/board.h"
+#include "tools/rig/bus/board.h"
+#include "tools/rig/bus/serve_modbus.h"
+#include "tools/rig/bus/wire.h"
 #include "tools/rig/options.h"
-#include "tools/rig/serve_modbus.h"
-#include "tools/rig/wire.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -37,7 +37,7 @@ DIG_MUST_CHECK enum dig_status dig_rig_buses_open(const struct dig_rig_options *
 
 /// Tells one sample at tick number `tick`. moving false: the alive counters stand. silent: no
 /// frame, no answer.
-void dig_rig_buses_tell(struct dig_rig_buses *buses, int64_t tick, const struct dig_sample *sample,
+void dig_rig_buses_send(struct dig_rig_buses *buses, int64_t tick, const struct dig_sample *sample,
                         bool moving, bool silent);
 
 /// Ends the servers and closes everything.

@@ -8,10 +8,10 @@
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "tools/rig/buses.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/options.h"
 #include "tools/rig/record.h"
 #include "tools/rig/serve.h"
-#include "tools/rig/track.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,8 +5,8 @@
 
 #include "core/command_line.h"
 #include "core/error.h"
-#include "tools/rig/fault.h"
-#include "tools/rig/track.h"
+#include "tools/rig/bus/fault.h"
+#include "tools/rig/motion/track.h"
 
 #include <stdbool.h>
 #include <stdint.h>

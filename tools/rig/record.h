@@ -4,8 +4,8 @@
 #define DIG_TOOLS_RIG_RECORD_H
 
 #include "core/error.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/options.h"
-#include "tools/rig/track.h"
 
 /// What the sensors read along the track, written to options->out; and the truth, if asked for.
 /// DIG_EIO, DIG_ENOMEM; then no file of ours is left half written.

@@ -5,7 +5,7 @@
 
 #include "core/machine.h"
 #include "core/sample.h"
-#include "tools/rig/track.h"
+#include "tools/rig/motion/track.h"
 
 #include <stdbool.h>
 #include <stdint.h>

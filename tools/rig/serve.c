@@ -1,7 +1,7 @@
 #include "tools/rig/serve.h"
 
+#include "tools/rig/bus/fault.h"
 #include "tools/rig/buses.h"
-#include "tools/rig/fault.h"
 #include "tools/rig/sensors.h"
 
 #include <errno.h>
@@ -42,8 +42,8 @@ struct progress {
     int64_t next_ns;
 };
 
-static void tell_progress(struct progress *const progress, const double done_s,
-                          const double total_s, const double speed)
+static void print_progress(struct progress *const progress, const double done_s,
+                           const double total_s, const double speed)
 {
     const int64_t now = now_ns();
     if (now < progress->next_ns) {
@@ -109,7 +109,7 @@ struct player {
     const struct dig_rig_options *options;
     const struct dig_rig_track   *track;
     struct dig_rig_noise          noise;
-    struct dig_sample             last; // what was told before, for a bus that freezes
+    struct dig_sample             last; // what was sent before, for a bus that freezes
 };
 
 // What the bus says at `tick` of the motion; before it (tick < 0) the machine stands at the start.
@@ -130,7 +130,7 @@ static void play(struct player *const player, struct dig_rig_buses *const buses,
         dig_rig_fault_spoil(options->faults, options->fault, time_s, &player->last);
         dig_rig_fault_hold(options->faults, options->fault, time_s, &before, &player->last);
     }
-    dig_rig_buses_tell(buses, tick, &player->last, !frozen, silent);
+    dig_rig_buses_send(buses, tick, &player->last, !frozen, silent);
 }
 
 enum dig_status dig_rig_serve(const struct dig_machine *const     machine,
@@ -170,7 +170,7 @@ enum dig_status dig_rig_serve(const struct dig_machine *const     machine,
         worst_ns              = late_ns > worst_ns ? late_ns : worst_ns;
         play(&player, &buses, tick);
         if (!options->quiet) {
-            tell_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
+            print_progress(&progress, (double)tick * tick_s, (double)rows * tick_s, options->speed);
         }
         tick++;
     }

@@ -4,8 +4,8 @@
 #define DIG_TOOLS_RIG_SERVE_H
 
 #include "core/error.h"
+#include "tools/rig/motion/track.h"
 #include "tools/rig/options.h"
-#include "tools/rig/track.h"
 
 /// Opens every bus asked for, plays the track against absolute deadlines of CLOCK_MONOTONIC, and
 /// returns after the last row, on SIGTERM or on SIGINT. Tells progress on stderr and, with

@@ -1,6 +1,6 @@
 #include "tools/rig/truth.h"
 
-#include "files/whole.h"
+#include "files/text/whole.h"
 
 #include <stdio.h>
 

@@ -4,7 +4,7 @@
 #define DIG_TOOLS_RIG_TRUTH_H
 
 #include "core/error.h"
-#include "tools/rig/track.h"
+#include "tools/rig/motion/track.h"
 
 /// Writes t_s,X_m,Z_m,phi_rad,Fx_N,Fz_N,My_Nm, one row of the track a line: the bucket pin and the
 /// direction pin -> tooth in the machine frame; force and moment of the soil on the bucket at

@@ -1,6 +1,6 @@
 // An LCM log: its samples as a recording, and its other messages one by one.
 
-#include "files/lcm_log.h"
+#include "files/lcm/lcm_log.h"
 #include "tests/fuzz/coverage/as_file.h"
 
 #define IGNORE(type)                                                                               \

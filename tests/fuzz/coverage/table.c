@@ -6,7 +6,7 @@
 
 #include "tables/load.h"
 #include "tables/load_effects.h"
-#include "tables/seal.h"
+#include "tables/schema/seal.h"
 #include "tables/store.h"
 #include "tests/fuzz/coverage/as_file.h"
 

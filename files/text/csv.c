@@ -1,0 +1,282 @@
+#include "files/text/csv.h"
+
+#include "core/regular.h"
+#include "core/text.h"
+#include "files/text/whole.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROWS_MAX ((size_t)1 << 22) // half a day at 100 Hz
+
+// What is being read, and where the reader stands.
+struct reader {
+    const char                  *path;
+    size_t                       columns;
+    const struct dig_csv_column *column;
+    struct dig_error            *error;
+    int                          line;
+    size_t                       fields;                      // in the header
+    size_t                       target[DIG_CSV_COLUMNS_MAX]; // header field -> column asked for
+    struct dig_csv               csv;
+    size_t                       room; // rows allocated
+};
+
+char *dig_csv_line(char **const rest)
+{
+    char *const line = *rest;
+    if (line == NULL || *line == '\0') {
+        return NULL;
+    }
+    char *const end = strchr(line, '\n');
+    *rest           = end != NULL ? end + 1 : NULL;
+    if (end != NULL) {
+        *end = '\0';
+    }
+    const size_t length = strlen(line);
+    if (length > 0 && line[length - 1] == '\r') {
+        line[length - 1] = '\0';
+    }
+    return line;
+}
+
+char *dig_csv_field(char **const rest)
+{
+    char *field = *rest;
+    if (field == NULL) {
+        return NULL;
+    }
+    char *const comma = strchr(field, ',');
+    *rest             = comma != NULL ? comma + 1 : NULL;
+    if (comma != NULL) {
+        *comma = '\0';
+    }
+    field += strspn(field, " \t");
+    size_t length = strlen(field);
+    while (length > 0 && (field[length - 1] == ' ' || field[length - 1] == '\t')) {
+        field[--length] = '\0';
+    }
+    return field;
+}
+
+static const char byte_order_mark[] = "\xef\xbb\xbf";
+
+bool dig_csv_is_comment_or_blank(const char *const line)
+{
+    const char first = line[strspn(line, " \t")];
+    return first == '#' || first == '\0';
+}
+
+// The names asked for, for people: "t_s, pin_x_m, …".
+static const char *names(const struct reader *const r, const size_t size, char text[const])
+{
+    text[0] = '\0';
+    for (size_t i = 0; i < r->columns; i++) {
+        dig_text_list(size, text, r->column[i].name);
+    }
+    return text;
+}
+
+static enum dig_status read_header(struct reader *const r, char *line)
+{
+    char known[256];
+    bool seen[DIG_CSV_COLUMNS_MAX] = { false };
+    for (const char *field; (field = dig_csv_field(&line)) != NULL; r->fields++) {
+        size_t at = 0;
+        while (at < r->columns && strcmp(r->column[at].name, field) != 0) {
+            at++;
+        }
+        if (at == r->columns) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%d: column \"%.40s\": unknown, expected a header of %s",
+                                 r->path, r->line, field, names(r, sizeof known, known));
+        }
+        if (seen[at]) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%d: column %s: given twice, expected once", r->path, r->line,
+                                 field);
+        }
+        seen[at]             = true;
+        r->target[r->fields] = at;
+    }
+    for (size_t i = 0; i < r->columns; i++) {
+        if (!seen[i] && !r->column[i].optional) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%d: column %s: missing, expected a header of %s", r->path,
+                                 r->line, r->column[i].name, names(r, sizeof known, known));
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status make_room(struct reader *const r)
+{
+    if (r->csv.rows < r->room) {
+        return DIG_OK;
+    }
+    if (r->room >= ROWS_MAX) {
+        (void)dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
+                            r->path, r->line, ROWS_MAX);
+        return DIG_EINVAL;
+    }
+    const size_t  room  = r->room == 0 ? 1024 : r->room * 2;
+    double *const value = realloc(r->csv.value, room * r->columns * sizeof *value);
+    if (value != NULL) {
+        r->csv.value = value;
+    }
+    int *const line = realloc(r->csv.line, room * sizeof *line);
+    if (line != NULL) {
+        r->csv.line = line;
+    }
+    if (value == NULL || line == NULL) {
+        (void)dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
+        return DIG_ENOMEM;
+    }
+    r->room = room;
+    return DIG_OK;
+}
+
+// A plain decimal number: strtod alone would take "nan", "inf" and "0x1p3" as well.
+static bool parse_number(const char *const field, double *const value)
+{
+    if (field[strspn(field, "0123456789+-.eE")] != '\0') {
+        return false;
+    }
+    char        *end    = NULL;
+    const double number = strtod(field, &end);
+    if (end == field || *end != '\0' || !isfinite(number)) {
+        return false;
+    }
+    *value = number;
+    return true;
+}
+
+static enum dig_status read_row(struct reader *const r, char *line)
+{
+    enum dig_status status = make_room(r);
+    if (status != DIG_OK) {
+        return status;
+    }
+    double *const row = r->csv.value + r->csv.rows * r->columns;
+    for (size_t i = 0; i < r->columns; i++) {
+        row[i] = NAN;
+    }
+
+    size_t fields = 0;
+    for (const char *field; (field = dig_csv_field(&line)) != NULL; fields++) {
+        if (fields >= r->fields) {
+            continue;
+        }
+        const struct dig_csv_column *const column = &r->column[r->target[fields]];
+        if (field[0] == '\0' && column->may_empty) {
+            continue;
+        }
+        if (!parse_number(field, &row[r->target[fields]])) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%d: column %s: \"%.40s\", expected a finite number", r->path,
+                                 r->line, column->name, field);
+        }
+    }
+    if (fields != r->fields) {
+        return dig_error_set(r->error, DIG_EINVAL,
+                             "%s:%d: column %s: the line has %zu fields, expected %zu as in the "
+                             "header",
+                             r->path, r->line,
+                             fields < r->fields ? r->column[r->target[fields]].name
+                                                : "after the last",
+                             fields, r->fields);
+    }
+    r->csv.line[r->csv.rows++] = r->line;
+    return DIG_OK;
+}
+
+static enum dig_status read_lines(struct reader *const r, char *text)
+{
+    // Spreadsheets put a byte-order mark first.
+    if (strncmp(text, byte_order_mark, 3) == 0) {
+        text += 3;
+    }
+    bool            header = false;
+    enum dig_status status = DIG_OK;
+    for (char *line; status == DIG_OK && (line = dig_csv_line(&text)) != NULL;) {
+        r->line++;
+        if (!dig_csv_is_comment_or_blank(line)) {
+            status = header ? read_row(r, line) : read_header(r, line);
+            header = true;
+        }
+    }
+    if (status == DIG_OK && r->csv.rows == 0) {
+        char known[256];
+        return dig_error_set(r->error, DIG_EINVAL, "%s:%d: %s, expected a header of %s and rows",
+                             r->path, r->line > 0 ? r->line : 1,
+                             header ? "no row of numbers" : "no header",
+                             names(r, sizeof known, known));
+    }
+    return status;
+}
+
+enum dig_status dig_csv_read(const char *const path, const size_t columns,
+                             const struct dig_csv_column column[], struct dig_csv *const csv,
+                             struct dig_error *const error)
+{
+    assert(path != NULL && columns > 0 && columns <= DIG_CSV_COLUMNS_MAX && csv != NULL);
+
+    char           *text   = NULL;
+    size_t          size   = 0;
+    enum dig_status status = dig_file_read(path, &text, &size, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_c_locale locale = dig_c_locale_enter();
+    struct reader       reader = {
+              .path    = path,
+              .columns = columns,
+              .column  = column,
+              .error   = error,
+              .csv     = { .columns = columns },
+    };
+    status = read_lines(&reader, text);
+    dig_c_locale_leave(&locale);
+    free(text);
+    if (status != DIG_OK) {
+        dig_csv_finish(&reader.csv);
+        return status;
+    }
+    *csv = reader.csv;
+    return DIG_OK;
+}
+
+bool dig_csv_has(const char *const path, const char *const column)
+{
+    assert(path != NULL && column != NULL);
+    FILE *file   = NULL;
+    char *line   = NULL;
+    char *header = NULL;
+    if (dig_regular_open(path, &file, NULL) != DIG_OK) {
+        return false;
+    }
+    for (size_t room = 0; header == NULL && getline(&line, &room, file) > 0;) {
+        char *const text            = strncmp(line, byte_order_mark, 3) == 0 ? line + 3 : line;
+        text[strcspn(text, "\r\n")] = '\0';
+        header                      = dig_csv_is_comment_or_blank(text) ? NULL : text;
+    }
+    bool has = false;
+    for (const char *field; header != NULL && !has && (field = dig_csv_field(&header)) != NULL;) {
+        has = strcmp(field, column) == 0;
+    }
+    free(line);
+    (void)fclose(file);
+    return has;
+}
+
+void dig_csv_finish(struct dig_csv *const csv)
+{
+    if (csv != NULL) {
+        free(csv->value);
+        free(csv->line);
+        *csv = (struct dig_csv){ 0 };
+    }
+}

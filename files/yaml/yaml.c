@@ -1,0 +1,146 @@
+#include "files/yaml/yaml.h"
+
+#include "files/text/whole.h"
+#include "files/yaml/yaml_tree.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// libcyaml's own words, for what dig_yaml_check() let through.
+struct log {
+    char   text[300];
+    size_t used;
+};
+
+__attribute__((format(printf, 3, 0))) static void
+collect_log(const cyaml_log_t level, void *const context, const char *const format, va_list args)
+{
+    struct log *const log = context;
+    (void)level;
+    if (log->used + 1 < sizeof log->text) {
+        const int n = vsnprintf(log->text + log->used, sizeof log->text - log->used, format, args);
+        log->used += n > 0 ? (size_t)n : 0;
+    }
+}
+
+static enum dig_status load_text(const char *const path, const char *const text, const size_t size,
+                                 const cyaml_schema_value_t *const schema,
+                                 cyaml_data_t **const data, struct dig_error *const error)
+{
+    struct log           log    = { .used = 0 };
+    const cyaml_config_t config = {
+        .log_fn    = collect_log,
+        .log_ctx   = &log,
+        .mem_fn    = cyaml_mem,
+        .log_level = CYAML_LOG_ERROR,
+        .flags     = CYAML_CFG_DEFAULT,
+    };
+    cyaml_data_t     *loaded = NULL;
+    const cyaml_err_t err =
+        cyaml_load_data((const uint8_t *)text, size, &config, schema, &loaded, NULL);
+    if (err == CYAML_OK) {
+        *data = loaded;
+        return DIG_OK;
+    }
+    for (char *c = log.text; *c != '\0'; c++) {
+        if (*c == '\n') {
+            *c = ' ';
+        }
+    }
+    return dig_error_set(error, err == CYAML_ERR_OOM ? DIG_ENOMEM : DIG_EINVAL, "%s:1: %s: %s",
+                         path, cyaml_strerror(err), log.text);
+}
+
+enum dig_status dig_yaml_load(const char *const path, const cyaml_schema_value_t *const schema,
+                              cyaml_data_t **const data, struct dig_error *const error)
+{
+    assert(path != NULL && schema != NULL && data != NULL);
+
+    char           *text   = NULL;
+    size_t          size   = 0;
+    enum dig_status status = dig_file_read(path, &text, &size, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_c_locale locale = dig_c_locale_enter();
+    yaml_document_t     document;
+    status = dig_yaml_parse(path, text, size, &document, error);
+    if (status == DIG_OK) {
+        status = dig_yaml_check(path, &document, schema, error);
+        yaml_document_delete(&document);
+    }
+    if (status == DIG_OK) {
+        status = load_text(path, text, size, schema, data, error);
+    }
+    dig_c_locale_leave(&locale);
+    free(text);
+    return status;
+}
+
+void dig_yaml_free(const cyaml_schema_value_t *const schema, cyaml_data_t *const data)
+{
+    if (data != NULL) {
+        const cyaml_config_t config = { .mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT };
+        (void)cyaml_free(&config, schema, data, 0);
+    }
+}
+
+// The line of the value at key, or of the deepest mapping on the way to it.
+static int nearest_line(const char *const path, const char *const key, int *const found)
+{
+    char           *text = NULL;
+    size_t          size = 0;
+    yaml_document_t document;
+    *found = 0;
+    if (dig_file_read(path, &text, &size, NULL) != DIG_OK) {
+        return 0;
+    }
+    int line = 0;
+    if (dig_yaml_parse(path, text, size, &document, NULL) == DIG_OK) {
+        const yaml_node_t *const node = dig_yaml_find(&document, key, found);
+        line                          = node != NULL ? (int)node->start_mark.line + 1 : 0;
+        yaml_document_delete(&document);
+    }
+    free(text);
+    return line;
+}
+
+int dig_yaml_line(const char *const path, const char *const key)
+{
+    assert(path != NULL && key != NULL);
+    int       found = 0;
+    const int line  = nearest_line(path, key, &found);
+    return found ? line : 0;
+}
+
+enum dig_status dig_yaml_refuse(const char *const path, const char *const key,
+                                struct dig_error *const error, const char *const format, ...)
+{
+    assert(path != NULL && key != NULL);
+    char    why[320];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(why, sizeof why, format, args);
+    va_end(args);
+    int       found = 0;
+    const int line  = nearest_line(path, key, &found);
+    return dig_error_set(error, DIG_EINVAL, "%s:%d: %s: %s", path, line > 0 ? line : 1, key, why);
+}
+
+enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_status status,
+                                        const struct dig_error *const found,
+                                        struct dig_error *const       error)
+{
+    assert(path != NULL && found != NULL);
+    const struct dig_error what = *found;
+    char                   key[128];
+    const size_t           length = strcspn(what.text, ": ");
+    (void)snprintf(key, sizeof key, "%.*s", (int)(length < sizeof key ? length : sizeof key - 1),
+                   what.text);
+    int       at   = 0;
+    const int line = nearest_line(path, key, &at);
+    return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, what.text);
+}

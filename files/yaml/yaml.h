@@ -1,0 +1,33 @@
+// YAML through libcyaml: schema-checked into C structs, with errors a person can act on.
+
+#ifndef DIG_FILES_YAML_YAML_H
+#define DIG_FILES_YAML_YAML_H
+
+#include "core/error.h"
+
+#include <cyaml/cyaml.h>
+
+/// Loads path by schema. Unknown keys, missing keys and values of the wrong type are refused;
+/// *error reads "FILE:LINE: KEY: what was found, expected …". *data is to be freed with
+/// dig_yaml_free().
+DIG_MUST_CHECK enum dig_status dig_yaml_load(const char *path, const cyaml_schema_value_t *schema,
+                                             cyaml_data_t **data, struct dig_error *error);
+
+void dig_yaml_free(const cyaml_schema_value_t *schema, cyaml_data_t *data);
+
+/// The line on which the value at dotted key ("cylinders.boom.bore_m", "recordings[2].file")
+/// stands, or 0 when it is not there: so that a check made after loading can name the line too.
+int dig_yaml_line(const char *path, const char *key);
+
+/// Refuses a loaded value: fills *error with "FILE:LINE: KEY: …" and returns DIG_EINVAL.
+__attribute__((format(printf, 4, 5))) enum dig_status dig_yaml_refuse(const char       *path,
+                                                                      const char       *key,
+                                                                      struct dig_error *error,
+                                                                      const char *format, ...);
+
+/// Passes on what a check in core/ found: *found begins with the dotted key ("box_m.y: …"); *error
+/// becomes "FILE:LINE: " and that. Returns status. found and error may be the same struct.
+enum dig_status dig_yaml_refuse_checked(const char *path, enum dig_status status,
+                                        const struct dig_error *found, struct dig_error *error);
+
+#endif // DIG_FILES_YAML_YAML_H

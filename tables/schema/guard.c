@@ -1,0 +1,131 @@
+// Restricts what a file can do through a connection, and checks its schema: a table may come from
+// anybody.
+
+#include "tables/schema/schema.h"
+
+#include <string.h>
+
+#define LENGTH_MAX 33554432 // of a row: the longest run has half of it
+#define SQL_MAX    65536
+
+enum dig_status dig_sql_setup(sqlite3 *const db, const char *const path,
+                              struct dig_error *const error)
+{
+    static const int off[] = {
+        SQLITE_DBCONFIG_TRUSTED_SCHEMA,
+        SQLITE_DBCONFIG_ENABLE_TRIGGER,
+        SQLITE_DBCONFIG_ENABLE_VIEW, // temporary views stay
+        SQLITE_DBCONFIG_ENABLE_FTS3_TOKENIZER,
+        SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION,
+        SQLITE_DBCONFIG_DQS_DDL,
+        SQLITE_DBCONFIG_DQS_DML,
+    };
+    static const int limit[][2] = {
+        { SQLITE_LIMIT_LENGTH, LENGTH_MAX },
+        { SQLITE_LIMIT_SQL_LENGTH, SQL_MAX },
+        { SQLITE_LIMIT_COLUMN, 64 },
+        { SQLITE_LIMIT_EXPR_DEPTH, 100 },
+        { SQLITE_LIMIT_COMPOUND_SELECT, 4 },
+        { SQLITE_LIMIT_VDBE_OP, 100000 },
+        { SQLITE_LIMIT_FUNCTION_ARG, 8 },
+        { SQLITE_LIMIT_ATTACHED, 1 },
+        { SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 100 },
+        { SQLITE_LIMIT_VARIABLE_NUMBER, 64 },
+        { SQLITE_LIMIT_TRIGGER_DEPTH, 1 },
+        { SQLITE_LIMIT_WORKER_THREADS, 0 },
+    };
+    (void)sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    for (size_t i = 0; i < sizeof off / sizeof off[0]; i++) {
+        (void)sqlite3_db_config(db, off[i], 0, NULL);
+    }
+    for (size_t i = 0; i < sizeof limit / sizeof limit[0]; i++) {
+        (void)sqlite3_limit(db, limit[i][0], limit[i][1]);
+    }
+    (void)sqlite3_busy_timeout(db, 5000);
+    return dig_sql_run(
+        db, path, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;",
+        error);
+}
+
+static const char objects_sql[] =
+    "SELECT type, name, tbl_name, replace(ifnull(sql, ''), 'TABLE \x22ground\x22', 'TABLE ground') "
+    "FROM main.sqlite_schema ORDER BY 1, 2";
+
+static const char *text_at(sqlite3_stmt *const s, const int column)
+{
+    const char *const text = (const char *)sqlite3_column_text(s, column);
+    return text != NULL ? text : "";
+}
+
+static enum dig_status refuse(const char *const path, sqlite3_stmt *const object,
+                              const char *const what, struct dig_error *const error)
+{
+    return dig_error_set(error, DIG_EINVAL, "%s: schema: %.20s \"%.60s\" is %s", path,
+                         text_at(object, 0), text_at(object, 1), what);
+}
+
+// By type, then name, as both statements are ordered.
+static int order_of(sqlite3_stmt *const a, sqlite3_stmt *const b)
+{
+    const int types = strcmp(text_at(a, 0), text_at(b, 0));
+    return types != 0 ? types : strcmp(text_at(a, 1), text_at(b, 1));
+}
+
+// Both statements give the objects of a database; both end when both are alike.
+static enum dig_status compare(sqlite3_stmt *const found, sqlite3_stmt *const expected,
+                               sqlite3 *const db, const char *const path,
+                               struct dig_error *const error)
+{
+    for (;;) {
+        const int is     = sqlite3_step(found);
+        const int should = sqlite3_step(expected);
+        if ((is != SQLITE_ROW && is != SQLITE_DONE) ||
+            (should != SQLITE_ROW && should != SQLITE_DONE)) {
+            return dig_sql_refuse(db, path, error);
+        }
+        if (is == SQLITE_DONE && should == SQLITE_DONE) {
+            return DIG_OK;
+        }
+        const int order = is == SQLITE_DONE       ? 1
+                          : should == SQLITE_DONE ? -1
+                                                  : order_of(found, expected);
+        if (order < 0) {
+            return refuse(path, found, "not digtable's, expected its tables alone", error);
+        }
+        if (order > 0) {
+            return refuse(path, expected, "missing, expected it", error);
+        }
+        if (strcmp(text_at(found, 2), text_at(expected, 2)) != 0 ||
+            strcmp(text_at(found, 3), text_at(expected, 3)) != 0) {
+            return refuse(path, found, "not as digtable makes it, expected that", error);
+        }
+    }
+}
+
+enum dig_status dig_schema_compare(sqlite3 *const db, const char *const path, const int version,
+                                   struct dig_error *const error)
+{
+    sqlite3        *ours     = NULL;
+    sqlite3_stmt   *found    = NULL;
+    sqlite3_stmt   *expected = NULL;
+    enum dig_status status   = DIG_OK;
+    if (sqlite3_open_v2(":memory:", &ours, SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, NULL) !=
+        SQLITE_OK) {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+    }
+    if (status == DIG_OK) {
+        status = dig_schema_tables(ours, path, version, error);
+    }
+    if (status == DIG_OK &&
+        (sqlite3_prepare_v2(ours, objects_sql, -1, &expected, NULL) != SQLITE_OK ||
+         sqlite3_prepare_v2(db, objects_sql, -1, &found, NULL) != SQLITE_OK)) {
+        status = dig_sql_refuse(db, path, error);
+    }
+    if (status == DIG_OK) {
+        status = compare(found, expected, db, path, error);
+    }
+    (void)sqlite3_finalize(found);
+    (void)sqlite3_finalize(expected);
+    (void)sqlite3_close(ours);
+    return status;
+}

@@ -1,0 +1,100 @@
+// A table on disk: its SQL, its version, and the checks of every opening. Internal to tables/;
+// docs/formats/tables.md shows the schema to people.
+
+#ifndef DIG_TABLES_SCHEMA_SCHEMA_H
+#define DIG_TABLES_SCHEMA_SCHEMA_H
+
+#include "core/curve.h"
+#include "core/error.h"
+#include "core/scene.h"
+
+#include <sqlite3.h>
+
+#define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
+#define DIG_TABLE_VERSION        4          // PRAGMA user_version; 3 has no seals
+#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack: every dig is plain
+
+/// What was dug in, and how: the key of a dig but for its trajectory and packing.
+#define DIG_GROUND_SQL(name)                                                                       \
+    "CREATE TABLE " name " ("                                                                      \
+    "  id INTEGER PRIMARY KEY,"                                                                    \
+    "  friction REAL NOT NULL,"                                                                    \
+    "  rolling REAL NOT NULL,"                                                                     \
+    "  density_kgpm3 REAL NOT NULL,"                                                               \
+    "  effect TEXT NOT NULL,"                                                                      \
+    "  magnitude REAL NOT NULL CHECK (effect <> '' OR magnitude = 0),"                             \
+    "  depth REAL NOT NULL CHECK (depth > 0),"                                                     \
+    "  attack_rad REAL NOT NULL,"                                                                  \
+    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad)"            \
+    ") STRICT;"
+
+/// What a table says of itself, read once at opening.
+struct dig_table_head {
+    char                  scene_name[DIG_NAME_SIZE];
+    char                  scene_hash[65];
+    double                tooth_m, bucket_width_m, young_Pa, smooth_half_s;
+    size_t                trajectories;
+    struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX]; // all of the scene, in its order
+    double                depth_m[DIG_TRAJECTORY_MAX];    // dig_approach_depth_m() of each
+    double                time_step_s;                    // of the scene
+    struct dig_material   finest; // its smallest grains; of several spheres: of their volume
+    enum dig_normal_law   normal;
+    int                   version; // of the file
+};
+
+/// What a scene's table says of itself.
+void dig_table_head_of(const struct dig_scene *scene, struct dig_table_head *head);
+
+/// *error becomes "PATH: what SQLite says"; the status is that of a failed call.
+enum dig_status dig_sql_refuse(sqlite3 *db, const char *path, struct dig_error *error);
+
+/// Settings of every connection, before anything is read: a file from elsewhere is not trusted. It
+/// runs no triggers, views or functions of its own, nor has more, or larger, than a table needs.
+DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
+                                             struct dig_error *error);
+
+/// Runs statements that return no rows.
+DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
+                                           struct dig_error *error);
+
+/// Prepares a statement. On failure too *s is for sqlite3_finalize().
+DIG_MUST_CHECK enum dig_status dig_sql_prepare(sqlite3 *db, const char *path, const char *sql,
+                                               sqlite3_stmt **s, struct dig_error *error);
+
+/// Prepares a statement and steps to its first row, which there must be. On failure it is
+/// finalized.
+DIG_MUST_CHECK enum dig_status dig_sql_first(sqlite3 *db, const char *path, const char *sql,
+                                             sqlite3_stmt **s, struct dig_error *error);
+
+/// Makes an empty database a table of this version without rows; its number is not written.
+DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path, int version,
+                                                 struct dig_error *error);
+
+/// Writes application_id and user_version.
+DIG_MUST_CHECK enum dig_status dig_schema_number(sqlite3 *db, const char *path,
+                                                 struct dig_error *error);
+
+/// Makes an empty database the table of this scene, in one transaction.
+DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
+                                                 const struct dig_scene *scene,
+                                                 struct dig_error       *error);
+
+/// Refuses a file whose schema is not, word for word, that of a table of this version.
+DIG_MUST_CHECK enum dig_status dig_schema_compare(sqlite3 *db, const char *path, int version,
+                                                  struct dig_error *error);
+
+/// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
+/// damaged file; then reads the head, and compares every entry and its runs with their seal
+/// (tables/schema/seal.h). Writes *head on success only. Reads the whole file. From then on the
+/// connection reads `ground` with depth and attack_rad whatever the file's version: where the file
+/// has none, in a temporary view. What it found holds for what is read in the same transaction.
+DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
+                                                struct dig_table_head *head,
+                                                struct dig_error      *error);
+
+/// Makes a table of an older version one of ours: digs without an approach become plain, entries
+/// are sealed. In no transaction; all or nothing.
+DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path, int version,
+                                                  struct dig_error *error);
+
+#endif // DIG_TABLES_SCHEMA_SCHEMA_H

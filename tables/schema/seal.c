@@ -1,0 +1,229 @@
+#include "tables/schema/seal.h"
+
+#include "core/sha256.h"
+#include "tables/schema/schema.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static const char entry_sql[] =
+    "SELECT s.name, s.hash, s.tooth_m, s.bucket_width_m, s.young_Pa, s.smooth_half_s, s.points, "
+    "g.friction, g.rolling, g.density_kgpm3, g.effect, g.magnitude, g.depth, g.attack_rad, "
+    "e.trajectory, e.packings, e.mean, e.spread "
+    "FROM entry e JOIN ground g ON g.id = e.ground JOIN scene s "
+    "WHERE e.ground = ?1 AND e.trajectory = ?2";
+
+static const char runs_sql[] =
+    "SELECT packing, seed, engine, version, grains, windows, first_s, step_s, curve, made_utc, "
+    "wall_s FROM run WHERE ground = ?1 AND trajectory = ?2 ORDER BY packing";
+
+// Both statements, used again for one entry after the other.
+struct sealer {
+    sqlite3          *db;
+    const char       *path;
+    sqlite3_stmt     *entry, *runs;
+    struct dig_error *error;
+};
+
+static enum dig_status refuse(const struct sealer *const s)
+{
+    return dig_sql_refuse(s->db, s->path, s->error);
+}
+
+static enum dig_status begin(struct sealer *const s)
+{
+    const enum dig_status status = dig_sql_prepare(s->db, s->path, entry_sql, &s->entry, s->error);
+    return status == DIG_OK ? dig_sql_prepare(s->db, s->path, runs_sql, &s->runs, s->error)
+                            : status;
+}
+
+static void end(struct sealer *const s)
+{
+    (void)sqlite3_finalize(s->entry);
+    (void)sqlite3_finalize(s->runs);
+}
+
+static void add_number(struct dig_sha256 *const hash, const uint64_t bits)
+{
+    uint8_t bytes[8];
+    for (size_t b = 0; b < sizeof bytes; b++) {
+        bytes[b] = (uint8_t)(bits >> (8 * b));
+    }
+    dig_sha256_add(hash, bytes, sizeof bytes);
+}
+
+// Every column of the row a statement stands on: its type, its length where it has one, its value.
+static void add_row(struct dig_sha256 *const hash, sqlite3_stmt *const s)
+{
+    for (int i = 0; i < sqlite3_column_count(s); i++) {
+        const int type = sqlite3_column_type(s, i);
+        add_number(hash, (uint64_t)type);
+        if (type == SQLITE_INTEGER) {
+            add_number(hash, (uint64_t)sqlite3_column_int64(s, i));
+        } else if (type == SQLITE_FLOAT) {
+            const double value = sqlite3_column_double(s, i);
+            uint64_t     bits;
+            memcpy(&bits, &value, sizeof bits);
+            add_number(hash, bits);
+        } else if (type != SQLITE_NULL) {
+            const void *const bytes = sqlite3_column_blob(s, i);
+            const int         size  = sqlite3_column_bytes(s, i);
+            add_number(hash, (uint64_t)size);
+            if (size > 0) {
+                dig_sha256_add(hash, bytes, (size_t)size);
+            }
+        }
+    }
+}
+
+// Adds all rows of a statement bound to an entry.
+static enum dig_status add_rows(const struct sealer *const s, sqlite3_stmt *const rows,
+                                const sqlite3_int64 ground, const sqlite3_int64 trajectory,
+                                struct dig_sha256 *const hash)
+{
+    (void)sqlite3_reset(rows);
+    (void)sqlite3_bind_int64(rows, 1, ground);
+    (void)sqlite3_bind_int64(rows, 2, trajectory);
+    int step;
+    while ((step = sqlite3_step(rows)) == SQLITE_ROW) {
+        add_row(hash, rows);
+    }
+    return step == SQLITE_DONE ? DIG_OK : refuse(s);
+}
+
+static enum dig_status sum_of(const struct sealer *const s, const sqlite3_int64 ground,
+                              const sqlite3_int64 trajectory, sqlite3_int64 *const sum)
+{
+    struct dig_sha256 hash;
+    uint8_t           digest[32];
+    dig_sha256_init(&hash);
+    enum dig_status status = add_rows(s, s->entry, ground, trajectory, &hash);
+    if (status == DIG_OK) {
+        status = add_rows(s, s->runs, ground, trajectory, &hash);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    dig_sha256_finish(&hash, digest);
+    uint64_t bits = 0;
+    for (size_t i = 0; i < 8; i++) {
+        bits = bits << 8 | digest[i];
+    }
+    *sum = (sqlite3_int64)(bits >> 1);
+    return DIG_OK;
+}
+
+static enum dig_status write_one(const struct sealer *const s, const sqlite3_int64 ground,
+                                 const sqlite3_int64 trajectory)
+{
+    sqlite3_stmt   *into   = NULL;
+    sqlite3_int64   sum    = 0;
+    enum dig_status status = sum_of(s, ground, trajectory, &sum);
+    if (status == DIG_OK) {
+        status = dig_sql_prepare(s->db, s->path,
+                                 "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
+                                 "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3",
+                                 &into, s->error);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    (void)sqlite3_bind_int64(into, 1, ground);
+    (void)sqlite3_bind_int64(into, 2, trajectory);
+    (void)sqlite3_bind_int64(into, 3, sum);
+    status = sqlite3_step(into) == SQLITE_DONE ? DIG_OK : refuse(s);
+    (void)sqlite3_finalize(into);
+    return status;
+}
+
+enum dig_status dig_seal_write(sqlite3 *const db, const char *const path,
+                               const sqlite3_int64 ground, const size_t trajectory,
+                               struct dig_error *const error)
+{
+    struct sealer   s      = { .db = db, .path = path, .error = error };
+    enum dig_status status = begin(&s);
+    if (status == DIG_OK) {
+        status = write_one(&s, ground, (sqlite3_int64)trajectory);
+    }
+    end(&s);
+    return status;
+}
+
+static enum dig_status check_one(const struct sealer *const s, sqlite3_stmt *const entry)
+{
+    sqlite3_int64       sum        = 0;
+    const sqlite3_int64 ground     = sqlite3_column_int64(entry, 0);
+    const sqlite3_int64 trajectory = sqlite3_column_int64(entry, 1);
+    enum dig_status     status     = sum_of(s, ground, trajectory, &sum);
+    if (status == DIG_OK && (sqlite3_column_type(entry, 2) != SQLITE_INTEGER ||
+                             sqlite3_column_int64(entry, 2) != sum)) {
+        status = dig_error_set(s->error, DIG_EINVAL,
+                               "%s: damaged: entry of ground %lld on trajectory %lld, or one of "
+                               "its runs, is not what was stored, expected what its seal says",
+                               s->path, (long long)ground, (long long)trajectory);
+    }
+    return status;
+}
+
+// Does something to every entry.
+static enum dig_status each(const struct sealer *const s, const char *const sql,
+                            enum dig_status (*const what)(const struct sealer *, sqlite3_stmt *))
+{
+    sqlite3_stmt   *entry  = NULL;
+    enum dig_status status = dig_sql_prepare(s->db, s->path, sql, &entry, s->error);
+    int             step   = SQLITE_DONE;
+    while (status == DIG_OK && (step = sqlite3_step(entry)) == SQLITE_ROW) {
+        status = what(s, entry);
+    }
+    if (status == DIG_OK && step != SQLITE_DONE) {
+        status = refuse(s);
+    }
+    (void)sqlite3_finalize(entry);
+    return status;
+}
+
+static enum dig_status write_of(const struct sealer *const s, sqlite3_stmt *const entry)
+{
+    return write_one(s, sqlite3_column_int64(entry, 0), sqlite3_column_int64(entry, 1));
+}
+
+enum dig_status dig_seal_write_all(sqlite3 *const db, const char *const path,
+                                   struct dig_error *const error)
+{
+    struct sealer   s      = { .db = db, .path = path, .error = error };
+    enum dig_status status = begin(&s);
+    if (status == DIG_OK) {
+        status = each(&s, "SELECT ground, trajectory FROM entry ORDER BY 1, 2", write_of);
+    }
+    end(&s);
+    return status;
+}
+
+static enum dig_status refuse_run(const struct sealer *const s, sqlite3_stmt *const run)
+{
+    return dig_error_set(s->error, DIG_EINVAL,
+                         "%s: damaged: run %lld is of no entry, expected one of its ground and "
+                         "trajectory",
+                         s->path, (long long)sqlite3_column_int64(run, 0));
+}
+
+enum dig_status dig_seal_check(sqlite3 *const db, const char *const path,
+                               struct dig_error *const error)
+{
+    struct sealer   s      = { .db = db, .path = path, .error = error };
+    enum dig_status status = begin(&s);
+    if (status == DIG_OK) {
+        status = each(&s,
+                      "SELECT e.ground, e.trajectory, s.sum FROM entry e LEFT JOIN seal s ON "
+                      "s.ground = e.ground AND s.trajectory = e.trajectory ORDER BY 1, 2",
+                      check_one);
+    }
+    if (status == DIG_OK) {
+        status = each(&s,
+                      "SELECT r.id FROM run r LEFT JOIN entry e ON e.ground = r.ground AND "
+                      "e.trajectory = r.trajectory WHERE e.ground IS NULL LIMIT 1",
+                      refuse_run);
+    }
+    end(&s);
+    return status;
+}

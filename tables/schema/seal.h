@@ -1,0 +1,41 @@
+// Seals, which detect a flipped bit: a hash over an entry and its runs, kept beside it. Internal to
+// tables/.
+//
+//   scene (hash, numbers), ground, trajectory, packings, mean, spread, and of every run packing,
+//   seed, engine, version, grains, windows, times, curve, date, wall time   -- SHA-256 -->   63
+//   bits
+//
+// Damage alone is detected: whoever can write the file can seal it. What a sum is of does not
+// depend on rows' ids or order, so that merged tables have those of their inputs.
+
+#ifndef DIG_TABLES_SCHEMA_SEAL_H
+#define DIG_TABLES_SCHEMA_SEAL_H
+
+#include "core/error.h"
+
+#include <sqlite3.h>
+#include <stddef.h>
+
+#define DIG_SEAL_SQL                                                                               \
+    "CREATE TABLE seal ("                                                                          \
+    "  ground INTEGER NOT NULL,"                                                                   \
+    "  trajectory INTEGER NOT NULL,"                                                               \
+    "  sum INTEGER NOT NULL,"                                                                      \
+    "  PRIMARY KEY (ground, trajectory),"                                                          \
+    "  FOREIGN KEY (ground, trajectory) REFERENCES entry (ground, trajectory)"                     \
+    ") STRICT;"
+
+/// Seals one entry as it and its runs stand, in place of what was there.
+DIG_MUST_CHECK enum dig_status dig_seal_write(sqlite3 *db, const char *path, sqlite3_int64 ground,
+                                              size_t trajectory, struct dig_error *error);
+
+/// Seals every entry.
+DIG_MUST_CHECK enum dig_status dig_seal_write_all(sqlite3 *db, const char *path,
+                                                  struct dig_error *error);
+
+/// Refuses an entry that is not sealed, or is not, with its runs, what was sealed, and a run
+/// without an entry: DIG_EINVAL, the first one named. Reads every run.
+DIG_MUST_CHECK enum dig_status dig_seal_check(sqlite3 *db, const char *path,
+                                              struct dig_error *error);
+
+#endif // DIG_TABLES_SCHEMA_SEAL_H

@@ -1,0 +1,39 @@
+// The reading of a force sensor that carries the bucket, by virtual work: soil, weight and inertia.
+//
+// For a small displacement along the sensor's x, along its z, or a turn about its origin, the work
+// of all forces on the bucket is the work on the sensor:
+//
+//   read . d = soil . d(pin) + M dphi + m (g - a) . d(com) - I alpha dphi
+//
+// Every displacement is a central difference of where the bucket is drawn: no lever, no balance.
+
+#ifndef DIG_TOOLS_RIG_MOTION_GAUGE_H
+#define DIG_TOOLS_RIG_MOTION_GAUGE_H
+
+#include "core/machine.h"
+#include "tools/rig/motion/work.h"
+
+#include <stddef.h>
+
+/// In the sensor's own frame (core/machine.h).
+struct dig_rig_load {
+    double Fx_N, Fz_N, My_Nm;
+};
+
+/// The load on the sensor of a machine that has one. motion: the bucket's alone counts. Cannot
+/// fail.
+struct dig_rig_load dig_rig_gauge_read(const struct dig_machine    *machine,
+                                       const struct dig_rig_pose   *pose,
+                                       const struct dig_rig_motion *motion,
+                                       const struct dig_rig_wrench *soil);
+
+/// How a bucket moves that is at these poses, span_s apart: second differences.
+struct dig_rig_motion dig_rig_gauge_motion(const struct dig_machine *machine,
+                                           const struct dig_rig_pose pose[3], double span_s);
+
+/// What is left of the sensor's range, 1 (all) to 0 (at its limit), negative beyond. The text names
+/// what came nearest, its value and its limit.
+double dig_rig_gauge_share(const struct dig_force_sensor *sensor, const struct dig_rig_load *load,
+                           size_t size, char text[]);
+
+#endif // DIG_TOOLS_RIG_MOTION_GAUGE_H

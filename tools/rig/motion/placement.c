@@ -1,0 +1,98 @@
+#include "tools/rig/motion/placement.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+// Every so many frames of the path: 10 ms, less than the force between grains takes to peak.
+static const size_t stride = 10;
+
+// Out of a joint's or a cylinder's range is worse than any load: a smaller load would not help.
+static const double out_of_range = 1e6;
+
+struct found {
+    double                score; // to be large
+    struct dig_rig_margin margin;
+};
+
+// The least over the path, or something not above `enough` as soon as it is sure to be.
+static enum dig_status least_margin(const struct dig_machine *const  machine,
+                                    const struct dig_rig_path *const path, const double X_m,
+                                    const double Z_m, const double enough,
+                                    struct found *const found)
+{
+    const struct dig_rig_motion still = { .turn_radps2 = { 0.0 } };
+    struct found                least = { .score = INFINITY };
+    for (size_t i = 0; i < path->frames; i += stride) {
+        struct dig_rig_pose pose = path->frame[i].pose;
+        pose.X_m += X_m;
+        pose.Z_m += Z_m;
+        struct dig_rig_state  state;
+        const enum dig_status status =
+            dig_rig_state_solve(machine, &pose, &still, &path->frame[i].soil, &state);
+        if (status != DIG_OK) {
+            return status;
+        }
+        const bool         fits = state.mechanical.share > 0.0;
+        const struct found here = {
+            .score  = fits ? state.nearest.share : state.mechanical.share - out_of_range,
+            .margin = fits ? state.nearest : state.mechanical,
+        };
+        if (!(here.score >= least.score)) {
+            least = here;
+        }
+        if (!(least.score > enough)) {
+            break;
+        }
+    }
+    *found = least;
+    return DIG_OK;
+}
+
+enum dig_status dig_rig_placement_find(const struct dig_machine *const  machine,
+                                       const struct dig_rig_path *const path,
+                                       struct dig_rig_placement *const  placement,
+                                       struct dig_error *const          error)
+{
+    static const double surface_m[] = { 0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75, -1.0, 1.0 };
+    static const double per_metre   = 0.05;
+
+    const double reach_m =
+        machine->link[DIG_JOINT_BOOM].length_m + machine->link[DIG_JOINT_ARM].length_m;
+    // Pin height when the dug surface is at the tracks' ground: the tooth touches it at the start.
+    const double level_m = -machine->boom_foot_Z_m -
+                           machine->link[DIG_JOINT_BUCKET].length_m * sin(path->contact_phi_rad);
+
+    struct dig_rig_placement best       = { .X_m = 0.0 };
+    double                   best_score = -INFINITY;
+    for (size_t s = 0; s < sizeof surface_m / sizeof surface_m[0]; s++) {
+        const double penalty = per_metre * fabs(surface_m[s]);
+        for (int percent = 25; percent < 100; percent++) {
+            const double          X_m = 0.01 * percent * reach_m;
+            const double          Z_m = level_m + surface_m[s];
+            struct found          found;
+            const enum dig_status status =
+                least_margin(machine, path, X_m, Z_m, best_score + penalty, &found);
+            if (status == DIG_OK && found.score - penalty > best_score) {
+                best = (struct dig_rig_placement){ .X_m = X_m, .Z_m = Z_m, .margin = found.margin };
+                best_score = found.score - penalty;
+            }
+        }
+    }
+    if (!isfinite(best_score)) {
+        return dig_error_set(
+            error, DIG_EUNREACHABLE,
+            "%s: no place within reach of boom and arm (%.2f m) holds the whole dig", machine->name,
+            reach_m);
+    }
+    if (best_score < -0.5 * out_of_range) {
+        char text[200];
+        return dig_error_set(
+            error, DIG_EUNREACHABLE,
+            "%s cannot do this dig anywhere; nearest with the pin starting at X %.2f "
+            "m, Z %.2f m: %s",
+            machine->name, best.X_m, best.Z_m,
+            dig_rig_margin_text(&best.margin, sizeof text, text));
+    }
+    *placement = best;
+    return DIG_OK;
+}

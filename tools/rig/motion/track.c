@@ -1,0 +1,244 @@
+#include "tools/rig/motion/track.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Half width of the second difference that gives the accelerations, in frames.
+static const size_t reach = 5;
+
+struct dig_rig_track_options dig_rig_track_options_default(void)
+{
+    return (struct dig_rig_track_options){
+        .scene_tooth_m = 0.09,
+        .rate_Hz       = 200.0,
+        .air           = true,
+        .blend         = true,
+    };
+}
+
+static enum dig_status check(const struct dig_rig_track_options *const options,
+                             struct dig_error *const                   error)
+{
+    if (!(options->scene_tooth_m > 0.0 && isfinite(options->scene_tooth_m))) {
+        return dig_error_set(error, DIG_EINVAL, "tooth-m: %g, expected > 0",
+                             options->scene_tooth_m);
+    }
+    const double every = 1.0 / (DIG_RIG_STEP_s * options->rate_Hz);
+    if (!(every >= 1.0 && every <= 20.0 && fabs(every - round(every)) < 1e-9)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "rate: %g Hz, expected a divisor of 1000 from 50 to 1000",
+                             options->rate_Hz);
+    }
+    if (options->placed && !(isfinite(options->pin_X_m) && isfinite(options->pin_Z_m))) {
+        return dig_error_set(error, DIG_EINVAL, "pin-start: expected two finite numbers");
+    }
+    return DIG_OK;
+}
+
+static struct dig_rig_pose placed(const struct dig_rig_path *const path, const size_t i,
+                                  const struct dig_rig_placement *const placement)
+{
+    const struct dig_rig_pose pose = path->frame[i].pose;
+    return (struct dig_rig_pose){ pose.X_m + placement->X_m, pose.Z_m + placement->Z_m,
+                                  pose.phi_rad };
+}
+
+// Accelerations of the links at frame i: second differences of where they are. Still at both ends.
+static enum dig_status move_links(const struct dig_machine *const  machine,
+                                  const struct dig_rig_path *const path, const size_t i,
+                                  const struct dig_rig_placement *const placement,
+                                  struct dig_rig_motion *const          motion)
+{
+    struct dig_rig_motion result = { .turn_radps2 = { 0.0 } };
+    if (i < reach || i + reach >= path->frames) {
+        *motion = result;
+        return DIG_OK;
+    }
+    const size_t          at[3] = { i - reach, i, i + reach };
+    struct dig_rig_joints joints[3];
+    for (int k = 0; k < 3; k++) {
+        const struct dig_rig_pose pose   = placed(path, at[k], placement);
+        const enum dig_status     status = dig_rig_inverse(machine, &pose, &joints[k]);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    const double        span_s   = (double)reach * DIG_RIG_STEP_s;
+    const double        per_s2   = 1.0 / (span_s * span_s);
+    static const double share[3] = { 1.0, -2.0, 1.0 };
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        for (int k = 0; k < 3; k++) {
+            const struct dig_vec2 com = dig_rig_com_m(machine, &joints[k], (enum dig_joint)j);
+            result.com_mps2[j] = dig_vec2_add_scaled(result.com_mps2[j], share[k] * per_s2, com);
+            result.turn_radps2[j] +=
+                share[k] * per_s2 * dig_rig_attitude_rad(&joints[k], (enum dig_joint)j);
+        }
+    }
+    *motion = result;
+    return DIG_OK;
+}
+
+// The bucket's own motion at frame i of a machine with a force sensor. Still at both ends.
+static struct dig_rig_motion move_bucket(const struct dig_machine *const  machine,
+                                         const struct dig_rig_path *const path, const size_t i)
+{
+    if (i < reach || i + reach >= path->frames) {
+        return (struct dig_rig_motion){ .turn_radps2 = { 0.0 } };
+    }
+    const struct dig_rig_pose pose[3] = { path->frame[i - reach].pose, path->frame[i].pose,
+                                          path->frame[i + reach].pose };
+    return dig_rig_gauge_motion(machine, pose, (double)reach * DIG_RIG_STEP_s);
+}
+
+static enum dig_status fill_sensed(const struct dig_machine *const           machine,
+                                   const struct dig_rig_track_options *const options,
+                                   const struct dig_rig_path *const path, const size_t every,
+                                   struct dig_rig_track *const track, struct dig_error *const error)
+{
+    double worst_s = 0.0;
+    for (size_t r = 0; r < track->rows; r++) {
+        const size_t          i      = r * every;
+        struct dig_rig_motion motion = { .turn_radps2 = { 0.0 } };
+        if (!options->quasi_static) {
+            motion = move_bucket(machine, path, i);
+        }
+        const struct dig_rig_pose pose = placed(path, i, &track->placement);
+        const struct dig_rig_load load =
+            dig_rig_gauge_read(machine, &pose, &motion, &path->frame[i].soil);
+        char         text[sizeof track->nearest_text];
+        const double share = dig_rig_gauge_share(&machine->sensor, &load, sizeof text, text);
+        if (!(share >= track->nearest.share)) {
+            track->nearest.share = share;
+            worst_s              = (double)i * DIG_RIG_STEP_s;
+            memcpy(track->nearest_text, text, sizeof text);
+        }
+        track->row[r] =
+            (struct dig_rig_row){ .pose = pose, .soil = path->frame[i].soil, .load = load };
+    }
+    return track->nearest.share > 0.0
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL, "%s cannot do this dig: %s (at %.2f s)",
+                               machine->name, track->nearest_text, worst_s);
+}
+
+static enum dig_status refuse(const struct dig_machine *const    machine,
+                              const struct dig_rig_margin *const margin, const double at_s,
+                              struct dig_error *const error)
+{
+    char       text[200];
+    const bool mechanical = margin->limit <= DIG_RIG_LIMIT_LEVER;
+    return dig_error_set(error, mechanical ? DIG_EUNREACHABLE : DIG_EINVAL,
+                         "%s cannot do this dig: %s (at %.2f s)", machine->name,
+                         dig_rig_margin_text(margin, sizeof text, text), at_s);
+}
+
+static enum dig_status fill_driven(const struct dig_machine *const           machine,
+                                   const struct dig_rig_track_options *const options,
+                                   const struct dig_rig_path *const path, const size_t every,
+                                   struct dig_rig_track *const track, struct dig_error *const error)
+{
+    double worst_s = 0.0;
+    for (size_t r = 0; r < track->rows; r++) {
+        const size_t              i      = r * every;
+        const double              t_s    = (double)i * DIG_RIG_STEP_s;
+        const struct dig_rig_pose pose   = placed(path, i, &track->placement);
+        struct dig_rig_motion     motion = { .turn_radps2 = { 0.0 } };
+        struct dig_rig_state      state;
+        enum dig_status           status = DIG_OK;
+        if (!options->quasi_static) {
+            status = move_links(machine, path, i, &track->placement, &motion);
+        }
+        if (status == DIG_OK) {
+            status = dig_rig_state_solve(machine, &pose, &motion, &path->frame[i].soil, &state);
+        }
+        if (status != DIG_OK) {
+            return dig_error_set(
+                error, status,
+                "%s: pin at X %.3f m, Z %.3f m, bucket at %.1f deg is out of reach "
+                "(at %.2f s)",
+                machine->name, pose.X_m, pose.Z_m, pose.phi_rad * 180.0 / acos(-1.0), t_s);
+        }
+        if (!(state.nearest.share >= track->nearest.share)) {
+            track->nearest = state.nearest;
+            worst_s        = t_s;
+        }
+        track->row[r] = (struct dig_rig_row){
+            .pose      = pose,
+            .soil      = path->frame[i].soil,
+            .joints    = state.joints,
+            .pressures = state.pressures,
+        };
+    }
+    (void)dig_rig_margin_text(&track->nearest, sizeof track->nearest_text, track->nearest_text);
+    return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
+}
+
+static enum dig_status fill(const struct dig_machine *const           machine,
+                            const struct dig_rig_track_options *const options,
+                            const struct dig_rig_path *const path, const size_t every,
+                            struct dig_rig_track *const track, struct dig_error *const error)
+{
+    return machine->sensor.fitted ? fill_sensed(machine, options, path, every, track, error)
+                                  : fill_driven(machine, options, path, every, track, error);
+}
+
+enum dig_status dig_rig_track_build(const struct dig_machine *const           machine,
+                                    const struct dig_rig_track_options *const options,
+                                    const size_t recordings, const struct dig_recording recording[],
+                                    struct dig_rig_track *const track,
+                                    struct dig_error *const     error)
+{
+    assert(machine != NULL && options != NULL && track != NULL);
+
+    enum dig_status status = check(options, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const double                      tooth_m      = machine->link[DIG_JOINT_BUCKET].length_m;
+    const struct dig_rig_path_options path_options = {
+        .lambda  = tooth_m / options->scene_tooth_m,
+        .tooth_m = tooth_m,
+        .air     = options->air,
+        .blend   = options->blend,
+    };
+    struct dig_rig_path path;
+    status = dig_rig_path_build(&path_options, recordings, recording, &path, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+
+    const size_t         every  = (size_t)lround(1.0 / (DIG_RIG_STEP_s * options->rate_Hz));
+    struct dig_rig_track result = {
+        .rows          = (path.frames - 1) / every + 1,
+        .step_s        = (double)every * DIG_RIG_STEP_s,
+        .nearest       = { .share = INFINITY },
+        .placement     = { .X_m = options->pin_X_m, .Z_m = options->pin_Z_m },
+        .blend_off_m   = path.blend_off_m,
+        .blend_off_rad = path.blend_off_rad,
+    };
+    if (!options->placed && !machine->sensor.fitted) {
+        status = dig_rig_placement_find(machine, &path, &result.placement, error);
+    }
+    if (status == DIG_OK) {
+        result.row = malloc(result.rows * sizeof result.row[0]);
+        status     = result.row != NULL ? fill(machine, options, &path, every, &result, error)
+                                        : dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows);
+    }
+    dig_rig_path_finish(&path);
+    if (status != DIG_OK) {
+        free(result.row);
+        return status;
+    }
+    *track = result;
+    return DIG_OK;
+}
+
+void dig_rig_track_finish(struct dig_rig_track *const track)
+{
+    if (track != NULL) {
+        free(track->row);
+        *track = (struct dig_rig_track){ .rows = 0 };
+    }
+}
