@@ -17,11 +17,16 @@ a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_
 no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|firmware_host/test_hostile_texts
 no table but our own, no trigger, no view|tables/guard.c|s/status = compare(.*;/status = DIG_OK;/|tables/test_hostile
 a schema is ours word for word|tables/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile
+a journal of several tables deletes nothing|tables/open.c|s/(flags & SQLITE_OPEN_SUPER_JOURNAL) != 0/false/|tables/test_hostile
+a pipe or a link beside a table is not opened|tables/open.c|s/!S_ISREG(found.st_mode)/false/|tables/test_hostile
+no table is made through a link|tables/store.c|s/O_CREAT . O_EXCL/O_CREAT/|tables/test_hostile
 a flipped bit is found at opening|tables/head.c|s/status = dig_seal_check(db, path, error)/status = DIG_OK/|tables/test_seal
 aliases that grow are refused|files/yaml_growth.c|s/GROWTH_MAX 100000 /GROWTH_MAX 100000000 /|files/test_yaml_growth
+values without number are refused|files/yaml_growth.c|s/VALUES_MAX 1000000 /VALUES_MAX 100000000 /|files/test_yaml_growth
 an alias in its own anchor is refused|files/yaml_growth.c|s/"an alias within its own anchor/"/|files/test_yaml_growth
 a pipe or device is refused at once|core/regular.c|s/!S_ISREG(found.st_mode)/0/|core/test_regular
 a link where a part should go is not followed|core/part.c|s/if (unlink(path) != 0/if (path == NULL/;s/O_EXCL . O_NOFOLLOW/O_TRUNC/|core/test_part
+a link where an output should go is replaced|files/whole.c|s/(kernels ? stat : lstat)/stat/|files/test_recording_csv
 a Modbus answer to another request is none|firmware_host/bus/modbus_tcp.c|s/memcmp(answer, request, LENGTH) == 0/true/|firmware_host/test_modbus_tcp
 a Modbus answer that lies of its length is none|firmware_host/bus/modbus_tcp.c|s/number_at(answer, LENGTH) == (unsigned)size - UNIT/true/|firmware_host/test_modbus_tcp
 an LCM message longer than it says is none|files/lcm_layout.c|s/return at == size;/return true;/|files/test_lcm_layout
