@@ -15,6 +15,7 @@ a name has no blank and no sign|core/name.c|s/789_.-"/789_.- `$"/|core/test_name
 a path stays in its folder|core/name.c|s/return !up;/return true;/|core/test_name
 a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_stays(name)/false/|files/test_campaign_yaml
 no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|firmware_host/test_hostile_texts
+nor by the name of a file|core/text.c|s/^    dig_text_clean(text);/    (void)text;/|core/test_text
 no table but our own, no trigger, no view|tables/guard.c|s/status = compare(.*;/status = DIG_OK;/|tables/test_hostile
 a schema is ours word for word|tables/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile
 a journal of several tables deletes nothing|tables/open.c|s/(flags & SQLITE_OPEN_SUPER_JOURNAL) != 0/false/|tables/test_hostile

@@ -2,6 +2,7 @@
 
 #include "closed_loop/verdict/trace.h"
 #include "closed_loop/report/trace_report.h"
+#include "core/text.h"
 #include "files/whole.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/campaign.h"
@@ -34,10 +35,11 @@ enum dig_status digloop_load_effects(const struct digloop_options *const options
     } else {
         name_effects(options->table, path);
         if (stat(path, &found) != 0) {
-            (void)fprintf(stderr,
-                          "digloop: no %s: of the soil's effects only rate dependence and wear can "
-                          "be named, and anything else is \"unlisted\"\n",
-                          path);
+            dig_text_print(
+                stderr,
+                "digloop: no %s: of the soil's effects only rate dependence and wear can "
+                "be named, and anything else is \"unlisted\"\n",
+                path);
             path[0] = '\0';
             return DIG_OK;
         }
