@@ -31,7 +31,7 @@ owners='
 nlopt.h      estimator/match/fit_nlopt.c
 modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tools/rig/
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
-lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c tools/digwatch/source.c
+lcm/         firmware_host/publish/output_lcm.c files/lcm_log.c
 curses.h     tools/digwatch/terminal.c
 cyaml/       files/ firmware_host/config/
 yaml.h       files/ firmware_host/config/

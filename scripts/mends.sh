@@ -30,6 +30,8 @@ a link where a part should go is not followed|core/part.c|s/if (unlink(path) != 
 a link where an output should go is replaced|files/whole.c|s/(kernels ? stat : lstat)/stat/|files/test_recording_csv
 a Modbus answer to another request is none|firmware_host/bus/modbus_tcp.c|s/memcmp(answer, request, LENGTH) == 0/true/|firmware_host/test_modbus_tcp
 a Modbus answer that lies of its length is none|firmware_host/bus/modbus_tcp.c|s/number_at(answer, LENGTH) == (unsigned)size - UNIT/true/|firmware_host/test_modbus_tcp
+an LCM channel ends within its datagram|files/lcm_datagram.c|s/memchr(channel, .*/memchr(channel, 0, 65000);/|files/test_lcm_datagram
+a part of an LCM message is none|files/lcm_datagram.c|s/memcmp(bytes, short_message, sizeof short_message)/memcmp(bytes, short_message, 3)/|files/test_lcm_datagram
 an LCM message longer than it says is none|files/lcm_layout.c|s/return at == size;/return true;/|files/test_lcm_layout
 a number of an LCM message is within it|files/lcm_layout.c|s/number >= 0 \&\& (size_t)number <= INT32_MAX . 8/true/|files/test_lcm_layout
 '
