@@ -20,6 +20,7 @@ no table but our own, no trigger, no view|tables/guard.c|s/status = compare(.*;/
 a schema is ours word for word|tables/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile
 a journal of several tables deletes nothing|tables/open.c|s/(flags & SQLITE_OPEN_SUPER_JOURNAL) != 0/false/|tables/test_hostile
 a pipe or a link beside a table is not opened|tables/open.c|s/!S_ISREG(found.st_mode)/false/|tables/test_hostile
+a table is the file of its very name|tables/open.c|s,"" : "./","" : "",|tables/test_hostile
 no table is made through a link|tables/store.c|s/O_CREAT . O_EXCL/O_CREAT/|tables/test_hostile
 a flipped bit is found at opening|tables/head.c|s/status = dig_seal_check(db, path, error)/status = DIG_OK/|tables/test_seal
 aliases that grow are refused|files/yaml_growth.c|s/GROWTH_MAX 100000 /GROWTH_MAX 100000000 /|files/test_yaml_growth

@@ -3,9 +3,10 @@
 #include "tables/schema.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdbool.h>
-#include <string.h>
+#include <stdio.h>
 #include <sys/stat.h>
 
 // SQLite keeps what is registered as long as the process lives.
@@ -43,14 +44,26 @@ static void guard(void)
     }
 }
 
+// A path that SQLite takes for nothing else: a relative one could be ":memory:", or "file:" with
+// words behind it that name another file, or none of our guard.
+static bool plain_path(const char *const path, const size_t size, char plain[const])
+{
+    const int length = snprintf(plain, size, "%s%s", path[0] == '/' ? "" : "./", path);
+    return path[0] != '\0' && length > 0 && (size_t)length < size;
+}
+
 enum dig_status dig_sql_open(const char *const path, const int flags, sqlite3 **const db,
                              struct dig_error *const error)
 {
     assert(path != NULL && db != NULL);
     sqlite3 *opened = NULL;
+    char     plain[PATH_MAX];
+    if (!plain_path(path, sizeof plain, plain)) {
+        return dig_error_set(error, DIG_EINVAL, "%.200s: no name of a file, expected one", path);
+    }
     // Where it could not be registered SQLite says so, and opens nothing.
     (void)pthread_once(&registered, guard);
-    if (sqlite3_open_v2(path, &opened, flags, "digsight") != SQLITE_OK) {
+    if (sqlite3_open_v2(plain, &opened, flags, "digsight") != SQLITE_OK) {
         (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
                             opened != NULL ? sqlite3_errmsg(opened) : "no memory");
         (void)sqlite3_close(opened);
