@@ -8,10 +8,11 @@
 
 #include <sqlite3.h>
 
-/// Opens the file of that very name, whatever SQLite would read in it, with SQLite's flags, and restricts the connection as dig_sql_setup() does. Of files
-/// beside it only regular ones are opened, through no link. A journal that names a journal of
-/// several databases, which no table of ours has, is rolled back no further than its own table:
-/// SQLite would delete the file so named, whatever it is.
+/// Opens the file of that very name, whatever SQLite would read in it, with SQLite's flags, and
+/// restricts the connection as dig_sql_setup() does. Of files beside it only regular ones are
+/// opened, through no link. A journal that names a journal of several databases, which no table of
+/// ours has, is rolled back no further than its own table: SQLite would delete the file so named,
+/// whatever it is.
 DIG_MUST_CHECK enum dig_status dig_sql_open(const char *path, int flags, sqlite3 **db,
                                             struct dig_error *error);
 
