@@ -134,9 +134,12 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
 
     *out = (struct dig_out){ 0 };
 
+    // Nothing is written through a link of somebody's; one to a folder is refused as a folder is.
     const bool  kernels = is_open_file(path);
+    struct stat named;
     struct stat target;
-    const bool  there  = (kernels ? stat : lstat)(path, &target) == 0 && !S_ISLNK(target.st_mode);
+    const bool  linked = !kernels && lstat(path, &named) == 0 && S_ISLNK(named.st_mode);
+    const bool  there  = stat(path, &target) == 0 && !(linked && !S_ISDIR(target.st_mode));
     char *const real   = there && kernels && S_ISREG(target.st_mode) ? realpath(path, NULL) : NULL;
     const int   length = snprintf(out->path, sizeof out->path, "%s", real != NULL ? real : path);
     free(real);

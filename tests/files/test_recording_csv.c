@@ -447,6 +447,11 @@ static void a_link_is_replaced_and_what_it_points_to_stays(void **state)
     assert_string_equal(text, "old");
     free(text);
     assert_false(scratch_exists("nowhere.txt"));
+
+    assert_int_equal(symlink(scratch_dir, scratch_path("folder")), 0);
+    assert_int_equal(dig_out_open(&out, scratch_path("folder"), NULL), DIG_EIO);
+    assert_int_equal(lstat(scratch_path("folder"), &link), 0);
+    assert_true(S_ISLNK(link.st_mode));
 }
 
 int main(void)
