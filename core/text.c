@@ -1,6 +1,7 @@
 #include "core/text.h"
 
 #include <assert.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -91,6 +92,18 @@ void dig_text_put(FILE *const to, const char *const text)
         }
         c += n == 0 ? 1 : n;
     }
+}
+
+void dig_text_print(FILE *const to, const char *const format, ...)
+{
+    assert(to != NULL && format != NULL);
+    char    text[8192];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    dig_text_clean(text);
+    (void)fputs(text, to);
 }
 
 void dig_text_put_json(FILE *const to, const char *const text)

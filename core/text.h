@@ -25,6 +25,10 @@ void dig_text_list(size_t size, char list[], const char *word);
 /// text as dig_text_clean() makes it, and in one line: a line break or a tab becomes '?', too.
 void dig_text_put(FILE *to, const char *text);
 
+/// As fprintf(), for people at a terminal, of at most 8 KiB: what is printed is made as
+/// dig_text_clean() makes it. Whatever quotes a file's name is printed so.
+__attribute__((format(printf, 2, 3))) void dig_text_print(FILE *to, const char *format, ...);
+
 /// text as a JSON string, with its quotes: valid JSON and UTF-8 whatever the bytes. Control
 /// characters are escaped and come back; a byte that is no UTF-8 becomes U+FFFD.
 void dig_text_put_json(FILE *to, const char *text);

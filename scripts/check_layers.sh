@@ -27,7 +27,7 @@ core                   approach approach_set bed_plan command_line contact curve
                        sample scene sha256 shell similar status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
-files/lcm              health_text lcm_log lcm_message predicted_curve
+files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
 files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json machine_yaml model_json
                        recording_csv scene_yaml
 estimator              estimator estimator_tick
@@ -50,7 +50,7 @@ offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
-closed_loop/numeric    | chance dense levenberg
+closed_loop/numeric    | chance dense levenberg vectors
 closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
                        regressors
 closed_loop/model      | candidate hypothesis posterior response_surface scatter soil whitened_digs
@@ -76,7 +76,7 @@ owners='
 nlopt.h      estimator/match/fit_nlopt.c
 modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tools/rig/
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
-lcm/         firmware_host/publish/output_lcm.c files/lcm/lcm_log.c tools/digwatch/source.c
+lcm/         firmware_host/publish/output_lcm.c files/lcm/lcm_log.c
 curses.h     tools/digwatch/terminal.c
 cyaml/       files/ firmware_host/config/
 yaml.h       files/ firmware_host/config/

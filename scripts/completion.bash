@@ -1,5 +1,6 @@
 # Bash completion of Digsight's programs. Commands, options and the words an option takes are those that the
-# program's --help lists at that moment, so this file knows none of them.
+# program's --help lists at that moment, so this file knows none of them. A word of the line is looked up only where it is
+# spelt as a command or an option is: sed and compgen would run others.
 
 _digsight()
 {
@@ -7,10 +8,10 @@ _digsight()
     _init_completion || return
     local program=${words[0]/#\~/$HOME} command="" value="" table names
 
-    [[ $cword -gt 1 && ${words[1]} == [a-z]* ]] && command=${words[1]}
+    [[ $cword -gt 1 && ${words[1]} =~ ^[a-z]+$ ]] && command=${words[1]}
     local help
     help=$("$program" $command --help 2>/dev/null) || return
-    if [[ $prev == -* ]]; then
+    if [[ $prev =~ ^--?[a-z][a-z-]*$ ]]; then
         value=$(sed -n "s/^ .*$prev\(, --[a-z]*\)\{0,1\} \([^ ]\{1,\}\).*/\2/p" <<<"$help" | head -n 1)
     fi
 
@@ -22,7 +23,7 @@ _digsight()
         for table in "${words[@]}"; do
             [[ $table == *.sqlite ]] || continue
             names=$(digtable list "$table" --json 2>/dev/null | sed -n 's/^ "trajectories": \[\(.*\)\],$/\1/p')
-            COMPREPLY=($(compgen -W "${names//[\",]/ }" -- "$cur"))
+            COMPREPLY=($(compgen -W "${names//[^A-Za-z0-9_.-]/ }" -- "$cur"))
         done
         ;;
     ?*) ;;

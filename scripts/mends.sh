@@ -15,15 +15,24 @@ a name has no blank and no sign|core/name.c|s/789_.-"/789_.- `$"/|core/test_name
 a path stays in its folder|core/name.c|s/return !up;/return true;/|core/test_name
 a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_stays(name)/false/|files/test_campaign_yaml
 no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|firmware_host/test_hostile_texts
+nor by the name of a file|core/text.c|s/^    dig_text_clean(text);/    (void)text;/|core/test_text
 no table but our own, no trigger, no view|tables/schema/guard.c|s/status = compare(.*;/status = DIG_OK;/|tables/test_hostile
 a schema is ours word for word|tables/schema/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile
+a journal of several tables deletes nothing|tables/open.c|s/(flags & SQLITE_OPEN_SUPER_JOURNAL) != 0/false/|tables/test_hostile
+a pipe or a link beside a table is not opened|tables/open.c|s/!S_ISREG(found.st_mode)/false/|tables/test_hostile
+a table is the file of its very name|tables/open.c|s,"" : "./","" : "",|tables/test_hostile
+no table is made through a link|tables/store.c|s/O_CREAT . O_EXCL/O_CREAT/|tables/test_hostile
 a flipped bit is found at opening|tables/schema/head.c|s/status = dig_seal_check(db, path, error)/status = DIG_OK/|tables/test_seal
 aliases that grow are refused|files/yaml/yaml_growth.c|s/GROWTH_MAX 100000 /GROWTH_MAX 100000000 /|files/test_yaml_growth
+values without number are refused|files/yaml/yaml_growth.c|s/VALUES_MAX 1000000 /VALUES_MAX 100000000 /|files/test_yaml_growth
 an alias in its own anchor is refused|files/yaml/yaml_growth.c|s/"an alias within its own anchor/"/|files/test_yaml_growth
 a pipe or device is refused at once|core/regular.c|s/!S_ISREG(found.st_mode)/0/|core/test_regular
 a link where a part should go is not followed|core/part.c|s/if (unlink(path) != 0/if (path == NULL/;s/O_EXCL . O_NOFOLLOW/O_TRUNC/|core/test_part
+a link where an output should go is replaced|files/text/whole.c|s/S_ISLNK(named.st_mode)/false/|files/test_whole
 a Modbus answer to another request is none|firmware_host/bus/modbus_tcp.c|s/memcmp(answer, request, LENGTH) == 0/true/|firmware_host/test_modbus_tcp
 a Modbus answer that lies of its length is none|firmware_host/bus/modbus_tcp.c|s/number_at(answer, LENGTH) == (unsigned)size - UNIT/true/|firmware_host/test_modbus_tcp
+an LCM channel ends within its datagram|files/lcm/lcm_datagram.c|s/memchr(channel, .*/memchr(channel, 0, 65000);/|files/test_lcm_datagram
+a part of an LCM message is none|files/lcm/lcm_datagram.c|s/memcmp(bytes, short_message, sizeof short_message)/memcmp(bytes, short_message, 3)/|files/test_lcm_datagram
 an LCM message longer than it says is none|files/lcm/lcm_layout.c|s/return at == size;/return true;/|files/test_lcm_layout
 a number of an LCM message is within it|files/lcm/lcm_layout.c|s/number >= 0 \&\& (size_t)number <= INT32_MAX . 8/true/|files/test_lcm_layout
 '

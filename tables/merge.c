@@ -1,6 +1,7 @@
 #include "tables/merge.h"
 
 #include "core/part.h"
+#include "tables/open.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
@@ -212,11 +213,7 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     if (made == NULL || fclose(made) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    if (sqlite3_open_v2(store->path, &store->db, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", store->path,
-                             store->db != NULL ? sqlite3_errmsg(store->db) : "no memory");
-    }
-    enum dig_status status = dig_sql_setup(store->db, store->path, error);
+    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
     if (status == DIG_OK) {
         status = dig_schema_tables(store->db, store->path, DIG_TABLE_VERSION, error);
     }

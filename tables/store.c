@@ -1,5 +1,6 @@
 #include "tables/store.h"
 
+#include "tables/open.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
@@ -16,25 +17,6 @@
 #define WRITER_WAIT_ms 60000
 #define LOCK_PAUSE_ns  50000000
 #define LOCK_TRIES     40 // two seconds: workers of a killed writer need a moment to die
-
-static enum dig_status open_db(const char *const path, const int flags, sqlite3 **const db,
-                               struct dig_error *const error)
-{
-    sqlite3 *opened = NULL;
-    if (sqlite3_open_v2(path, &opened, flags, NULL) != SQLITE_OK) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
-                            opened != NULL ? sqlite3_errmsg(opened) : "no memory");
-        (void)sqlite3_close(opened);
-        return DIG_EIO;
-    }
-    const enum dig_status status = dig_sql_setup(opened, path, error);
-    if (status != DIG_OK) {
-        (void)sqlite3_close(opened);
-        return status;
-    }
-    *db = opened;
-    return DIG_OK;
-}
 
 // In one transaction with what is read next: what was checked is what is read.
 static enum dig_status begin_checked(sqlite3 *const db, const char *const path,
@@ -57,7 +39,7 @@ enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
                              path);
     }
     sqlite3        *opened = NULL;
-    enum dig_status status = open_db(path, SQLITE_OPEN_READONLY, &opened, error);
+    enum dig_status status = dig_sql_open(path, SQLITE_OPEN_READONLY, &opened, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -67,7 +49,7 @@ enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
     if (status == DIG_EIO && sqlite3_extended_errcode(opened) == SQLITE_READONLY_ROLLBACK) {
         (void)sqlite3_close(opened);
         opened = NULL;
-        status = open_db(path, SQLITE_OPEN_READWRITE, &opened, error);
+        status = dig_sql_open(path, SQLITE_OPEN_READWRITE, &opened, error);
         if (status == DIG_OK) {
             status = begin_checked(opened, path, head, error);
         }
@@ -120,12 +102,25 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     return DIG_OK;
 }
 
+// Opens the file, or makes it: never through a link to nothing, which would make a file elsewhere.
+static int open_or_make(const char *const path, bool *const made)
+{
+    const int there = open(path, O_RDWR | O_CLOEXEC);
+    if (there >= 0 || errno != ENOENT) {
+        *made = false;
+        return there;
+    }
+    const int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    *made        = fd >= 0;
+    return fd >= 0 || errno != EEXIST ? fd : open(path, O_RDWR | O_CLOEXEC); // another's, by now
+}
+
 // SQLite locks byte ranges by fcntl; this is the other kind, for the whole life of a writer.
 static enum dig_status lock(struct dig_store *const store, bool *const created,
                             struct dig_error *const error)
 {
-    const bool absent = access(store->path, F_OK) != 0;
-    store->lock_fd    = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    bool made      = false;
+    store->lock_fd = open_or_make(store->path, &made);
     if (store->lock_fd < 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
@@ -143,12 +138,18 @@ static enum dig_status lock(struct dig_store *const store, bool *const created,
     }
 
     struct stat file;
+    struct stat named;
     if (fstat(store->lock_fd, &file) != 0 || !S_ISREG(file.st_mode)) {
         return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
                              store->path);
     }
+    if (file.st_size == 0 && lstat(store->path, &named) == 0 && S_ISLNK(named.st_mode)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: a link to an empty file, expected a table or a new file",
+                             store->path);
+    }
     // Not ours to remove if another writer filled it while we waited.
-    *created = absent && file.st_size == 0;
+    *created = made && file.st_size == 0;
     return DIG_OK;
 }
 
@@ -186,7 +187,7 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
     if (fstat(store->lock_fd, &file) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    enum dig_status status = open_db(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
+    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -233,7 +234,7 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
 static enum dig_status seal(struct dig_store *const store, struct dig_error *const error)
 {
     struct dig_store_report report;
-    enum dig_status         status = open_db(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
+    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
     if (status == DIG_OK) {
         status = dig_schema_check(store->db, store->path, &store->head, error);
     }

@@ -34,23 +34,37 @@ HAND_ON(match)
 HAND_ON(prediction)
 HAND_ON(health)
 
+static const struct kind {
+    const char *channel;
+    enum dig_status (*hand_on)(const struct dig_lcm_event *, const struct dig_lcm_reader *);
+} kinds[] = {
+    { "DIGSIGHT_ESTIMATE", hand_on_estimate },
+    { "DIGSIGHT_MATCH", hand_on_match },
+    { "DIGSIGHT_PREDICTION", hand_on_prediction },
+    { "DIGSIGHT_HEALTH", hand_on_health },
+};
+
+// NULL: of another channel.
+static const struct kind *kind_of(const char *const channel)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if (strcmp(channel, kinds[i].channel) == 0) {
+            return &kinds[i];
+        }
+    }
+    return NULL;
+}
+
+bool dig_lcm_message_is_known(const char *const channel)
+{
+    assert(channel != NULL);
+    return kind_of(channel) != NULL;
+}
+
 enum dig_status dig_lcm_message_read(const struct dig_lcm_event *const  event,
                                      const struct dig_lcm_reader *const reader)
 {
     assert(event != NULL && reader != NULL);
-    static const struct {
-        const char *channel;
-        enum dig_status (*hand_on)(const struct dig_lcm_event *, const struct dig_lcm_reader *);
-    } kinds[] = {
-        { "DIGSIGHT_ESTIMATE", hand_on_estimate },
-        { "DIGSIGHT_MATCH", hand_on_match },
-        { "DIGSIGHT_PREDICTION", hand_on_prediction },
-        { "DIGSIGHT_HEALTH", hand_on_health },
-    };
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if (strcmp(event->channel, kinds[i].channel) == 0) {
-            return kinds[i].hand_on(event, reader);
-        }
-    }
-    return DIG_OK;
+    const struct kind *const kind = kind_of(event->channel);
+    return kind != NULL ? kind->hand_on(event, reader) : DIG_OK;
 }

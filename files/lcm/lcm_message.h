@@ -11,6 +11,7 @@
 #include "messages/digsight_match_t.h"
 #include "messages/digsight_prediction_t.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -35,6 +36,9 @@ struct dig_lcm_reader {
     void (*prediction)(void *context, int64_t time_us, const digsight_prediction_t *message);
     void (*health)(void *context, int64_t time_us, const digsight_health_t *message);
 };
+
+/// True of the channels that dig_lcm_message_read() does not pass over.
+bool dig_lcm_message_is_known(const char *channel);
 
 /// Hands the event's message on. DIG_ESCHEMA, and nothing is called: it is of another version of
 /// its type, or its lengths cannot be. Other channels, and kinds that the reader does not want, are

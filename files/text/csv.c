@@ -253,21 +253,26 @@ bool dig_csv_has(const char *const path, const char *const column)
 {
     assert(path != NULL && column != NULL);
     FILE *file   = NULL;
-    char *line   = NULL;
     char *header = NULL;
+    char  piece[8192]; // no header of ours is longer; of a longer line the rest is passed over
     if (dig_regular_open(path, &file, NULL) != DIG_OK) {
         return false;
     }
-    for (size_t room = 0; header == NULL && getline(&line, &room, file) > 0;) {
-        char *const text            = strncmp(line, byte_order_mark, 3) == 0 ? line + 3 : line;
+    for (bool begins = true, more = true;
+         more && header == NULL && fgets(piece, sizeof piece, file);) {
+        char *const  text   = strncmp(piece, byte_order_mark, 3) == 0 ? piece + 3 : piece;
+        const size_t length = strlen(piece);
+        const bool   ends   = length > 0 && piece[length - 1] == '\n';
+        // Else it is the last line, or holds a NUL, which no text does.
+        more                        = ends || length == sizeof piece - 1;
         text[strcspn(text, "\r\n")] = '\0';
-        header                      = dig_csv_is_comment_or_blank(text) ? NULL : text;
+        header                      = begins && !dig_csv_is_comment_or_blank(text) ? text : NULL;
+        begins                      = ends;
     }
     bool has = false;
     for (const char *field; header != NULL && !has && (field = dig_csv_field(&header)) != NULL;) {
         has = strcmp(field, column) == 0;
     }
-    free(line);
     (void)fclose(file);
     return has;
 }

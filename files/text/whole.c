@@ -103,6 +103,13 @@ bool dig_out_is_stdout(const char *const path)
     return path != NULL && (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0);
 }
 
+// A link of the kernel's to a file that is open; any other could be somebody's.
+static bool is_open_file(const char *const path)
+{
+    return strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/self/fd/", 14) == 0 ||
+           strcmp(path, "/dev/stderr") == 0;
+}
+
 static FILE *open_stdout(void)
 {
     const int fd = dup(STDOUT_FILENO);
@@ -127,10 +134,13 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
 
     *out = (struct dig_out){ 0 };
 
-    // A link is followed: what it points to is replaced, not the link.
+    // Nothing is written through a link of somebody's; one to a folder is refused as a folder is.
+    const bool  kernels = is_open_file(path);
+    struct stat named;
     struct stat target;
-    const bool  there  = stat(path, &target) == 0;
-    char *const real   = there && S_ISREG(target.st_mode) ? realpath(path, NULL) : NULL;
+    const bool  linked = !kernels && lstat(path, &named) == 0 && S_ISLNK(named.st_mode);
+    const bool  there  = stat(path, &target) == 0 && !(linked && !S_ISDIR(target.st_mode));
+    char *const real   = there && kernels && S_ISREG(target.st_mode) ? realpath(path, NULL) : NULL;
     const int   length = snprintf(out->path, sizeof out->path, "%s", real != NULL ? real : path);
     free(real);
     if (length < 0 || (size_t)length + sizeof ".part" > sizeof out->path) {

@@ -20,10 +20,11 @@ DIG_MUST_CHECK enum dig_status dig_file_read(const char *path, char **text, size
 /// A file being written. It stands beside the target as PATH.part until dig_out_commit(), so that
 /// no half file is ever taken for a whole one. "-" and /dev/stdout are the program's output;
 /// another target that is no regular file (a pipe that somebody reads, a device) is written
-/// directly; a link is followed.
+/// directly. A link is replaced, and what it points to stays as it is; only those of /dev/fd, which
+/// are the kernel's, are followed.
 struct dig_out {
     FILE *file;
-    char  path[PATH_MAX]; // of the file itself, links followed
+    char  path[PATH_MAX]; // of the file itself
     char  part[PATH_MAX]; // "" when written directly
 };
 

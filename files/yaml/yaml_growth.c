@@ -1,5 +1,6 @@
-// What a text with aliases grows to: nested, a kilobyte stands for more values than memory holds,
-// and who reads it by its schema, alias for alias, never ends.
+// What a text grows to. With nested aliases a kilobyte stands for more values than memory holds,
+// and who reads it by its schema, alias for alias, never ends. Without any, a value of two bytes
+// takes libyaml a hundred times as much.
 
 #include "files/yaml/yaml_tree.h"
 
@@ -12,8 +13,10 @@
 #pragma GCC diagnostic ignored "-Wanalyzer-use-of-uninitialized-value"
 #endif
 
-#define GROWTH_MAX 100000 // values that aliases may stand for
-#define DEPTH_MAX  64     // no file of ours nests deeper than ten
+#define GROWTH_MAX 100000  // values that aliases may stand for
+#define VALUES_MAX 1000000 // that stand there: some 200 MB while they are read
+#define DIRECTIVES 8       // libyaml compares each with all before it
+#define DEPTH_MAX  64      // no file of ours nests deeper than ten
 #define ANCHORS    256
 
 struct anchor {
@@ -84,6 +87,9 @@ static enum dig_status begin_value(struct growth *const g, const char *const pat
                                    const yaml_event_t *const event, const yaml_char_t *const name,
                                    struct dig_error *const error)
 {
+    if (g->values - g->grown >= VALUES_MAX) {
+        return refuse(path, event, "more than 1000000 values, expected fewer", error);
+    }
     if (g->depth == DEPTH_MAX) {
         return refuse(path, event, "nested deeper than 64, expected less", error);
     }
@@ -126,16 +132,38 @@ static enum dig_status count(struct growth *const g, const char *const path,
     return DIG_OK;
 }
 
+static enum dig_status check_directives(const char *const path, const char *const text,
+                                        const size_t size, struct dig_error *const error)
+{
+    int    line       = 1;
+    size_t directives = 0;
+    for (const char *c = text; c != NULL && c < text + size; line++) {
+        directives += *c == '%' ? 1 : 0;
+        if (directives > DIRECTIVES) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s:%d: more than %d directives (lines that "
+                                 "begin with %%), expected fewer",
+                                 path, line, DIRECTIVES);
+        }
+        const char *const end = memchr(c, '\n', size - (size_t)(c - text));
+        c                     = end != NULL ? end + 1 : NULL;
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_yaml_check_growth(const char *const path, const char *const text,
                                       const size_t size, struct dig_error *const error)
 {
+    enum dig_status status = check_directives(path, text, size, error);
+    if (status != DIG_OK) {
+        return status;
+    }
     yaml_parser_t parser;
     struct growth g = { .anchors = 0 };
     if (!yaml_parser_initialize(&parser)) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
-    enum dig_status status = DIG_OK;
     for (bool more = true; more && status == DIG_OK;) {
         yaml_event_t event;
         if (!yaml_parser_parse(&parser, &event)) {

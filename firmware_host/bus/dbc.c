@@ -12,11 +12,14 @@
 #define EXTENDED_FLAG 0x80000000U
 #define MESSAGES_MAX  8192 // each is compared with all before it
 #define SIGNALS_MAX   1024 // of one message, likewise
+#define SIGNALS_ALL   65536
+#define LOOKUPS_MAX   65536 // lines that name a message by its id, for which all are looked through
 
 // Position of the reader, for errors.
 struct cursor {
     const char       *path;
     int               line;
+    int               lookups;
     struct dig_error *error;
 };
 
@@ -113,6 +116,9 @@ static enum dig_status check_signal(const struct cursor *const         cursor,
     if (message->signals == SIGNALS_MAX) {
         return refuse(cursor, signal->name, "at most 1024 signals of a message");
     }
+    if (dbc->signals == SIGNALS_ALL) {
+        return refuse(cursor, signal->name, "at most 65536 signals");
+    }
     if (dig_dbc_find_signal(dbc, message, signal->name) != NULL) {
         return refuse(cursor, signal->name, "every signal of a message once");
     }
@@ -174,17 +180,26 @@ static enum dig_status read_signal(const struct cursor *const cursor, const char
     return DIG_OK;
 }
 
+static enum dig_status count_lookup(struct cursor *const cursor, const char *const text)
+{
+    return cursor->lookups++ < LOOKUPS_MAX
+               ? DIG_OK
+               : refuse(cursor, text, "at most 65536 SIG_VALTYPE_ and GenMsgCycleTime");
+}
+
 // SIG_VALTYPE_ 2566879720 name : 1;   1: float, 2: double
-static void read_type(const char *const text, const struct dig_dbc *const dbc)
+static enum dig_status read_type(struct cursor *const cursor, const char *const text,
+                                 const struct dig_dbc *const dbc)
 {
     unsigned long long id                      = 0;
     char               name[DIG_DBC_NAME_SIZE] = "";
     unsigned           type                    = 0;
     // NOLINTNEXTLINE(cert-err34-c): an unreadable line names no signal of ours
     if (sscanf(text, " SIG_VALTYPE_ %10llu %63[A-Za-z0-9_] : %1u", &id, name, &type) != 3) {
-        return;
+        return DIG_OK;
     }
-    for (size_t i = 0; i < dbc->messages; i++) {
+    const enum dig_status status = count_lookup(cursor, text);
+    for (size_t i = 0; status == DIG_OK && i < dbc->messages; i++) {
         const struct dig_dbc_message *const m  = &dbc->message[i];
         const bool                          is = (m->id | (m->extended ? EXTENDED_FLAG : 0)) == id;
         for (size_t s = m->first; is && s < m->first + m->signals; s++) {
@@ -193,24 +208,28 @@ static void read_type(const char *const text, const struct dig_dbc *const dbc)
             }
         }
     }
+    return status;
 }
 
 // BA_ "GenMsgCycleTime" BO_ 2566879720 10;   in ms
-static void read_cycle(const char *const text, const struct dig_dbc *const dbc)
+static enum dig_status read_cycle(struct cursor *const cursor, const char *const text,
+                                  const struct dig_dbc *const dbc)
 {
     unsigned long long id       = 0;
     double             cycle_ms = 0.0;
     // NOLINTNEXTLINE(cert-err34-c): an unreadable line says nothing of ours
     if (sscanf(text, " BA_ \"GenMsgCycleTime\" BO_ %10llu %lf", &id, &cycle_ms) != 2 ||
         !(cycle_ms > 0.0 && cycle_ms <= 60e3)) {
-        return;
+        return DIG_OK;
     }
-    for (size_t i = 0; i < dbc->messages; i++) {
+    const enum dig_status status = count_lookup(cursor, text);
+    for (size_t i = 0; status == DIG_OK && i < dbc->messages; i++) {
         struct dig_dbc_message *const m = &dbc->message[i];
         if ((m->id | (m->extended ? EXTENDED_FLAG : 0)) == id) {
             m->cycle_s = cycle_ms * 1e-3;
         }
     }
+    return status;
 }
 
 static enum dig_status read_lines(const char *const path, char *const text,
@@ -234,9 +253,9 @@ static enum dig_status read_lines(const char *const path, char *const text,
         } else if (!in_string && strncmp(word, "SG_ ", 4) == 0) {
             status = read_signal(&cursor, word, dbc);
         } else if (!in_string && strncmp(word, "SIG_VALTYPE_ ", 13) == 0) {
-            read_type(word, dbc);
+            status = read_type(&cursor, word, dbc);
         } else if (!in_string && strncmp(word, "BA_ ", 4) == 0) {
-            read_cycle(word, dbc);
+            status = read_cycle(&cursor, word, dbc);
         }
         if (status != DIG_OK) {
             return status;

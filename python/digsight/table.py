@@ -4,6 +4,7 @@ A file that is no such table, and a selection that the table does not hold, rais
 cannot be opened raises OSError. Seals are not checked: `digtable check` finds damage.
 """
 
+import os
 import sqlite3
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
+
+from .outside import check_regular, check_texts
 
 APPLICATION_ID = 0x44494754  # "DIGT"
 VERSIONS = (3, 4)
@@ -117,6 +120,10 @@ class Table:
 def open_table(path: str | Path) -> Table:
     """Opens a table for reading."""
     name = str(path)
+    check_regular(path)
+    for beside in (f"{path}-journal", f"{path}-wal"):  # SQLite would open them
+        if os.path.lexists(beside):
+            check_regular(beside)
     with open(path, "rb"):  # SQLite's own error does not say why
         pass
     db = sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)
@@ -128,11 +135,12 @@ def open_table(path: str | Path) -> Table:
     if version not in VERSIONS:
         raise ValueError(f"{name}: table format {version}, expected 3 or 4 (`digtable seal` makes 2 into 4)")
     foreign = "SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger') OR sql LIKE 'create virtual%'"
-    if len(_query(db, name, foreign)) > 0:
-        raise ValueError(f"{name}: a view, trigger or virtual table, expected the tables of digtable alone")
+    computed = "SELECT 1 FROM sqlite_master m JOIN pragma_table_xinfo(m.name) WHERE hidden <> 0"
+    if len(_query(db, name, foreign)) > 0 or len(_query(db, name, computed)) > 0:
+        raise ValueError(f"{name}: a view, trigger, virtual table or column, expected the tables of digtable alone")
 
     scene = _query(db, name, "SELECT * FROM scene").drop(columns="id").to_dict("records")
-    if len(scene) != 1 or scene[0]["points"] < 2:
+    if len(scene) != 1 or not isinstance(scene[0]["points"], int) or scene[0]["points"] < 2:
         raise ValueError(f"{name}: scene: expected one row, of two points or more")
     phases = _query(db, name, PHASES)
     entries = _query(db, name, ENTRIES)
@@ -143,13 +151,17 @@ def open_table(path: str | Path) -> Table:
 def _query(db: sqlite3.Connection, path: str, sql: str, *values: int) -> pd.DataFrame:
     try:
         cursor = db.execute(sql, values)
-        return pd.DataFrame(cursor.fetchall(), columns=[column[0] for column in cursor.description or ()])
+        rows = cursor.fetchall()
     except sqlite3.Error as error:
         raise ValueError(f"{path}: {error}, expected a table of digtable") from error
+    check_texts(path, rows)
+    return pd.DataFrame(rows, columns=[column[0] for column in cursor.description or ()])
 
 
-def _channels(blob: bytes, points: int, what: str) -> np.ndarray:
+def _channels(blob: Any, points: int, what: str) -> np.ndarray:
     """A blob as one row a channel. The carried mass is NaN throughout where it is not known."""
+    if not isinstance(blob, bytes):
+        raise ValueError(f"{what}: a {type(blob).__name__}, expected bytes")
     if len(blob) != 4 * 4 * points:
         raise ValueError(f"{what}: {len(blob)} bytes, expected {4 * 4 * points}")
     value = np.frombuffer(blob, "<f4").reshape(4, points).astype(float)

@@ -7,6 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from .outside import check_regular, check_texts
+
 
 @dataclass(frozen=True, repr=False)
 class Trace:
@@ -26,11 +28,13 @@ class Trace:
 
 def read_trace(path: str | Path) -> Trace:
     """Reads a trace; ValueError where it is none."""
+    check_regular(path)
     text = Path(path).read_text(encoding="utf-8")
     try:
         whole = json.loads(text)
         if not isinstance(whole, dict):
             raise ValueError(f"{path}: a {type(whole).__name__}, expected an object")
+        check_texts(path, whole)
         material = pd.DataFrame(whole["material"]).T
         material["before"] = pd.Series(whole["material_before"])
         lists = ("effects", "candidates", "residuals", "residual_against")
@@ -38,5 +42,7 @@ def read_trace(path: str | Path) -> Trace:
         return Trace(verdict=whole["verdict"], material=material, whole=whole, **frames)
     except json.JSONDecodeError as error:
         raise ValueError(f"{path}:{error.lineno}: {error.msg}, expected JSON") from error
+    except RecursionError as error:
+        raise ValueError(f"{path}: nested too deep, expected what digloop trace --json writes") from error
     except KeyError as error:
         raise ValueError(f"{path}: no key {error}, expected what digloop trace --json writes") from error

@@ -87,6 +87,12 @@ enum dig_status dig_sql_refuse(sqlite3 *const db, const char *const path,
         return dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
                              sqlite3_errmsg(db));
     }
+    if (code == SQLITE_CANTOPEN) {
+        return dig_error_set(error, DIG_EIO,
+                             "%s: it, or a journal beside it, cannot be opened, expected regular "
+                             "files and a journal of this table alone",
+                             path);
+    }
     return dig_error_set(error, DIG_EIO, "%s: %s", path, sqlite3_errmsg(db));
 }
 

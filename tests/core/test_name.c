@@ -90,6 +90,19 @@ static void labels_for_people_may_have_blanks(void **state)
     }
 }
 
+// CSVs hold no other text, and a spreadsheet computes what begins with = + - @ or a tab.
+static void no_name_and_no_label_is_a_formula(void **state)
+{
+    (void)state;
+    for (int c = 1; c < 256; c++) {
+        const char text[] = { (char)c, '1', '\0' };
+        const bool digit  = c >= '0' && c <= '9';
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        assert_int_equal(dig_label_ok(text), letter || digit);
+        assert_int_equal(dig_name_ok(text), letter || digit || c == '_');
+    }
+}
+
 static void files_are_named_in_one_printable_line(void **state)
 {
     (void)state;
@@ -139,6 +152,7 @@ int main(void)
         cmocka_unit_test(nothing_hostile_is_a_name_or_a_label),
         cmocka_unit_test(every_byte_but_those_told_is_refused_within_a_name),
         cmocka_unit_test(labels_for_people_may_have_blanks),
+        cmocka_unit_test(no_name_and_no_label_is_a_formula),
         cmocka_unit_test(files_are_named_in_one_printable_line),
         cmocka_unit_test(a_path_beside_a_file_begins_with_its_folder),
         cmocka_unit_test(a_relative_path_with_dots_leaves_its_folder),

@@ -6,6 +6,7 @@
 #include "tests/testlib.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void a_list_has_commas_between_its_words_and_ends_where_there_is_no_room(void **state)
@@ -119,6 +120,23 @@ static void a_text_put_is_one_line_of_characters(void **state)
     assert_string_equal(said, "a?b?c?[0m? \xe2\x82\xac");
 }
 
+static void what_is_printed_for_people_holds_no_escape_sequence(void **state)
+{
+    (void)state;
+    char       *bytes = NULL;
+    size_t      size  = 0;
+    FILE *const to    = open_memstream(&bytes, &size);
+    assert_non_null(to);
+    dig_text_print(to, "%s: %d\n", "a\x1b]0;owned\x07.csv", 3);
+    static char wide[20000];
+    memset(wide, 'x', sizeof wide - 1);
+    dig_text_print(to, "%s", wide);
+    assert_int_equal(fclose(to), 0);
+    assert_int_equal(strncmp(bytes, "a?]0;owned?.csv: 3\nxxx", 22), 0);
+    assert_in_range(strlen(bytes), 8000, 8300);
+    free(bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -129,6 +147,7 @@ int main(void)
         cmocka_unit_test(json_strings_end_where_they_should_and_are_utf8),
         cmocka_unit_test(a_text_put_is_one_line_of_characters),
         cmocka_unit_test(an_error_holds_no_escape_sequence_and_no_half_character),
+        cmocka_unit_test(what_is_printed_for_people_holds_no_escape_sequence),
     };
     return cmocka_run_group_tests_name("text", tests, NULL, NULL);
 }

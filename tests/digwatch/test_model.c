@@ -2,6 +2,7 @@
 
 #include "tests/digwatch/said.h"
 
+#include <limits.h>
 #include <string.h>
 
 static struct digwatch_model model;
@@ -88,6 +89,20 @@ static void the_moment_scrolls_in_slots_of_an_eighth_of_a_second(void **state)
         assert_true(isnan(digwatch_model_slot(&model, 1).measured_Nm));
     }
     assert_true(isnan(digwatch_model_slot(&model, DIGWATCH_SLOTS).measured_Nm));
+}
+
+static void a_slot_that_never_ends_counts_no_further_than_it_can(void **state)
+{
+    (void)state;
+    digsight_estimate_t e = estimate_at(1000000000, 0.25, 100.0);
+    say_estimate(&model, &e);
+    model.slot_rows = INT_MAX - 1; // 100 of them a millisecond, for six hours
+    e.moment_Nm     = 300.0;
+    for (int i = 0; i < 3; i++) {
+        say_estimate(&model, &e);
+    }
+    assert_int_equal(model.slot_rows, INT_MAX);
+    assert_close(digwatch_model_slot(&model, 0).measured_Nm, 100.0, 1e-3);
 }
 
 static void a_counter_has_grown_only_since_we_listen(void **state)
@@ -213,6 +228,7 @@ int main(void)
         cmocka_unit_test_setup(a_prediction_is_read_where_the_bucket_is, fresh),
         cmocka_unit_test_setup(the_error_of_a_dig_is_relative_and_stands_until_the_next, fresh),
         cmocka_unit_test_setup(the_moment_scrolls_in_slots_of_an_eighth_of_a_second, fresh),
+        cmocka_unit_test_setup(a_slot_that_never_ends_counts_no_further_than_it_can, fresh),
         cmocka_unit_test_setup(a_counter_has_grown_only_since_we_listen, fresh),
         cmocka_unit_test_setup(what_is_no_message_is_counted_and_changes_nothing, fresh),
         cmocka_unit_test_setup(a_message_that_is_damaged_is_counted_or_taken_and_no_more, fresh),

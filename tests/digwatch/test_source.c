@@ -64,8 +64,8 @@ static void a_source_that_is_none_is_refused_and_writes_nothing(void **state)
     struct dig_error        error  = { "" };
     assert_int_equal(digwatch_source_play(scratch_path("none.lcm"), 1.0, &source, &error), DIG_EIO);
     assert_contains(error.text, "none.lcm: No such file");
-    assert_int_equal(digwatch_source_listen("nonsense://", &source, &error), DIG_EIO);
-    assert_contains(error.text, "LCM nonsense://: no such network");
+    assert_int_equal(digwatch_source_listen("nonsense://", &source, &error), DIG_EINVAL);
+    assert_contains(error.text, "LCM nonsense://: no such URL");
     assert_null(source);
 }
 

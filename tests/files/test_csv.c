@@ -7,6 +7,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <sys/resource.h>
 
 static const struct dig_csv_column columns[] = { { .name = "t_s" },
                                                  { .name = "y", .optional = true } };
@@ -27,6 +28,32 @@ static void rows_without_end_are_refused_by_their_line(void **state)
     assert_int_equal(dig_csv_read(scratch_path("long.csv"), 2, columns, &csv, &error), DIG_EINVAL);
     assert_contains(error.text, "long.csv:4194306: a row after 4194304 others, expected fewer");
     assert_int_equal(csv.rows, 42);
+}
+
+// A file of holes is as long as it says and takes no room on the disk; an archive brings it along.
+static void a_line_without_end_is_no_header_and_takes_no_memory(void **state)
+{
+    (void)state;
+    const char *const path = scratch_write("holes.csv", "# a comment");
+    assert_int_equal(truncate(path, 512 << 20), 0);
+    struct rusage before, after;
+    assert_int_equal(getrusage(RUSAGE_SELF, &before), 0);
+    assert_false(dig_csv_has(path, "t_s"));
+    assert_int_equal(getrusage(RUSAGE_SELF, &after), 0);
+    assert_true(after.ru_maxrss - before.ru_maxrss < 64 * 1024); // kB
+}
+
+static void the_header_is_found_behind_comments_of_any_length(void **state)
+{
+    (void)state;
+    enum { LONG = 20000 };
+    static char text[LONG + 200] = "#";
+    memset(text + 1, 'x', LONG);
+    (void)snprintf(text + LONG, sizeof text - LONG, ",y\n\n  # more\r\nt_s, y\r\n1,2\n");
+    assert_true(dig_csv_has(scratch_write("long.csv", text), "y"));
+    assert_false(dig_csv_has(scratch_path("long.csv"), "x"));
+    assert_true(dig_csv_has(scratch_write("mark.csv", "\xef\xbb\xbft_s"), "t_s"));
+    assert_false(dig_csv_has(scratch_write("none.csv", "#t_s"), "t_s"));
 }
 
 // Writes the file anew, longer, shorter, empty and broken, until it is told to stop.
@@ -79,7 +106,10 @@ static void a_file_that_changes_while_it_is_read_is_rows_or_a_refusal(void **sta
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(
+            a_line_without_end_is_no_header_and_takes_no_memory), // before memory peaks
         cmocka_unit_test(rows_without_end_are_refused_by_their_line),
+        cmocka_unit_test(the_header_is_found_behind_comments_of_any_length),
         cmocka_unit_test(a_file_that_changes_while_it_is_read_is_rows_or_a_refusal),
     };
     return cmocka_run_group_tests_name("csv", tests, scratch_setup, scratch_teardown);

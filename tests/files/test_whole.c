@@ -78,21 +78,33 @@ static void standard_output_is_written_to_and_not_replaced(void **state)
     assert_true(before.st_ino == after.st_ino);
 }
 
-static void a_link_is_followed_and_stays_a_link(void **state)
+// From a folder of somebody else's it could point to any file of the user's.
+static void a_link_is_replaced_and_what_it_points_to_stays(void **state)
 {
     (void)state;
     struct dig_out out;
     struct stat    link;
     assert_int_equal(symlink(scratch_write("target.txt", "old"), scratch_path("link.txt")), 0);
-    assert_int_equal(dig_out_open(&out, scratch_path("link.txt"), NULL), DIG_OK);
-    assert_true(scratch_exists("target.txt.part"));
-    (void)fputs("new", out.file);
-    assert_int_equal(dig_out_commit(&out, NULL), DIG_OK);
+    assert_int_equal(symlink(scratch_path("nowhere.txt"), scratch_path("lost.txt")), 0);
+    assert_int_equal(symlink("/dev/null", scratch_path("null.txt")), 0);
+    static const char *const names[] = { "link.txt", "lost.txt", "null.txt" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        assert_int_equal(dig_out_open(&out, scratch_path(names[i]), NULL), DIG_OK);
+        (void)fputs("new", out.file);
+        assert_int_equal(dig_out_commit(&out, NULL), DIG_OK);
+        assert_int_equal(lstat(scratch_path(names[i]), &link), 0);
+        assert_true(S_ISREG(link.st_mode));
+        assert_int_equal(link.st_size, 3);
+    }
     size_t      size = 0;
     char *const text = scratch_read(scratch_path("target.txt"), &size);
-    assert_string_equal(text, "new");
+    assert_string_equal(text, "old");
     free(text);
-    assert_int_equal(lstat(scratch_path("link.txt"), &link), 0);
+    assert_false(scratch_exists("nowhere.txt"));
+
+    assert_int_equal(symlink(scratch_dir, scratch_path("folder")), 0);
+    assert_int_equal(dig_out_open(&out, scratch_path("folder"), NULL), DIG_EIO);
+    assert_int_equal(lstat(scratch_path("folder"), &link), 0);
     assert_true(S_ISLNK(link.st_mode));
 }
 
@@ -101,7 +113,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
         cmocka_unit_test(standard_output_is_written_to_and_not_replaced),
-        cmocka_unit_test(a_link_is_followed_and_stays_a_link),
+        cmocka_unit_test(a_link_is_replaced_and_what_it_points_to_stays),
     };
     return cmocka_run_group_tests_name("whole", tests, scratch_setup, scratch_teardown);
 }

@@ -69,6 +69,51 @@ static void anchors_without_number_are_refused_and_a_few_aliases_are_not(void **
     assert_int_equal(read_with("[&a {x: 1}, *a, &b [*a, *a], *b]", NULL), DIG_OK);
 }
 
+// 20 MB of them took 1.6 GB.
+static void values_without_number_are_refused_and_many_are_not(void **state)
+{
+    (void)state;
+    static char text[2200000];
+    for (size_t n = 990000; n <= 1010000; n += 20000) {
+        size_t used = (size_t)snprintf(text, sizeof text, "source: [x");
+        for (size_t i = 0; i < n; i++) {
+            memcpy(text + used, ",x", 2);
+            used += 2;
+        }
+        (void)snprintf(text + used, sizeof text - used, "]\n" REST);
+        (void)scratch_write("campaign.yaml", text);
+        static struct dig_campaign campaign;
+        struct dig_error           error  = { "" };
+        const enum dig_status      status = dig_campaign_read(scratch_dir, &campaign, &error);
+        assert_int_equal(status, n < 1000000 ? DIG_OK : DIG_EINVAL);
+        if (n > 1000000) {
+            assert_contains(error.text, "campaign.yaml:1: more than 1000000 values");
+        }
+    }
+}
+
+// Each is compared with all before it: 50,000 took five seconds.
+static void directives_without_number_are_refused_and_a_few_are_not(void **state)
+{
+    (void)state;
+    for (int n = 8; n <= 9; n++) {
+        static struct dig_campaign campaign;
+        struct dig_error           error = { "" };
+        char                       text[1000];
+        size_t                     used = 0;
+        for (int i = 0; i < n; i++) {
+            used += (size_t)snprintf(text + used, sizeof text - used, "%%TAG !a%d! tag:x:\n", i);
+        }
+        (void)snprintf(text + used, sizeof text - used, "---\n" REST);
+        (void)scratch_write("campaign.yaml", text);
+        const enum dig_status status = dig_campaign_read(scratch_dir, &campaign, &error);
+        assert_int_equal(status, n == 8 ? DIG_OK : DIG_EINVAL);
+        if (n == 9) {
+            assert_contains(error.text, "campaign.yaml:9: more than 8 directives");
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -76,6 +121,8 @@ int main(void)
         cmocka_unit_test(an_alias_within_its_own_anchor_is_refused),
         cmocka_unit_test(what_nests_without_end_is_refused_at_once),
         cmocka_unit_test(anchors_without_number_are_refused_and_a_few_aliases_are_not),
+        cmocka_unit_test(values_without_number_are_refused_and_many_are_not),
+        cmocka_unit_test(directives_without_number_are_refused_and_a_few_are_not),
     };
     return cmocka_run_group_tests_name("yaml_growth", tests, scratch_setup, scratch_teardown);
 }

@@ -195,25 +195,39 @@ static void defects_are_refused_with_file_and_line_and_write_nothing(void **stat
     assert_int_equal(dbc.messages, 42);
 }
 
+static void put_numbered(FILE *const to, const char *const line, const unsigned number)
+{
+    const char *const at = strstr(line, "%u");
+    if (at == NULL) {
+        (void)fputs(line, to);
+    } else {
+        (void)fprintf(to, "%.*s%u%s", (int)(at - line), line, number, at + 2);
+    }
+}
+
 static void a_database_without_end_is_refused(void **state)
 {
     (void)state;
     static const struct {
-        const char *says;
-        unsigned    lines;
+        const char *head, *line, *says; // the line is written with a number in it
+        unsigned    lines, every;       // before so many of them the head is
     } endless[] = {
-        { ":8193: \"M8192\", expected at most 8192 messages", 8200 },
-        { "expected at most 1024 signals", 1100 },
+        { "", "BO_ 1 M%u: 8 S\n", ":8193: \"M8192\", expected at most 8192 messages", 8200, 9000 },
+        { "BO_ 1 M%u: 8 S\n", " SG_ s%u : 0|1@1+ (1,0) [0|1] \"\" S\n",
+          "expected at most 1024 signals of a message", 1100, 2000 },
+        { "BO_ 1 M%u: 8 S\n", " SG_ s%u : 0|1@1+ (1,0) [0|1] \"\" S\n",
+          ":65603: \"s65536\", expected at most 65536 signals", 66000, 1000 },
+        { "BO_ 1 M%u: 8 S\n", "SIG_VALTYPE_ 1 s%u : 1;\n", ":65538: ", 66000, 70000 },
+        { "BO_ 1 M%u: 8 S\n", "BA_ \"GenMsgCycleTime\" BO_ 1 10;\n", ":65538: ", 66000, 70000 },
     };
     for (size_t i = 0; i < sizeof endless / sizeof endless[0]; i++) {
         FILE *const file = fopen(scratch_path("endless.dbc"), "w");
         assert_non_null(file);
-        if (i > 0) {
-            (void)fputs("BO_ 1 M: 8 S\n", file);
-        }
         for (unsigned n = 0; n < endless[i].lines; n++) {
-            (void)fprintf(
-                file, i == 0 ? "BO_ 1 M%u: 8 S\n" : " SG_ s%u : 0|1@1+ (1,0) [0|1] \"\" S\n", n);
+            if (n % endless[i].every == 0) {
+                put_numbered(file, endless[i].head, n);
+            }
+            put_numbered(file, endless[i].line, n);
         }
         assert_int_equal(fclose(file), 0);
         struct dig_dbc   dbc   = { .messages = 42 };

@@ -23,6 +23,9 @@ OURS |= {"Fx_N": "fx_N", "Fx_sd_N": "fx_sd_N", "Fz_N": "fz_N", "Fz_sd_N": "fz_sd
 PLAIN = {"effect": "", "depth": 1, "attack_deg": 0}
 ORDER = [*digsight.table.KEYS, "packing", "t_s", "progress"]
 ANY = dict.fromkeys(PLAIN)
+# A column takes anything once its table is not STRICT.
+LAX = """PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'STRICT', '');
+    PRAGMA writable_schema = RESET;"""
 
 
 def digtable(*words: str) -> str:
@@ -119,9 +122,30 @@ class Digsight(unittest.TestCase):
             ("UPDATE entry SET mean = CAST(x'0000c07f' || substr(mean, 5) AS BLOB)", "mean: expected finite"),
             ("UPDATE run SET windows = 1000000000", "expected 16000000000"),
             ("DELETE FROM run WHERE packing = 0", "run: 0 of an entry with 1 packings"),
+            ("ALTER TABLE run ADD COLUMN more BLOB AS (zeroblob(900000000))", "a view, trigger, virtual table or column"),
+            ("UPDATE trajectory SET name = char(27) || '[2J' || id", r"'\\x1b\[2J0', expected printable text"),
+            ("UPDATE ground SET effect = char(8238)", r"'\\u202e', expected printable text"),
+            ("UPDATE scene SET name = CAST(x'ff' AS TEXT)", "decode to UTF-8"),
+            ("UPDATE run SET version = char(7)", r"'\\x07', expected printable text"),
+            (f"{LAX} UPDATE entry SET mean = 'none'", "mean: a str, expected bytes"),
+            (f"{LAX} UPDATE scene SET points = 'many'", "scene: expected"),
         ):
             with self.assertRaisesRegex(ValueError, f"changed.sqlite: .*{says}"):
                 everything(changed(self.folder, sql))
+
+    def test_what_is_no_file_is_not_waited_for(self) -> None:
+        pipe, table = Path(self.folder, "pipe"), changed(self.folder, "")
+        os.mkfifo(pipe)
+        for path in (pipe, self.folder, "/dev/zero"):
+            for reader in (digsight.open_table, digsight.read_trace):
+                with self.assertRaisesRegex(ValueError, "no regular file"):
+                    reader(path)
+        for beside in ("-journal", "-wal"):
+            os.rename(pipe, f"{table}{beside}")
+            with self.assertRaisesRegex(ValueError, f"changed.sqlite{beside}: no regular file"):
+                digsight.open_table(table)
+            os.rename(f"{table}{beside}", pipe)
+        digsight.open_table(table)
 
     def test_what_a_table_lacks_is_refused_with_what_it_has(self) -> None:
         rig = digsight.open_table(RIG)
@@ -154,6 +178,9 @@ class Digsight(unittest.TestCase):
             ('{"verdict":\n}', "trace.json:2: "),
             ("[]", "a list, expected an object"),
             ('{"digs": 1}', "no key 'material'"),
+            ("[" * 100000, "nested too deep"),
+            ('{"verdict": ["\\u001b[2J"]}', r"'\\x1b\[2J', expected printable text"),
+            ('{"a": [{"\\u009b": 1}]}', r"'\\x9b', expected printable text"),
         ):
             path.write_text(text)
             with self.assertRaisesRegex(ValueError, says):

@@ -73,6 +73,7 @@ if [ -e /usr/share/bash-completion/bash_completion ]; then
     check "not those of another" eval '! completes "digtable list --" --seed'
     check "words that an option takes" completes "digtable dig --engine " "kernel ode cuda"
     check "a table's trajectories" completes "digloop predict tables/rig.sqlite --trajectory s" "simpleA simpleB"
+    check "no word of the line runs" eval '! completes "digtable list -//;e>$work/OWNED;# " x && [ ! -e "$work/OWNED" ]'
     check "files of the right kind" completes "digsightd -c config/digsightd_" "config/digsightd_can.yaml config/digsightd_rtu.yaml"
 else
     skip_check "what is completed" "no bash-completion here"

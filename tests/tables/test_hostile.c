@@ -1,9 +1,11 @@
-// Tests for tables/schema/guard.c and what reads a table: files that mean harm. Every one is
-// refused by every reader and by the writer, and stays as it was.
+// Tests for tables/schema/guard.c, tables/open.c and what reads a table: files that mean harm.
+// Every one is refused by every reader and by the writer, and stays as it was.
 
 #include "tests/tables_fixture.h"
 
 #include "tables/merge.h"
+
+#include <sys/stat.h>
 
 static void make_good(void)
 {
@@ -216,6 +218,174 @@ static void pages_that_belong_to_two_or_to_themselves_are_refused(void **state)
     }
 }
 
+static size_t put_word(uint8_t to[], const size_t value)
+{
+    for (int b = 0; b < 4; b++) {
+        to[b] = (uint8_t)(value >> (24 - 8 * b));
+    }
+    return 4;
+}
+
+// Lays a journal of SQLite's beside a table that is to be rolled back, and that says it is one of
+// several, listed in the file named: SQLite deletes that list once all are rolled back.
+static void lay_journal_of_several(const char *const table, const char *const list)
+{
+    enum { HEADER = 512, PAGES = 65536 };
+    static const uint8_t magic[] = { 0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7 };
+    static uint8_t       journal[HEADER + 2 * PAGES];
+    size_t               size  = 0;
+    uint8_t *const       whole = (uint8_t *)scratch_read(scratch_path(table), &size);
+    const size_t         page  = (size_t)whole[16] << 8 | whole[17];
+    size_t               sum   = 0;
+    memset(journal, 0, sizeof journal);
+    memcpy(journal, magic, sizeof magic);
+    size_t at = sizeof magic;
+    at += put_word(journal + at, 1); // a page
+    at += put_word(journal + at, 0);
+    at += put_word(journal + at, size / page);
+    at += put_word(journal + at, HEADER);
+    (void)put_word(journal + at, page);
+
+    at = HEADER + put_word(journal + HEADER, 1);
+    memcpy(journal + at, whole, page);
+    for (size_t i = page - 200; i > 0 && i < page; i -= 200) {
+        sum += whole[i];
+    }
+    at += page;
+    at += put_word(journal + at, sum);
+
+    const size_t length = strlen(list);
+    size_t       of     = 0;
+    at += put_word(journal + at, 0x40000000 / page + 1);
+    for (size_t i = 0; i < length; i++) {
+        journal[at++] = (uint8_t)list[i];
+        of += (uint8_t)list[i];
+    }
+    at += put_word(journal + at, length);
+    at += put_word(journal + at, of);
+    memcpy(journal + at, magic, sizeof magic);
+    char name[64];
+    (void)snprintf(name, sizeof name, "%s-journal", table);
+    (void)scratch_write_bytes(name, journal, at + sizeof magic);
+    free(whole);
+}
+
+static void a_journal_beside_a_table_deletes_no_other_file(void **state)
+{
+    (void)state;
+    make_good();
+    char list[512];
+    (void)snprintf(list, sizeof list, "%s", scratch_write("precious", "mine"));
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    lay_journal_of_several("good.sqlite", list);
+    assert_int_not_equal(dig_table_load(scratch_path("good.sqlite"), &set, &error), DIG_OK);
+    assert_contains(error.text, "a journal of this table alone");
+    assert_true(scratch_exists("precious"));
+
+    const struct dig_scene scene = fixture_scene();
+    struct dig_store      *store = NULL;
+    lay_journal_of_several("good.sqlite", list);
+    assert_int_not_equal(dig_store_create(scratch_path("good.sqlite"), &scene, &store, &error),
+                         DIG_OK);
+    assert_true(scratch_exists("precious"));
+
+    // What is its own was rolled back.
+    dig_curve_set_destroy(fixture_load("good.sqlite"));
+}
+
+static void what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed(void **state)
+{
+    (void)state;
+    make_good();
+    static const char *const beside[] = { "good.sqlite-journal", "good.sqlite-wal" };
+    const struct dig_scene   scene    = fixture_scene();
+    for (size_t i = 0; i < 2; i++) {
+        struct dig_curve_set *set   = NULL;
+        struct dig_store     *store = NULL;
+        if (i == 1) {
+            fixture_run_sql("good.sqlite", "PRAGMA journal_mode = WAL");
+        }
+        assert_int_equal(mkfifo(scratch_path(beside[i]), 0600), 0);
+        (void)alarm(20); // ends who waits
+        assert_int_not_equal(dig_table_load(scratch_path("good.sqlite"), &set, NULL), DIG_OK);
+        (void)alarm(0);
+        assert_int_equal(unlink(scratch_path(beside[i])), 0);
+
+        // To an empty file, and to none: SQLite would write the one and make the other.
+        (void)scratch_write("precious", "");
+        static const char *const targets[] = { "precious", "nowhere" };
+        for (size_t t = 0; t < 2; t++) {
+            assert_int_equal(symlink(scratch_path(targets[t]), scratch_path(beside[i])), 0);
+            if (dig_store_create(scratch_path("good.sqlite"), &scene, &store, NULL) == DIG_OK) {
+                const struct dig_run_origin origin    = fixture_origin(.7, .3, 2500, t, 0);
+                const struct dig_recording  recording = fixture_recording(400, 1.0);
+                assert_int_not_equal(dig_store_put(store, &origin, &recording, NULL), DIG_OK);
+                dig_store_close(store);
+            }
+            struct stat found;
+            assert_int_equal(stat(scratch_path("precious"), &found), 0);
+            assert_int_equal(found.st_size, 0);
+            assert_false(scratch_exists("nowhere"));
+            (void)unlink(scratch_path(beside[i]));
+        }
+    }
+}
+
+static void no_table_is_made_through_a_link(void **state)
+{
+    (void)state;
+    const struct dig_scene scene = fixture_scene();
+    struct dig_store      *store = NULL;
+    struct dig_error       error = { "" };
+    assert_int_equal(symlink(scratch_write("nothing", ""), scratch_path("empty.sqlite")), 0);
+    assert_int_equal(symlink(scratch_path("elsewhere"), scratch_path("lost.sqlite")), 0);
+    assert_int_equal(dig_store_create(scratch_path("empty.sqlite"), &scene, &store, &error),
+                     DIG_EINVAL);
+    assert_contains(error.text, "a link to an empty file");
+    assert_int_equal(dig_store_create(scratch_path("lost.sqlite"), &scene, &store, &error),
+                     DIG_EIO);
+    struct stat found;
+    assert_int_equal(stat(scratch_path("nothing"), &found), 0);
+    assert_int_equal(found.st_size, 0);
+    assert_false(scratch_exists("elsewhere"));
+
+    // To a table it is as good as the table's name.
+    dig_store_close(fixture_create("whole.sqlite"));
+    assert_int_equal(symlink(scratch_path("whole.sqlite"), scratch_path("link.sqlite")), 0);
+    dig_store_close(fixture_create("link.sqlite"));
+}
+
+// Debian's SQLite takes a name that begins with "file:" for a URI, which may choose another file
+// and another file system than the guarded one.
+static void a_table_is_the_file_of_its_very_name(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "file:good.sqlite", "file:good.sqlite?vfs=unix",
+                                         "file:good.sqlite?mode=memory", ":memory:" };
+    make_good();
+    char before[512];
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(scratch_dir), 0);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct dig_curve_set  *set   = NULL;
+        struct dig_store      *store = NULL;
+        const struct dig_scene scene = fixture_scene();
+        assert_int_equal(dig_table_load(names[i], &set, NULL), DIG_EIO); // it is not there
+        assert_int_equal(dig_store_create(names[i], &scene, &store, NULL), DIG_OK);
+        fixture_put(store, .9, .9, 0, 0, 5.0);
+        dig_store_close(store);
+        assert_int_equal(dig_table_load(names[i], &set, NULL), DIG_OK);
+        assert_int_equal(set->entries, 1);
+        assert_close(set->gravel[0].value[DIG_AXIS_FRICTION], .9, 0.0);
+        dig_curve_set_destroy(set);
+    }
+    assert_int_equal(chdir(before), 0);
+    struct dig_curve_set *const good = fixture_load("good.sqlite");
+    assert_int_equal(good->entries, 2);
+    dig_curve_set_destroy(good);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +401,15 @@ int main(void)
             scratch_teardown),
         cmocka_unit_test_setup_teardown(pages_that_belong_to_two_or_to_themselves_are_refused,
                                         scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_journal_beside_a_table_deletes_no_other_file,
+                                        scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(
+            what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed, scratch_setup,
+            scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_table_is_the_file_of_its_very_name, scratch_setup,
+                                        scratch_teardown),
+        cmocka_unit_test_setup_teardown(no_table_is_made_through_a_link, scratch_setup,
+                                        scratch_teardown),
     };
     return cmocka_run_group_tests_name("hostile", tests, NULL, NULL);
 }

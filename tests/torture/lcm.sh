@@ -1,6 +1,6 @@
 #!/bin/bash
 # A flood of garbage on the network on which the daemon publishes: it reads nothing there, so it identifies the gravel
-# as ever, its memory is flat, and its log is read by our tools, up to what is not ours.
+# as ever, its memory is flat, and its log is read by our tools, up to what is not ours. digwatch reads there, and lives.
 . tests/system/daemon_lib.bash
 . tests/torture/torture.bash
 
@@ -19,13 +19,24 @@ wait_for 60 grep -q "running" "$work/run.log"
 sleep 1
 before_kB=$(memory_kB "$daemon")
 after_kB=$before_kB
-# A listener hears the garbage and the daemon.
+watch_kB=0
+start "$work/watch.log" "$BIN/digwatch" --lcm-url "$lcm" --prometheus "$work/health.prom"
+watch=$started
+# A listener hears the garbage and the daemon. Of liblcm's it may kill one, which leaves what it heard.
 start "$work/spy.log" timeout 3 lcm-logger --lcm-url="$lcm&recv_buf_size=4000000" "$work/flooded.lcm"
 while kill -0 "$daemon" 2>/dev/null; do
     now_kB=$(memory_kB "$daemon" 2>/dev/null)
     after_kB=${now_kB:-$after_kB}
+    now_kB=$(memory_kB "$watch" 2>/dev/null)
+    [ "${now_kB:-0}" -le "$watch_kB" ] || watch_kB=$now_kB
     sleep 1
 done
+check "digwatch is alive after the flood" kill "$watch"
+wait "$watch"
+check "and ends as ever" [ $? = 0 ]
+check "it heard the daemon, and much that was not understood" \
+    awk '$1 == "digsight_digs_total" { digs = $2 } $1 == "digsight_misread_total" { misread = $2 } END { exit !(digs >= 1 && misread >= 100) }' "$work/health.prom"
+check "it took 8 MB at most" [ "$watch_kB" -le 8192 ]
 wait "$flood"
 wait "$daemon"
 status=$?

@@ -2,6 +2,7 @@
 
 #include "closed_loop/verdict/trace.h"
 #include "closed_loop/report/trace_report.h"
+#include "core/text.h"
 #include "estimator/effects/effect.h"
 #include "files/text/whole.h"
 #include "tables/load_effects.h"
@@ -25,10 +26,9 @@ static void name_effects(const char *const table, char path[const DIGLOOP_PATH_S
 
 static void say_without_beds(const char *const path)
 {
-    (void)fprintf(stderr,
-                  "digloop: no %s: of the soil's effects only those are named that need no "
-                  "beds (",
-                  path);
+    dig_text_print(stderr,
+                   "digloop: no %s: of the soil's effects only those are named that need no beds (",
+                   path);
     const char *before = "";
     for (int e = DIG_MACHINE_EFFECTS; e < DIG_EFFECT_UNLISTED; e++) {
         if (!dig_effect_of((enum dig_effect_id)e)->templated) {

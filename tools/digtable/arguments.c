@@ -2,6 +2,7 @@
 
 #include "core/did_you_mean.h"
 #include "core/help.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "tools/digtable/help.h"
 
@@ -16,12 +17,12 @@
 
 __attribute__((format(printf, 1, 2))) int dig_cli_bad_usage(const char *const format, ...)
 {
+    char    text[4096];
     va_list args;
     va_start(args, format);
-    (void)fputs("digtable: ", stderr);
-    (void)vfprintf(stderr, format, args);
-    (void)fputs("\ndigtable: see digtable --help\n", stderr);
+    (void)vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    dig_text_print(stderr, "digtable: %s\ndigtable: see digtable --help\n", text);
     return EXIT_BAD_INPUT;
 }
 

@@ -102,9 +102,9 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
         status = dig_recording_write(a->output, &recording, error);
     }
     if (status == DIG_OK && !a->quiet) {
-        (void)fprintf(stderr, "%s%zu grains, %zu samples, %.1f s -> %s",
-                      dig_progress_start(&watch.line), bed->grains, recording.rows,
-                      dig_progress_now_s() - watch.from_s, a->output);
+        (void)fputs(dig_progress_start(&watch.line), stderr);
+        dig_text_print(stderr, "%zu grains, %zu samples, %.1f s -> %s", bed->grains, recording.rows,
+                       dig_progress_now_s() - watch.from_s, a->output);
         dig_progress_end(&watch.line, true);
     }
     dig_recording_finish(&recording);
@@ -149,9 +149,9 @@ int dig_cli_dig(const struct dig_arguments *const a)
         return dig_cli_bad_input(status, &error);
     }
     if (dig_scene_find(&scene, a->trajectory) == NULL) {
-        (void)fprintf(stderr,
-                      "digtable: %s: trajectories: no \"%s\", expected one of:", a->positional[0],
-                      a->trajectory);
+        dig_text_print(stderr,
+                       "digtable: %s: trajectories: no \"%s\", expected one of:", a->positional[0],
+                       a->trajectory);
         for (size_t i = 0; i < scene.trajectories; i++) {
             (void)fprintf(stderr, " %s", scene.trajectory[i].name);
         }
@@ -173,7 +173,7 @@ int dig_cli_dig(const struct dig_arguments *const a)
 
     // Before the minutes of pouring: an impossible folder must not cost them.
     if (a->vtk != NULL && mkdir(a->vtk, 0777) != 0 && errno != EEXIST) {
-        (void)fprintf(stderr, "digtable: --vtk %s: %s\n", a->vtk, strerror(errno));
+        dig_text_print(stderr, "digtable: --vtk %s: %s\n", a->vtk, strerror(errno));
         return EXIT_WORK_FAILED;
     }
 

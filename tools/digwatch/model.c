@@ -4,6 +4,7 @@
 #include "core/text.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -85,7 +86,8 @@ static void add_to_slots(struct digwatch_model *const m, const struct digwatch_e
         m->slot[++m->slot_index % DIGWATCH_SLOTS] = no_slot;
     }
     struct digwatch_slot *const slot = &m->slot[index % DIGWATCH_SLOTS];
-    m->slot_rows++;
+    // Of a sender whose clock stands still a slot never ends.
+    m->slot_rows += m->slot_rows < INT_MAX ? 1 : 0;
     average(&slot->measured_Nm, e->moment_valid ? e->moment_Nm : (double)NAN, m->slot_rows);
     average(&slot->predicted_Nm, e->predicted_Nm, m->slot_rows);
     average(&slot->sigma_Nm, e->predicted_sigma_Nm, m->slot_rows);

@@ -1,58 +1,51 @@
 #include "tools/digwatch/source.h"
 
+#include "files/lcm/lcm_datagram.h"
 #include "files/lcm/lcm_log.h"
+#include "tools/digwatch/multicast.h"
 
 #include <assert.h>
-#include <lcm/lcm.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
 
 #define AT_ONCE  5000 // messages between two looks at the keyboard
-#define QUEUE    2000 // messages that LCM keeps for us
 #define PAUSE_us 10000000
-#define CHANNELS "DIGSIGHT_(ESTIMATE|MATCH|PREDICTION|HEALTH)"
 
 struct digwatch_source {
-    lcm_t                       *lcm; // NULL: a log
-    const struct digwatch_taker *taker;
-    struct dig_lcm_log          *log;
-    const struct dig_lcm_event  *next; // of the log; NULL: its end
-    double                       speed, due_s;
+    int                         fd; // -1: a log
+    struct dig_lcm_log         *log;
+    const struct dig_lcm_event *next; // of the log; NULL: its end
+    double                      speed, due_s;
+    uint8_t                     datagram[DIG_LCM_DATAGRAM_MOST];
 };
 
-static void hand_on(const lcm_recv_buf_t *const received, const char *const channel,
-                    void *const context)
+// A source that is neither yet.
+static struct digwatch_source *make(void)
 {
-    const struct digwatch_source *const source = context;
-    const struct dig_lcm_event          event  = { .time_us = received->recv_utime,
-                                                   .channel = channel,
-                                                   .size    = received->data_size,
-                                                   .data    = received->data };
-    source->taker->take(source->taker->context, &event);
+    struct digwatch_source *const s = calloc(1, sizeof *s);
+    if (s != NULL) {
+        s->fd    = -1;
+        s->due_s = INFINITY;
+    }
+    return s;
 }
 
 enum dig_status digwatch_source_listen(const char *const url, struct digwatch_source **const source,
                                        struct dig_error *const error)
 {
     assert(url != NULL && source != NULL);
-    struct digwatch_source *const s            = calloc(1, sizeof *s);
-    lcm_subscription_t           *subscription = NULL;
+    struct digwatch_source *const s = make();
     if (s == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    s->due_s = INFINITY;
-    s->lcm   = lcm_create(url);
-    if (s->lcm != NULL) {
-        subscription = lcm_subscribe(s->lcm, CHANNELS, hand_on, s);
-    }
-    if (subscription == NULL) {
+    const enum dig_status status = digwatch_multicast_open(url, &s->fd, error);
+    if (status != DIG_OK) {
         digwatch_source_close(s);
-        return dig_error_set(error, DIG_EIO,
-                             "LCM %s: no such network (a multicast route is needed: "
-                             "ip route add 239.255.76.67 dev lo)",
-                             url);
+        return status;
     }
-    (void)lcm_subscription_set_queue_capacity(subscription, QUEUE);
     *source = s;
     return DIG_OK;
 }
@@ -62,11 +55,12 @@ enum dig_status digwatch_source_play(const char *const path, const double speed,
                                      struct dig_error *const        error)
 {
     assert(path != NULL && speed > 0.0 && source != NULL);
-    struct digwatch_source *const s = calloc(1, sizeof *s);
+    struct digwatch_source *const s = make();
     if (s == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     s->speed               = speed;
+    s->due_s               = 0.0;
     enum dig_status status = dig_lcm_log_open(path, &s->log, error);
     if (status == DIG_OK) {
         status = dig_lcm_log_next(s->log, &s->next, error);
@@ -108,25 +102,42 @@ static enum dig_status read_log(struct digwatch_source *const s, const double no
     return DIG_OK;
 }
 
+static int64_t wall_us(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+static void read_network(struct digwatch_source *const s, const struct digwatch_taker *const taker)
+{
+    ssize_t size;
+    for (int n = 0; n < AT_ONCE && (size = recv(s->fd, s->datagram, sizeof s->datagram, 0)) >= 0;
+         n++) {
+        struct dig_lcm_event event = { .time_us = wall_us() };
+        if (dig_lcm_datagram(s->datagram, (size_t)size, &event) &&
+            dig_lcm_message_is_known(event.channel)) {
+            taker->take(taker->context, &event);
+        }
+    }
+}
+
 enum dig_status digwatch_source_read(struct digwatch_source *const source, const double now_s,
                                      const struct digwatch_taker *const taker,
                                      struct dig_error *const            error)
 {
     assert(source != NULL && taker != NULL && taker->take != NULL);
-    if (source->lcm == NULL) {
+    if (source->fd < 0) {
         return read_log(source, now_s, taker, error);
     }
-    source->taker = taker;
-    int n         = 0;
-    while (n++ < AT_ONCE && lcm_handle_timeout(source->lcm, 0) > 0) {
-    }
+    read_network(source, taker);
     return DIG_OK;
 }
 
 int digwatch_source_fd(const struct digwatch_source *const source)
 {
     assert(source != NULL);
-    return source->lcm != NULL ? lcm_get_fileno(source->lcm) : -1;
+    return source->fd;
 }
 
 double digwatch_source_due_s(const struct digwatch_source *const source)
@@ -138,14 +149,14 @@ double digwatch_source_due_s(const struct digwatch_source *const source)
 bool digwatch_source_ended(const struct digwatch_source *const source)
 {
     assert(source != NULL);
-    return source->lcm == NULL && source->next == NULL;
+    return source->fd < 0 && source->next == NULL;
 }
 
 void digwatch_source_close(struct digwatch_source *const source)
 {
     if (source != NULL) {
-        if (source->lcm != NULL) {
-            lcm_destroy(source->lcm);
+        if (source->fd >= 0) {
+            (void)close(source->fd);
         }
         dig_lcm_log_close(source->log);
         free(source);

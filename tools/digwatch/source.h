@@ -16,7 +16,7 @@ struct digwatch_taker {
     void (*take)(void *context, const struct dig_lcm_event *event);
 };
 
-/// Listens on an LCM network, to the daemon's channels alone. DIG_EIO: there is none.
+/// Listens on an LCM network, to the daemon's channels alone. Fails as digwatch_multicast_open().
 DIG_MUST_CHECK enum dig_status
 digwatch_source_listen(const char *url, struct digwatch_source **source, struct dig_error *error);
 

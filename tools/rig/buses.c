@@ -1,5 +1,6 @@
 #include "tools/rig/buses.h"
 
+#include "core/text.h"
 #include "tools/rig/bus/can_layout.h"
 #include "tools/rig/bus/serve_can.h"
 
@@ -21,21 +22,21 @@ enum dig_status dig_rig_buses_open(const struct dig_rig_options *const options,
     if (options->can != NULL) {
         status = dig_rig_can_open(options->can, &buses->can, error);
         if (status == DIG_OK) {
-            (void)fprintf(stderr, "digrig: serving CAN frames on %s\n", options->can);
+            dig_text_print(stderr, "digrig: serving CAN frames on %s\n", options->can);
         }
     }
     if (status == DIG_OK && options->tcp != NULL) {
         status = dig_rig_modbus_start_tcp(options->tcp, &buses->board, sizeof where, where,
                                           &buses->tcp, error);
         if (status == DIG_OK) {
-            (void)fprintf(stderr, "digrig: serving %s\n", where);
+            dig_text_print(stderr, "digrig: serving %s\n", where);
         }
     }
     if (status == DIG_OK && options->rtu != NULL) {
         status = dig_rig_modbus_start_rtu(options->rtu, &buses->board, sizeof where, where,
                                           &buses->rtu, error);
         if (status == DIG_OK) {
-            (void)fprintf(stderr, "digrig: serving %s\n", where);
+            dig_text_print(stderr, "digrig: serving %s\n", where);
         }
     }
     if (status != DIG_OK) {

@@ -1,0 +1,79 @@
+#include "tables/open.h"
+
+#include "tables/schema/schema.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+// SQLite keeps what is registered as long as the process lives.
+static sqlite3_vfs    guarded;
+static pthread_once_t registered = PTHREAD_ONCE_INIT;
+
+// Those that SQLite names itself; of an own temporary file it makes sure.
+static bool stands_beside(const int flags)
+{
+    return (flags & (SQLITE_OPEN_MAIN_JOURNAL | SQLITE_OPEN_WAL)) != 0;
+}
+
+static int open_file(sqlite3_vfs *const vfs, const char *const path, sqlite3_file *const file,
+                     const int flags, int *const flags_out)
+{
+    sqlite3_vfs *const system = sqlite3_vfs_find(NULL);
+    struct stat        found;
+    (void)vfs;
+    file->pMethods = NULL; // nothing for SQLite to close
+    if ((flags & SQLITE_OPEN_SUPER_JOURNAL) != 0 ||
+        (stands_beside(flags) && lstat(path, &found) == 0 && !S_ISREG(found.st_mode))) {
+        return SQLITE_CANTOPEN;
+    }
+    return system->xOpen(system, path, file, flags, flags_out);
+}
+
+static void guard(void)
+{
+    const sqlite3_vfs *const system = sqlite3_vfs_find(NULL);
+    if (system != NULL) {
+        guarded       = *system;
+        guarded.zName = "digsight";
+        guarded.xOpen = open_file;
+        (void)sqlite3_vfs_register(&guarded, 0);
+    }
+}
+
+// A path that SQLite takes for nothing else: a relative one could be ":memory:", or "file:" with
+// words behind it that name another file, or none of our guard.
+static bool plain_path(const char *const path, const size_t size, char plain[const])
+{
+    const int length = snprintf(plain, size, "%s%s", path[0] == '/' ? "" : "./", path);
+    return path[0] != '\0' && length > 0 && (size_t)length < size;
+}
+
+enum dig_status dig_sql_open(const char *const path, const int flags, sqlite3 **const db,
+                             struct dig_error *const error)
+{
+    assert(path != NULL && db != NULL);
+    sqlite3 *opened = NULL;
+    char     plain[PATH_MAX];
+    if (!plain_path(path, sizeof plain, plain)) {
+        return dig_error_set(error, DIG_EINVAL, "%.200s: no name of a file, expected one", path);
+    }
+    // Where it could not be registered SQLite says so, and opens nothing.
+    (void)pthread_once(&registered, guard);
+    if (sqlite3_open_v2(plain, &opened, flags, "digsight") != SQLITE_OK) {
+        (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
+                            opened != NULL ? sqlite3_errmsg(opened) : "no memory");
+        (void)sqlite3_close(opened);
+        return DIG_EIO;
+    }
+    const enum dig_status status = dig_sql_setup(opened, path, error);
+    if (status != DIG_OK) {
+        (void)sqlite3_close(opened);
+        return status;
+    }
+    *db = opened;
+    return DIG_OK;
+}
