@@ -36,7 +36,7 @@ static const double wrong_Pa     = 3e6;
 static const double wrong_late_s = 0.1;
 
 // A chamber that changes a push by less than this share of what the other does is a return side.
-static const double little_share = 0.2;
+static const double little_share = 0.5;
 
 // The columns of struct dig_file_error.
 enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
