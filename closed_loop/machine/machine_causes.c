@@ -31,7 +31,8 @@ static const double inertia_share = 0.2;
 
 // 1 sigma of a cause that is wrong.
 static const double wrong_rad    = 10.0 * DIG_RAD_PER_DEG;
-static const double wrong_share  = 0.3; // of a span, and half as much again of a weight
+static const double wrong_share  = 0.2;  // of a span
+static const double wrong_weight = 0.45; // of a weight
 static const double wrong_Pa     = 3e6;
 static const double wrong_late_s = 0.1;
 
@@ -98,7 +99,7 @@ static double wrong_of(const struct work *const w, const size_t cause)
     case DIG_CAUSE_FACTOR: return wrong_share;
     case DIG_CAUSE_OFFSET: return wrong_Pa;
     case DIG_CAUSE_WEIGHT:
-        return 1.5 * wrong_share * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
+        return wrong_weight * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
     case DIG_CAUSE_KINDS: break;
     }
     return (double)NAN;
@@ -356,12 +357,13 @@ static double share_of(const struct work *const w, const size_t cause, const siz
                                              dig_cylinder_head_m2(cylinder_of(w, joint));
 }
 
-static void figure(struct work *const w, const unsigned named, const size_t k,
-                   struct dig_cause *const cause)
+// Value and sigma of a cause where these are named.
+static void value_of(struct work *const w, const unsigned named, const size_t k,
+                     struct dig_cause *const cause)
 {
     struct dig_fit_answer answer;
     const size_t          n = w->lines.columns;
-    solve(w, named | 1U << k, true, &answer);
+    solve(w, named, true, &answer);
     double value    = 0.0;
     double variance = 0.0;
     for (size_t a = 0; a < n; a++) {
@@ -371,21 +373,41 @@ static void figure(struct work *const w, const unsigned named, const size_t k,
             variance += share * share_of(w, k, b) * w->covariance[a * n + b];
         }
     }
-    cause->value     = value;
-    cause->sigma     = sqrt(fmax(variance, 0.0));
-    cause->tolerance = tolerance_of(w, k);
-    cause->named     = ((named >> k) & 1U) != 0;
-    cause->log_gain  = cause->named ? evidence(w, named) - evidence(w, named & ~(1U << k))
-                                    : evidence(w, named | 1U << k) - evidence(w, named);
-    cause->or_cause  = -1;
-    double most      = evidence(w, named) - tie;
-    for (unsigned o = 0; o < DIG_CAUSES && cause->named; o++) {
+    cause->value = value;
+    cause->sigma = sqrt(fmax(variance, 0.0));
+}
+
+// The best in the place of a cause that is named, if it does as well; or -1.
+static int tied(struct work *const w, const unsigned named, const unsigned k)
+{
+    double most  = evidence(w, named) - tie;
+    int    other = -1;
+    for (unsigned o = 0; o < DIG_CAUSES; o++) {
         const unsigned instead = (named & ~(1U << k)) | 1U << o;
         const double   then    = w->asked[o] && ((named >> o) & 1U) == 0 ? evidence(w, instead)
                                                                           : -(double)INFINITY;
         if (then > most) {
-            most            = then;
-            cause->or_cause = (int)o;
+            most  = then;
+            other = (int)o;
+        }
+    }
+    return other;
+}
+
+static void figures(struct work *const w, const unsigned named, struct dig_cause cause[DIG_CAUSES])
+{
+    for (unsigned k = 0; k < DIG_CAUSES; k++) {
+        const unsigned one = 1U << k;
+        value_of(w, named | one, k, &cause[k]);
+        cause[k].tolerance = tolerance_of(w, k);
+        cause[k].named     = (named & one) != 0;
+        cause[k].log_gain  = evidence(w, named | one) - evidence(w, named & ~one);
+        cause[k].or_cause  = cause[k].named ? tied(w, named, k) : -1;
+    }
+    for (unsigned k = 0; k < DIG_CAUSES; k++) {
+        const int o = cause[k].or_cause;
+        if (o >= 0) {
+            value_of(w, (named & ~(1U << k)) | 1U << (unsigned)o, (size_t)o, &cause[o]);
         }
     }
 }
@@ -467,10 +489,8 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
     if (status == DIG_OK) {
         status = rests(&w, w.lines.at, found.rest);
     }
-    for (size_t k = 0; k < DIG_CAUSES && status == DIG_OK; k++) {
-        figure(&w, named, k, &found.cause[k]);
-    }
     if (status == DIG_OK) {
+        figures(&w, named, found.cause);
         // The causes alone: what is within its tolerance is no one's to mend.
         for (size_t c = 0; c < w.lines.columns; c++) {
             const int cause = cause_of(&w.lines.column[c]);

@@ -34,6 +34,7 @@ struct dig_check_item *dig_check_add(struct dig_machine_air_check *const check,
                                     .sigma     = (double)NAN,
                                     .tolerance = (double)NAN,
                                     .excess    = (double)NAN,
+                                    .at_rod    = (double)NAN,
                                     .answer    = of,
                                     .or_item   = -1,
     };
@@ -132,7 +133,8 @@ static void check_cause(const struct dig_causes *const causes, const size_t k, c
                                                                  : DIG_CHECK_OK;
 }
 
-static void check_causes(const struct dig_causes *const causes, const bool moves[DIG_JOINTS],
+static void check_causes(const struct dig_machine *const machine,
+                         const struct dig_causes *const causes, const bool moves[DIG_JOINTS],
                          struct dig_machine_air_check *const check)
 {
     static const enum dig_check_question questions[DIG_CAUSE_KINDS] = {
@@ -146,6 +148,9 @@ static void check_causes(const struct dig_causes *const causes, const bool moves
             const bool   told   = moves[j] && isfinite(causes->rest[j]);
             const double coarse = kind == DIG_CAUSE_ZERO ? check->reading.best.zero_rad[j] : 0.0;
             check_cause(causes, DIG_JOINTS * kind + j, told, coarse, check, questions[kind], (int)j);
+            check->item[check->items - 1].at_rod =
+                -check->item[check->items - 1].value * dig_cylinder_head_m2(&machine->cylinder[j]) /
+                dig_cylinder_rod_m2(&machine->cylinder[j]);
         }
     }
     check_cause(causes, DIG_CAUSE_DELAY, true, 0.0, check, DIG_CHECK_DELAY, -1);
@@ -157,7 +162,6 @@ static void check_causes(const struct dig_causes *const causes, const bool moves
         struct dig_check_item *const mine  = &check->item[item_of(check, (int)k)];
         struct dig_check_item *const other = &check->item[item_of(check, or_cause)];
         mine->or_item                      = (int)(other - check->item);
-        mine->verdict                      = DIG_CHECK_DOUBTFUL;
         other->or_item                     = (int)(mine - check->item);
         other->verdict                     = DIG_CHECK_DOUBTFUL;
     }
@@ -276,7 +280,7 @@ static enum dig_status read_best(const struct dig_machine *const           machi
         status = dig_causes_find(&air, moves, &causes, correction);
     }
     if (status == DIG_OK) {
-        check_causes(&causes, moves, check);
+        check_causes(machine, &causes, moves, check);
         check_rest(&causes, check);
         memcpy(check->rest_plain, causes.rest_plain, sizeof check->rest_plain);
         // Read otherwise, other samples may lack a pressure.

@@ -35,7 +35,7 @@ enum dig_check_question {
     DIG_CHECK_SIDES,     // head is head and rod is rod; value: sigmas
     DIG_CHECK_UNIT,      // a unit, or a factor of ten: true over read
     DIG_CHECK_FACTOR,    // the pressures read so many times too much, less one
-    DIG_CHECK_OFFSET,    // they read so much too much, Pa at the head side
+    DIG_CHECK_OFFSET,    // they read so much too much, Pa at the head side; at_rod: or there
     DIG_CHECK_WEIGHT,    // the link weighs so much more than the file says, kg
     DIG_CHECK_DELAY,     // pressures are so much older than angles, s
     DIG_CHECK_REST,      // what nothing of this explains: rms over its sigma
@@ -45,7 +45,7 @@ enum dig_check_question {
 enum dig_check_verdict {
     DIG_CHECK_OK,
     DIG_CHECK_UNTOLD,   // the recording does not tell
-    DIG_CHECK_DOUBTFUL, // wrong, or another thing is; or not surely wrong
+    DIG_CHECK_DOUBTFUL, // not surely wrong; or it is in the place of what is called wrong
     DIG_CHECK_WRONG
 };
 
@@ -56,7 +56,8 @@ struct dig_check_item {
     enum dig_check_verdict  verdict;
     double                  value, sigma, tolerance;
     double                  excess;    // sigmas by which the file's answer is worse
-    int                     answer;    // CYLINDER: whose pressures they are
+    double                  at_rod;    // OFFSET: the value, if the rod side's sensor is wrong
+    int                     answer;    // CYLINDER: in whose columns its pressures are
     int                     or_item;   // another line that explains it as well; -1: none
 };
 

@@ -252,23 +252,24 @@ static double misfit(const struct search *const s, const struct sums *const sums
     return 0.5 * (fmax(chi2, 0.0) + missing);
 }
 
-static double least(double *const kept, const double cost)
+static void keep_least(double *const kept, const double cost)
 {
-    *kept = fmin(*kept, cost);
-    return *kept;
+    if (cost < *kept) {
+        *kept = cost;
+    }
 }
 
 static void keep(struct search *const s, const struct dig_reading *const reading,
                  const size_t factor[DIG_JOINTS], const double cost)
 {
     for (int j = 0; j < DIG_JOINTS; j++) {
-        (void)least(&s->turned[j][reading->turned[j] ? 1 : 0], cost);
-        (void)least(&s->drive[j][reading->drive[j]], cost);
-        (void)least(&s->swapped[j][reading->swapped[j] ? 1 : 0], cost);
-        (void)least(&s->factor[j][factor[j]], cost);
+        keep_least(&s->turned[j][reading->turned[j] ? 1 : 0], cost);
+        keep_least(&s->drive[j][reading->drive[j]], cost);
+        keep_least(&s->swapped[j][reading->swapped[j] ? 1 : 0], cost);
+        keep_least(&s->factor[j][factor[j]], cost);
     }
     if (dig_reading_is_plain(reading)) {
-        (void)least(&s->plain_cost, cost);
+        keep_least(&s->plain_cost, cost);
     }
     if (cost < s->cost) {
         s->cost = cost;
