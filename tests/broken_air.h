@@ -1,6 +1,6 @@
 // Recordings in free air of a machine whose file, wiring or sensors are broken in exactly one way.
-// The machine is the rig's, by virtual work; what is broken is broken in its samples, by formulas of
-// the tests' own, or in the file that is checked.
+// The machine is the rig's, by virtual work; what is broken is broken in its samples, by formulas
+// of the tests' own, or in the file that is checked.
 
 #ifndef DIG_TESTS_BROKEN_AIR_H
 #define DIG_TESTS_BROKEN_AIR_H
@@ -54,7 +54,9 @@ struct air_break {
 #define AIR_EACH(text, kind, amount, question)                                                     \
     { "boom " text, kind, 0, 0, amount, question, 0, DIG_CHECK_WRONG },                            \
         { "arm " text, kind, 1, 1, amount, question, 1, DIG_CHECK_WRONG },                         \
-        { "bucket " text, kind, 2, 2, amount, question, 2, DIG_CHECK_WRONG }
+    {                                                                                              \
+        "bucket " text, kind, 2, 2, amount, question, 2, DIG_CHECK_WRONG                           \
+    }
 
 static const struct air_break air_breaks[] = {
     AIR_EACH("angle turned", AIR_TURNED, 0.0, DIG_CHECK_DIRECTION),
@@ -84,6 +86,45 @@ static const struct air_break air_breaks[] = {
       DIG_CHECK_WRONG },
 };
 #define AIR_BREAKS (sizeof air_breaks / sizeof air_breaks[0])
+
+/// The line that must find a break.
+static inline bool air_is_asked(const struct dig_check_item *const item,
+                                const struct air_break *const      broken)
+{
+    return item->question == broken->asked && item->of == broken->found;
+}
+
+/// True when that line has the verdict it should.
+static inline bool air_is_named(const struct dig_machine_air_check *const check,
+                                const struct air_break *const             broken)
+{
+    bool named = false;
+    for (size_t i = 0; i < check->items; i++) {
+        named = named || (air_is_asked(&check->item[i], broken) &&
+                          check->item[i].verdict == broken->verdict);
+    }
+    return named;
+}
+
+/// True when anything else is called wrong or doubtful: another question, or of two cylinders that
+/// are exchanged or a unit that all have, one of them not. What stands in the place of the break
+/// says so itself.
+static inline bool air_says_more(const struct dig_machine_air_check *const check,
+                                 const struct air_break *const             broken)
+{
+    bool more = false;
+    for (size_t i = 0; i < check->items; i++) {
+        const struct dig_check_item *const item = &check->item[i];
+
+        const bool same    = broken != NULL && item->question == broken->asked;
+        const bool several = same && (broken->kind == AIR_DRIVES || broken->kind == AIR_UNIT);
+        const bool mine    = several || (same && item->of == broken->found);
+        const bool instead = broken != NULL && item->or_item >= 0 &&
+                             air_is_asked(&check->item[item->or_item], broken);
+        more = more || (item->verdict >= DIG_CHECK_DOUBTFUL && !mine && !instead);
+    }
+    return more;
+}
 
 /// Reads a machine that ships, and moves it in free air. False: an error, in *error.
 static inline bool air_move(const char *const name, struct dig_machine *const machine,
@@ -165,8 +206,8 @@ static inline struct dig_machine_recording air_record(const struct dig_machine *
         if (kind != AIR_WHOLE) {
             air_spoil(broken, &sample);
         }
-        if (kind == AIR_STILL && (air_is_away(track, i, broken->of) ||
-                                  air_is_away(track, i + 1, broken->of))) {
+        if (kind == AIR_STILL &&
+            (air_is_away(track, i, broken->of) || air_is_away(track, i + 1, broken->of))) {
             continue;
         }
         if (kind == AIR_GAP && i * 2 > track->rows) {

@@ -62,9 +62,8 @@ int main(const int argc, char *argv[])
     struct dig_curve_set *set    = NULL;
     bool                  wrong  = false;
     const bool            checks = strcmp(options.command, "check") == 0;
-    enum dig_status       status = checks
-                                       ? check(&options, &wrong, &error)
-                                       : digloop_input(dig_table_load(options.table, &set, &error));
+    enum dig_status       status = checks ? check(&options, &wrong, &error)
+                                          : digloop_input(dig_table_load(options.table, &set, &error));
     if (status == DIG_OK && !checks) {
         note_step(options.table, set);
         status = run(&options, set, &error);

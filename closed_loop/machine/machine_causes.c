@@ -69,7 +69,8 @@ static double weight_tolerance_kg(const struct dig_machine *const machine, const
     const struct dig_link *const link = &machine->link[joint];
 
     const double lies_m = dig_vec2_norm(link->com_m);
-    const double share  = lies_m > 0.0 ? machine->tolerance.com_share * link->length_m / lies_m : 0.0;
+    const double share =
+        lies_m > 0.0 ? machine->tolerance.com_share * link->length_m / lies_m : 0.0;
     return link->mass_kg * hypot(machine->tolerance.mass_share, share);
 }
 
@@ -98,8 +99,7 @@ static double wrong_of(const struct work *const w, const size_t cause)
     case DIG_CAUSE_ZERO: return wrong_rad;
     case DIG_CAUSE_FACTOR: return wrong_share;
     case DIG_CAUSE_OFFSET: return wrong_Pa;
-    case DIG_CAUSE_WEIGHT:
-        return wrong_weight * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
+    case DIG_CAUSE_WEIGHT: return wrong_weight * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
     case DIG_CAUSE_KINDS: break;
     }
     return (double)NAN;
@@ -110,12 +110,12 @@ static double changes_N(const struct work *const w, const size_t joint, const si
 {
     const struct dig_cylinder *const cylinder = cylinder_of(w, joint);
 
-    const double m2    = chamber == DIG_CHAMBER_HEAD ? dig_cylinder_head_m2(cylinder)
-                                                     : dig_cylinder_rod_m2(cylinder);
-    const size_t s     = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * joint + chamber;
-    double       n     = 0.0;
-    double       mean  = 0.0;
-    double       sum2  = 0.0;
+    const double m2   = chamber == DIG_CHAMBER_HEAD ? dig_cylinder_head_m2(cylinder)
+                                                    : dig_cylinder_rod_m2(cylinder);
+    const size_t s    = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * joint + chamber;
+    double       n    = 0.0;
+    double       mean = 0.0;
+    double       sum2 = 0.0;
     for (size_t p = 0; p < w->air->points; p++) {
         if (w->air->point[p].sample.valid[s]) {
             const double Pa  = w->air->point[p].sample.value[s];
@@ -126,14 +126,6 @@ static double changes_N(const struct work *const w, const size_t joint, const si
         }
     }
     return n > 0.0 ? m2 * sqrt(sum2 / n) : 0.0;
-}
-
-// The chamber of a drive that carries its load.
-static size_t carries(const struct work *const w, const size_t joint)
-{
-    return changes_N(w, joint, DIG_CHAMBER_HEAD) >= changes_N(w, joint, DIG_CHAMBER_ROD)
-               ? DIG_CHAMBER_HEAD
-               : DIG_CHAMBER_ROD;
 }
 
 static bool is_return_side(const struct work *const w, const size_t joint, const size_t chamber)
@@ -160,10 +152,10 @@ static int cause_of(const struct dig_lines_column *const column)
 // The tolerance of a column that is no cause's, in the unit of its scale.
 static double allowed(const struct work *const w, const struct dig_lines_column *const column)
 {
-    static const enum dig_joint drive[DIG_JOINTS] = { DIG_JOINT_BUCKET, DIG_JOINT_ARM,
-                                                      DIG_JOINT_BOOM };
-    const struct dig_machine *const machine = &w->air->machine;
-    const size_t                    p       = column->parameter;
+    static const enum dig_joint     drive[DIG_JOINTS] = { DIG_JOINT_BUCKET, DIG_JOINT_ARM,
+                                                          DIG_JOINT_BOOM };
+    const struct dig_machine *const machine           = &w->air->machine;
+    const size_t                    p                 = column->parameter;
     if (column->effect == DIG_EFFECT_UNLISTED) {
         return zero_rad; // of the level
     }
@@ -175,7 +167,8 @@ static double allowed(const struct work *const w, const struct dig_lines_column 
     }
     if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < OF_A_SEAL * DIG_JOINTS) {
         const struct dig_cylinder *const cylinder = cylinder_of(w, drive[p / OF_A_SEAL]);
-        const double push_N = cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
+        const double                     push_N =
+            cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
         return p % OF_A_SEAL == COULOMB    ? seal_share * push_N
                : p % OF_A_SEAL == STRIBECK ? 0.0
                                            : column->scale;
@@ -189,9 +182,9 @@ static void set_widths(struct work *const w)
         const struct dig_lines_column *const column = &w->lines.column[c];
 
         const int cause = cause_of(column);
-        w->base[c]      = (cause >= 0 ? tolerance_of(w, (size_t)cause) : allowed(w, column)) /
-                          column->scale;
-        w->gross[c]     = cause >= 0 ? wrong_of(w, (size_t)cause) / column->scale : w->base[c];
+        w->base[c] =
+            (cause >= 0 ? tolerance_of(w, (size_t)cause) : allowed(w, column)) / column->scale;
+        w->gross[c] = cause >= 0 ? wrong_of(w, (size_t)cause) / column->scale : w->base[c];
         // Of a return side, whose pressure hardly changes, a factor is an offset.
         const bool factor  = cause >= 0 && cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
         const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
@@ -235,7 +228,8 @@ static unsigned choose(struct work *const w)
         double   most = now + w->least;
         for (unsigned k = 0; k < DIG_CAUSES; k++) {
             const unsigned more = named | 1U << k;
-            const double   then = w->asked[k] && more != named ? evidence(w, more) : -(double)INFINITY;
+            const double   then =
+                w->asked[k] && more != named ? evidence(w, more) : -(double)INFINITY;
             if (then > most) {
                 most = then;
                 best = more;
@@ -296,7 +290,7 @@ static double go(struct work *const w, const unsigned named)
         for (size_t c = 0; c < w->lines.columns; c++) {
             const double way = ldexp(w->at[c] - w->lines.at[c], -halved);
             w->step[c]       = w->lines.at[c] + way;
-            moved = w->width[c] > 0.0 ? fmax(moved, fabs(way) / w->width[c]) : moved;
+            moved            = w->width[c] > 0.0 ? fmax(moved, fabs(way) / w->width[c]) : moved;
         }
         if (dig_lines_rest2(&w->lines, w->step) + penalty(w, w->step) <= now) {
             memcpy(w->lines.at, w->step, w->lines.columns * sizeof(double));
@@ -337,7 +331,7 @@ static enum dig_status find(struct work *const w, unsigned *const named)
     return status == DIG_OK ? take_slopes(w) : status;
 }
 
-// How much a column counts in the figure of its cause.
+// How much a column counts in the figure of its cause, with the covariance as last solved.
 static double share_of(const struct work *const w, const size_t cause, const size_t column)
 {
     const struct dig_lines_column *const c     = &w->lines.column[column];
@@ -350,7 +344,16 @@ static double share_of(const struct work *const w, const size_t cause, const siz
     }
     const size_t chamber = c->parameter % DIG_CHAMBERS;
     if (cause / DIG_JOINTS == DIG_CAUSE_FACTOR) {
-        return chamber == carries(w, joint) ? c->scale : 0.0;
+        // The mean of the chambers that were asked, as sure as each is.
+        const size_t n     = w->lines.columns;
+        const size_t pair  = chamber == DIG_CHAMBER_HEAD ? column + 1 : column - 1;
+        const double mine  = w->gross[column] > w->base[column]
+                                 ? 1.0 / fmax(w->covariance[column * n + column], 1e-12)
+                                 : 0.0;
+        const double other = w->gross[pair] > w->base[pair]
+                                 ? 1.0 / fmax(w->covariance[pair * n + pair], 1e-12)
+                                 : 0.0;
+        return mine > 0.0 ? c->scale * mine / (mine + other) : 0.0;
     }
     return chamber == DIG_CHAMBER_HEAD ? c->scale
                                        : -c->scale * dig_cylinder_rod_m2(cylinder_of(w, joint)) /
@@ -384,8 +387,8 @@ static int tied(struct work *const w, const unsigned named, const unsigned k)
     int    other = -1;
     for (unsigned o = 0; o < DIG_CAUSES; o++) {
         const unsigned instead = (named & ~(1U << k)) | 1U << o;
-        const double   then    = w->asked[o] && ((named >> o) & 1U) == 0 ? evidence(w, instead)
-                                                                          : -(double)INFINITY;
+        const double   then =
+            w->asked[o] && ((named >> o) & 1U) == 0 ? evidence(w, instead) : -(double)INFINITY;
         if (then > most) {
             most  = then;
             other = (int)o;
@@ -494,7 +497,7 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
         // The causes alone: what is within its tolerance is no one's to mend.
         for (size_t c = 0; c < w.lines.columns; c++) {
             const int cause = cause_of(&w.lines.column[c]);
-            w.step[c] = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
+            w.step[c]       = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
         }
         dig_lines_correct(&w.lines, w.step, correction);
         *causes = found;

@@ -18,7 +18,8 @@
 
 enum dig_cause_kind {
     DIG_CAUSE_ZERO,   // rad that the angle reads too much
-    DIG_CAUSE_FACTOR, // of the chamber that carries: reads 1 + this times the pressure
+    DIG_CAUSE_FACTOR, // the chambers that carry the load read 1 + this times the pressure, in the
+                      // mean
     DIG_CAUSE_OFFSET, // Pa that the drive reads too much, at its head side
     DIG_CAUSE_WEIGHT, // kg
     DIG_CAUSE_KINDS
@@ -44,8 +45,7 @@ struct dig_causes {
 
 /// Fits. air: made of one recording; the causes named are in air->file and *correction after it.
 /// moves: joints of which causes are asked for. A second or two. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_causes_find(struct dig_air       *air,
-                                               const bool            moves[DIG_JOINTS],
+DIG_MUST_CHECK enum dig_status dig_causes_find(struct dig_air *air, const bool moves[DIG_JOINTS],
                                                struct dig_causes    *causes,
                                                struct dig_correction correction[]);
 

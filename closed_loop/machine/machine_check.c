@@ -22,25 +22,6 @@ static const double much_rest   = 3.0;
 // A figure known to no better than so many tolerances is not told.
 static const double vague = 3.0;
 
-struct dig_check_item *dig_check_add(struct dig_machine_air_check *const check,
-                                     const enum dig_check_question question, const int of)
-{
-    assert(check->items < DIG_CHECK_ITEMS_MAX);
-    struct dig_check_item *const item = &check->item[check->items++];
-    *item                             = (struct dig_check_item){
-                                    .question  = question,
-                                    .of        = of,
-                                    .value     = (double)NAN,
-                                    .sigma     = (double)NAN,
-                                    .tolerance = (double)NAN,
-                                    .excess    = (double)NAN,
-                                    .at_rod    = (double)NAN,
-                                    .answer    = of,
-                                    .or_item   = -1,
-    };
-    return item;
-}
-
 // The samples that are looked at, to be read in another way.
 static enum dig_status copy(const struct dig_machine_recording *const recording,
                             struct dig_machine_recording *const       copied)
@@ -105,10 +86,9 @@ static size_t item_of(const struct dig_machine_air_check *const check, const int
     };
     size_t i = 0;
     while (i < check->items &&
-           !(cause == (int)DIG_CAUSE_DELAY
-                 ? check->item[i].question == DIG_CHECK_DELAY
-                 : check->item[i].question == of[cause / DIG_JOINTS] &&
-                       check->item[i].of == cause % DIG_JOINTS)) {
+           !(cause == (int)DIG_CAUSE_DELAY ? check->item[i].question == DIG_CHECK_DELAY
+                                           : check->item[i].question == of[cause / DIG_JOINTS] &&
+                                                 check->item[i].of == cause % DIG_JOINTS)) {
         i++;
     }
     return i;
@@ -147,10 +127,11 @@ static void check_causes(const struct dig_machine *const machine,
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const bool   told   = moves[j] && isfinite(causes->rest[j]);
             const double coarse = kind == DIG_CAUSE_ZERO ? check->reading.best.zero_rad[j] : 0.0;
-            check_cause(causes, DIG_JOINTS * kind + j, told, coarse, check, questions[kind], (int)j);
-            check->item[check->items - 1].at_rod =
-                -check->item[check->items - 1].value * dig_cylinder_head_m2(&machine->cylinder[j]) /
-                dig_cylinder_rod_m2(&machine->cylinder[j]);
+            check_cause(causes, DIG_JOINTS * kind + j, told, coarse, check, questions[kind],
+                        (int)j);
+            check->item[check->items - 1].at_rod = -check->item[check->items - 1].value *
+                                                   dig_cylinder_head_m2(&machine->cylinder[j]) /
+                                                   dig_cylinder_rod_m2(&machine->cylinder[j]);
         }
     }
     check_cause(causes, DIG_CAUSE_DELAY, true, 0.0, check, DIG_CHECK_DELAY, -1);
@@ -167,7 +148,8 @@ static void check_causes(const struct dig_machine *const machine,
     }
 }
 
-static void check_rest(const struct dig_causes *const causes, struct dig_machine_air_check *const check)
+static void check_rest(const struct dig_causes *const      causes,
+                       struct dig_machine_air_check *const check)
 {
     for (int j = 0; j < DIG_JOINTS; j++) {
         struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_REST, j);
@@ -193,7 +175,8 @@ static enum dig_status draw(const struct dig_air *const        air,
     return DIG_OK;
 }
 
-static enum dig_status keep_times(const struct dig_air *const air, struct dig_check_curves *const curves)
+static enum dig_status keep_times(const struct dig_air *const    air,
+                                  struct dig_check_curves *const curves)
 {
     curves->time_s = malloc((air->points + 1) * sizeof *curves->time_s);
     if (curves->time_s == NULL) {
@@ -236,14 +219,13 @@ static void find_motion(const struct dig_machine_dig *const dig, const bool degr
 // Reads it as it says, finds how it is to be read, and keeps what the picture shows of the first.
 static enum dig_status read_plain(const struct dig_machine *const           machine,
                                   const struct dig_machine_recording *const recording,
-                                  bool moves[DIG_JOINTS],
-                                  struct dig_machine_air_check *const       check,
-                                  struct dig_error *const                   error)
+                                  bool moves[DIG_JOINTS], struct dig_machine_air_check *const check,
+                                  struct dig_error *const error)
 {
-    static const struct dig_correction none = { .delay_s = 0.0 };
-    struct dig_machine_dig             dig  = { .samples = 0 };
-    struct dig_air                     air  = { .points = 0 };
-    enum dig_status status = take_air(machine, recording, &dig, &air, error);
+    static const struct dig_correction none   = { .delay_s = 0.0 };
+    struct dig_machine_dig             dig    = { .samples = 0 };
+    struct dig_air                     air    = { .points = 0 };
+    enum dig_status                    status = take_air(machine, recording, &dig, &air, error);
     if (status == DIG_OK) {
         const bool degrees = dig_reading_in_degrees(&dig);
         find_motion(&dig, degrees, moves);
@@ -263,7 +245,7 @@ static enum dig_status read_plain(const struct dig_machine *const           mach
 // Reads it as is best, and asks everything.
 static enum dig_status read_best(const struct dig_machine *const           machine,
                                  const struct dig_machine_recording *const recording,
-                                 const bool moves[DIG_JOINTS],
+                                 const bool                                moves[DIG_JOINTS],
                                  struct dig_machine_air_check *const       check,
                                  struct dig_error *const                   error)
 {
@@ -286,7 +268,8 @@ static enum dig_status read_best(const struct dig_machine *const           machi
         // Read otherwise, other samples may lack a pressure.
         check->curves.points =
             air.points < check->curves.points ? air.points : check->curves.points;
-        status = draw(&air, correction, &check->curves.mended_drive_N, &check->curves.mended_load_N);
+        status =
+            draw(&air, correction, &check->curves.mended_drive_N, &check->curves.mended_load_N);
     }
     dig_air_finish(&air);
     dig_machine_dig_finish(&dig);
@@ -304,11 +287,11 @@ enum dig_status dig_machine_air_check_run(const struct dig_machine *const       
                              "%s: a bucket on a force sensor, expected a machine with cylinders",
                              machine->name);
     }
-    struct dig_machine_air_check made   = { .items = 0 };
-    struct dig_machine_recording read   = { .rows = 0 };
+    struct dig_machine_air_check made = { .items = 0 };
+    struct dig_machine_recording read = { .rows = 0 };
     bool                         moves[DIG_JOINTS];
-    enum dig_status status = recording->rows > 0 ? copy(recording, &read)
-                                                 : dig_error_set(error, DIG_EINVAL, "no samples");
+    enum dig_status              status = recording->rows > 0 ? copy(recording, &read)
+                                                              : dig_error_set(error, DIG_EINVAL, "no samples");
     if (status == DIG_OK) {
         made.duration_s = 1e-9 * (double)(read.row[read.rows - 1].time_ns - read.row[0].time_ns);
         dig_check_recording(&read, &made);

@@ -1,10 +1,11 @@
 // What the file of a machine makes of a recording in free air: a checklist with answers.
 //
 // Without soil the balance of every joint is zero. First the recording is read in the way that
-// leaves least of it (machine_reading.h): signs, large zeros, which cylinder is which, head and rod,
-// unit. Then the equations of free air (machine_air.h) are fitted with everything that a file or a
-// sensor may have wrong (machine_lines.h, machine_fit.h) within its tolerance, and causes join with
-// a wide prior, one at a time, while each multiplies the evidence by more than causes / false alarm.
+// leaves least of it (machine_reading.h): signs, large zeros, which cylinder is which, head and
+// rod, unit. Then the equations of free air (machine_air.h) are fitted with everything that a file
+// or a sensor may have wrong (machine_lines.h, machine_fit.h) within its tolerance, and causes join
+// with a wide prior, one at a time, while each multiplies the evidence by more than causes / false
+// alarm.
 //
 // One recording cannot show everything: what it does not tell is said so, and causes that explain
 // it as well as the one named are named with it.
@@ -55,10 +56,10 @@ struct dig_check_item {
     int                     of; // joint, signal (STUCK), or -1
     enum dig_check_verdict  verdict;
     double                  value, sigma, tolerance;
-    double                  excess;    // sigmas by which the file's answer is worse
-    double                  at_rod;    // OFFSET: the value, if the rod side's sensor is wrong
-    int                     answer;    // CYLINDER: in whose columns its pressures are
-    int                     or_item;   // another line that explains it as well; -1: none
+    double                  excess;  // sigmas by which the file's answer is worse
+    double                  at_rod;  // OFFSET: the value, if the rod side's sensor is wrong
+    int                     answer;  // CYLINDER: in whose columns its pressures are
+    int                     or_item; // another line that explains it as well; -1: none
 };
 
 #define DIG_CHECK_ITEMS_MAX 64
@@ -67,20 +68,20 @@ struct dig_check_item {
 struct dig_check_curves {
     size_t  points;
     double *time_s;
-    double *drive_N, *load_N;             // as the columns and the file say
+    double *drive_N, *load_N;               // as the columns and the file say
     double *mended_drive_N, *mended_load_N; // read as found best, with the causes named taken off
 };
 
 /// Free with dig_machine_check_finish().
 struct dig_machine_air_check {
-    double                    duration_s;
-    double                    angles_rad[DIG_JOINTS][2]; // least and most, as read best
+    double                     duration_s;
+    double                     angles_rad[DIG_JOINTS][2]; // least and most, as read best
     struct dig_reading_finding reading;
-    size_t                    items;
-    struct dig_check_item     item[DIG_CHECK_ITEMS_MAX];
-    enum dig_check_verdict    verdict; // the worst of all lines; UNTOLD counts as OK
-    double                    rest_plain[DIG_JOINTS]; // rms over sigma as the columns say
-    struct dig_check_curves   curves;
+    size_t                     items;
+    struct dig_check_item      item[DIG_CHECK_ITEMS_MAX];
+    enum dig_check_verdict     verdict; // the worst of all lines; UNTOLD counts as OK
+    double                     rest_plain[DIG_JOINTS]; // rms over sigma as the columns say
+    struct dig_check_curves    curves;
 };
 
 /// Checks. The recording is free air from its first sample to its last; what lies beyond its first

@@ -29,7 +29,8 @@ static void check_times(const struct dig_machine_recording *const recording,
 {
     double gap_s = 0.0;
     for (size_t i = 1; i < recording->rows; i++) {
-        gap_s = fmax(gap_s, 1e-9 * (double)(recording->row[i].time_ns - recording->row[i - 1].time_ns));
+        gap_s =
+            fmax(gap_s, 1e-9 * (double)(recording->row[i].time_ns - recording->row[i - 1].time_ns));
     }
     const double rate_Hz = (double)(recording->rows - 1) / check->duration_s;
 
@@ -37,8 +38,8 @@ static void check_times(const struct dig_machine_recording *const recording,
     item->value                       = rate_Hz;
     item->tolerance                   = gap_s;
     item->verdict                     = !(rate_Hz >= least_Hz) ? DIG_CHECK_WRONG
-                                        : gap_s > most_gap_s  ? DIG_CHECK_DOUBTFUL
-                                                              : DIG_CHECK_OK;
+                                        : gap_s > most_gap_s   ? DIG_CHECK_DOUBTFUL
+                                                               : DIG_CHECK_OK;
 }
 
 // Of each signal that is there at all.

@@ -101,8 +101,7 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
     double *const h = fit->work;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
-            h[i * n + j] =
-                share[i] * share[j] * fit->slope2[column[i] * all + column[j]] / fit->s2;
+            h[i * n + j] = share[i] * share[j] * fit->slope2[column[i] * all + column[j]] / fit->s2;
         }
         h[i * n + i] += 1.0;
         x[i] = -share[i] * fit->slope_rest[column[i]] / fit->s2;

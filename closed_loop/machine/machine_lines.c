@@ -60,16 +60,14 @@ static void list_columns(struct dig_lines *const lines, const double file_scale[
         lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
     }
     for (size_t p = 0; file_scale != NULL && p < DIG_FILE_ERRORS; p++) {
-        lines->column[n++] =
-            (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
+        lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
     }
     lines->columns = n;
 }
 
 static size_t most_columns(const struct dig_air *const air)
 {
-    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments +
-           DIG_FILE_ERRORS;
+    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments + DIG_FILE_ERRORS;
 }
 
 static void number_digs(struct dig_lines *const lines)

@@ -24,7 +24,7 @@
 struct dig_lines_column {
     enum dig_effect_id effect;
     size_t             parameter; // of the effect, or of struct dig_file_error
-    int                segment; // of its own, or -1: all
+    int                segment;   // of its own, or -1: all
     double             scale;
 };
 
@@ -58,8 +58,8 @@ DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_li
 
 /// The same with what a file may have wrong besides as columns of these scales, as the array that
 /// struct dig_file_error is; they are in air->file where the lines stand.
-DIG_MUST_CHECK enum dig_status dig_lines_make_with_file(struct dig_air *air,
-                                                        const double    scale[DIG_FILE_ERRORS],
+DIG_MUST_CHECK enum dig_status dig_lines_make_with_file(struct dig_air   *air,
+                                                        const double      scale[DIG_FILE_ERRORS],
                                                         struct dig_lines *lines);
 
 void dig_lines_finish(struct dig_lines *lines);

@@ -30,8 +30,8 @@ static const double most_rad = 7.0;
 
 // True pressure over what the column says: tens, and the units that are taken for each other (bar,
 // kPa, MPa, Pa, psi).
-static const double factors[] = { 1.0, 0.1, 10.0, 0.01,   100.0,  1e-3, 1e3,
-                                  1e-5, 1e5, 1e-6, 1e6, 0.0689476, 14.50377, 6894.76 };
+static const double factors[] = { 1.0,  0.1, 10.0, 0.01, 100.0,     1e-3,     1e3,
+                                  1e-5, 1e5, 1e-6, 1e6,  0.0689476, 14.50377, 6894.76 };
 enum { FACTORS = sizeof factors / sizeof factors[0] };
 
 static const enum dig_joint orders[][DIG_JOINTS] = {
@@ -72,7 +72,7 @@ static size_t chamber_signal(const enum dig_joint joint, const size_t chamber)
     return (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + (size_t)DIG_CHAMBERS * (size_t)joint + chamber;
 }
 
-void dig_reading_apply(const struct dig_reading *const       reading,
+void dig_reading_apply(const struct dig_reading *const     reading,
                        struct dig_machine_recording *const recording)
 {
     assert(reading != NULL && recording != NULL);
@@ -83,10 +83,11 @@ void dig_reading_apply(const struct dig_reading *const       reading,
             const size_t a = (size_t)DIG_SIGNAL_BOOM_rad + (size_t)j;
             told->value[a] = read.valid[a] ? angle_rad(reading, j, read.value[a]) : 0.0;
             for (size_t c = 0; c < DIG_CHAMBERS; c++) {
-                const size_t to   = chamber_signal((enum dig_joint)j, c);
-                const size_t from = chamber_signal(reading->drive[j], reading->swapped[j] ? 1U - c : c);
-                told->value[to]   = reading->factor[j] * read.value[from];
-                told->valid[to]   = read.valid[from];
+                const size_t to = chamber_signal((enum dig_joint)j, c);
+                const size_t from =
+                    chamber_signal(reading->drive[j], reading->swapped[j] ? 1U - c : c);
+                told->value[to] = reading->factor[j] * read.value[from];
+                told->valid[to] = read.valid[from];
             }
         }
     }
@@ -97,9 +98,9 @@ struct search {
     const struct dig_machine *machine;
     const bool               *moves;
     size_t                    n;
-    double                    poses; // that count
+    double                    poses;            // that count
     bool                      told[DIG_JOINTS]; // columns that hold both pressures
-    struct dig_air_point     *at; // angles in radians
+    struct dig_air_point     *at;               // angles in radians
     struct dig_reading        best;
     double                    cost;
     double                    plain_cost;
@@ -156,10 +157,10 @@ static void loads(const struct search *const s, const struct dig_reading *const 
                   double load_N[INSTANTS][DIG_JOINTS])
 {
     for (size_t k = 0; k < s->n; k++) {
-        const struct dig_air_point *const at = &s->at[k];
-        struct dig_rates            rates = at->rates;
-        double                      rad[DIG_JOINTS];
-        double                      mass_Nm[DIG_JOINTS];
+        const struct dig_air_point *const at    = &s->at[k];
+        struct dig_rates                  rates = at->rates;
+        double                            rad[DIG_JOINTS];
+        double                            mass_Nm[DIG_JOINTS];
         for (int j = 0; j < DIG_JOINTS; j++) {
             const double sign = reading->turned[j] ? -1.0 : 1.0;
             rad[j] = sign * at->sample.value[DIG_SIGNAL_BOOM_rad + j] - reading->zero_rad[j];
@@ -167,16 +168,15 @@ static void loads(const struct search *const s, const struct dig_reading *const 
             rates.acceleration_radps2[j] *= sign;
         }
         const struct dig_front front = dig_front_place(s->machine, rad);
-        const double pitch_rad       = at->sample.valid[DIG_SIGNAL_PITCH_rad]
-                                           ? at->sample.value[DIG_SIGNAL_PITCH_rad]
-                                           : 0.0;
+        const double           pitch_rad =
+            at->sample.valid[DIG_SIGNAL_PITCH_rad] ? at->sample.value[DIG_SIGNAL_PITCH_rad] : 0.0;
         dig_dynamics_Nm(s->machine, &front, &rates, pitch_rad, mass_Nm);
         for (int j = 0; j < DIG_JOINTS; j++) {
             const struct dig_link *const link = &s->machine->link[j];
             struct dig_lever             lever;
-            const bool stands = rad[j] > link->min_rad - beyond_rad &&
-                                rad[j] < link->max_rad + beyond_rad &&
-                                dig_lever_solve(s->machine, (enum dig_joint)j, rad[j], &lever) == DIG_OK;
+            const bool                   stands =
+                rad[j] > link->min_rad - beyond_rad && rad[j] < link->max_rad + beyond_rad &&
+                dig_lever_solve(s->machine, (enum dig_joint)j, rad[j], &lever) == DIG_OK;
             load_N[k][j] = stands ? -mass_Nm[j] / lever.arm_m : (double)NAN;
         }
     }
@@ -233,19 +233,19 @@ static double misfit(const struct search *const s, const struct sums *const sums
     const double p  = factor * sums->p;
     const double pp = factor * factor * sums->pp;
     const double lp = factor * sums->lp;
-    const double read_N2 = allowed_share * allowed_share * sums->pp +
-                           noise_share * noise_share * sums->chambers;
+    const double read_N2 =
+        allowed_share * allowed_share * sums->pp + noise_share * noise_share * sums->chambers;
     const double w = each * sums->n / fmax(factor * factor * read_N2, 1e-9);
 
     const double e  = p - sums->l;
     const double el = lp - sums->ll;
     const double ee = pp - 2.0 * lp + sums->ll;
     // The share that is best with its own best offset.
-    const double oo    = w * sums->n + 1.0 / (offset_N * offset_N);
-    const double os    = w * sums->l;
-    const double ss    = w * sums->ll + 1.0 / (load_share * load_share);
-    const double share = fmin(fmax((w * el - os * w * e / oo) / (ss - os * os / oo), -most_share),
-                              most_share);
+    const double oo = w * sums->n + 1.0 / (offset_N * offset_N);
+    const double os = w * sums->l;
+    const double ss = w * sums->ll + 1.0 / (load_share * load_share);
+    const double share =
+        fmin(fmax((w * el - os * w * e / oo) / (ss - os * os / oo), -most_share), most_share);
     const double offset = (w * e - os * share) / oo;
     const double chi2   = w * ee - 2.0 * offset * w * e - 2.0 * share * w * el +
                         oo * offset * offset + 2.0 * os * offset * share + ss * share * share;
@@ -323,7 +323,7 @@ static void try_pressures(struct search *const s, struct dig_reading reading, co
                 const double own = sum - more[j][choice[j].swapped][choice[j].factor];
                 for (size_t w = 0; w < 2; w++) {
                     for (size_t f = 0; f < FACTORS; f++) {
-                        struct dig_reading other    = reading;
+                        struct dig_reading other = reading;
                         size_t             of[DIG_JOINTS];
                         for (int i = 0; i < DIG_JOINTS; i++) {
                             of[i] = i == j ? f : factor[i];
@@ -356,9 +356,9 @@ static void try_angles(struct search *const s, const struct dig_reading *const a
                 const struct sums sums = s->told[d] ? add_up(s, load_N, j, d, w > 0) : nothing;
                 for (size_t f = 0; f < FACTORS; f++) {
                     // A drive that is not recorded says nothing, for or against.
-                    cost[j][d][w][f] = s->told[d]   ? misfit(s, &sums, j, factors[f])
-                                       : j == d     ? 0.0
-                                                    : (double)INFINITY;
+                    cost[j][d][w][f] = s->told[d] ? misfit(s, &sums, j, factors[f])
+                                       : j == d   ? 0.0
+                                                  : (double)INFINITY;
                 }
             }
         }
@@ -412,14 +412,14 @@ static void write_finding(const struct search *const s, struct dig_reading_findi
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_reading *const best = &s->best;
 
-        const bool asked          = s->moves[j];
-        finding->turned_sigmas[j] = worse(
-            s->cost, asked ? s->turned[j][best->turned[j] ? 0 : 1] : (double)INFINITY);
+        const bool asked = s->moves[j];
+        finding->turned_sigmas[j] =
+            worse(s->cost, asked ? s->turned[j][best->turned[j] ? 0 : 1] : (double)INFINITY);
         finding->drive_sigmas[j] =
             worse(s->cost, asked ? other_of(DIG_JOINTS, s->drive[j], best->drive[j], (size_t)j)
                                  : (double)INFINITY);
-        finding->swapped_sigmas[j] = worse(
-            s->cost, asked ? s->swapped[j][best->swapped[j] ? 0 : 1] : (double)INFINITY);
+        finding->swapped_sigmas[j] =
+            worse(s->cost, asked ? s->swapped[j][best->swapped[j] ? 0 : 1] : (double)INFINITY);
         finding->factor_sigmas[j] =
             worse(s->cost, asked ? other_of(FACTORS, s->factor[j], factor_of(best->factor[j]), 0)
                                  : (double)INFINITY);
@@ -443,10 +443,10 @@ static void forget(struct search *const s)
     }
 }
 
-enum dig_status dig_reading_find(const struct dig_machine *const     machine,
-                                 const struct dig_air *const         air, const bool degrees,
-                                 const bool                          moves[DIG_JOINTS],
-                                 struct dig_reading_finding *const   finding)
+enum dig_status dig_reading_find(const struct dig_machine *const machine,
+                                 const struct dig_air *const air, const bool degrees,
+                                 const bool                        moves[DIG_JOINTS],
+                                 struct dig_reading_finding *const finding)
 {
     assert(machine != NULL && air != NULL && moves != NULL && finding != NULL);
     enum { PASSES = 3 };

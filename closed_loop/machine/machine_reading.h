@@ -44,8 +44,8 @@ bool dig_reading_in_degrees(const struct dig_machine_dig *dig);
 void dig_reading_apply(const struct dig_reading *reading, struct dig_machine_recording *recording);
 
 /// The best reading, and by how many sigmas (root of twice the logarithm of the ratio of
-/// likelihoods) the best with another answer to one question is worse: the columns' own answer where
-/// it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
+/// likelihoods) the best with another answer to one question is worse: the columns' own answer
+/// where it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
 struct dig_reading_finding {
     struct dig_reading best;
     double             plain_sigmas; // how much worse everything as the columns say is
@@ -55,10 +55,11 @@ struct dig_reading_finding {
     double             factor_sigmas[DIG_JOINTS];
 };
 
-/// Finds it in the air of one recording, as its columns say; degrees: its angles are. moves: joints that move enough to be asked about. A second of one core. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_reading_find(const struct dig_machine     *machine,
+/// Finds it in the air of one recording, as its columns say; degrees: its angles are. moves: joints
+/// that move enough to be asked about. A second of one core. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_reading_find(const struct dig_machine *machine,
                                                 const struct dig_air *air, bool degrees,
-                                                const bool                    moves[DIG_JOINTS],
-                                                struct dig_reading_finding   *finding);
+                                                const bool                  moves[DIG_JOINTS],
+                                                struct dig_reading_finding *finding);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H

@@ -328,7 +328,8 @@ static enum dig_status fill_rates(const struct dig_machine *const machine,
 // The samples that can be used, with their times and rates.
 static enum dig_status take_samples(const struct dig_machine *const           machine,
                                     const struct dig_machine_recording *const recording,
-                                    struct dig_machine_dig *const dig, struct dig_error *const error)
+                                    struct dig_machine_dig *const             dig,
+                                    struct dig_error *const                   error)
 {
     const size_t           rows = recording->rows + 1;
     struct dig_machine_dig made = {

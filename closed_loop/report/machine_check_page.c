@@ -50,10 +50,11 @@ static void put_list(FILE *const to, const struct dig_check_subject *const subje
             }
         }
     }
-    (void)fputs("</table>\n<p class=muted>After +-: 1 σ of the recording. Allowed: 1 σ of what file "
-                "or sensor may be off without being wrong. By so many sigma: root of twice the "
-                "logarithm of how much less likely the other answer makes this recording.</p>\n",
-                to);
+    (void)fputs(
+        "</table>\n<p class=muted>After +-: 1 σ of the recording. Allowed: 1 σ of what file "
+        "or sensor may be off without being wrong. By so many sigma: root of twice the "
+        "logarithm of how much less likely the other answer makes this recording.</p>\n",
+        to);
 }
 
 // One picture: what a drive pushed, and what it had to.
@@ -130,18 +131,19 @@ static enum dig_status put_pictures(FILE *const to, const struct dig_check_subje
 {
     const struct dig_check_curves *const curves = &subject->check->curves;
 
-    const bool mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
-    double *const room = malloc(3 * (curves->points / EVERY + 1) * sizeof *room);
+    const bool      mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
+    double *const   room   = malloc(3 * (curves->points / EVERY + 1) * sizeof *room);
     enum dig_status status =
         room != NULL ? DIG_OK : dig_error_set(error, DIG_ENOMEM, "%zu points", curves->points);
     (void)fputs("<h2>Measured against expected</h2>\n<div class=grid>\n", to);
     for (size_t j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
         status = put_joint(to, curves, j, mended, room, error);
     }
-    (void)fputs("</div>\n<p class=muted>Measured: by the two pressures of the whole drive. Expected: "
-                "what weight and inertia of the file ask for at the angles recorded. In free air "
-                "they are the same.</p>\n",
-                to);
+    (void)fputs(
+        "</div>\n<p class=muted>Measured: by the two pressures of the whole drive. Expected: "
+        "what weight and inertia of the file ask for at the angles recorded. In free air "
+        "they are the same.</p>\n",
+        to);
     free(room);
     return status;
 }

@@ -12,7 +12,7 @@
 
 static const double bar_Pa = 1e5;
 
-__attribute__((format(printf, 2, 3))) static void say(char text[DIG_CHECK_TEXT_SIZE],
+__attribute__((format(printf, 2, 3))) static void say(char              text[DIG_CHECK_TEXT_SIZE],
                                                       const char *const format, ...)
 {
     va_list arguments;
@@ -56,8 +56,8 @@ static void say_times(const struct dig_check_subject *const subject,
 }
 
 static void say_missing(const struct dig_check_subject *const subject,
-                        const struct dig_check_item *const item,
-                        struct dig_check_words *const      words)
+                        const struct dig_check_item *const    item,
+                        struct dig_check_words *const         words)
 {
     (void)subject;
     say(words->question, "readings there");
@@ -100,8 +100,8 @@ static void say_range(const struct dig_check_subject *const subject,
 }
 
 static void say_degrees(const struct dig_check_subject *const subject,
-                        const struct dig_check_item *const item,
-                        struct dig_check_words *const      words)
+                        const struct dig_check_item *const    item,
+                        struct dig_check_words *const         words)
 {
     (void)subject;
     say(words->question, "angles are in radians");
@@ -125,8 +125,8 @@ static void say_choice(const struct dig_check_item *const item, const char *cons
 }
 
 static void say_direction(const struct dig_check_subject *const subject,
-                          const struct dig_check_item *const item,
-                          struct dig_check_words *const      words)
+                          const struct dig_check_item *const    item,
+                          struct dig_check_words *const         words)
 {
     (void)subject;
     say(words->question, "%s angle counts up", joint_of(item));
@@ -135,8 +135,8 @@ static void say_direction(const struct dig_check_subject *const subject,
 }
 
 static void say_cylinder(const struct dig_check_subject *const subject,
-                         const struct dig_check_item *const item,
-                         struct dig_check_words *const      words)
+                         const struct dig_check_item *const    item,
+                         struct dig_check_words *const         words)
 {
     (void)subject;
     char no[DIG_CHECK_TEXT_SIZE];
@@ -188,8 +188,8 @@ static void say_zero(const struct dig_check_subject *const subject,
     (void)subject;
     say(words->question, "%s angle reads more by", joint_of(item));
     say_figure(item, DIG_RAD_PER_DEG, 2, "deg", words->answer);
-    say(words->todo, "%+.4f rad to %s_rad's offset in the signal map, or set the sensor", -item->value,
-        joint_of(item));
+    say(words->todo, "offset of %s_rad in the signal map: %+.4f rad more", joint_of(item),
+        -item->value);
 }
 
 static void say_factor(const struct dig_check_subject *const subject,
@@ -239,7 +239,7 @@ static void say_rest(const struct dig_check_subject *const subject,
     } else {
         say(words->answer, "not judged: no pressures");
     }
-    say(words->todo, "none of this list: pins, lengths, friction, or something was touched");
+    say(words->todo, "not in this list: pins, lengths, friction, or it touched something");
 }
 
 void dig_check_say(const struct dig_check_subject *const subject,
@@ -291,7 +291,7 @@ static size_t list_lines(const struct dig_check_subject *const subject,
         struct dig_check_words words;
         // What stands in the place of something is told with it.
         const struct dig_check_item *const item = &subject->check->item[i];
-        const bool told = item->or_item >= 0 && verdict != DIG_CHECK_WRONG;
+        const bool                         told = item->or_item >= 0 && verdict != DIG_CHECK_WRONG;
         if (item->verdict == verdict && !told) {
             dig_check_say(subject, item, &words);
             if (text != NULL) {

@@ -68,7 +68,8 @@ static int64_t row_ns(const struct dig_rig_track *const track, const size_t row)
 
 // What each machine that ships is made to dig. The wide buckets of machines from 12 t on would lift
 // them in any of these gravels: they dig one that is so much lighter, as whose loads a share of
-// these is taken. The places are digrig's own for the three digs together, whose search takes longest.
+// these is taken. The places are digrig's own for the three digs together, whose search takes
+// longest.
 static const struct run {
     const char *machine, *gravel;
     double      share, X_m, Z_m;

@@ -11,12 +11,9 @@
 #define J CMPLX(0.0, 1.0) // I of <complex.h> is a float
 
 static const char *const shipped[] = {
-    "config/machines/zx200.yaml",
-    "config/machines/zx200_trench.yaml",
-    "config/machines/zx120.yaml",
-    "config/machines/mini_2t8.yaml",
-    "config/machines/mini_1t8.yaml",
-    "config/machines/crawler_14t.yaml",
+    "config/machines/zx200.yaml",       "config/machines/zx200_trench.yaml",
+    "config/machines/zx120.yaml",       "config/machines/mini_2t8.yaml",
+    "config/machines/mini_1t8.yaml",    "config/machines/crawler_14t.yaml",
     "config/machines/crawler_36t.yaml",
 };
 #define SHIPPED (sizeof shipped / sizeof shipped[0])

@@ -11,8 +11,9 @@
 #include <assert.h>
 #include <stdio.h>
 
-static enum dig_status write_json(const char *const path, const struct dig_check_subject *const subject,
-                                  struct dig_error *const error)
+static enum dig_status write_json(const char *const                     path,
+                                  const struct dig_check_subject *const subject,
+                                  struct dig_error *const               error)
 {
     struct dig_out        out;
     const enum dig_status status = dig_out_open(&out, path, error);
@@ -46,7 +47,7 @@ static enum dig_status write_results(const struct digloop_options *const   optio
 }
 
 // As it is: a pressure that is cut off, which other commands refuse, is the check's to say.
-static enum dig_status read_recording(const char *const path,
+static enum dig_status read_recording(const char *const                   path,
                                       struct dig_machine_recording *const recording,
                                       struct dig_error *const             error)
 {
@@ -75,8 +76,8 @@ enum dig_status digloop_check(const struct digloop_options *const options, bool 
     if (status == DIG_OK) {
         const struct dig_check_subject subject = { &machine, options->table, options->recording[0],
                                                    &check };
-        status = write_results(options, &subject, error);
-        *wrong = check.verdict == DIG_CHECK_WRONG;
+        status                                 = write_results(options, &subject, error);
+        *wrong                                 = check.verdict == DIG_CHECK_WRONG;
     }
     dig_machine_air_check_finish(&check);
     dig_machine_recording_finish(&recording);

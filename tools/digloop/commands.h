@@ -16,7 +16,7 @@
 
 struct digloop_options {
     const char         *command, *table; // check: the machine's file
-    int                 recordings; // or campaign folders: what stands after the table
+    int                 recordings;      // or campaign folders: what stands after the table
     char              **recording;
     const char         *machine, *model, *trajectory;    // identify, predict
     const char         *identified, *out, *measured;     // predict

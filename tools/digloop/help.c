@@ -33,8 +33,10 @@ static const struct dig_command commands[] = {
       "        --json trace.json --add model.json\n" },
     { "check", "MACHINE.yaml RECORDING [OPTION]...",
       "Says what a machine file makes of a recording in free air.",
-      "A checklist: sample times, stuck sensors, how far each joint moves, which way and from where "
-      "angles count, which cylinder is which, head and rod, units, offsets, weights, delay, and what "
+      "A checklist: sample times, stuck sensors, how far each joint moves, which way and from "
+      "where "
+      "angles count, which cylinder is which, head and rod, units, offsets, weights, delay, and "
+      "what "
       "none of that explains. Each answer with its 1 sigma, what is allowed, and what to do.\n\n"
       "RECORDING is a machine recording or an LCM log of the daemon, in which the bucket touches "
       "nothing: move boom, arm and bucket one after the other through most of their range, slowly, "
@@ -81,7 +83,9 @@ static const struct dig_option options[] = {
 const struct dig_program *digloop_program(void)
 {
     static const struct dig_program program = {
-        .self        = { "digloop", "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\ncheck MACHINE.yaml RECORDING [OPTION]...\nCOMMAND --help",
+        .self        = { "digloop",
+                         "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\ncheck MACHINE.yaml RECORDING "
+                                "[OPTION]...\nCOMMAND --help",
                          "Finds the gravel of a table that resists like recorded digs, predicts other "
                                 "digs, and traces what a model lacks.",
                          NULL,

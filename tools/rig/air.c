@@ -29,11 +29,12 @@ static void list_stops(struct stop stop[MOVES + 1])
 {
     static const struct stop middle             = { { mid, mid, mid } };
     static const double      alone[ALONE]       = { low, high, mid };
-    static const struct stop together[TOGETHER] = {
-        { { high, low, high } }, { { low, high, low } }, { { 0.7, 0.7, 0.3 } }, { { 0.4, 0.3, 0.7 } }
-    };
-    size_t n  = 0;
-    stop[n++] = middle;
+    static const struct stop together[TOGETHER] = { { { high, low, high } },
+                                                    { { low, high, low } },
+                                                    { { 0.7, 0.7, 0.3 } },
+                                                    { { 0.4, 0.3, 0.7 } } };
+    size_t                   n                  = 0;
+    stop[n++]                                   = middle;
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (int k = 0; k < ALONE; k++) {
             stop[n]            = middle;
@@ -73,9 +74,11 @@ static void put(const struct dig_machine *const machine, const struct stop *cons
     const double          done = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
     struct dig_rig_joints joints;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        joints.rad[j] = (1.0 - done) * angle_rad(machine, from, j) + done * angle_rad(machine, to, j);
+        joints.rad[j] =
+            (1.0 - done) * angle_rad(machine, from, j) + done * angle_rad(machine, to, j);
     }
-    path->frame[path->frames++] = (struct dig_rig_frame){ .pose = dig_rig_forward(machine, &joints) };
+    path->frame[path->frames++] =
+        (struct dig_rig_frame){ .pose = dig_rig_forward(machine, &joints) };
 }
 
 enum dig_status dig_rig_air_build(const struct dig_machine *const machine,

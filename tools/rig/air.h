@@ -16,6 +16,7 @@
 /// The motion in the machine frame, without soil; about a minute. DIG_EINVAL for a rig with a force
 /// sensor, whose bucket has no joints; DIG_ENOMEM. Free with dig_rig_path_finish().
 DIG_MUST_CHECK enum dig_status dig_rig_air_build(const struct dig_machine *machine,
-                                                 struct dig_rig_path *path, struct dig_error *error);
+                                                 struct dig_rig_path      *path,
+                                                 struct dig_error         *error);
 
 #endif // DIG_TOOLS_RIG_AIR_H

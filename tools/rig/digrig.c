@@ -141,8 +141,7 @@ static void describe(const struct dig_machine *const machine, const double scene
 static void describe_air(const struct dig_machine *const   machine,
                          const struct dig_rig_track *const track)
 {
-    (void)fprintf(stderr,
-                  "digrig: %s in free air, %.1f s; nearest limit, %.0f %% left: %s\n",
+    (void)fprintf(stderr, "digrig: %s in free air, %.1f s; nearest limit, %.0f %% left: %s\n",
                   machine->name, (double)(track->rows - 1) * track->step_s,
                   100.0 * track->nearest.share, track->nearest_text);
 }

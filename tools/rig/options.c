@@ -93,8 +93,10 @@ static const struct dig_option known[] = {
     { "no-noise", OPT_NO_NOISE, NULL, NULL, "sensors without noise" },
     { "noise", OPT_NOISE, "0|1", NULL, "0: as --no-noise" },
     { "quasi-static", OPT_QUASI_STATIC, NULL, NULL, "leave the inertia of the links out" },
-    { "no-blend", OPT_NO_BLEND, NULL, " record serve ", "keep the velocity jumps of the recording" },
-    { "no-air", OPT_NO_AIR, NULL, " record serve ", "the dig alone, without motion before and after" },
+    { "no-blend", OPT_NO_BLEND, NULL, " record serve ",
+      "keep the velocity jumps of the recording" },
+    { "no-air", OPT_NO_AIR, NULL, " record serve ",
+      "the dig alone, without motion before and after" },
 };
 
 const struct dig_program *dig_rig_program(void)
