@@ -43,7 +43,7 @@ static const double little_share = 0.5;
 enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
 
 // The parameters of the effects, in the order of estimator/effects/.
-enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = DIG_JOINTS * DIG_CHAMBERS };
+enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
 
 struct work {
     struct dig_air       *air;
@@ -133,18 +133,22 @@ static bool is_return_side(const struct work *const w, const size_t joint, const
     return changes_N(w, joint, chamber) < little_share * changes_N(w, joint, chamber ^ 1U);
 }
 
+static int at_joint(const enum dig_cause_kind kind, const size_t joint)
+{
+    return (int)((size_t)kind * DIG_JOINTS + joint);
+}
+
 // The cause that a column belongs to, or -1.
 static int cause_of(const struct dig_lines_column *const column)
 {
     const size_t p = column->parameter;
     if (column->effect == DIG_EFFECT_UNLISTED) {
-        return p < LEVEL    ? (int)(DIG_CAUSE_ZERO * DIG_JOINTS + (p - ANGLES))
-               : p >= LINKS ? (int)(DIG_CAUSE_WEIGHT * DIG_JOINTS + (p - LINKS))
+        return p < LEVEL    ? at_joint(DIG_CAUSE_ZERO, p - ANGLES)
+               : p >= LINKS ? at_joint(DIG_CAUSE_WEIGHT, p - LINKS)
                             : -1;
     }
     if (column->effect == DIG_EFFECT_PRESSURE_OFFSET) {
-        const size_t kind = p < GAINS ? DIG_CAUSE_OFFSET : DIG_CAUSE_FACTOR;
-        return (int)(kind * DIG_JOINTS + p % GAINS / DIG_CHAMBERS);
+        return at_joint(p < GAINS ? DIG_CAUSE_OFFSET : DIG_CAUSE_FACTOR, p % GAINS / DIG_CHAMBERS);
     }
     return column->effect == DIG_EFFECT_SENSOR_DELAY ? (int)DIG_CAUSE_DELAY : -1;
 }
@@ -165,7 +169,7 @@ static double allowed(const struct work *const w, const struct dig_lines_column 
     if (column->effect == DIG_EFFECT_BUCKET_INERTIA) {
         return inertia_share * machine->link[DIG_JOINT_BUCKET].inertia_kgm2;
     }
-    if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < OF_A_SEAL * DIG_JOINTS) {
+    if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < SEALS) {
         const struct dig_cylinder *const cylinder = cylinder_of(w, drive[p / OF_A_SEAL]);
         const double                     push_N =
             cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
@@ -223,7 +227,7 @@ static unsigned choose(struct work *const w)
 {
     unsigned named = 0;
     double   now   = evidence(w, named);
-    for (int step = 0; step < DIG_CAUSES; step++) {
+    for (size_t step = 0; step < DIG_CAUSES; step++) {
         unsigned best = named;
         double   most = now + w->least;
         for (unsigned k = 0; k < DIG_CAUSES; k++) {

@@ -15,6 +15,7 @@
 #include "core/status.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 enum dig_cause_kind {
     DIG_CAUSE_ZERO,   // rad that the angle reads too much
@@ -26,8 +27,8 @@ enum dig_cause_kind {
 };
 
 /// Of each kind one a joint, [DIG_JOINTS * kind + joint], then the delay, s.
-#define DIG_CAUSES      (DIG_CAUSE_KINDS * DIG_JOINTS + 1)
-#define DIG_CAUSE_DELAY (DIG_CAUSE_KINDS * DIG_JOINTS)
+#define DIG_CAUSE_DELAY ((size_t)DIG_CAUSE_KINDS * DIG_JOINTS)
+#define DIG_CAUSES      (DIG_CAUSE_DELAY + 1)
 
 struct dig_cause {
     double value, sigma; // with a wide prior, beside the causes named

@@ -206,7 +206,8 @@ static void find_motion(const struct dig_machine_dig *const dig, const bool degr
 {
     const double unit = degrees ? DIG_RAD_PER_DEG : 1.0;
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        double low = INFINITY, high = -INFINITY;
+        double low  = INFINITY;
+        double high = -INFINITY;
         for (size_t i = 0; i < dig->samples; i++) {
             const double rad = unit * dig->sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
             low              = fmin(low, rad);
@@ -293,7 +294,8 @@ enum dig_status dig_machine_air_check_run(const struct dig_machine *const       
     enum dig_status              status = recording->rows > 0 ? copy(recording, &read)
                                                               : dig_error_set(error, DIG_EINVAL, "no samples");
     if (status == DIG_OK) {
-        made.duration_s = 1e-9 * (double)(read.row[read.rows - 1].time_ns - read.row[0].time_ns);
+        made.duration_s =
+            1e-9 * (double)(recording->row[read.rows - 1].time_ns - recording->row[0].time_ns);
         dig_check_recording(&read, &made);
         dig_check_stuck(machine, &read, &made);
         status = read_plain(machine, &read, moves, &made, error);

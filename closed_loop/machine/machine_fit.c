@@ -151,17 +151,17 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
     solve_columns(fit, n, column, share, answer);
 }
 
-void dig_fit_solve_each(const struct dig_fit *const fit, const double each[],
+void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
                         struct dig_fit_answer *const answer)
 {
-    assert(fit != NULL && each != NULL && answer != NULL);
+    assert(fit != NULL && widths != NULL && answer != NULL);
     size_t column[MOST];
     double share[MOST];
     size_t n = 0;
     for (size_t c = 0; c < fit->lines->columns; c++) {
-        if (each[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
+        if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
             column[n]  = c;
-            share[n++] = each[c];
+            share[n++] = widths[c];
         }
     }
     answer->width = 1.0;

@@ -8,6 +8,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Instants that are looked at; poses that count as seen each for itself lie so far apart, and no
 // more than so many of them count: what a file has wrong by some per cent it has in all of them.
@@ -279,6 +280,72 @@ static void keep(struct search *const s, const struct dig_reading *const reading
 
 typedef double costs[DIG_JOINTS][DIG_JOINTS][2][FACTORS];
 
+// How the pressures of one drive are read.
+struct answer {
+    size_t swapped, factor;
+    double cost;
+};
+
+// What an answer of drive j costs where a factor is common to all, its chambers in the columns of
+// another drive; a joint that hardly moves is read as its columns say.
+static struct answer answer_of(const struct search *const s, costs cost, const size_t j,
+                               const enum dig_joint drive, const size_t swapped,
+                               const size_t factor, const size_t common)
+{
+    const bool   asked = s->moves[j] || (swapped == 0 && factor == common);
+    const double more =
+        (swapped > 0 ? each_change : 0.0) + (factor != common ? 2.0 * each_change : 0.0);
+    return (struct answer){ swapped, factor,
+                            asked ? cost[j][drive][swapped][factor] + more : (double)INFINITY };
+}
+
+static struct answer best_answer(const struct search *const s, costs cost, const size_t j,
+                                 const enum dig_joint drive, const size_t common)
+{
+    struct answer best = { .cost = INFINITY };
+    for (size_t w = 0; w < 2; w++) {
+        for (size_t f = 0; f < FACTORS; f++) {
+            const struct answer one = answer_of(s, cost, j, drive, w, f, common);
+            best                    = one.cost < best.cost ? one : best;
+        }
+    }
+    return best;
+}
+
+static void keep_answers(struct search *const s, struct dig_reading reading,
+                         const struct answer answer[DIG_JOINTS], const double cost)
+{
+    size_t factor[DIG_JOINTS];
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        reading.swapped[j] = answer[j].swapped > 0;
+        reading.factor[j]  = factors[answer[j].factor];
+        factor[j]          = answer[j].factor;
+    }
+    keep(s, &reading, factor, cost);
+}
+
+// One order of the cylinders and one common factor: the best of every drive, and then one other
+// answer at a time.
+static void try_order(struct search *const s, const struct dig_reading *const reading,
+                      const double before, costs cost, const size_t common)
+{
+    struct answer best[DIG_JOINTS];
+    double        sum = before;
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        best[j] = best_answer(s, cost, j, reading->drive[j], common);
+        sum += best[j].cost;
+    }
+    keep_answers(s, *reading, best, sum);
+    for (size_t i = 0; i < (size_t)DIG_JOINTS * 2 * FACTORS; i++) {
+        const size_t  j               = i % DIG_JOINTS;
+        const size_t  w               = i / DIG_JOINTS % 2;
+        struct answer one[DIG_JOINTS] = { best[0], best[1], best[2] };
+
+        one[j] = answer_of(s, cost, j, reading->drive[j], w, i / DIG_JOINTS / 2, common);
+        keep_answers(s, *reading, one, sum - best[j].cost + one[j].cost);
+    }
+}
+
 // All pressures for one reading of the angles: a unit common to all is one change, another of one
 // drive is two.
 static void try_pressures(struct search *const s, struct dig_reading reading, const double before,
@@ -286,54 +353,27 @@ static void try_pressures(struct search *const s, struct dig_reading reading, co
 {
     for (size_t common = 0; common < FACTORS; common++) {
         for (size_t o = 0; o < ORDERS; o++) {
-            double sum = before + (common > 0 ? each_change : 0.0) + (o > 0 ? each_change : 0.0);
-            // Of every drive the best, and what each other answer of it costs more.
-            struct {
-                size_t swapped, factor;
-            } choice[DIG_JOINTS];
-            double more[DIG_JOINTS][2][FACTORS];
-            for (int j = 0; j < DIG_JOINTS; j++) {
-                double best = INFINITY;
-                for (size_t w = 0; w < 2; w++) {
-                    for (size_t f = 0; f < FACTORS; f++) {
-                        const double one = cost[j][orders[o][j]][w][f] +
-                                           (w > 0 ? each_change : 0.0) +
-                                           (f != common ? 2.0 * each_change : 0.0);
-                        const bool asked = s->moves[j] || (w == 0 && f == common);
-                        more[j][w][f]    = asked ? one : (double)INFINITY;
-                        if (more[j][w][f] < best) {
-                            best              = more[j][w][f];
-                            choice[j].swapped = w;
-                            choice[j].factor  = f;
-                        }
-                    }
-                }
-                sum += best;
-            }
-            size_t factor[DIG_JOINTS];
-            for (int j = 0; j < DIG_JOINTS; j++) {
-                reading.drive[j]   = orders[o][j];
-                reading.swapped[j] = choice[j].swapped > 0;
-                reading.factor[j]  = factors[choice[j].factor];
-                factor[j]          = choice[j].factor;
-            }
-            keep(s, &reading, factor, sum);
-            // One other answer at a time.
-            for (int j = 0; j < DIG_JOINTS; j++) {
-                const double own = sum - more[j][choice[j].swapped][choice[j].factor];
-                for (size_t w = 0; w < 2; w++) {
-                    for (size_t f = 0; f < FACTORS; f++) {
-                        struct dig_reading other = reading;
-                        size_t             of[DIG_JOINTS];
-                        for (int i = 0; i < DIG_JOINTS; i++) {
-                            of[i] = i == j ? f : factor[i];
-                        }
-                        other.swapped[j] = w > 0;
-                        other.factor[j]  = factors[f];
-                        keep(s, &other, of, own + more[j][w][f]);
-                    }
-                }
-            }
+            memcpy(reading.drive, orders[o], sizeof reading.drive);
+            try_order(s, &reading,
+                      before + (common > 0 ? each_change : 0.0) + (o > 0 ? each_change : 0.0), cost,
+                      common);
+        }
+    }
+}
+
+// What every answer of a drive leaves. A drive that is not recorded says nothing, for or against.
+static void fill_costs(const struct search *const s, double load_N[INSTANTS][DIG_JOINTS],
+                       const int joint, const int drive, double cost[2][FACTORS])
+{
+    for (size_t w = 0; w < 2; w++) {
+        struct sums sums = { .n = 0.0 };
+        if (s->told[drive]) {
+            sums = add_up(s, load_N, joint, drive, w > 0);
+        }
+        for (size_t f = 0; f < FACTORS; f++) {
+            cost[w][f] = s->told[drive]   ? misfit(s, &sums, joint, factors[f])
+                         : joint == drive ? 0.0
+                                          : (double)INFINITY;
         }
     }
 }
@@ -346,21 +386,12 @@ static void try_angles(struct search *const s, const struct dig_reading *const a
         before += angles->turned[j] ? each_change : 0.0;
         before += fabs(angles->zero_rad[j]) > 0.0 ? each_change : 0.0;
     }
-    static const struct sums nothing = { .n = 0.0 };
-    double                   load_N[INSTANTS][DIG_JOINTS];
-    costs                    cost;
+    double load_N[INSTANTS][DIG_JOINTS];
+    costs  cost;
     loads(s, angles, load_N);
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (int d = 0; d < DIG_JOINTS; d++) {
-            for (int w = 0; w < 2; w++) {
-                const struct sums sums = s->told[d] ? add_up(s, load_N, j, d, w > 0) : nothing;
-                for (size_t f = 0; f < FACTORS; f++) {
-                    // A drive that is not recorded says nothing, for or against.
-                    cost[j][d][w][f] = s->told[d] ? misfit(s, &sums, j, factors[f])
-                                       : j == d   ? 0.0
-                                                  : (double)INFINITY;
-                }
-            }
+            fill_costs(s, load_N, j, d, cost[j][d]);
         }
     }
     try_pressures(s, *angles, before, cost);

@@ -133,8 +133,10 @@ static enum dig_status put_pictures(FILE *const to, const struct dig_check_subje
 
     const bool      mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
     double *const   room   = malloc(3 * (curves->points / EVERY + 1) * sizeof *room);
-    enum dig_status status =
-        room != NULL ? DIG_OK : dig_error_set(error, DIG_ENOMEM, "%zu points", curves->points);
+    enum dig_status status = DIG_OK;
+    if (room == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%zu points", curves->points);
+    }
     (void)fputs("<h2>Measured against expected</h2>\n<div class=grid>\n", to);
     for (size_t j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
         status = put_joint(to, curves, j, mended, room, error);
