@@ -419,18 +419,23 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
     }
 }
 
-static enum dig_status rests(const struct work *const w, const double at[], double rms[DIG_JOINTS])
+// Of each joint what is left, rms: in sigmas, and at the rod.
+static enum dig_status rests(const struct work *const w, const double at[], double rms[DIG_JOINTS],
+                             double rms_N[DIG_JOINTS])
 {
     double *const         rest   = malloc((w->air->rows + 1) * sizeof *rest);
     const enum dig_status status = rest != NULL ? dig_lines_rest(&w->lines, at, rest) : DIG_ENOMEM;
-    double                sum[DIG_JOINTS]   = { 0.0 };
-    double                count[DIG_JOINTS] = { 0.0 };
+    double                sum[DIG_JOINTS]    = { 0.0 };
+    double                sum_N2[DIG_JOINTS] = { 0.0 };
+    double                count[DIG_JOINTS]  = { 0.0 };
     for (size_t r = 0; r < w->air->rows && status == DIG_OK; r++) {
         sum[w->air->row[r].joint] += rest[r] * rest[r];
+        sum_N2[w->air->row[r].joint] += pow(rest[r] * w->air->row[r].sigma_N, 2.0);
         count[w->air->row[r].joint] += 1.0;
     }
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        rms[j] = count[j] > 0.0 ? sqrt(sum[j] / count[j]) : (double)NAN;
+        rms[j]   = count[j] > 0.0 ? sqrt(sum[j] / count[j]) : (double)NAN;
+        rms_N[j] = count[j] > 0.0 ? sqrt(sum_N2[j] / count[j]) : (double)NAN;
     }
     free(rest);
     return status;
@@ -491,10 +496,10 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
     status = find(&w, &named);
     if (status == DIG_OK) {
         memset(w.step, 0, w.lines.columns * sizeof(double));
-        status = rests(&w, w.step, found.rest_plain);
+        status = rests(&w, w.step, found.rest_plain, found.rest_N);
     }
     if (status == DIG_OK) {
-        status = rests(&w, w.lines.at, found.rest);
+        status = rests(&w, w.lines.at, found.rest, found.rest_N);
     }
     if (status == DIG_OK) {
         figures(&w, named, found.cause);

@@ -41,6 +41,7 @@ struct dig_cause {
 struct dig_causes {
     struct dig_cause cause[DIG_CAUSES];
     double           rest[DIG_JOINTS];       // rms over sigma that is left; NaN: no row
+    double           rest_N[DIG_JOINTS];     // rms of the same at the rod
     double           rest_plain[DIG_JOINTS]; // and with nothing taken off
 };
 

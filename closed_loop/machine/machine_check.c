@@ -15,9 +15,12 @@ static const double most_s = 300.0;
 // Another answer that is worse by less is not told from the best.
 static const double told_sigmas = 3.0;
 
-// What is left of a joint's rows, in their sigmas.
-static const double little_rest = 1.5;
-static const double much_rest   = 3.0;
+// What is left of a joint's rows, in their sigmas and as a share of its load: a seal that rubs in
+// another way than its formula is many sigmas, and still little.
+static const double little_rest  = 1.5;
+static const double much_rest    = 3.0;
+static const double little_share = 0.02;
+static const double much_share   = 0.05;
 
 // A figure known to no better than so many tolerances is not told.
 static const double vague = 3.0;
@@ -148,20 +151,6 @@ static void check_causes(const struct dig_machine *const machine,
     }
 }
 
-static void check_rest(const struct dig_causes *const      causes,
-                       struct dig_machine_air_check *const check)
-{
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_REST, j);
-        item->value                       = causes->rest[j];
-        item->tolerance                   = little_rest;
-        item->verdict                     = isnan(item->value)          ? DIG_CHECK_UNTOLD
-                                            : item->value > much_rest   ? DIG_CHECK_WRONG
-                                            : item->value > little_rest ? DIG_CHECK_DOUBTFUL
-                                                                        : DIG_CHECK_OK;
-    }
-}
-
 static enum dig_status draw(const struct dig_air *const        air,
                             const struct dig_correction *const correction, double **const drive_N,
                             double **const load_N)
@@ -187,6 +176,46 @@ static enum dig_status keep_times(const struct dig_air *const    air,
         curves->time_s[p] = 1e-9 * (double)(air->point[p].sample.time_ns);
     }
     return DIG_OK;
+}
+
+// The rms of what a drive has to push.
+static double load_N(const struct dig_check_curves *const curves, const size_t joint)
+{
+    double n   = 0.0;
+    double sum = 0.0;
+    for (size_t p = 0; p < curves->points; p++) {
+        const double N = curves->mended_load_N[DIG_JOINTS * p + joint];
+        n += isfinite(N) ? 1.0 : 0.0;
+        sum += isfinite(N) ? N * N : 0.0;
+    }
+    return n > 0.0 ? sqrt(sum / n) : (double)NAN;
+}
+
+static void check_rest(const struct dig_causes *const      causes,
+                       struct dig_machine_air_check *const check)
+{
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_REST, (int)j);
+        item->value                       = causes->rest[j];
+        item->tolerance                   = little_rest;
+        item->share                       = causes->rest_N[j] / load_N(&check->curves, j);
+
+        const bool much    = item->value > much_rest && item->share > much_share;
+        const bool little  = item->value > little_rest && item->share > little_share;
+        item->verdict      = isnan(item->value) ? DIG_CHECK_UNTOLD
+                             : much             ? DIG_CHECK_WRONG
+                             : little           ? DIG_CHECK_DOUBTFUL
+                                                : DIG_CHECK_OK;
+        check->unexplained = check->unexplained || much;
+    }
+    for (size_t i = 0; i < check->items && check->unexplained; i++) {
+        struct dig_check_item *const item = &check->item[i];
+
+        const bool fitted =
+            item->question >= DIG_CHECK_DIRECTION && item->question < DIG_CHECK_REST;
+        item->verdict =
+            fitted && item->verdict == DIG_CHECK_WRONG ? DIG_CHECK_DOUBTFUL : item->verdict;
+    }
 }
 
 // The dig of a recording, and its air.
@@ -264,13 +293,15 @@ static enum dig_status read_best(const struct dig_machine *const           machi
     }
     if (status == DIG_OK) {
         check_causes(machine, &causes, moves, check);
-        check_rest(&causes, check);
         memcpy(check->rest_plain, causes.rest_plain, sizeof check->rest_plain);
         // Read otherwise, other samples may lack a pressure.
         check->curves.points =
             air.points < check->curves.points ? air.points : check->curves.points;
         status =
             draw(&air, correction, &check->curves.mended_drive_N, &check->curves.mended_load_N);
+    }
+    if (status == DIG_OK) {
+        check_rest(&causes, check);
     }
     dig_air_finish(&air);
     dig_machine_dig_finish(&dig);

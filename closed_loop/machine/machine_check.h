@@ -39,7 +39,7 @@ enum dig_check_question {
     DIG_CHECK_OFFSET,    // they read so much too much, Pa at the head side; at_rod: or there
     DIG_CHECK_WEIGHT,    // the link weighs so much more than the file says, kg
     DIG_CHECK_DELAY,     // pressures are so much older than angles, s
-    DIG_CHECK_REST,      // what nothing of this explains: rms over its sigma
+    DIG_CHECK_REST,      // what nothing of this explains: rms over its sigma; share
     DIG_CHECK_QUESTIONS
 };
 
@@ -57,6 +57,7 @@ struct dig_check_item {
     enum dig_check_verdict  verdict;
     double                  value, sigma, tolerance;
     double                  excess;  // sigmas by which the file's answer is worse
+    double                  share;   // REST: the same over the rms load
     double                  at_rod;  // OFFSET: the value, if the rod side's sensor is wrong
     int                     answer;  // CYLINDER: in whose columns its pressures are
     int                     or_item; // another line that explains it as well; -1: none
@@ -79,7 +80,8 @@ struct dig_machine_air_check {
     struct dig_reading_finding reading;
     size_t                     items;
     struct dig_check_item      item[DIG_CHECK_ITEMS_MAX];
-    enum dig_check_verdict     verdict; // the worst of all lines; UNTOLD counts as OK
+    enum dig_check_verdict     verdict;     // the worst of all lines; UNTOLD counts as OK
+    bool                       unexplained; // much is left: no answer is sure enough to be wrong
     double                     rest_plain[DIG_JOINTS]; // rms over sigma as the columns say
     struct dig_check_curves    curves;
 };

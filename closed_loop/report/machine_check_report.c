@@ -106,6 +106,9 @@ static void put_item(FILE *const to, const struct dig_check_subject *const subje
     if (item->question == DIG_CHECK_CYLINDER) {
         (void)fprintf(to, ", \"found_in\": \"%s\"", dig_joint_name((enum dig_joint)item->answer));
     }
+    if (item->question == DIG_CHECK_REST) {
+        dig_json_member(to, ", ", "share", item->share);
+    }
     if (item->or_item >= 0) {
         const struct dig_check_item *const other = &subject->check->item[item->or_item];
         (void)fprintf(to, ", \"or\": {\"question\": \"%s\", \"of\": \"%s\"}",
@@ -129,8 +132,8 @@ void dig_machine_check_json(const struct dig_check_subject *const subject, FILE 
     (void)fputs(",\n \"recording\": ", to);
     dig_json_string(to, subject->recording);
     dig_json_member(to, ",\n ", "duration_s", check->duration_s);
-    (void)fprintf(to, ",\n \"verdict\": \"%s\",\n \"items\": [\n",
-                  dig_check_verdict_name(check->verdict));
+    (void)fprintf(to, ",\n \"verdict\": \"%s\",\n \"unexplained\": %s,\n \"items\": [\n",
+                  dig_check_verdict_name(check->verdict), check->unexplained ? "true" : "false");
     for (size_t i = 0; i < check->items; i++) {
         put_item(to, subject, &check->item[i]);
         (void)fputs(i + 1 < check->items ? ",\n" : "\n", to);

@@ -234,8 +234,8 @@ static void say_rest(const struct dig_check_subject *const subject,
 {
     say(words->question, "%s: what is left", joint_of(item));
     if (isfinite(item->value)) {
-        say(words->answer, "%.2f sigma (1 expected; %.2f at first)", item->value,
-            subject->check->rest_plain[item->of]);
+        say(words->answer, "%.2f sigma (was %.2f), %.1f %% of its load", item->value,
+            subject->check->rest_plain[item->of], 100.0 * item->share);
     } else {
         say(words->answer, "not judged: no pressures");
     }
@@ -316,11 +316,20 @@ void dig_check_sentence(const struct dig_check_subject *const subject, const siz
     if (wrong == 0 && doubtful == 0) {
         list(size, text, " ", "fits this recording in free air");
     }
+    if (subject->check->unexplained) {
+        list(size, text, ": ",
+             "no answer to these questions explains this recording. Was the bucket in free air all "
+             "the time");
+        list(size, text, "? ", "");
+    } else if (wrong > 0) {
+        list(size, text, " ", "does not fit this recording. ");
+    }
     if (wrong > 0) {
-        list(size, text, " ", "does not fit this recording. Wrong: ");
+        list(size, text, "", "Wrong: ");
         (void)list_lines(subject, DIG_CHECK_WRONG, size, text);
     }
-    if (doubtful > 0) {
+    // Of what is not explained the doubtful answers are as good as none.
+    if (doubtful > 0 && !subject->check->unexplained) {
         list(size, text, wrong > 0 ? ". " : " fits this recording but for what is doubtful: ",
              wrong > 0 ? "Doubtful: " : "");
         (void)list_lines(subject, DIG_CHECK_DOUBTFUL, size, text);

@@ -204,6 +204,12 @@ static void what_no_cause_explains_is_left_over(void **state)
     }
     struct dig_machine_air_check check = run(&m->machine, &r);
     assert_int_equal(line(&check, DIG_CHECK_REST, DIG_JOINT_BOOM)->verdict, DIG_CHECK_WRONG);
+    assert_true(check.unexplained);
+    assert_int_equal(check.verdict, DIG_CHECK_WRONG);
+    for (size_t i = 0; i < check.items; i++) {
+        assert_true(check.item[i].question == DIG_CHECK_REST ||
+                    check.item[i].verdict != DIG_CHECK_WRONG);
+    }
     dig_machine_air_check_finish(&check);
     dig_machine_recording_finish(&r);
 }
