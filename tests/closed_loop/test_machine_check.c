@@ -2,6 +2,7 @@
 // machine_causes.c: the rig's machines by virtual work, broken in one way at a time.
 // DIG_TEST_ALL=1: every break of every machine.
 
+#include "files/recording_csv.h"
 #include "tests/broken_air.h"
 #include "tests/testlib.h"
 
@@ -143,9 +144,11 @@ static void two_breaks_at_once_are_both_named_with_their_values(void **state)
     assert_int_equal(line(&check, DIG_CHECK_DIRECTION, DIG_JOINT_BOOM)->verdict, DIG_CHECK_WRONG);
     const struct dig_check_item *const offset = line(&check, DIG_CHECK_OFFSET, DIG_JOINT_ARM);
     assert_int_equal(offset->verdict, DIG_CHECK_WRONG);
+    assert_true(offset->sigma < 1e5);
     assert_close(offset->value, 2e6, 4.0 * offset->sigma);
     const struct dig_check_item *const zero = line(&check, DIG_CHECK_ZERO, DIG_JOINT_BUCKET);
     assert_int_equal(zero->verdict, DIG_CHECK_WRONG);
+    assert_true(zero->sigma < 0.02);
     assert_close(zero->value, 0.1, 4.0 * zero->sigma);
     assert_int_equal(check.verdict, DIG_CHECK_WRONG);
     dig_machine_air_check_finish(&check);
@@ -212,6 +215,33 @@ static void what_no_cause_explains_is_left_over(void **state)
     }
     dig_machine_air_check_finish(&check);
     dig_machine_recording_finish(&r);
+}
+
+// A working dig, for which a person may take the wrong file.
+static void a_recording_with_a_dig_in_it_is_explained_by_nothing(void **state)
+{
+    (void)state;
+    const struct machine *const  m   = &machines[5];
+    struct dig_rig_track_options how = dig_rig_track_options_default();
+    struct dig_recording         dug;
+    struct machine               digs  = { .machine = m->machine };
+    struct dig_error             error = { "" };
+    how.placed                         = true;
+    how.pin_X_m                        = 7.43;
+    how.pin_Z_m                        = -0.62;
+    if (dig_recording_read("tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv", &dug, &error) !=
+            DIG_OK ||
+        dig_rig_track_build(&m->machine, &how, 1, &dug, &digs.track, &error) != DIG_OK) {
+        fail_msg("%s", error.text);
+    }
+    struct dig_machine_recording r     = air_record(&m->machine, &digs.track, NULL, 1);
+    struct dig_machine_air_check check = run(&m->machine, &r);
+    assert_true(check.unexplained);
+    assert_int_equal(check.verdict, DIG_CHECK_WRONG);
+    dig_machine_air_check_finish(&check);
+    dig_machine_recording_finish(&r);
+    dig_rig_track_finish(&digs.track);
+    dig_recording_finish(&dug);
 }
 
 // Allowances are 1 sigma of what may be off: half of each is no fault.
@@ -286,6 +316,7 @@ int main(void)
         cmocka_unit_test(a_joint_that_does_not_move_is_not_judged),
         cmocka_unit_test(of_a_machine_with_the_bucket_s_pressures_alone_the_bucket_is_judged),
         cmocka_unit_test(what_no_cause_explains_is_left_over),
+        cmocka_unit_test(a_recording_with_a_dig_in_it_is_explained_by_nothing),
         cmocka_unit_test(what_is_within_its_tolerance_is_no_fault),
         cmocka_unit_test(the_pushes_that_are_drawn_are_those_of_the_machine),
         cmocka_unit_test(what_cannot_be_checked_is_refused_and_writes_nothing),
