@@ -44,6 +44,13 @@ static void note_step(const char *const table, const struct dig_curve_set *const
     }
 }
 
+// The one command that goes by no table.
+static enum dig_status check(const struct digloop_options *const options, bool *const wrong,
+                             struct dig_error *const error)
+{
+    return digloop_input(digloop_check(options, wrong, error));
+}
+
 int main(const int argc, char *argv[])
 {
     struct digloop_options options = { .command = "" };
@@ -53,8 +60,11 @@ int main(const int argc, char *argv[])
         return 2;
     }
     struct dig_curve_set *set    = NULL;
-    enum dig_status       status = digloop_input(dig_table_load(options.table, &set, &error));
-    if (status == DIG_OK) {
+    bool                  wrong  = false;
+    const bool            checks = strcmp(options.command, "check") == 0;
+    enum dig_status       status = checks ? check(&options, &wrong, &error)
+                                          : digloop_input(dig_table_load(options.table, &set, &error));
+    if (status == DIG_OK && !checks) {
         note_step(options.table, set);
         status = run(&options, set, &error);
     }
@@ -63,5 +73,5 @@ int main(const int argc, char *argv[])
         (void)fprintf(stderr, "digloop: %s\n", error.text);
     }
     const bool input = status == DIG_EINVAL || status == DIG_ESCHEMA || status == DIG_ENOMATCH;
-    return status == DIG_OK ? EXIT_SUCCESS : input ? 2 : EXIT_FAILURE;
+    return status == DIG_OK && !wrong ? EXIT_SUCCESS : input || wrong ? 2 : EXIT_FAILURE;
 }

@@ -54,9 +54,20 @@ struct dig_air_pose {
     double mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
 };
 
+/// What a machine's file and its angle sensors may have wrong besides the catalogue's effects.
+/// Zeroed: nothing. Doubles only, read as an array.
+struct dig_file_error {
+    double angle_offset_rad[DIG_JOINTS]; // the sensor reads so much more than the joint's angle
+    double level_rad;                    // the machine is pitched so much more than it says
+    double link_kg[DIG_JOINTS];          // a link weighs so much more, in the file's centre
+};
+
+#define DIG_FILE_ERRORS (sizeof(struct dig_file_error) / sizeof(double))
+
 /// Free with dig_air_finish().
 struct dig_air {
     struct dig_machine      machine;
+    struct dig_file_error   file; // taken off in every rest; the caller's to set
     size_t                  points, rows, segments;
     struct dig_air_point   *point;
     struct dig_air_row     *row;
@@ -64,6 +75,7 @@ struct dig_air {
     double                 *scratch; // [9 * points]
     struct dig_air_pose    *pose;    // [points], with the correction last asked about
     struct dig_correction  *posed;   // [segments], which that is
+    struct dig_file_error  *filed;   // [segments], and with which of the file's errors
 };
 
 /// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive
@@ -78,6 +90,11 @@ void dig_air_finish(struct dig_air *air);
 /// its mean, the other what makes the corrected balance nothing. What a gain or a lever does is
 /// proportional to the pressure; taken from a noisy one it would explain that noise.
 void dig_air_calm(struct dig_air *air, const struct dig_correction correction[]);
+
+/// What the drives push and what they would have to when the machine is corrected, N at the rods:
+/// drive_N[3 * point + joint] and load_N alike; NaN where a pressure or a lever is missing.
+void dig_air_forces(const struct dig_air *air, const struct dig_correction correction[],
+                    double drive_N[], double load_N[]);
 
 /// What is left of every row in its sigmas when the machine is corrected. correction[segment].
 /// calm: of the calm pressures, as slopes are to be taken. Uses air's scratch.

@@ -85,6 +85,39 @@ static bool stand_alike(const struct dig_correction *const a, const struct dig_c
     return alike;
 }
 
+static bool filed_alike(const struct dig_file_error *const a, const struct dig_file_error *const b)
+{
+    const double *const one   = (const double *)(const void *)a;
+    const double *const other = (const double *)(const void *)b;
+    bool                alike = true;
+    for (size_t i = 0; i < DIG_FILE_ERRORS; i++) {
+        alike = alike && fabs(one[i] - other[i]) <= 0.0;
+    }
+    return alike;
+}
+
+// The machine with its links as heavy as they are.
+static struct dig_machine weighed(const struct dig_air *const        air,
+                                  const struct dig_correction *const correction)
+{
+    struct dig_machine corrected = dig_correction_machine(&air->machine, correction);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        corrected.link[j].mass_kg += air->file.link_kg[j];
+    }
+    return corrected;
+}
+
+// The joints where they are.
+static void turn_by(const struct dig_file_error *const file, struct dig_sample *const sample)
+{
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        sample->value[DIG_SIGNAL_BOOM_rad + j] -= file->angle_offset_rad[j];
+    }
+    // A missing pitch counts as level (estimator/wrench/wrench.h).
+    sample->value[DIG_SIGNAL_PITCH_rad] += file->level_rad;
+    sample->valid[DIG_SIGNAL_PITCH_rad] = true;
+}
+
 // What is left of the joints at one point, N at the rods, what friction takes of it, and what it
 // may take more.
 static void rest_at(const struct dig_machine *const    corrected,
@@ -145,16 +178,18 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     const struct dig_air_point *const   point   = &air->point[segment->first_point];
     double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
     double(*const more_N)[DIG_JOINTS]           = loss_N + segment->points;
-    const struct dig_machine   corrected        = dig_correction_machine(&air->machine, correction);
+    const struct dig_machine   corrected        = weighed(air, correction);
     struct dig_air_pose *const pose             = &air->pose[segment->first_point];
-    if (!stand_alike(correction, &air->posed[s])) {
+    if (!stand_alike(correction, &air->posed[s]) || !filed_alike(&air->file, &air->filed[s])) {
         air->posed[s] = *correction;
+        air->filed[s] = air->file;
         for (size_t p = 0; p < segment->points; p++) {
             pose[p].known = false;
         }
     }
     for (size_t p = 0; p < segment->points; p++) {
         struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
+        turn_by(&air->file, &at.sample);
         rest_at(&corrected, correction, &at, calm, &pose[p], rest_N[p], loss_N[p], more_N[p]);
     }
 }
@@ -165,6 +200,44 @@ static double rest_of_point_N(const struct dig_air *const air, const size_t s, c
     const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
     const size_t points                     = air->segment[s].points;
     return rest_N[point][joint] - smooth_at(rest_N + points, points, point, joint);
+}
+
+// Of one point: pushes and loads.
+static void forces_at(const struct dig_machine *const    machine,
+                      const struct dig_correction *const correction,
+                      const struct dig_air_point *const at, double drive_N[DIG_JOINTS],
+                      double load_N[DIG_JOINTS])
+{
+    struct dig_air_pose pose = { .known = false };
+    struct dig_readings readings;
+    const bool          read =
+        dig_readings_take(machine, correction, &at->sample, &at->rates, &readings) == DIG_OK;
+    if (read) {
+        (void)pose_of(machine, &readings, &at->rates, &pose);
+    }
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const bool known = read && pose.lever_ok[j] && readings.push[j].valid;
+        drive_N[j]       = known ? readings.push[j].push_N : (double)NAN;
+        load_N[j]        = known ? -pose.mass_Nm[j] / pose.arm_m[j] : (double)NAN;
+    }
+}
+
+void dig_air_forces(const struct dig_air *const air, const struct dig_correction correction[],
+                    double drive_N[], double load_N[])
+{
+    assert(air != NULL && correction != NULL && drive_N != NULL && load_N != NULL);
+    for (size_t s = 0; s < air->segments; s++) {
+        const struct dig_air_segment *const segment = &air->segment[s];
+        const struct dig_air_point *const   point   = &air->point[segment->first_point];
+        const struct dig_machine            machine = weighed(air, &correction[s]);
+        for (size_t p = 0; p < segment->points; p++) {
+            const size_t to = DIG_JOINTS * (segment->first_point + p);
+
+            struct dig_air_point at = delayed(point, segment->points, p, correction[s].delay_s);
+            turn_by(&air->file, &at.sample);
+            forces_at(&machine, &correction[s], &at, &drive_N[to], &load_N[to]);
+        }
+    }
 }
 
 void dig_air_calm(struct dig_air *const air, const struct dig_correction correction[])

@@ -89,23 +89,22 @@ static size_t columns_of(const struct dig_lines *const lines, const unsigned set
     return n;
 }
 
-// As dig_fit_solve(), with priors of one width, not counted.
-static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
-                     struct dig_fit_answer *const answer)
+enum { MOST = DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + 2 * DIG_MEASURED_MAX + 8 };
+_Static_assert(DIG_FILE_ERRORS <= 8, "columns");
+
+// The n columns of a list, with priors so wide each.
+static void solve_columns(const struct dig_fit *const fit, const size_t n, const size_t column[],
+                          const double share[], struct dig_fit_answer *const answer)
 {
-    enum { MOST = DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + 2 * DIG_MEASURED_MAX };
     const size_t  all = fit->lines->columns;
-    size_t        column[MOST];
     double        x[MOST];
-    const size_t  n     = columns_of(fit->lines, set, column);
-    double *const h     = fit->work;
-    const double  share = width[wide];
+    double *const h = fit->work;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
-            h[i * n + j] = share * share * fit->slope2[column[i] * all + column[j]] / fit->s2;
+            h[i * n + j] = share[i] * share[j] * fit->slope2[column[i] * all + column[j]] / fit->s2;
         }
         h[i * n + i] += 1.0;
-        x[i] = -share * fit->slope_rest[column[i]] / fit->s2;
+        x[i] = -share[i] * fit->slope_rest[column[i]] / fit->s2;
     }
     const double log_det = decompose(n, h);
     substitute(n, h, x);
@@ -113,16 +112,15 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
     double gain  = 0.0;
     double size2 = 0.0;
     for (size_t i = 0; i < n; i++) {
-        gain -= x[i] * share * fit->slope_rest[column[i]] / fit->s2;
+        gain -= x[i] * share[i] * fit->slope_rest[column[i]] / fit->s2;
         size2 += x[i] * x[i];
     }
     answer->log_evidence = 0.5 * (gain - log_det);
     answer->rest2        = fit->rest2 - fit->s2 * (gain + size2);
-    answer->width        = share;
     if (answer->at != NULL) {
         memset(answer->at, 0, all * sizeof(double));
         for (size_t i = 0; i < n; i++) {
-            answer->at[column[i]] = share * x[i];
+            answer->at[column[i]] = share[i] * x[i];
         }
     }
     for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
@@ -131,12 +129,43 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
         one[i] = 1.0;
         substitute(n, h, one);
         if (answer->sigma != NULL) {
-            answer->sigma[column[i]] = share * sqrt(fmax(one[i], 0.0));
+            answer->sigma[column[i]] = share[i] * sqrt(fmax(one[i], 0.0));
         }
         for (size_t j = 0; j < n && answer->covariance != NULL; j++) {
-            answer->covariance[column[i] * all + column[j]] = share * share * one[j];
+            answer->covariance[column[i] * all + column[j]] = share[i] * share[j] * one[j];
         }
     }
+}
+
+// As dig_fit_solve(), with priors of one width, not counted.
+static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
+                     struct dig_fit_answer *const answer)
+{
+    size_t       column[MOST];
+    double       share[MOST];
+    const size_t n = columns_of(fit->lines, set, column);
+    for (size_t i = 0; i < n; i++) {
+        share[i] = width[wide];
+    }
+    answer->width = width[wide];
+    solve_columns(fit, n, column, share, answer);
+}
+
+void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
+                        struct dig_fit_answer *const answer)
+{
+    assert(fit != NULL && widths != NULL && answer != NULL);
+    size_t column[MOST];
+    double share[MOST];
+    size_t n = 0;
+    for (size_t c = 0; c < fit->lines->columns; c++) {
+        if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
+            column[n]  = c;
+            share[n++] = widths[c];
+        }
+    }
+    answer->width = 1.0;
+    solve_columns(fit, n, column, share, answer);
 }
 
 // Moves the equations from where the lines are to all absent; bent columns stay.

@@ -56,6 +56,11 @@ void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answe
 /// tells of a parameter.
 void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
+/// Every column with a prior of its own width, in scales; 0: it stays absent. The evidence is that
+/// of these priors, without a choice of widths; answer->width is 1.
+void dig_fit_solve_each(const struct dig_fit *fit, const double widths[],
+                        struct dig_fit_answer *answer);
+
 /// The log evidence of a set alone.
 double dig_fit_evidence(const struct dig_fit *fit, unsigned set);
 

@@ -31,7 +31,7 @@ void dig_lines_carry(const double own_kg, const struct dig_added_mass *const com
     payload->mass_kg += own_kg;
 }
 
-static void list_columns(struct dig_lines *const lines)
+static void list_columns(struct dig_lines *const lines, const double file_scale[])
 {
     size_t n = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
@@ -45,12 +45,15 @@ static void list_columns(struct dig_lines *const lines)
     for (size_t s = 0; s < lines->air->segments; s++) {
         lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
     }
+    for (size_t p = 0; file_scale != NULL && p < DIG_FILE_ERRORS; p++) {
+        lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
+    }
     lines->columns = n;
 }
 
 static size_t most_columns(const struct dig_air *const air)
 {
-    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments;
+    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments + DIG_FILE_ERRORS;
 }
 
 static void number_digs(struct dig_lines *const lines)
@@ -63,9 +66,9 @@ static void number_digs(struct dig_lines *const lines)
     }
 }
 
-enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *const lines)
+static enum dig_status make(struct dig_air *const air, const double file_scale[],
+                            struct dig_lines *const lines)
 {
-    assert(air != NULL && lines != NULL);
     const size_t     most = most_columns(air);
     struct dig_lines made = {
         .air    = air,
@@ -81,7 +84,7 @@ enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *cons
         made.trust[r] = 1.0;
     }
     if (ok) {
-        list_columns(&made);
+        list_columns(&made, file_scale);
         number_digs(&made);
     }
     for (size_t d = 0; ok && d < made.digs; d++) {
@@ -95,6 +98,20 @@ enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *cons
     }
     *lines = made;
     return DIG_OK;
+}
+
+enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *const lines)
+{
+    assert(air != NULL && lines != NULL);
+    return make(air, NULL, lines);
+}
+
+enum dig_status dig_lines_make_with_file(struct dig_air *const   air,
+                                         const double            scale[DIG_FILE_ERRORS],
+                                         struct dig_lines *const lines)
+{
+    assert(air != NULL && scale != NULL && lines != NULL);
+    return make(air, scale, lines);
 }
 
 void dig_lines_finish(struct dig_lines *const lines)
@@ -120,20 +137,24 @@ bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
     return dig_effect_of(c->effect)->parameter[c->parameter].bent;
 }
 
-// The correction of every segment at these values.
-static void correct(const struct dig_lines *const lines, const double at[],
-                    struct dig_correction correction[])
+void dig_lines_correct(const struct dig_lines *const lines, const double at[],
+                       struct dig_correction correction[])
 {
+    assert(lines != NULL && at != NULL && correction != NULL);
     double value[DIG_MACHINE_EFFECTS][DIG_MODEL_PARAMETERS_MAX];
+    double file[DIG_FILE_ERRORS] = { 0.0 };
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         dig_effect_absent(dig_effect_of((enum dig_effect_id)e), value[e]);
     }
     for (size_t c = 0; c < lines->columns; c++) {
         const struct dig_lines_column *const column = &lines->column[c];
-        if (column->segment < 0) {
+        if (column->effect == DIG_EFFECT_UNLISTED) {
+            file[column->parameter] = column->scale * at[c];
+        } else if (column->segment < 0) {
             value[column->effect][column->parameter] += column->scale * at[c];
         }
     }
+    memcpy(&lines->air->file, file, sizeof file);
     for (size_t s = 0; s < lines->air->segments; s++) {
         correction[s] = (struct dig_correction){ .delay_s = 0.0 };
         for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
@@ -161,7 +182,7 @@ static void slope_of(const struct dig_lines *const lines, const size_t columns,
         for (size_t c = 0; c < columns; c++) {
             at[column[c]] += way < 0 ? -step : 2.0 * step;
         }
-        correct(lines, at, correction);
+        dig_lines_correct(lines, at, correction);
         dig_air_rest(lines->air, correction, true, way < 0 ? less : slope);
     }
     for (size_t c = 0; c < columns; c++) {
@@ -262,10 +283,10 @@ enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned s
     size_t *const   own    = malloc((lines->air->segments + 1) * sizeof *own);
     enum dig_status status = DIG_ENOMEM;
     if (correction != NULL && rest != NULL && slope != NULL && own != NULL) {
-        correct(lines, lines->at, correction);
+        dig_lines_correct(lines, lines->at, correction);
         dig_air_calm(lines->air, correction);
         fill_slopes(lines, set, lines->at, correction, rest + rows, rest + 2 * rows, own, slope);
-        correct(lines, lines->at, correction);
+        dig_lines_correct(lines, lines->at, correction);
         dig_air_rest(lines->air, correction, false, rest);
         sum_up(lines, rest, slope);
         status = DIG_OK;
@@ -286,7 +307,7 @@ enum dig_status dig_lines_rest(const struct dig_lines *const lines, const double
     if (correction == NULL) {
         return DIG_ENOMEM;
     }
-    correct(lines, at, correction);
+    dig_lines_correct(lines, at, correction);
     dig_air_rest(lines->air, correction, false, rest);
     free(correction);
     return DIG_OK;
@@ -383,12 +404,12 @@ enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slo
     }
     double *const explained = rest + rows;
     double *const wrong     = rest + 2 * rows;
-    correct(lines, lines->at, correction);
+    dig_lines_correct(lines, lines->at, correction);
     dig_air_rest(lines->air, correction, false, rest);
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         const enum dig_effect_id effect = (enum dig_effect_id)e;
         if (leave_out(lines, effect, at)) {
-            correct(lines, at, correction);
+            dig_lines_correct(lines, at, correction);
             dig_air_rest(lines->air, correction, false, explained);
             for (size_t r = 0; r < lines->air->rows; r++) {
                 explained[r] -= rest[r];
@@ -396,7 +417,7 @@ enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slo
             add_form(lines->air, effect, explained, wrong);
         }
     }
-    correct(lines, lines->at, correction);
+    dig_lines_correct(lines, lines->at, correction);
     dig_air_held(lines->air, correction, explained);
     for (size_t r = 0; r < lines->air->rows; r++) {
         wrong[r] += explained[r];

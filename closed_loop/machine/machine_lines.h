@@ -16,10 +16,14 @@
 
 #define DIG_MACHINE_ALL_EFFECTS ((1U << DIG_MACHINE_EFFECTS) - 1U)
 
+/// The bit of what a file may have wrong besides (struct dig_file_error): those columns are of no
+/// effect of the catalogue, DIG_EFFECT_UNLISTED, and there only where asked for.
+#define DIG_LINES_OF_FILE (1U << DIG_EFFECT_UNLISTED)
+
 struct dig_lines_column {
     enum dig_effect_id effect;
-    size_t             parameter;
-    int                segment; // of its own, or -1: all
+    size_t             parameter; // of the effect, or of struct dig_file_error
+    int                segment;   // of its own, or -1: all
     double             scale;
 };
 
@@ -51,6 +55,12 @@ void dig_lines_carry(double own_kg, const struct dig_added_mass *common,
 /// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);
 
+/// The same with what a file may have wrong besides as columns of these scales, as the array that
+/// struct dig_file_error is; they are in air->file where the lines stand.
+DIG_MUST_CHECK enum dig_status dig_lines_make_with_file(struct dig_air   *air,
+                                                        const double      scale[DIG_FILE_ERRORS],
+                                                        struct dig_lines *lines);
+
 void dig_lines_finish(struct dig_lines *lines);
 
 /// Makes the equations linear around at, for the effects of the set (a bit each); columns of others
@@ -67,6 +77,11 @@ DIG_MUST_CHECK enum dig_status dig_lines_judge(struct dig_lines *lines, double *
 /// DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lines_rest(const struct dig_lines *lines, const double at[],
                                               double rest[]);
+
+/// The corrections of all segments at these values, correction[segments], and into air->file what
+/// the file has wrong there.
+void dig_lines_correct(const struct dig_lines *lines, const double at[],
+                       struct dig_correction correction[]);
 
 /// The sum of rest^2 at other values, as far as rows are trusted. INFINITY when there is no memory.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);

@@ -325,29 +325,22 @@ static enum dig_status fill_rates(const struct dig_machine *const machine,
     return DIG_OK;
 }
 
-enum dig_status dig_machine_dig_make(const struct dig_machine *const           machine,
-                                     const struct dig_curve_set *const         set,
-                                     const struct dig_machine_recording *const recording,
-                                     const int trajectory, struct dig_machine_dig *const dig,
-                                     struct dig_error *const error)
+// The samples that can be used, with their times and rates.
+static enum dig_status take_samples(const struct dig_machine *const           machine,
+                                    const struct dig_machine_recording *const recording,
+                                    struct dig_machine_dig *const             dig,
+                                    struct dig_error *const                   error)
 {
-    assert(machine != NULL && set != NULL && recording != NULL && dig != NULL);
     const size_t           rows = recording->rows + 1;
     struct dig_machine_dig made = {
         .sample = malloc(rows * sizeof *made.sample),
         .time_s = malloc(rows * sizeof *made.time_s),
         .rates  = malloc(rows * sizeof *made.rates),
-        .lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m,
-    };
-    struct vertices v = {
-        .point  = malloc(rows * sizeof *v.point),
-        .sample = malloc(rows * sizeof *v.sample),
     };
     enum dig_status status = DIG_OK;
-    if (made.sample == NULL || made.time_s == NULL || made.rates == NULL || v.point == NULL ||
-        v.sample == NULL) {
+    if (made.sample == NULL || made.time_s == NULL || made.rates == NULL) {
         status = dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
-        goto done;
+        goto failed;
     }
     made.samples = copy_complete(recording, made.sample);
     if (made.samples < 50) {
@@ -356,13 +349,39 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
             "%zu samples with all angles and the bucket cylinder's pressures, expected 50 at "
             "least",
             made.samples);
-        goto done;
+        goto failed;
     }
     status = fill_rates(machine, &made);
+    if (status != DIG_OK) {
+        goto failed;
+    }
+    *dig = made;
+    return DIG_OK;
+failed:
+    dig_machine_dig_finish(&made);
+    return status;
+}
+
+enum dig_status dig_machine_dig_make(const struct dig_machine *const           machine,
+                                     const struct dig_curve_set *const         set,
+                                     const struct dig_machine_recording *const recording,
+                                     const int trajectory, struct dig_machine_dig *const dig,
+                                     struct dig_error *const error)
+{
+    assert(machine != NULL && set != NULL && recording != NULL && dig != NULL);
+    const size_t    rows = recording->rows + 1;
+    struct vertices v    = {
+           .point  = malloc(rows * sizeof *v.point),
+           .sample = malloc(rows * sizeof *v.sample),
+    };
+    struct dig_machine_dig made   = { .samples = 0 };
+    enum dig_status        status = v.point != NULL && v.sample != NULL
+                                        ? take_samples(machine, recording, &made, error)
+                                        : dig_error_set(error, DIG_ENOMEM, "%zu samples", rows);
+    made.lambda                   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     if (status == DIG_OK) {
         status = place(machine, set, trajectory, &v, &made, error);
     }
-done:
     free(v.point);
     free(v.sample);
     if (status != DIG_OK) {
@@ -370,6 +389,23 @@ done:
         return status;
     }
     *dig = made;
+    return DIG_OK;
+}
+
+enum dig_status dig_machine_dig_make_air(const struct dig_machine *const           machine,
+                                         const struct dig_machine_recording *const recording,
+                                         struct dig_machine_dig *const             dig,
+                                         struct dig_error *const                   error)
+{
+    assert(machine != NULL && recording != NULL && dig != NULL);
+    struct dig_machine_dig made   = { .samples = 0 };
+    const enum dig_status  status = take_samples(machine, recording, &made, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    made.trajectory = -1;
+    made.before_end = made.contact = made.end = made.after = made.samples;
+    *dig                                                   = made;
     return DIG_OK;
 }
 

@@ -41,6 +41,13 @@ DIG_MUST_CHECK enum dig_status dig_machine_dig_make(const struct dig_machine    
                                                     int trajectory, struct dig_machine_dig *dig,
                                                     struct dig_error *error);
 
+/// The same of a recording in which the bucket never touches the ground: all of it is air before a
+/// dig that never comes. DIG_EINVAL and DIG_ENOMEM as above.
+DIG_MUST_CHECK enum dig_status
+dig_machine_dig_make_air(const struct dig_machine           *machine,
+                         const struct dig_machine_recording *recording, struct dig_machine_dig *dig,
+                         struct dig_error *error);
+
 /// NULL and a zeroed struct are allowed.
 void dig_machine_dig_finish(struct dig_machine_dig *dig);
 

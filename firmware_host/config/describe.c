@@ -38,6 +38,14 @@ void dig_describe(const struct dig_loaded *const l, const struct dig_curve_set *
     (void)snprintf(line, sizeof line, "machine %s: bucket %.3f m, %.2f times the table's",
                    l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m, scale_of(l, set));
     say(line);
+    if (!l->machine.sensor.fitted) {
+        // Not by the daemon, which has no closed loop: its log is what is checked.
+        (void)snprintf(line, sizeof line,
+                       "does the machine file fit? Log a minute in free air: digloop check %.200s "
+                       "AIR.lcm",
+                       l->config.machine.text);
+        say(line);
+    }
     (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", input,
                    1.0 / l->config.tick_s, l->config.lcm_url);
     say(line);

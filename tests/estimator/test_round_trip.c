@@ -66,9 +66,10 @@ static int64_t row_ns(const struct dig_rig_track *const track, const size_t row)
     return (int64_t)(1e9 * track->step_s * (double)row) + 1;
 }
 
-// What each machine that ships is made to dig. The wide buckets of zx200 and zx120 would lift them
-// in any of these gravels: they dig one that is so much lighter, as whose loads a share of these is
-// taken. The places are digrig's own for the three digs together, whose search takes longest.
+// What each machine that ships is made to dig. The wide buckets of machines from 12 t on would lift
+// them in any of these gravels: they dig one that is so much lighter, as whose loads a share of
+// these is taken. The places are digrig's own for the three digs together, whose search takes
+// longest.
 static const struct run {
     const char *machine, *gravel;
     double      share, X_m, Z_m;
@@ -76,6 +77,8 @@ static const struct run {
     { "zx200_trench", "0.3", 1.0, 7.60, -1.03 }, { "zx200_trench", "0.5", 1.0, 7.60, -1.03 },
     { "zx200_trench", "0.9", 1.0, 6.15, -1.03 }, { "zx200", "0.3", 0.2, 7.69, -0.39 },
     { "zx120", "0.3", 0.3, 6.41, -0.56 },        { "mini_2t8", "0.3", 1.0, 2.76, 0.0 },
+    { "mini_1t8", "0.3", 1.0, 2.41, -0.05 },     { "crawler_14t", "0.3", 0.3, 6.73, -0.71 },
+    { "crawler_36t", "0.3", 0.15, 8.78, -0.44 },
 };
 #define RUNS (sizeof runs / sizeof runs[0])
 

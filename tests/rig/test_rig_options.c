@@ -66,6 +66,12 @@ static void examples_of_the_contract_are_understood(void **state)
     assert_close(record.track.rate_Hz, 100.0, 0.0);
     assert_close(record.track.scene_tooth_m, 0.1, 0.0);
     assert_true(record.seed == UINT64_MAX);
+
+    const struct dig_rig_options air = good("digrig air --machine m.yaml -o air.csv --exact");
+    assert_int_equal(air.command, DIG_RIG_COMMAND_AIR);
+    assert_int_equal(air.inputs, 0);
+    assert_string_equal(air.out, "air.csv");
+    assert_false(air.noise || air.quantise);
 }
 
 static void defaults_are_a_noisy_quantised_machine_in_real_time(void **state)
@@ -90,12 +96,16 @@ static void bad_lines_are_refused_with_a_word_and_write_nothing(void **state)
     static const struct {
         const char *line, *word;
     } bad[] = {
-        { "digrig", "record or serve" },
+        { "digrig", "record, air or serve" },
         { "digrig dance", "dance" },
         { "digrig record --machine m -o o", "no recording" },
         { "digrig record a.csv -o o", "--machine" },
         { "digrig record a.csv --machine m", "-o" },
         { "digrig record a.csv --machine m -o o --can vcan0", "record takes no --can" },
+        { "digrig air a.csv --machine m -o o", "a.csv: air takes no recording" },
+        { "digrig air --machine m", "-o" },
+        { "digrig air -o o", "--machine" },
+        { "digrig air --machine m -o o --scene s", "air takes no --scene" },
         { "digrig serve a.csv --machine m", "no bus" },
         { "digrig serve a.csv --machine m --can c --truth t", "serve takes no --truth" },
         { "digrig serve a.csv --machine m --can c --speed 0", "speed" },

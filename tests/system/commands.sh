@@ -79,6 +79,8 @@ json "digloop predict" $table --identified "$work/id.json" --trajectory actual -
 json "digloop design" $table --json
 json "digloop trace" $table "$work/campaign" --json - --quiet
 check "and --quiet leaves out what people read" eval '! grep -q "noise floor" "$work/err"'
+"$BIN/digrig" air -q --machine $machine -o "$work/air.csv" 2>"$work/err"
+json "digloop check" $machine "$work/air.csv" --json - --quiet
 json "digrig serve" ${dig}__simpleA.csv --machine $machine --modbus-tcp 127.0.0.1:$((20000 + $$ % 20000)) --speed 100 --json
 json "digsightd" -c config/digsightd.yaml --check --json
 json "digreport shift" tests/data/formats/daemon.lcm --json - --quiet

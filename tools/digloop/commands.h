@@ -15,8 +15,8 @@
 #define DIGLOOP_PATH_SIZE      1024
 
 struct digloop_options {
-    const char         *command, *table;
-    int                 recordings; // or campaign folders: what stands after the table
+    const char         *command, *table; // check: the machine's file
+    int                 recordings;      // or campaign folders: what stands after the table
     char              **recording;
     const char         *machine, *model, *trajectory;    // identify, predict
     const char         *identified, *out, *measured;     // predict
@@ -56,6 +56,10 @@ DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *optio
 DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_options *options,
                                               const struct dig_curve_set   *set,
                                               struct dig_error             *error);
+
+/// Needs no table: options->table is the machine's file. *wrong: the check finds something wrong.
+DIG_MUST_CHECK enum dig_status digloop_check(const struct digloop_options *options, bool *wrong,
+                                             struct dig_error *error);
 
 /// Writes the model file asked for: the trace's gravel and effects, with the files they need.
 DIG_MUST_CHECK enum dig_status

@@ -31,6 +31,19 @@ static const struct dig_command commands[] = {
       "digloop trace tables/rig.sqlite campaign/\n"
       "digloop trace tables/rig.sqlite campaign/ --html trace.html \\\n"
       "        --json trace.json --add model.json\n" },
+    { "check", "MACHINE.yaml RECORDING [OPTION]...",
+      "Says what a machine file makes of a recording in free air.",
+      "A checklist: sample times, stuck sensors, how far each joint moves, which way and from "
+      "where "
+      "angles count, which cylinder is which, head and rod, units, offsets, weights, delay, and "
+      "what "
+      "none of that explains. Each answer with its 1 sigma, what is allowed, and what to do.\n\n"
+      "RECORDING is a machine recording or an LCM log of the daemon, in which the bucket touches "
+      "nothing: move boom, arm and bucket one after the other through most of their range, slowly, "
+      "for about a minute. `digrig air` makes one of a simulated machine.\n\n"
+      "A file \"-\" is standard output. The exit status is 2 where something is wrong.",
+      "digloop check config/machines/zx120.yaml air.csv\n"
+      "digloop check my.yaml air.lcm --html check.html --json check.json\n" },
     { "design", "TABLE.sqlite [OPTION]...",
       "Tells which simple dig of the table tells most about the gravel.",
       "And which tells effects apart, and whether digs simulated with the table's own scatter bear "
@@ -60,17 +73,19 @@ static const struct dig_option options[] = {
       "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)" },
     { "json", DIGLOOP_JSON, NULL, " identify predict design ",
       "the result as JSON on standard output" },
-    { "json", DIGLOOP_JSON, "OUT.json", " trace ", "write the result as JSON" },
-    { "html", DIGLOOP_HTML, "OUT.html", " trace ", "write it as a page with plots" },
+    { "json", DIGLOOP_JSON, "OUT.json", " trace check ", "write the result as JSON" },
+    { "html", DIGLOOP_HTML, "OUT.html", " trace check ", "write it as a page with plots" },
     { "add", DIGLOOP_ADD, "MODEL.json", " trace ",
       "write the model with the effect added, for digsightd and --model" },
-    { "quiet", DIGLOOP_QUIET, NULL, " trace ", "nothing for people, only what goes wrong" },
+    { "quiet", DIGLOOP_QUIET, NULL, " trace check ", "nothing for people, only what goes wrong" },
 };
 
 const struct dig_program *digloop_program(void)
 {
     static const struct dig_program program = {
-        .self        = { "digloop", "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\nCOMMAND --help",
+        .self        = { "digloop",
+                         "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\ncheck MACHINE.yaml RECORDING "
+                                "[OPTION]...\nCOMMAND --help",
                          "Finds the gravel of a table that resists like recorded digs, predicts other "
                                 "digs, and traces what a model lacks.",
                          NULL,

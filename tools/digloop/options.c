@@ -39,6 +39,11 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                                    "predict: expected TABLE.sqlite --identified ID.json "
                                    "--trajectory NAME, and --machine with --measured only");
     }
+    if (strcmp(o->command, "check") == 0) {
+        return o->recordings == 1
+                   ? DIG_OK
+                   : dig_error_set(error, DIG_EINVAL, "check: expected MACHINE.yaml RECORDING");
+    }
     if (strcmp(o->command, "trace") == 0) {
         return o->recordings == 1
                    ? DIG_OK

@@ -138,6 +138,14 @@ static void describe(const struct dig_machine *const machine, const double scene
     }
 }
 
+static void describe_air(const struct dig_machine *const   machine,
+                         const struct dig_rig_track *const track)
+{
+    (void)fprintf(stderr, "digrig: %s in free air, %.1f s; nearest limit, %.0f %% left: %s\n",
+                  machine->name, (double)(track->rows - 1) * track->step_s,
+                  100.0 * track->nearest.share, track->nearest_text);
+}
+
 static int work(const struct dig_rig_options *const options)
 {
     struct dig_error             error         = { "" };
@@ -160,19 +168,23 @@ static int work(const struct dig_rig_options *const options)
                                machine.name);
     }
     if (status == DIG_OK) {
-        status = dig_rig_track_build(&machine, &track_options, digs->recordings, digs->recording,
-                                     &track, &error);
+        status = options->command == DIG_RIG_COMMAND_AIR
+                     ? dig_rig_track_build_air(&machine, &track_options, &track, &error)
+                     : dig_rig_track_build(&machine, &track_options, digs->recordings,
+                                           digs->recording, &track, &error);
     }
     if (status == DIG_OK) {
-        if (!options->quiet) {
+        if (!options->quiet && options->command == DIG_RIG_COMMAND_AIR) {
+            describe_air(&machine, &track);
+        } else if (!options->quiet) {
             describe(&machine, track_options.scene_tooth_m,
                      options->scene != NULL || options->tooth_given ||
                          dig_campaign_is(options->input[0]),
                      &track);
         }
-        status = options->command == DIG_RIG_COMMAND_RECORD
-                     ? dig_rig_record(&machine, options, &track, &error)
-                     : dig_rig_serve(&machine, options, &track, &error);
+        status = options->command == DIG_RIG_COMMAND_SERVE
+                     ? dig_rig_serve(&machine, options, &track, &error)
+                     : dig_rig_record(&machine, options, &track, &error);
     }
     dig_rig_track_finish(&track);
     digs_finish(digs);

@@ -39,6 +39,11 @@ static const struct dig_command commands[] = {
       "RECORDING is a force recording, or one campaign folder.",
       "digrig record simpleA.csv actual.csv -o run.csv \\\n"
       "       --machine config/machines/zx200_trench.yaml\n" },
+    { "air", "--machine M.yaml -o OUT.csv [OPTION]...",
+      "Writes what the machine's sensors read while every joint is moved in free air.",
+      "About a minute: boom, arm and bucket one after the other, then all three. `digloop check` "
+      "says what a machine file makes of such a recording.",
+      "digrig air --machine config/machines/zx120.yaml -o air.csv\n" },
     { "serve", "RECORDING... --machine M.yaml BUS... [OPTION]...",
       "Serves what the machine's sensors read during recorded digs on real buses.",
       "RECORDING is a force recording, or one campaign folder. BUS is --can, --modbus-tcp or "
@@ -51,7 +56,7 @@ static const struct dig_command commands[] = {
 
 static const struct dig_option known[] = {
     { "machine", OPT_MACHINE, "M.yaml", NULL, "the machine (config/machines)" },
-    { "output", 'o', "OUT.csv", " record ", "machine recording to write" },
+    { "output", 'o', "OUT.csv", " record air ", "machine recording to write" },
     { "can", OPT_CAN, "IFACE", " serve ", "CAN frames in the ZX200 layout" },
     { "modbus-tcp", OPT_TCP, "HOST:PORT", " serve ",
       "Modbus TCP server (port 0: any free one, told on stderr)" },
@@ -70,32 +75,34 @@ static const struct dig_option known[] = {
     { "json", OPT_JSON, NULL, " serve ",
       "what was sent and asked for, as JSON on stdout at the end" },
     { "quiet", 'q', NULL, NULL, "no progress, only what goes wrong" },
-    { "rate", OPT_RATE, "HZ", " record ",
+    { "rate", OPT_RATE, "HZ", " record air ",
       "samples per second, a divisor of 1000 from 50 up (default 200)" },
-    { "truth", OPT_TRUTH, "TRUTH.csv", " record ",
+    { "truth", OPT_TRUTH, "TRUTH.csv", " record air ",
       "also write the true pose and wrench of the bucket pin" },
-    { "no-quantisation", OPT_NO_QUANTISATION, NULL, " record ",
+    { "no-quantisation", OPT_NO_QUANTISATION, NULL, " record air ",
       "numbers as they are, not in steps of the machine's bus" },
-    { "exact", OPT_EXACT, NULL, " record ", "--no-noise --no-quantisation" },
-    { "tooth-m", OPT_TOOTH, "L", NULL,
+    { "exact", OPT_EXACT, NULL, " record air ", "--no-noise --no-quantisation" },
+    { "tooth-m", OPT_TOOTH, "L", " record serve ",
       "pin to tooth of the recordings' bucket (default 0.09, the rig)" },
-    { "scene", OPT_SCENE, "SCENE.yaml", NULL,
+    { "scene", OPT_SCENE, "SCENE.yaml", " record serve ",
       "take that from a scene instead (a campaign names its own)" },
-    { "pin-start", OPT_PIN, "X,Z", NULL,
+    { "pin-start", OPT_PIN, "X,Z", " record serve ",
       "bucket pin at the first contact, from the boom foot (default: the place that leaves the "
       "machine most room)" },
     { "seed", OPT_SEED, "N", NULL, "of the sensors' noise (default 1)" },
     { "no-noise", OPT_NO_NOISE, NULL, NULL, "sensors without noise" },
     { "noise", OPT_NOISE, "0|1", NULL, "0: as --no-noise" },
     { "quasi-static", OPT_QUASI_STATIC, NULL, NULL, "leave the inertia of the links out" },
-    { "no-blend", OPT_NO_BLEND, NULL, NULL, "keep the velocity jumps of the recording" },
-    { "no-air", OPT_NO_AIR, NULL, NULL, "the dig alone, without motion before and after" },
+    { "no-blend", OPT_NO_BLEND, NULL, " record serve ",
+      "keep the velocity jumps of the recording" },
+    { "no-air", OPT_NO_AIR, NULL, " record serve ",
+      "the dig alone, without motion before and after" },
 };
 
 const struct dig_program *dig_rig_program(void)
 {
     static const struct dig_program program = {
-        .self = { "digrig", "COMMAND RECORDING... --machine M.yaml [OPTION]...\nCOMMAND --help",
+        .self = { "digrig", "COMMAND [RECORDING...] --machine M.yaml [OPTION]...\nCOMMAND --help",
                   "Simulates the sensors of a machine that digs as was recorded.",
                   "Recorded digs become the joint angles and cylinder pressures of a machine, "
                   "or what a force sensor that carries the bucket reads (not on CAN). Several "
@@ -204,13 +211,16 @@ static enum dig_status take(const int option, struct dig_rig_options *const opti
 static enum dig_status check(const struct dig_rig_options *const options,
                              struct dig_error *const             error)
 {
-    if (options->inputs == 0) {
+    if (options->command == DIG_RIG_COMMAND_AIR && options->inputs > 0) {
+        return dig_error_set(error, DIG_EINVAL, "%s: air takes no recording", options->input[0]);
+    }
+    if (options->command != DIG_RIG_COMMAND_AIR && options->inputs == 0) {
         return dig_error_set(error, DIG_EINVAL, "no recording given");
     }
     if (options->machine == NULL) {
         return dig_error_set(error, DIG_EINVAL, "--machine: missing, expected a machine YAML");
     }
-    if (options->command == DIG_RIG_COMMAND_RECORD && options->out == NULL) {
+    if (options->command != DIG_RIG_COMMAND_SERVE && options->out == NULL) {
         return dig_error_set(error, DIG_EINVAL, "-o: missing, expected the file to write");
     }
     if (options->command == DIG_RIG_COMMAND_SERVE && options->can == NULL && options->tcp == NULL &&
@@ -252,7 +262,9 @@ enum dig_status dig_rig_options_parse(const int argc, char *argv[],
             return status;
         }
     }
-    result.command = command->name[0] == 'r' ? DIG_RIG_COMMAND_RECORD : DIG_RIG_COMMAND_SERVE;
+    result.command = command->name[0] == 'r'   ? DIG_RIG_COMMAND_RECORD
+                     : command->name[0] == 'a' ? DIG_RIG_COMMAND_AIR
+                                               : DIG_RIG_COMMAND_SERVE;
     for (int i = optind; i < argc; i++) {
         if (result.inputs == DIG_RIG_INPUTS_MAX) {
             return dig_error_set(error, DIG_EINVAL, "more than %d recordings", DIG_RIG_INPUTS_MAX);

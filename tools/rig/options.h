@@ -18,6 +18,7 @@ enum dig_rig_command {
     DIG_RIG_COMMAND_HELP,
     DIG_RIG_COMMAND_VERSION,
     DIG_RIG_COMMAND_RECORD,
+    DIG_RIG_COMMAND_AIR,
     DIG_RIG_COMMAND_SERVE
 };
 
@@ -34,7 +35,7 @@ struct dig_rig_options {
     uint64_t                     seed;
     bool                         noise;
     bool                         quiet; // no progress
-    // record
+    // record, air
     bool        quantise;
     const char *out;
     const char *truth; // NULL: none

@@ -1,5 +1,7 @@
 #include "tools/rig/motion/track.h"
 
+#include "tools/rig/air.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -184,6 +186,39 @@ static enum dig_status fill(const struct dig_machine *const           machine,
                                   : fill_driven(machine, options, path, every, track, error);
 }
 
+// The rows of a path, placed, or where the machine has most room.
+static enum dig_status lay(const struct dig_machine *const           machine,
+                           const struct dig_rig_track_options *const options,
+                           const struct dig_rig_path *const path, const bool search,
+                           const struct dig_rig_placement placement,
+                           struct dig_rig_track *const track, struct dig_error *const error)
+{
+    const size_t         every  = (size_t)lround(1.0 / (DIG_RIG_STEP_s * options->rate_Hz));
+    enum dig_status      status = DIG_OK;
+    struct dig_rig_track result = {
+        .rows          = (path->frames - 1) / every + 1,
+        .step_s        = (double)every * DIG_RIG_STEP_s,
+        .nearest       = { .share = INFINITY },
+        .placement     = placement,
+        .blend_off_m   = path->blend_off_m,
+        .blend_off_rad = path->blend_off_rad,
+    };
+    if (search) {
+        status = dig_rig_placement_find(machine, path, &result.placement, error);
+    }
+    if (status == DIG_OK) {
+        result.row = malloc(result.rows * sizeof result.row[0]);
+        status     = result.row != NULL ? fill(machine, options, path, every, &result, error)
+                                        : dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows);
+    }
+    if (status != DIG_OK) {
+        free(result.row);
+        return status;
+    }
+    *track = result;
+    return DIG_OK;
+}
+
 enum dig_status dig_rig_track_build(const struct dig_machine *const           machine,
                                     const struct dig_rig_track_options *const options,
                                     const size_t recordings, const struct dig_recording recording[],
@@ -209,30 +244,31 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
         return status;
     }
 
-    const size_t         every  = (size_t)lround(1.0 / (DIG_RIG_STEP_s * options->rate_Hz));
-    struct dig_rig_track result = {
-        .rows          = (path.frames - 1) / every + 1,
-        .step_s        = (double)every * DIG_RIG_STEP_s,
-        .nearest       = { .share = INFINITY },
-        .placement     = { .X_m = options->pin_X_m, .Z_m = options->pin_Z_m },
-        .blend_off_m   = path.blend_off_m,
-        .blend_off_rad = path.blend_off_rad,
-    };
-    if (!options->placed && !machine->sensor.fitted) {
-        status = dig_rig_placement_find(machine, &path, &result.placement, error);
-    }
-    if (status == DIG_OK) {
-        result.row = malloc(result.rows * sizeof result.row[0]);
-        status     = result.row != NULL ? fill(machine, options, &path, every, &result, error)
-                                        : dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows);
-    }
+    const struct dig_rig_placement placement = { .X_m = options->pin_X_m, .Z_m = options->pin_Z_m };
+    const bool                     search    = !options->placed && !machine->sensor.fitted;
+    status = lay(machine, options, &path, search, placement, track, error);
     dig_rig_path_finish(&path);
+    return status;
+}
+
+enum dig_status dig_rig_track_build_air(const struct dig_machine *const           machine,
+                                        const struct dig_rig_track_options *const options,
+                                        struct dig_rig_track *const               track,
+                                        struct dig_error *const                   error)
+{
+    assert(machine != NULL && options != NULL && track != NULL);
+    static const struct dig_rig_placement as_it_is = { .X_m = 0.0 };
+    struct dig_rig_path                   path;
+    enum dig_status                       status = check(options, error);
+    if (status == DIG_OK) {
+        status = dig_rig_air_build(machine, &path, error);
+    }
     if (status != DIG_OK) {
-        free(result.row);
         return status;
     }
-    *track = result;
-    return DIG_OK;
+    status = lay(machine, options, &path, false, as_it_is, track, error);
+    dig_rig_path_finish(&path);
+    return status;
 }
 
 void dig_rig_track_finish(struct dig_rig_track *const track)

@@ -1,0 +1,516 @@
+#include "closed_loop/machine/machine_causes.h"
+
+#include "closed_loop/machine/machine_fit.h"
+#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_noise.h"
+#include "core/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROUNDS = 8, HALVINGS = 6 };
+
+static const double false_alarm = 0.01;
+
+// Two sets of causes whose log evidence differs by less cannot be told apart.
+static const double tie = 5.0;
+
+// Tolerances that a machine file does not state, 1 sigma: an angle sensor is set to half a degree,
+// a transmitter is of class 0.5 of its valve's relief pressure, its span known to a hundredth; a
+// gateway hands on what it has within ten milliseconds. The machine stands level within half a
+// degree where no pitch is measured.
+static const double zero_rad    = 0.5 * DIG_RAD_PER_DEG;
+static const double span_share  = 0.01;
+static const double class_share = 0.005;
+static const double late_s      = 0.01;
+// A seal rubs with a hundredth of what its cylinder can push; an inertia is known to a fifth.
+static const double seal_share    = 0.01;
+static const double inertia_share = 0.2;
+
+// 1 sigma of a cause that is wrong.
+static const double wrong_rad    = 10.0 * DIG_RAD_PER_DEG;
+static const double wrong_share  = 0.2;  // of a span
+static const double wrong_weight = 0.45; // of a weight
+static const double wrong_Pa     = 3e6;
+static const double wrong_late_s = 0.1;
+
+// A chamber that changes a push by less than this share of what the other does is a return side.
+static const double little_share = 0.5;
+
+// The columns of struct dig_file_error.
+enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
+
+// The parameters of the effects, in the order of estimator/effects/.
+enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
+
+struct work {
+    struct dig_air       *air;
+    struct dig_lines      lines;
+    struct dig_fit        fit;
+    double               *base;  // [columns] width of each column's tolerance, in scales
+    double               *gross; // [columns] and of a cause
+    double               *width; // [columns] of the fit at hand
+    double               *at, *sigma, *covariance, *step;
+    bool                  asked[DIG_CAUSES];
+    double                least; // log evidence that a cause must bring
+    struct dig_correction none;
+};
+
+static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
+{
+    return &w->air->machine.cylinder[joint];
+}
+
+// A link's weight and where it lies are known together.
+static double weight_tolerance_kg(const struct dig_machine *const machine, const size_t joint)
+{
+    const struct dig_link *const link = &machine->link[joint];
+
+    const double lies_m = dig_vec2_norm(link->com_m);
+    const double share =
+        lies_m > 0.0 ? machine->tolerance.com_share * link->length_m / lies_m : 0.0;
+    return link->mass_kg * hypot(machine->tolerance.mass_share, share);
+}
+
+static double tolerance_of(const struct work *const w, const size_t cause)
+{
+    const size_t joint = cause % DIG_JOINTS;
+    if (cause == DIG_CAUSE_DELAY) {
+        return late_s;
+    }
+    switch ((enum dig_cause_kind)(cause / DIG_JOINTS)) {
+    case DIG_CAUSE_ZERO: return zero_rad;
+    case DIG_CAUSE_FACTOR: return span_share;
+    case DIG_CAUSE_OFFSET: return class_share * cylinder_of(w, joint)->relief_Pa;
+    case DIG_CAUSE_WEIGHT: return weight_tolerance_kg(&w->air->machine, joint);
+    case DIG_CAUSE_KINDS: break;
+    }
+    return (double)NAN;
+}
+
+static double wrong_of(const struct work *const w, const size_t cause)
+{
+    if (cause == DIG_CAUSE_DELAY) {
+        return wrong_late_s;
+    }
+    switch ((enum dig_cause_kind)(cause / DIG_JOINTS)) {
+    case DIG_CAUSE_ZERO: return wrong_rad;
+    case DIG_CAUSE_FACTOR: return wrong_share;
+    case DIG_CAUSE_OFFSET: return wrong_Pa;
+    case DIG_CAUSE_WEIGHT: return wrong_weight * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
+    case DIG_CAUSE_KINDS: break;
+    }
+    return (double)NAN;
+}
+
+// How much a drive's push changes by one of its chambers, N rms.
+static double changes_N(const struct work *const w, const size_t joint, const size_t chamber)
+{
+    const struct dig_cylinder *const cylinder = cylinder_of(w, joint);
+
+    const double m2   = chamber == DIG_CHAMBER_HEAD ? dig_cylinder_head_m2(cylinder)
+                                                    : dig_cylinder_rod_m2(cylinder);
+    const size_t s    = (size_t)DIG_SIGNAL_BOOM_HEAD_Pa + DIG_CHAMBERS * joint + chamber;
+    double       n    = 0.0;
+    double       mean = 0.0;
+    double       sum2 = 0.0;
+    for (size_t p = 0; p < w->air->points; p++) {
+        if (w->air->point[p].sample.valid[s]) {
+            const double Pa  = w->air->point[p].sample.value[s];
+            const double off = Pa - mean;
+            n += 1.0;
+            mean += off / n;
+            sum2 += off * (Pa - mean);
+        }
+    }
+    return n > 0.0 ? m2 * sqrt(sum2 / n) : 0.0;
+}
+
+static bool is_return_side(const struct work *const w, const size_t joint, const size_t chamber)
+{
+    return changes_N(w, joint, chamber) < little_share * changes_N(w, joint, chamber ^ 1U);
+}
+
+static int at_joint(const enum dig_cause_kind kind, const size_t joint)
+{
+    return (int)((size_t)kind * DIG_JOINTS + joint);
+}
+
+// The cause that a column belongs to, or -1.
+static int cause_of(const struct dig_lines_column *const column)
+{
+    const size_t p = column->parameter;
+    if (column->effect == DIG_EFFECT_UNLISTED) {
+        return p < LEVEL    ? at_joint(DIG_CAUSE_ZERO, p - ANGLES)
+               : p >= LINKS ? at_joint(DIG_CAUSE_WEIGHT, p - LINKS)
+                            : -1;
+    }
+    if (column->effect == DIG_EFFECT_PRESSURE_OFFSET) {
+        return at_joint(p < GAINS ? DIG_CAUSE_OFFSET : DIG_CAUSE_FACTOR, p % GAINS / DIG_CHAMBERS);
+    }
+    return column->effect == DIG_EFFECT_SENSOR_DELAY ? (int)DIG_CAUSE_DELAY : -1;
+}
+
+// The tolerance of a column that is no cause's, in the unit of its scale.
+static double allowed(const struct work *const w, const struct dig_lines_column *const column)
+{
+    static const enum dig_joint     drive[DIG_JOINTS] = { DIG_JOINT_BUCKET, DIG_JOINT_ARM,
+                                                          DIG_JOINT_BOOM };
+    const struct dig_machine *const machine           = &w->air->machine;
+    const size_t                    p                 = column->parameter;
+    if (column->effect == DIG_EFFECT_UNLISTED) {
+        return zero_rad; // of the level
+    }
+    if (column->effect == DIG_EFFECT_LINKAGE_GEOMETRY) {
+        return machine->tolerance.pin_m;
+    }
+    if (column->effect == DIG_EFFECT_BUCKET_INERTIA) {
+        return inertia_share * machine->link[DIG_JOINT_BUCKET].inertia_kgm2;
+    }
+    if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < SEALS) {
+        const struct dig_cylinder *const cylinder = cylinder_of(w, drive[p / OF_A_SEAL]);
+        const double                     push_N =
+            cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
+        return p % OF_A_SEAL == COULOMB    ? seal_share * push_N
+               : p % OF_A_SEAL == STRIBECK ? 0.0
+                                           : column->scale;
+    }
+    return 0.0; // a payload is the bucket's weight here
+}
+
+static void set_widths(struct work *const w)
+{
+    for (size_t c = 0; c < w->lines.columns; c++) {
+        const struct dig_lines_column *const column = &w->lines.column[c];
+
+        const int cause = cause_of(column);
+        w->base[c] =
+            (cause >= 0 ? tolerance_of(w, (size_t)cause) : allowed(w, column)) / column->scale;
+        w->gross[c] = cause >= 0 ? wrong_of(w, (size_t)cause) / column->scale : w->base[c];
+        // Of a return side, whose pressure hardly changes, a factor is an offset.
+        const bool factor  = cause >= 0 && cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
+        const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
+                                                      column->parameter % DIG_CHAMBERS);
+        if (cause >= 0 && (!w->asked[cause] || returns)) {
+            w->gross[c] = w->base[c];
+        }
+    }
+}
+
+static void solve(struct work *const w, const unsigned named, const bool whole,
+                  struct dig_fit_answer *const answer)
+{
+    for (size_t c = 0; c < w->lines.columns; c++) {
+        const int  cause = cause_of(&w->lines.column[c]);
+        const bool wide  = cause >= 0 && ((named >> cause) & 1U) != 0;
+        w->width[c]      = wide ? w->gross[c] : w->base[c];
+    }
+    *answer = (struct dig_fit_answer){ .at         = whole ? w->at : NULL,
+                                       .covariance = whole ? w->covariance : NULL };
+    if (whole) {
+        memset(w->covariance, 0, w->lines.columns * w->lines.columns * sizeof(double));
+    }
+    dig_fit_solve_each(&w->fit, w->width, answer);
+}
+
+static double evidence(struct work *const w, const unsigned named)
+{
+    struct dig_fit_answer answer;
+    solve(w, named, false, &answer);
+    return answer.log_evidence;
+}
+
+// Causes one at a time while each brings enough; then without those that are no longer needed.
+static unsigned choose(struct work *const w)
+{
+    unsigned named = 0;
+    double   now   = evidence(w, named);
+    for (size_t step = 0; step < DIG_CAUSES; step++) {
+        unsigned best = named;
+        double   most = now + w->least;
+        for (unsigned k = 0; k < DIG_CAUSES; k++) {
+            const unsigned more = named | 1U << k;
+            const double   then =
+                w->asked[k] && more != named ? evidence(w, more) : -(double)INFINITY;
+            if (then > most) {
+                most = then;
+                best = more;
+            }
+        }
+        if (best == named) {
+            break;
+        }
+        named = best;
+        now   = most;
+        for (unsigned k = 0; k < DIG_CAUSES; k++) {
+            const unsigned less = named & ~(1U << k);
+            const double   then = less != named ? evidence(w, less) : -(double)INFINITY;
+            if (then > now - w->least) {
+                named = less;
+                now   = then;
+            }
+        }
+    }
+    return named;
+}
+
+// Sums the equations where the lines stand; s2 by what everything together leaves.
+static enum dig_status take_slopes(struct work *const w)
+{
+    const enum dig_status status =
+        dig_lines_update(&w->lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
+    const double          one = 1.0;
+    struct dig_fit_answer all;
+    if (status != DIG_OK) {
+        return status;
+    }
+    dig_fit_sum(&w->fit, &one);
+    w->fit.s2 = 1.0;
+    solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
+    w->fit.s2 =
+        fmax(1.0, all.rest2 / fmax(w->fit.rows - (double)w->lines.columns, 0.25 * w->fit.rows));
+    return DIG_OK;
+}
+
+static double penalty(const struct work *const w, const double at[])
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < w->lines.columns; c++) {
+        sum += w->width[c] > 0.0 ? pow(at[c] / w->width[c], 2.0) : 0.0;
+    }
+    return w->fit.s2 * sum;
+}
+
+// Goes where the equations lead, or part of the way; how far, in widths.
+static double go(struct work *const w, const unsigned named)
+{
+    struct dig_fit_answer answer;
+    solve(w, named, true, &answer);
+    const double now = dig_lines_rest2(&w->lines, w->lines.at) + penalty(w, w->lines.at);
+    for (int halved = 0; halved < HALVINGS; halved++) {
+        double moved = 0.0;
+        for (size_t c = 0; c < w->lines.columns; c++) {
+            const double way = ldexp(w->at[c] - w->lines.at[c], -halved);
+            w->step[c]       = w->lines.at[c] + way;
+            moved            = w->width[c] > 0.0 ? fmax(moved, fabs(way) / w->width[c]) : moved;
+        }
+        if (dig_lines_rest2(&w->lines, w->step) + penalty(w, w->step) <= now) {
+            memcpy(w->lines.at, w->step, w->lines.columns * sizeof(double));
+            return moved;
+        }
+    }
+    return 0.0;
+}
+
+// Rows of valves that hunt scatter more than their sensors.
+static enum dig_status widen(struct work *const w)
+{
+    struct dig_fit_answer all;
+    bool                  widened;
+    solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
+    return dig_machine_noise_widen(&w->lines, w->at, &widened);
+}
+
+static enum dig_status find(struct work *const w, unsigned *const named)
+{
+    enum dig_status status = take_slopes(w);
+    if (status == DIG_OK) {
+        status = widen(w);
+    }
+    *named = 0;
+    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+        status = take_slopes(w);
+        if (status != DIG_OK) {
+            break;
+        }
+        const unsigned before = *named;
+        *named                = choose(w);
+        // Near its end this moves within a fortieth of what is allowed.
+        if (go(w, *named) < 0.025 && *named == before) {
+            break;
+        }
+    }
+    return status == DIG_OK ? take_slopes(w) : status;
+}
+
+// How much a column counts in the figure of its cause, with the covariance as last solved.
+static double share_of(const struct work *const w, const size_t cause, const size_t column)
+{
+    const struct dig_lines_column *const c     = &w->lines.column[column];
+    const size_t                         joint = cause % DIG_JOINTS;
+    if (cause_of(c) != (int)cause) {
+        return 0.0;
+    }
+    if (c->effect != DIG_EFFECT_PRESSURE_OFFSET) {
+        return c->scale;
+    }
+    const size_t chamber = c->parameter % DIG_CHAMBERS;
+    if (cause / DIG_JOINTS == DIG_CAUSE_FACTOR) {
+        // The mean of the chambers that were asked, as sure as each is.
+        const size_t n     = w->lines.columns;
+        const size_t pair  = chamber == DIG_CHAMBER_HEAD ? column + 1 : column - 1;
+        const double mine  = w->gross[column] > w->base[column]
+                                 ? 1.0 / fmax(w->covariance[column * n + column], 1e-12)
+                                 : 0.0;
+        const double other = w->gross[pair] > w->base[pair]
+                                 ? 1.0 / fmax(w->covariance[pair * n + pair], 1e-12)
+                                 : 0.0;
+        return mine > 0.0 ? c->scale * mine / (mine + other) : 0.0;
+    }
+    return chamber == DIG_CHAMBER_HEAD ? c->scale
+                                       : -c->scale * dig_cylinder_rod_m2(cylinder_of(w, joint)) /
+                                             dig_cylinder_head_m2(cylinder_of(w, joint));
+}
+
+// Value and sigma of a cause where these are named.
+static void value_of(struct work *const w, const unsigned named, const size_t k,
+                     struct dig_cause *const cause)
+{
+    struct dig_fit_answer answer;
+    const size_t          n = w->lines.columns;
+    solve(w, named, true, &answer);
+    double value    = 0.0;
+    double variance = 0.0;
+    for (size_t a = 0; a < n; a++) {
+        const double share = share_of(w, k, a);
+        value += share * w->at[a];
+        for (size_t b = 0; b < n && fabs(share) > 0.0; b++) {
+            variance += share * share_of(w, k, b) * w->covariance[a * n + b];
+        }
+    }
+    cause->value = value;
+    cause->sigma = sqrt(fmax(variance, 0.0));
+}
+
+// The best in the place of a cause that is named, if it does as well; or -1.
+static int tied(struct work *const w, const unsigned named, const unsigned k)
+{
+    double most  = evidence(w, named) - tie;
+    int    other = -1;
+    for (unsigned o = 0; o < DIG_CAUSES; o++) {
+        const unsigned instead = (named & ~(1U << k)) | 1U << o;
+        const double   then =
+            w->asked[o] && ((named >> o) & 1U) == 0 ? evidence(w, instead) : -(double)INFINITY;
+        if (then > most) {
+            most  = then;
+            other = (int)o;
+        }
+    }
+    return other;
+}
+
+static void figures(struct work *const w, const unsigned named, struct dig_cause cause[DIG_CAUSES])
+{
+    for (unsigned k = 0; k < DIG_CAUSES; k++) {
+        const unsigned one = 1U << k;
+        value_of(w, named | one, k, &cause[k]);
+        cause[k].tolerance = tolerance_of(w, k);
+        cause[k].named     = (named & one) != 0;
+        cause[k].log_gain  = evidence(w, named | one) - evidence(w, named & ~one);
+        cause[k].or_cause  = cause[k].named ? tied(w, named, k) : -1;
+    }
+    for (unsigned k = 0; k < DIG_CAUSES; k++) {
+        const int o = cause[k].or_cause;
+        if (o >= 0) {
+            value_of(w, (named & ~(1U << k)) | 1U << (unsigned)o, (size_t)o, &cause[o]);
+        }
+    }
+}
+
+// Of each joint what is left, rms: in sigmas, and at the rod.
+static enum dig_status rests(const struct work *const w, const double at[], double rms[DIG_JOINTS],
+                             double rms_N[DIG_JOINTS])
+{
+    double *const         rest   = malloc((w->air->rows + 1) * sizeof *rest);
+    const enum dig_status status = rest != NULL ? dig_lines_rest(&w->lines, at, rest) : DIG_ENOMEM;
+    double                sum[DIG_JOINTS]    = { 0.0 };
+    double                sum_N2[DIG_JOINTS] = { 0.0 };
+    double                count[DIG_JOINTS]  = { 0.0 };
+    for (size_t r = 0; r < w->air->rows && status == DIG_OK; r++) {
+        sum[w->air->row[r].joint] += rest[r] * rest[r];
+        sum_N2[w->air->row[r].joint] += pow(rest[r] * w->air->row[r].sigma_N, 2.0);
+        count[w->air->row[r].joint] += 1.0;
+    }
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        rms[j]   = count[j] > 0.0 ? sqrt(sum[j] / count[j]) : (double)NAN;
+        rms_N[j] = count[j] > 0.0 ? sqrt(sum_N2[j] / count[j]) : (double)NAN;
+    }
+    free(rest);
+    return status;
+}
+
+static void work_finish(struct work *const w)
+{
+    dig_fit_finish(&w->fit);
+    dig_lines_finish(&w->lines);
+    free(w->base);
+    free(w->covariance);
+}
+
+static enum dig_status work_make(struct dig_air *const air, struct work *const w)
+{
+    double scale[DIG_FILE_ERRORS];
+    for (size_t p = 0; p < DIG_FILE_ERRORS; p++) {
+        scale[p] = p < LINKS ? DIG_RAD_PER_DEG : air->machine.link[p - LINKS].mass_kg;
+    }
+    w->air                 = air;
+    enum dig_status status = dig_lines_make_with_file(air, scale, &w->lines);
+    if (status == DIG_OK) {
+        status = dig_fit_make(&w->lines, &w->fit);
+    }
+    if (status == DIG_OK) {
+        const size_t n = w->lines.columns;
+        w->base        = calloc(6 * n, sizeof(double));
+        w->covariance  = calloc(n * n, sizeof(double));
+        status         = w->base != NULL && w->covariance != NULL ? DIG_OK : DIG_ENOMEM;
+        if (status == DIG_OK) {
+            w->gross = w->base + n;
+            w->width = w->base + 2 * n;
+            w->at    = w->base + 3 * n;
+            w->step  = w->base + 4 * n;
+            w->sigma = w->base + 5 * n;
+        }
+    }
+    return status;
+}
+
+enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_JOINTS],
+                                struct dig_causes *const causes, struct dig_correction correction[])
+{
+    assert(air != NULL && moves != NULL && causes != NULL && correction != NULL);
+    struct work       w      = { .least = log(DIG_CAUSES / false_alarm) };
+    struct dig_causes found  = { .rest = { NAN, NAN, NAN }, .rest_plain = { NAN, NAN, NAN } };
+    unsigned          named  = 0;
+    enum dig_status   status = work_make(air, &w);
+    if (status != DIG_OK) {
+        work_finish(&w);
+        return status;
+    }
+    for (size_t k = 0; k < DIG_CAUSES; k++) {
+        w.asked[k] = k == DIG_CAUSE_DELAY || moves[k % DIG_JOINTS];
+    }
+    set_widths(&w);
+    memset(w.step, 0, w.lines.columns * sizeof(double));
+    status = find(&w, &named);
+    if (status == DIG_OK) {
+        memset(w.step, 0, w.lines.columns * sizeof(double));
+        status = rests(&w, w.step, found.rest_plain, found.rest_N);
+    }
+    if (status == DIG_OK) {
+        status = rests(&w, w.lines.at, found.rest, found.rest_N);
+    }
+    if (status == DIG_OK) {
+        figures(&w, named, found.cause);
+        // The causes alone: what is within its tolerance is no one's to mend.
+        for (size_t c = 0; c < w.lines.columns; c++) {
+            const int cause = cause_of(&w.lines.column[c]);
+            w.step[c]       = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
+        }
+        dig_lines_correct(&w.lines, w.step, correction);
+        *causes = found;
+    }
+    work_finish(&w);
+    return status;
+}

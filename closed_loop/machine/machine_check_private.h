@@ -1,0 +1,29 @@
+// Inside of the check of a machine file, for closed_loop/machine/machine_check*.c.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H
+#define DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H
+
+#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/recordings/machine_dig.h"
+#include "core/units.h"
+
+/// A joint that turns by less is not asked about.
+#define DIG_CHECK_LEAST_TURN_rad (10.0 * DIG_RAD_PER_DEG)
+
+/// One more line: OK, without numbers.
+struct dig_check_item *dig_check_add(struct dig_machine_air_check *check,
+                                     enum dig_check_question question, int of);
+
+/// Times, gaps and what is missing.
+void dig_check_recording(const struct dig_machine_recording *recording,
+                         struct dig_machine_air_check       *check);
+
+/// What is stuck, and takes it out of the recording: there it is missing.
+void dig_check_stuck(const struct dig_machine *machine, struct dig_machine_recording *recording,
+                     struct dig_machine_air_check *check);
+
+/// How far the joints go, read as is best.
+void dig_check_motion(const struct dig_machine *machine, const struct dig_machine_dig *dig,
+                      struct dig_machine_air_check *check);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H

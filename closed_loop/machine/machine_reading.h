@@ -1,0 +1,65 @@
+// How a recording of free air is to be read, where that is another than its columns say: an angle
+// that counts the other way or from elsewhere, pressures of another cylinder, head for rod, another
+// unit. Discrete hypotheses, one likelihood: what each leaves of the balance of every joint.
+//
+// Coarse on purpose. A file may be wrong by some per cent and a sensor by some bar without anything
+// being mixed up, so what is left counts in shares of the load, after a constant force and a factor
+// of the load within bounds are taken off. What is finer is told by the fit (machine_check.h).
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H
+#define DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H
+
+#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/recordings/machine_dig.h"
+#include "core/machine.h"
+#include "core/recording.h"
+#include "core/sample.h"
+
+#include <stdbool.h>
+
+/// Zeros are tried so far apart; what is between is the fit's.
+#define DIG_READING_ZERO_STEP_deg 10
+
+/// The joint's angle is (turned ? - : +) what its column says - zero_rad. The chambers of joint j
+/// are in the columns of drive[j], head and rod exchanged where swapped[j]; the pressure is
+/// factor[j] times what the column says.
+struct dig_reading {
+    bool           degrees; // the columns of angles
+    bool           turned[DIG_JOINTS];
+    double         zero_rad[DIG_JOINTS];
+    enum dig_joint drive[DIG_JOINTS];
+    bool           swapped[DIG_JOINTS];
+    double         factor[DIG_JOINTS];
+};
+
+/// As the columns say.
+struct dig_reading dig_reading_plain(void);
+
+bool dig_reading_is_plain(const struct dig_reading *reading);
+
+/// True where angles are so large that they can only be degrees.
+bool dig_reading_in_degrees(const struct dig_machine_dig *dig);
+
+/// Rewrites every sample so that its columns say what they should.
+void dig_reading_apply(const struct dig_reading *reading, struct dig_machine_recording *recording);
+
+/// The best reading, and by how many sigmas (root of twice the logarithm of the ratio of
+/// likelihoods) the best with another answer to one question is worse: the columns' own answer
+/// where it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
+struct dig_reading_finding {
+    struct dig_reading best;
+    double             plain_sigmas; // how much worse everything as the columns say is
+    double             turned_sigmas[DIG_JOINTS];
+    double             drive_sigmas[DIG_JOINTS];
+    double             swapped_sigmas[DIG_JOINTS];
+    double             factor_sigmas[DIG_JOINTS];
+};
+
+/// Finds it in the air of one recording, as its columns say; degrees: its angles are. moves: joints
+/// that move enough to be asked about. A second of one core. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_reading_find(const struct dig_machine *machine,
+                                                const struct dig_air *air, bool degrees,
+                                                const bool                  moves[DIG_JOINTS],
+                                                struct dig_reading_finding *finding);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H

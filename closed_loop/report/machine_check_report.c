@@ -1,0 +1,142 @@
+#include "closed_loop/report/machine_check_report.h"
+
+#include "closed_loop/report/json.h"
+#include "core/sample.h"
+#include "core/text.h"
+
+#include <assert.h>
+
+enum { COLUMNS = 80, SENTENCE = 4000 };
+
+// A text in lines of 80 columns, the later ones indented.
+static void put_wrapped(FILE *const to, const int indent, const char *text)
+{
+    int column = 0;
+    while (*text != '\0') {
+        int word = 0;
+        while (text[word] != '\0' && text[word] != ' ') {
+            word++;
+        }
+        if (column > indent && column + 1 + word > COLUMNS) {
+            (void)fprintf(to, "\n%*s", indent, "");
+            column = indent;
+        } else if (column > 0) {
+            (void)fputc(' ', to);
+            column++;
+        }
+        for (int i = 0; i < word; i++) {
+            (void)fputc(text[i], to);
+        }
+        column += word;
+        text += word;
+        while (*text == ' ') {
+            text++;
+        }
+    }
+    (void)fputc('\n', to);
+}
+
+static void put_line(FILE *const to, const struct dig_check_subject *const subject,
+                     const struct dig_check_item *const item)
+{
+    struct dig_check_words words;
+    dig_check_say(subject, item, &words);
+    (void)fprintf(to, "%-9s %-28s %s\n", dig_check_verdict_name(item->verdict), words.question,
+                  words.answer);
+    if (words.todo[0] != '\0') {
+        (void)fprintf(to, "          -> %s\n", words.todo);
+    }
+    if (item->or_item >= 0) {
+        struct dig_check_words other;
+        dig_check_say(subject, &subject->check->item[item->or_item], &other);
+        (void)fprintf(to, "          or %s: this recording cannot tell\n", other.question);
+    }
+}
+
+void dig_machine_check_text(const struct dig_check_subject *const subject, FILE *const to)
+{
+    assert(subject != NULL && to != NULL);
+    char sentence[SENTENCE];
+    dig_check_sentence(subject, sizeof sentence, sentence);
+    dig_text_clean(sentence);
+    put_wrapped(to, 0, sentence);
+    (void)fputc('\n', to);
+    for (size_t i = 0; i < subject->check->items; i++) {
+        put_line(to, subject, &subject->check->item[i]);
+    }
+}
+
+// Names that programs read.
+static const char *question_name(const enum dig_check_question question)
+{
+    static const char *const name[DIG_CHECK_QUESTIONS] = {
+        [DIG_CHECK_TIMES] = "times",         [DIG_CHECK_MISSING] = "missing",
+        [DIG_CHECK_STUCK] = "stuck",         [DIG_CHECK_MOVES] = "moves",
+        [DIG_CHECK_RANGE] = "range",         [DIG_CHECK_DEGREES] = "degrees",
+        [DIG_CHECK_DIRECTION] = "direction", [DIG_CHECK_ZERO] = "zero",
+        [DIG_CHECK_CYLINDER] = "cylinder",   [DIG_CHECK_SIDES] = "sides",
+        [DIG_CHECK_UNIT] = "unit",           [DIG_CHECK_FACTOR] = "factor",
+        [DIG_CHECK_OFFSET] = "offset",       [DIG_CHECK_WEIGHT] = "weight",
+        [DIG_CHECK_DELAY] = "delay",         [DIG_CHECK_REST] = "rest",
+    };
+    return name[question];
+}
+
+static const char *of_name(const struct dig_check_item *const item)
+{
+    if (item->of < 0) {
+        return "all";
+    }
+    return item->question == DIG_CHECK_STUCK ? dig_signal_name((enum dig_signal)item->of)
+                                             : dig_joint_name((enum dig_joint)item->of);
+}
+
+static void put_item(FILE *const to, const struct dig_check_subject *const subject,
+                     const struct dig_check_item *const item)
+{
+    struct dig_check_words words;
+    dig_check_say(subject, item, &words);
+    (void)fprintf(to, "  {\"question\": \"%s\", \"of\": \"%s\", \"verdict\": \"%s\"",
+                  question_name(item->question), of_name(item),
+                  dig_check_verdict_name(item->verdict));
+    dig_json_member(to, ", ", "value", item->value);
+    dig_json_member(to, ", ", "sigma", item->sigma);
+    dig_json_member(to, ", ", "tolerance", item->tolerance);
+    dig_json_member(to, ", ", "excess", item->excess);
+    if (item->question == DIG_CHECK_CYLINDER) {
+        (void)fprintf(to, ", \"found_in\": \"%s\"", dig_joint_name((enum dig_joint)item->answer));
+    }
+    if (item->question == DIG_CHECK_REST) {
+        dig_json_member(to, ", ", "share", item->share);
+    }
+    if (item->or_item >= 0) {
+        const struct dig_check_item *const other = &subject->check->item[item->or_item];
+        (void)fprintf(to, ", \"or\": {\"question\": \"%s\", \"of\": \"%s\"}",
+                      question_name(other->question), of_name(other));
+    }
+    (void)fputs(", \"text\": ", to);
+    dig_json_string(to, words.question);
+    (void)fputs(", \"answer\": ", to);
+    dig_json_string(to, words.answer);
+    (void)fputs(", \"todo\": ", to);
+    dig_json_string(to, words.todo);
+    (void)fputc('}', to);
+}
+
+void dig_machine_check_json(const struct dig_check_subject *const subject, FILE *const to)
+{
+    assert(subject != NULL && to != NULL);
+    const struct dig_machine_air_check *const check = subject->check;
+    (void)fputs("{\"machine\": ", to);
+    dig_json_string(to, subject->machine->name);
+    (void)fputs(",\n \"recording\": ", to);
+    dig_json_string(to, subject->recording);
+    dig_json_member(to, ",\n ", "duration_s", check->duration_s);
+    (void)fprintf(to, ",\n \"verdict\": \"%s\",\n \"unexplained\": %s,\n \"items\": [\n",
+                  dig_check_verdict_name(check->verdict), check->unexplained ? "true" : "false");
+    for (size_t i = 0; i < check->items; i++) {
+        put_item(to, subject, &check->item[i]);
+        (void)fputs(i + 1 < check->items ? ",\n" : "\n", to);
+    }
+    (void)fputs(" ]}\n", to);
+}
