@@ -7,7 +7,7 @@
 #include "tests/testlib.h"
 
 static inline struct dig_match fit(const struct dig_curve_set *const set, const size_t digs,
-                            const struct dig_observation dig[])
+                                   const struct dig_observation dig[])
 {
     struct dig_match match;
     assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &match), DIG_OK);

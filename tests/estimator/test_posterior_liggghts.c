@@ -1,6 +1,5 @@
 // Tests for estimator/match/posterior.c on digs that LIGGGHTS computed
 
-
 #include "closed_loop/recordings/observe.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"

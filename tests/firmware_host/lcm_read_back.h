@@ -54,7 +54,7 @@ static inline void keep(char to[32], const char *const text)
 }
 
 static inline void on_estimate(void *const context, const int64_t time_us,
-                        const digsight_estimate_t *const m)
+                               const digsight_estimate_t *const m)
 {
     struct seen *const seen = context;
     (void)time_us;
@@ -65,7 +65,8 @@ static inline void on_estimate(void *const context, const int64_t time_us,
     keep(seen->text[2], m->advice);
 }
 
-static inline void on_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
+static inline void on_match(void *const context, const int64_t time_us,
+                            const digsight_match_t *const m)
 {
     struct seen *const seen = context;
     (void)time_us;
@@ -82,7 +83,7 @@ static inline void on_match(void *const context, const int64_t time_us, const di
 }
 
 static inline void on_prediction(void *const context, const int64_t time_us,
-                          const digsight_prediction_t *const m)
+                                 const digsight_prediction_t *const m)
 {
     struct seen *const seen = context;
     (void)time_us;
@@ -99,7 +100,8 @@ static inline void on_prediction(void *const context, const int64_t time_us,
     }
 }
 
-static inline void on_health(void *const context, const int64_t time_us, const digsight_health_t *const m)
+static inline void on_health(void *const context, const int64_t time_us,
+                             const digsight_health_t *const m)
 {
     struct seen *const seen = context;
     (void)time_us;

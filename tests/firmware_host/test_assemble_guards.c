@@ -2,8 +2,8 @@
 
 #include "firmware_host/tick/assemble.h"
 
-#include "tests/testlib.h"
 #include "tests/firmware_host/readings.h"
+#include "tests/testlib.h"
 
 static void what_is_no_number_is_missing_and_counted(void **state)
 {

@@ -3,8 +3,8 @@
 #include "firmware_host/publish/output.h"
 
 #include "files/lcm/lcm_log.h"
-#include "tests/scratch.h"
 #include "tests/firmware_host/lcm_read_back.h"
+#include "tests/scratch.h"
 
 static void a_match_names_gravel_interval_and_table(void **state)
 {

@@ -63,9 +63,9 @@ static inline bool is_marked_gravel(const struct dig_gravel *const gravel)
 }
 
 static inline enum dig_status fake_pour(const struct dig_scene *const  scene,
-                                 const struct dig_gravel *const gravel, const uint64_t seed,
-                                 const struct dig_progress *const progress,
-                                 struct dig_bed *const bed, struct dig_error *const error)
+                                        const struct dig_gravel *const gravel, const uint64_t seed,
+                                        const struct dig_progress *const progress,
+                                        struct dig_bed *const bed, struct dig_error *const error)
 {
     (void)scene;
     (void)error;
@@ -80,7 +80,7 @@ static inline enum dig_status fake_pour(const struct dig_scene *const  scene,
 
 // The moment of a bed's dig: anything that follows from seed, gravel and trajectory.
 static inline double moment_of(const struct dig_gravel *const gravel, const size_t grains,
-                        const struct dig_trajectory *const t)
+                               const struct dig_trajectory *const t)
 {
     return gravel->value[DIG_AXIS_FRICTION] + 0.001 * (double)grains + (double)(t->phases) +
            t->theta0_rad;
@@ -128,8 +128,9 @@ static inline void fake_bed_finish(struct dig_bed *const bed)
 
 // The effect sets the first trajectory's angle: any change that shows.
 static inline enum dig_status fake_vary(const struct dig_scene *const scene,
-                                 const enum dig_effect_id effect, const double magnitude,
-                                 struct dig_scene *const varied, struct dig_error *const error)
+                                        const enum dig_effect_id effect, const double magnitude,
+                                        struct dig_scene *const varied,
+                                        struct dig_error *const error)
 {
     if (magnitude > 90.0) {
         return dig_error_set(error, DIG_EINVAL, "%s %g: too much", dig_effect_name(effect),
@@ -164,7 +165,7 @@ struct outcome {
 };
 
 static inline struct outcome sweep(const char *const name, const size_t packings,
-                            const struct dig_sweep_options *const options)
+                                   const struct dig_sweep_options *const options)
 {
     struct outcome          o     = { .status = DIG_OK };
     const struct dig_scene  scene = fixture_scene();
@@ -175,7 +176,8 @@ static inline struct outcome sweep(const char *const name, const size_t packings
     return o;
 }
 
-static inline struct outcome sweep_by(const char *const name, const size_t packings, const size_t workers)
+static inline struct outcome sweep_by(const char *const name, const size_t packings,
+                                      const size_t workers)
 {
     const struct dig_sweep_options options = { .workers      = workers,
                                                .time_limit_s = (double)INFINITY };
@@ -188,7 +190,7 @@ struct tally {
 };
 
 static inline enum dig_status check_run(void *const context, const struct dig_run *const run,
-                                 struct dig_error *const error)
+                                        struct dig_error *const error)
 {
     (void)error;
     struct tally *const          tally = context;
@@ -235,7 +237,7 @@ static inline int before_each(void **state)
 }
 
 static inline enum dig_status note_moment(void *const context, const struct dig_run *const run,
-                                   struct dig_error *const error)
+                                          struct dig_error *const error)
 {
     (void)error;
     double *const seen                          = context;
