@@ -54,12 +54,12 @@ closed_loop/numeric    | chance dense levenberg vectors
 closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
                        regressors
 closed_loop/model      | candidate hypothesis posterior response_surface scatter soil whitened_digs
-closed_loop/machine    machine_side | machine_lines machine_motion machine_side_private
+closed_loop/machine    machine_check machine_side | machine_lines machine_motion machine_side_private
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
 closed_loop/accuracy   coverage score | before_after decision effect_size judge trend
 closed_loop/verdict    trace | residuals tell_apart
 closed_loop/design     design design_report
-closed_loop/report     html json plot report trace_report
+closed_loop/report     html json machine_check_report plot report trace_report
 firmware_host/threads  | handoff log_limit notify rt
 firmware_host/bus      | frame_watch input reading register_plan signal_map stuck
 firmware_host/config   load_model | config describe load

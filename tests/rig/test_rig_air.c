@@ -1,6 +1,6 @@
-// Tests for tools/rig/air.c
+// Tests for tools/rig/motion/air.c
 
-#include "tools/rig/air.h"
+#include "tools/rig/motion/air.h"
 
 #include "core/units.h"
 #include "files/machine_yaml.h"

@@ -1,6 +1,6 @@
 #include "tools/rig/motion/track.h"
 
-#include "tools/rig/air.h"
+#include "tools/rig/motion/air.h"
 
 #include <assert.h>
 #include <math.h>

@@ -57,8 +57,8 @@ dig_rig_track_build(const struct dig_machine *machine, const struct dig_rig_trac
                     size_t recordings, const struct dig_recording recording[],
                     struct dig_rig_track *track, struct dig_error *error);
 
-/// The same of a motion in free air (tools/rig/air.h): of the options rate_Hz and quasi_static
-/// count.
+/// The same of a motion in free air (tools/rig/motion/air.h): of the options rate_Hz and
+/// quasi_static count.
 DIG_MUST_CHECK enum dig_status dig_rig_track_build_air(const struct dig_machine           *machine,
                                                        const struct dig_rig_track_options *options,
                                                        struct dig_rig_track               *track,

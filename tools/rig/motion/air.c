@@ -1,4 +1,4 @@
-#include "tools/rig/air.h"
+#include "tools/rig/motion/air.h"
 
 #include "tools/rig/motion/mechanism.h"
 

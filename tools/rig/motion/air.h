@@ -6,8 +6,8 @@
 // Each joint goes through the middle 70 % of its range, the others held in the middle of theirs; no
 // faster than 0.5 rad/s, at rest for half a second between two moves.
 
-#ifndef DIG_TOOLS_RIG_AIR_H
-#define DIG_TOOLS_RIG_AIR_H
+#ifndef DIG_TOOLS_RIG_MOTION_AIR_H
+#define DIG_TOOLS_RIG_MOTION_AIR_H
 
 #include "core/error.h"
 #include "core/machine.h"
@@ -19,4 +19,4 @@ DIG_MUST_CHECK enum dig_status dig_rig_air_build(const struct dig_machine *machi
                                                  struct dig_rig_path      *path,
                                                  struct dig_error         *error);
 
-#endif // DIG_TOOLS_RIG_AIR_H
+#endif // DIG_TOOLS_RIG_MOTION_AIR_H
