@@ -3,8 +3,8 @@
 #ifndef DIG_CLOSED_LOOP_ACCURACY_EFFECT_SIZE_H
 #define DIG_CLOSED_LOOP_ACCURACY_EFFECT_SIZE_H
 
-#include "closed_loop/model/hypothesis.h"
-#include "closed_loop/model/whitened_digs.h"
+#include "closed_loop/fit/hypothesis.h"
+#include "closed_loop/fit/whitened_digs.h"
 
 /// Size of what measured[].machine adds to the moment of the batch's digs: rms over rig time of
 /// what is left of it after the best refit of the gravel, within the table, over the rms of the

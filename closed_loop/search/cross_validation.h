@@ -3,7 +3,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_CROSS_VALIDATION_H
 #define DIG_CLOSED_LOOP_SEARCH_CROSS_VALIDATION_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 /// Leaves out each dig in turn, fits both hypotheses to the others, and predicts it by both: the
 /// sum over digs of |y - plain|^2 - |y - chosen|^2, in squares of the scatter of one dig. Above 0

@@ -10,7 +10,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_DRIFT_H
 #define DIG_CLOSED_LOOP_SEARCH_DRIFT_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 /// How many sigmas the parabola's own term is from nothing, of a fit that holds wear; of any other,
 /// or of fewer than five digs: 0. Microseconds.

@@ -9,7 +9,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H
 #define DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 #include <stdint.h>
 

@@ -12,7 +12,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_PORTMANTEAU_H
 #define DIG_CLOSED_LOOP_SEARCH_PORTMANTEAU_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -9,7 +9,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_ROCK_H
 #define DIG_CLOSED_LOOP_SEARCH_ROCK_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 struct dig_rock {
     bool              known;                      // the table has a rock along every trajectory

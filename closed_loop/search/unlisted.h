@@ -10,7 +10,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 #include "core/model.h"
 
 struct dig_unlisted {

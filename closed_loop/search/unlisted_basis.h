@@ -4,7 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_BASIS_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_BASIS_H
 
-#include "closed_loop/model/whitened_digs.h"
+#include "closed_loop/fit/whitened_digs.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/recordings/measured.h"
 

@@ -6,7 +6,7 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 #include "closed_loop/search/unlisted_basis.h"
 
 #define DIG_UNLISTED_MOST 3 // functions in one answer

@@ -9,7 +9,7 @@
 // (Ville).
 
 #include "closed_loop/accuracy/effect_size.h"
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/posterior.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/machine_steps.h"

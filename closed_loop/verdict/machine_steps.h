@@ -5,13 +5,13 @@
 //
 // middle is what free air's values by wide priors add to a dig, D what a step from there adds
 // (closed_loop/machine/machine_side.h). Gravel, effects of the soil and z are then one fit:
-// closed_loop/model/likelihood.h.
+// closed_loop/fit/likelihood.h.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 #define DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 
+#include "closed_loop/fit/hypothesis.h"
 #include "closed_loop/machine/machine_side.h"
-#include "closed_loop/model/hypothesis.h"
 
 /// Leaves in measured[].machine what the answer's middle adds to every dig, and in *steps what its
 /// steps add to the means of the batch's groups. DIG_ENOMATCH: a dig is not told with the effects.

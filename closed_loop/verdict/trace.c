@@ -3,7 +3,7 @@
 #include "closed_loop/accuracy/decision.h"
 #include "closed_loop/accuracy/effect_size.h"
 #include "closed_loop/accuracy/judge.h"
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/posterior.h"
 #include "closed_loop/verdict/residuals.h"
 #include "closed_loop/verdict/tell_apart.h"
 #include "closed_loop/verdict/trace_parts.h"

@@ -1,6 +1,6 @@
-// Tests for closed_loop/model/common_error.h.
+// Tests for closed_loop/fit/common_error.h.
 
-#include "closed_loop/model/common_error.h"
+#include "closed_loop/fit/common_error.h"
 
 #include "closed_loop/numeric/chance.h"
 #include "tests/closed_loop/world_fixture.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"

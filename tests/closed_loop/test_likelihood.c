@@ -1,9 +1,9 @@
-// Tests for the steps of closed_loop/model/likelihood.h: numbers that are known but for a normal
+// Tests for the steps of closed_loop/fit/likelihood.h: numbers that are known but for a normal
 // distribution, and integrated out.
 
-#include "closed_loop/model/likelihood.h"
+#include "closed_loop/fit/likelihood.h"
 
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/posterior.h"
 #include "closed_loop/search/null_simulation.h"
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"

@@ -2,8 +2,8 @@
 // gravel is known: thirteen plain gravels, ten of them on no point of the table's grid or seldom
 // dug.
 
-#include "closed_loop/model/likelihood.h"
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/likelihood.h"
+#include "closed_loop/fit/posterior.h"
 #include "closed_loop/recordings/observe.h"
 #include "files/recording_csv.h"
 #include "tables/load.h"

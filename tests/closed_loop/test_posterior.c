@@ -1,8 +1,8 @@
-// Tests for closed_loop/model/posterior.h.
+// Tests for closed_loop/fit/posterior.h.
 
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/posterior.h"
 
-#include "closed_loop/model/likelihood.h"
+#include "closed_loop/fit/likelihood.h"
 #include "closed_loop/search/null_simulation.h"
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/model/whitened_digs.h"
+#include "closed_loop/fit/whitened_digs.h"
 
 #include "tests/closed_loop/world_fixture.h"
 

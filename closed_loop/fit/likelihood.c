@@ -1,4 +1,4 @@
-#include "closed_loop/model/likelihood.h"
+#include "closed_loop/fit/likelihood.h"
 
 #include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"

@@ -2,10 +2,10 @@
 // the effects, all as likely before. Numbers at a bound, and those that trade off against each
 // other, need no case of their own.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_POSTERIOR_H
-#define DIG_CLOSED_LOOP_MODEL_POSTERIOR_H
+#ifndef DIG_CLOSED_LOOP_FIT_POSTERIOR_H
+#define DIG_CLOSED_LOOP_FIT_POSTERIOR_H
 
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
 #include <stdint.h>
 
@@ -25,4 +25,4 @@ DIG_MUST_CHECK enum dig_status dig_posterior_steps(const struct dig_whitened_dig
                                                    const struct dig_fitted        *fitted,
                                                    double                          covariance[]);
 
-#endif // DIG_CLOSED_LOOP_MODEL_POSTERIOR_H
+#endif // DIG_CLOSED_LOOP_FIT_POSTERIOR_H

@@ -3,17 +3,17 @@
 //   sum over trajectories [ |L^-1 (mean y - mean model)|^2 + log det L L'
 //                           + sum over digs |(y - mean y) - (model - mean model)|^2 ]
 //
-// L L' is the covariance of a trajectory's mean: closed_loop/model/common_error.h. Where the batch
+// L L' is the covariance of a trajectory's mean: closed_loop/fit/common_error.h. Where the batch
 // has steps, z is fitted along, exactly, and integrated out: mean model grows by D z, and |z|^2 +
 // log det (1 + sum D' C^-1 D) is added. What has no name is an effect whose form is not known: a
 // factor on the plain dig, with a wide prior, that changes along it. It has no numbers to fit; the
 // covariance holds all that it may be.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
-#define DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
+#ifndef DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H
+#define DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H
 
-#include "closed_loop/model/common_error.h"
-#include "closed_loop/model/forward.h"
+#include "closed_loop/fit/common_error.h"
+#include "closed_loop/fit/forward.h"
 
 #define DIG_LIKELIHOOD_RESIDUALS                                                                   \
     ((DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES + DIG_STEPS_MAX)
@@ -65,4 +65,4 @@ double dig_likelihood_misfit(const struct dig_likelihood *l, const double residu
 /// Squares of the means' misfit at x and of z, by the covariance that was taken.
 double dig_likelihood_means(struct dig_likelihood *l, const double x[]);
 
-#endif // DIG_CLOSED_LOOP_MODEL_LIKELIHOOD_H
+#endif // DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H

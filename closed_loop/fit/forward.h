@@ -1,10 +1,10 @@
 // The forward model: what a gravel, and effects of the soil or none, make of a dig.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_FORWARD_H
-#define DIG_CLOSED_LOOP_MODEL_FORWARD_H
+#ifndef DIG_CLOSED_LOOP_FIT_FORWARD_H
+#define DIG_CLOSED_LOOP_FIT_FORWARD_H
 
+#include "closed_loop/fit/whitened_digs.h"
 #include "closed_loop/model/soil.h"
-#include "closed_loop/model/whitened_digs.h"
 
 #define DIG_HYPOTHESIS_EFFECTS 3
 #define DIG_HYPOTHESIS_NUMBERS (DIG_AXES + DIG_HYPOTHESIS_EFFECTS)
@@ -50,4 +50,4 @@ void dig_hypothesis_curve(const struct dig_soil *soil, const struct dig_hypothes
                           const double number[], const struct dig_measured *dig,
                           double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
-#endif // DIG_CLOSED_LOOP_MODEL_FORWARD_H
+#endif // DIG_CLOSED_LOOP_FIT_FORWARD_H

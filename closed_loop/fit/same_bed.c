@@ -1,4 +1,4 @@
-#include "closed_loop/model/same_bed.h"
+#include "closed_loop/fit/same_bed.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "closed_loop/model/common_error.h"
+#include "closed_loop/fit/common_error.h"
 
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"

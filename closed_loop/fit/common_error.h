@@ -8,10 +8,10 @@
 // dig, what a template makes of an effect. size: one sigma of it, feature by feature; R: how alike
 // the factor is at two bins and on two channels; W: the whitening.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_COMMON_ERROR_H
-#define DIG_CLOSED_LOOP_MODEL_COMMON_ERROR_H
+#ifndef DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
+#define DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 
-#include "closed_loop/model/whitened_digs.h"
+#include "closed_loop/fit/whitened_digs.h"
 
 #include <stdint.h>
 
@@ -38,4 +38,4 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *group,
                            const struct dig_common_error *error, uint64_t *seed,
                            double y[DIG_FEATURES]);
 
-#endif // DIG_CLOSED_LOOP_MODEL_COMMON_ERROR_H
+#endif // DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H

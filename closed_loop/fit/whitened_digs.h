@@ -5,8 +5,8 @@
 // that all digs of the trajectory have. An error that all digs of a trajectory share (of the
 // table, of a template, of the DEM) is counted in multiples of the same covariance.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H
-#define DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H
+#ifndef DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H
+#define DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H
 
 #include "closed_loop/model/response_surface.h"
 #include "closed_loop/model/scatter.h"
@@ -92,4 +92,4 @@ double dig_whitened_digs_misfit_of_means(const struct dig_whitened_digs *batch, 
 void dig_whitened_digs_leave_out(const struct dig_whitened_digs *batch, size_t dig,
                                  struct dig_whitened_digs *others);
 
-#endif // DIG_CLOSED_LOOP_MODEL_WHITENED_DIGS_H
+#endif // DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H

@@ -1,4 +1,4 @@
-#include "closed_loop/model/forward.h"
+#include "closed_loop/fit/forward.h"
 
 #include "estimator/effects/effect.h"
 

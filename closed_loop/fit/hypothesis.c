@@ -1,6 +1,6 @@
-#include "closed_loop/model/hypothesis.h"
+#include "closed_loop/fit/hypothesis.h"
 
-#include "closed_loop/model/likelihood.h"
+#include "closed_loop/fit/likelihood.h"
 #include "closed_loop/numeric/levenberg.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
-#include "closed_loop/model/posterior.h"
+#include "closed_loop/fit/posterior.h"
 
-#include "closed_loop/model/likelihood.h"
+#include "closed_loop/fit/likelihood.h"
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
 

@@ -1,11 +1,11 @@
 // A way the digs of a campaign may have come about - a gravel, and effects of the soil or none -
 // and how well it explains them, everything refitted together.
 
-#ifndef DIG_CLOSED_LOOP_MODEL_HYPOTHESIS_H
-#define DIG_CLOSED_LOOP_MODEL_HYPOTHESIS_H
+#ifndef DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H
+#define DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H
 
-#include "closed_loop/model/common_error.h"
-#include "closed_loop/model/forward.h"
+#include "closed_loop/fit/common_error.h"
+#include "closed_loop/fit/forward.h"
 
 struct dig_fitted {
     struct dig_hypothesis hypothesis;
@@ -13,7 +13,7 @@ struct dig_fitted {
     double                low[DIG_HYPOTHESIS_NUMBERS];    // 90 % interval: posterior.h fills it
     double                high[DIG_HYPOTHESIS_NUMBERS];
     double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
-    double                misfit;                    // closed_loop/model/likelihood.h
+    double                misfit;                    // closed_loop/fit/likelihood.h
     double                squares;                   // of it, what is not a logarithm
     size_t                free;                      // numbers fitted
     double                z[DIG_STEPS_MAX];          // of the batch's steps
@@ -45,4 +45,4 @@ void dig_hypothesis_errors(const struct dig_whitened_digs *batch, const struct d
 double dig_hypothesis_squares(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                               const struct dig_fitted *fitted, const struct dig_fitted *by);
 
-#endif // DIG_CLOSED_LOOP_MODEL_HYPOTHESIS_H
+#endif // DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H

@@ -1,6 +1,6 @@
-#include "closed_loop/model/whitened_digs.h"
+#include "closed_loop/fit/whitened_digs.h"
 
-#include "closed_loop/model/same_bed.h"
+#include "closed_loop/fit/same_bed.h"
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/numeric/vectors.h"
 
