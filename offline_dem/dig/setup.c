@@ -2,6 +2,7 @@
 
 #include "core/units.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/offloaded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,6 +108,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         .dt_s         = dig_grain_types_time_step_s(scene, gravel, &found),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
+        .single       = true,
         .bodies       = bodies,
         .period_y_m   = dig_scene_period_m(scene),
     };
@@ -121,6 +123,17 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     *types = found;
     *world = made;
     return DIG_OK;
+}
+
+enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
+                                  struct dig_world *const world, struct dig_error *const error)
+{
+    world->single = !stepper->double_precision;
+    if (stepper->device == NULL) {
+        return DIG_OK;
+    }
+    const enum dig_status status = dig_offload(world, stepper->device);
+    return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
 void dig_setup_finish(struct dig_world *const world)

@@ -21,16 +21,22 @@ enum dig_status dig_contacts_grow(struct dig_contacts *const list)
 {
     const size_t        room = 2 * list->room + (size_t)8 * DIG_BLOCK;
     struct dig_contacts more = {
-        .n    = list->n,
-        .room = room,
-        .i    = grow(list->i, list->n, room, sizeof *more.i),
-        .j    = grow(list->j, list->n, room, sizeof *more.j),
-        .slot = grow(list->slot, list->n, room, sizeof *more.slot),
+        .n      = list->n,
+        .room   = room,
+        .i      = grow(list->i, list->n, room, sizeof *more.i),
+        .j      = grow(list->j, list->n, room, sizeof *more.j),
+        .slot   = grow(list->slot, list->n, room, sizeof *more.slot),
+        .single = list->single,
     };
-    int ok = more.i != NULL && more.j != NULL && more.slot != NULL;
+    bool ok = more.i != NULL && more.j != NULL && more.slot != NULL;
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
-        ok              = ok && more.history[m] != NULL;
+        if (list->single) {
+            more.single_history[m] = grow(list->single_history[m], list->n, room, sizeof(float));
+            ok                     = ok && more.single_history[m] != NULL;
+        } else {
+            more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
+            ok              = ok && more.history[m] != NULL;
+        }
     }
     if (!ok) {
         dig_contacts_finish(&more);
@@ -54,9 +60,7 @@ void dig_contacts_renumber(struct dig_contacts *const list, const bool pairs,
         list->i[kept]    = i;
         list->j[kept]    = j;
         list->slot[kept] = DIG_NO_SLOT;
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            list->history[m][kept] = list->history[m][c];
-        }
+        dig_contacts_set_history(list, kept, dig_contacts_history(list, c));
         kept++;
     }
     list->n = kept;
@@ -72,6 +76,7 @@ void dig_contacts_finish(struct dig_contacts *const list)
     free(list->slot);
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
         free(list->history[m]);
+        free(list->single_history[m]);
     }
     *list = (struct dig_contacts){ 0 };
 }

@@ -6,6 +6,7 @@
 #define DIG_OFFLINE_DEM_KERNEL_CONTACTS_H
 
 #include "core/status.h"
+#include "offline_dem/law/law.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,18 +18,49 @@
 
 struct dig_contacts {
     size_t    n;
-    size_t    room;                        // a multiple of DIG_BLOCK
-    uint32_t *i;                           // grain
-    uint32_t *j;                           // grain, or surface
-    uint32_t *slot;                        // place in the neighbour list
-    double   *history[DIG_HISTORY_VALUES]; // sx sy sz mx my mz
+    size_t    room; // a multiple of DIG_BLOCK
+    uint32_t *i;    // grain
+    uint32_t *j;    // grain, or surface
+    uint32_t *slot; // place in the neighbour list
+    // sx sy sz mx my mz: in single precision in single_history, else in history. The other is
+    // empty.
+    bool    single; // set while the list is empty
+    double *history[DIG_HISTORY_VALUES];
+    float  *single_history[DIG_HISTORY_VALUES];
 };
+
+static inline struct dig_contact_history dig_contacts_history(const struct dig_contacts *const list,
+                                                              const size_t                     c)
+{
+    if (list->single) {
+        float *const *const h = list->single_history;
+        return (struct dig_contact_history){ h[0][c], h[1][c], h[2][c], h[3][c], h[4][c], h[5][c] };
+    }
+    double *const *const h = list->history;
+    return (struct dig_contact_history){ h[0][c], h[1][c], h[2][c], h[3][c], h[4][c], h[5][c] };
+}
+
+/// Rounds the history in a list of single precision.
+static inline void dig_contacts_set_history(struct dig_contacts *const list, const size_t c,
+                                            const struct dig_contact_history history)
+{
+    const double value[DIG_HISTORY_VALUES] = { history.sx_m,  history.sy_m,  history.sz_m,
+                                               history.mx_Nm, history.my_Nm, history.mz_Nm };
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        if (list->single) {
+            list->single_history[m][c] = (float)value[m];
+        } else {
+            list->history[m][c] = value[m];
+        }
+    }
+}
 
 /// Grows the list. DIG_ENOMEM leaves it as it was.
 DIG_MUST_CHECK enum dig_status dig_contacts_grow(struct dig_contacts *list);
 
-/// Appends a contact with the history of contact `at` of `from` (NULL: zero). DIG_ENOMEM leaves the
-/// list as it was. Inline, because contact detection appends every contact.
+/// Appends a contact with the history of contact `at` of `from`, a list of the same precision
+/// (NULL: zero). DIG_ENOMEM leaves the list as it was. Inline, because contact detection appends
+/// every contact.
 DIG_MUST_CHECK static inline enum dig_status
 dig_contacts_add(struct dig_contacts *const list, const uint32_t i, const uint32_t j,
                  const uint32_t slot, const struct dig_contacts *const from, const uint32_t at)
@@ -40,8 +72,14 @@ dig_contacts_add(struct dig_contacts *const list, const uint32_t i, const uint32
     list->i[n]     = i;
     list->j[n]     = j;
     list->slot[n]  = slot;
-    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        list->history[m][n] = from == NULL ? 0.0 : from->history[m][at];
+    if (list->single) {
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->single_history[m][n] = from == NULL ? 0.0F : from->single_history[m][at];
+        }
+    } else {
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][n] = from == NULL ? 0.0 : from->history[m][at];
+        }
     }
     return DIG_OK;
 }

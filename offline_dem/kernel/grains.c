@@ -71,6 +71,7 @@ error:
 
 void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[])
 {
+    assert(!grains->in_single);
     size_t kept = 0;
     for (size_t i = 0; i < grains->n; i++) {
         if (!drop[i]) {
@@ -89,6 +90,7 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
 
 enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
 {
+    assert(!grains->in_single);
     const size_t      n    = grains->n;
     struct dig_grains made = {
         .motion  = allocate(n, sizeof *made.motion),
@@ -127,6 +129,8 @@ void dig_grains_finish(struct dig_grains *const grains)
     }
     free(grains->motion);
     free(grains->load);
+    free(grains->single_motion);
+    free(grains->single_load);
     free(grains->type_of);
     free(grains->id);
     free(grains->clump);
@@ -146,15 +150,56 @@ double dig_grains_kinetic_J(const struct dig_grains *const grains)
     return sum_J;
 }
 
+enum dig_status dig_grains_begin_single(struct dig_grains *const grains)
+{
+    if (grains->in_single) {
+        return DIG_OK;
+    }
+    if (grains->single_motion == NULL) {
+        struct dig_single_motion *const motion = allocate(grains->n, sizeof *motion);
+        struct dig_single_load *const   load   = allocate(grains->n, sizeof *load);
+        if (motion == NULL || load == NULL) {
+            free(motion);
+            free(load);
+            return DIG_ENOMEM;
+        }
+        grains->single_motion = motion;
+        grains->single_load   = load;
+    }
+    for (size_t i = 0; i < grains->n; i++) {
+        for (int k = 0; k < 3; k++) {
+            grains->single_motion[i].x_m[k]     = grains->motion[i].x_m[k];
+            grains->single_motion[i].v_mps[k]   = (float)grains->motion[i].v_mps[k];
+            grains->single_motion[i].w_radps[k] = (float)grains->motion[i].w_radps[k];
+        }
+    }
+    grains->in_single = true;
+    return DIG_OK;
+}
+
+void dig_grains_read_single(struct dig_grains *const grains)
+{
+    for (size_t i = 0; i < grains->n && grains->in_single; i++) {
+        grains->motion[i] = dig_grains_motion(grains, i);
+    }
+}
+
+void dig_grains_end_single(struct dig_grains *const grains)
+{
+    dig_grains_read_single(grains);
+    grains->in_single = false;
+}
+
 bool dig_grains_are_sound(const struct dig_grains *const grains, const double dt_s)
 {
     assert(grains != NULL);
     for (size_t i = 0; i < grains->n; i++) {
-        const double *const x        = grains->motion[i].x_m;
-        const double *const v        = grains->motion[i].v_mps;
-        const double *const o        = grains->motion[i].w_radps;
-        const double        radius_m = grains->type[grains->type_of[i]].radius_m;
-        const double        limit    = radius_m / dt_s;
+        const struct dig_motion m        = dig_grains_motion(grains, i);
+        const double *const     x        = m.x_m;
+        const double *const     v        = m.v_mps;
+        const double *const     o        = m.w_radps;
+        const double            radius_m = grains->type[grains->type_of[i]].radius_m;
+        const double            limit    = radius_m / dt_s;
         if (!(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < limit * limit) ||
             !isfinite(x[0] + x[1] + x[2] + o[0] + o[1] + o[2])) {
             return false;

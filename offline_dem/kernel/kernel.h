@@ -1,6 +1,9 @@
 // The hot loops: contact forces in blocks, and the integration of the grains. Plain C, compiled for
 // AVX-512, AVX2 and the baseline processor, and selected at run time. No multiply is fused with an
 // add and no sum is reordered, so every variant gives the same bits.
+//
+// A list of contacts under the plain law may be in single precision (contacts.h): the law is then
+// computed in floats from differences of doubles, and its forces are summed in doubles.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_KERNEL_H
 #define DIG_OFFLINE_DEM_KERNEL_KERNEL_H
@@ -25,13 +28,11 @@ struct dig_block {
         _Alignas(64) double in[12][DIG_BLOCK]; // the fields of struct dig_kinematics, in order
         _Alignas(64) double out[9][DIG_BLOCK]; // the fields of struct dig_contact_force, in order
     };
-    // Between the stages of the plain law: distances, and whether a cap may apply.
-    _Alignas(64) double d_m[DIG_BLOCK];
-    _Alignas(64) int64_t may_cap[DIG_BLOCK];
 };
 
-/// The law on contacts first … first + count - 1 of a list, count <= DIG_BLOCK, whose operands
-/// stand in block->in. Histories are updated, block->out is filled and block->in is gone.
+/// The law on contacts first … first + count - 1 of a list in double precision, count <= DIG_BLOCK,
+/// whose operands stand in block->in. Histories are updated, block->out is filled and block->in is
+/// gone.
 void dig_kernel_block(enum dig_isa isa, const struct dig_law *law, double dt_s,
                       struct dig_contacts *list, size_t first, size_t count,
                       struct dig_block *block);

@@ -74,13 +74,13 @@ static size_t find_near_pairs(const struct dig_world *const w, const uint32_t i,
 {
     const struct dig_grains *const     g          = &w->grains;
     const struct dig_neighbours *const neighbours = &w->neighbours;
-    const double *const                x          = g->motion[i].x_m;
+    const double *const                x          = dig_grains_position(g, i);
     const double own_m          = g->type[g->type_of[i]].radius_m + w->reference_m[i][3];
     const double inverse_period = dig_period_inverse(w->period_y_m);
     size_t       count          = 0;
     for (uint32_t s = neighbours->start[i]; s < neighbours->start[i + 1]; s++) {
         const uint32_t      j    = neighbours->other[s];
-        const double *const y    = g->motion[j].x_m;
+        const double *const y    = dig_grains_position(g, j);
         const double        dy_m = dig_period_fold(x[1] - y[1], w->period_y_m, inverse_period);
         const double        d[3] = { x[0] - y[0], dy_m, x[2] - y[2] };
         const double reach_m     = own_m + g->type[g->type_of[j]].radius_m + w->reference_m[j][3];
@@ -137,7 +137,7 @@ static enum dig_status add_surface(struct dig_world *const w, const uint32_t i,
 static enum dig_status detect_walls(struct dig_world *const w, const uint32_t i,
                                     const double reach_m, const uint32_t old_index[])
 {
-    const double *const x      = w->grains.motion[i].x_m;
+    const double *const x      = dig_grains_position(&w->grains, i);
     enum dig_status     status = DIG_OK;
     for (size_t s = 0; s < w->walls && status == DIG_OK; s++) {
         const double *const n = w->wall[s].normal;
@@ -152,7 +152,7 @@ static enum dig_status detect_plates(struct dig_world *const w, const uint32_t i
                                      const double reach_m, const uint32_t old_index[])
 {
     const struct dig_tool *const tool  = w->tool;
-    const double *const          x     = w->grains.motion[i].x_m;
+    const double *const          x     = dig_grains_position(&w->grains, i);
     const double                 dx_m  = x[0] - tool->pose.x_m;
     const double                 dz_m  = x[2] - tool->pose.z_m;
     const double                 far_m = tool->radius_m + reach_m;

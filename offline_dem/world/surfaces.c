@@ -100,12 +100,12 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t                 i = list->i[first + c];
-    const struct dig_motion *const m = &w->grains.motion[i];
-    struct near_plates             near;
+    const uint32_t          i = list->i[first + c];
+    const struct dig_motion m = dig_grains_motion(&w->grains, i);
+    struct near_plates      near;
     near.count = 0;
     double body_m[3];
-    dig_tool_to_body(w->tool, m->x_m, body_m);
+    dig_tool_to_body(w->tool, m.x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
     while (c + used < count && list->i[first + c + used] == i) {
@@ -125,9 +125,9 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
     }
     for (size_t k = 0; k < near.count; k++) {
         if (near.is_contact[k]) {
-            fill_plate(w->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
+            fill_plate(w->tool, body_m, near.closest_m[k], &m, c + k, block, arm_m[c + k]);
         } else {
-            fill_contact(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
+            fill_contact(block, c + k, &m, (const double[3]){ FAR_m, 0.0, 0.0 },
                          (const double[3]){ 0.0, 0.0, 0.0 });
             memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
         }
@@ -140,15 +140,15 @@ static void add_loads(struct dig_world *const w, const struct dig_contacts *cons
                       const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
-        struct dig_load *const load = &w->grains.load[list->i[first + c]];
-        double                 f[3];
-        double                 t[3];
+        double f[3];
+        double on_grain[3];
+        double t[3];
         for (int k = 0; k < 3; k++) {
-            f[k] = block->out[k][c];
-            t[k] = block->out[6 + k][c];
-            load->f_N[k] += f[k];
-            load->t_Nm[k] += block->out[3 + k][c];
+            f[k]        = block->out[k][c];
+            on_grain[k] = block->out[3 + k][c];
+            t[k]        = block->out[6 + k][c];
         }
+        dig_grains_add_load(&w->grains, list->i[first + c], f, on_grain);
         const double *const      a   = arm_m[c];
         struct dig_wrench *const sum = &w->on_tool;
         for (int k = 0; k < 3; k++) {

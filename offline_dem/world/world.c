@@ -45,6 +45,47 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     return DIG_OK;
 }
 
+// Before the first contact. Plates have few contacts and stay in double precision.
+static void choose_precision(struct dig_world *const w)
+{
+    bool plain = w->bodies == NULL || w->bodies->clumps == 0;
+    for (size_t a = 0; a < w->grains.types; a++) {
+        plain = plain && !w->wall_law[a].general;
+        for (size_t b = a; b < w->grains.types; b++) {
+            plain = plain && !w->pair_law[a * DIG_GRAIN_TYPES_MAX + b].general;
+        }
+    }
+    w->single = w->single && plain;
+    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
+        w->pair[l].single           = w->single;
+        w->detection.pair[l].single = w->single;
+    }
+    for (size_t type = 0; type < DIG_GRAIN_TYPES_MAX; type++) {
+        w->surface[type].single           = w->single;
+        w->detection.surface[type].single = w->single;
+    }
+}
+
+// Everything a step needs before forces are computed.
+static enum dig_status prepare(struct dig_world *const w)
+{
+    if (w->tool != NULL && !w->stale &&
+        dig_tool_travel_m(w->tool, w->tool_reference, w->tool->pose) > w->tool_margin_m) {
+        w->stale = true;
+    }
+    enum dig_status status = DIG_OK;
+    if (w->stale) {
+        if (w->contact_rebuilds == 0) {
+            choose_precision(w);
+        }
+        status = dig_grains_are_sound(&w->grains, w->dt_s) ? dig_lists_update(w) : DIG_EINVAL;
+    }
+    if (status == DIG_OK && w->single) {
+        status = dig_grains_begin_single(&w->grains);
+    }
+    return status;
+}
+
 static void add_pair_loads(struct dig_world *const w)
 {
     for (size_t a = 0; a < w->grains.types; a++) {
@@ -69,18 +110,9 @@ enum dig_status dig_world_step(struct dig_world *const w)
     if (w->offloaded != NULL) {
         return dig_offloaded_step(w);
     }
-    if (w->tool != NULL && !w->stale &&
-        dig_tool_travel_m(w->tool, w->tool_reference, w->tool->pose) > w->tool_margin_m) {
-        w->stale = true;
-    }
-    if (w->stale) {
-        if (!dig_grains_are_sound(&w->grains, w->dt_s)) {
-            return DIG_EINVAL;
-        }
-        const enum dig_status status = dig_lists_update(w);
-        if (status != DIG_OK) {
-            return status;
-        }
+    const enum dig_status status = prepare(w);
+    if (status != DIG_OK) {
+        return status;
     }
     add_pair_loads(w);
     dig_surfaces_add_loads(w);
@@ -110,11 +142,13 @@ enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wren
 
 enum dig_status dig_world_sync_motion(struct dig_world *const w)
 {
+    dig_grains_read_single(&w->grains);
     return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync_motion(w);
 }
 
 enum dig_status dig_world_sync(struct dig_world *const w)
 {
+    dig_grains_end_single(&w->grains);
     return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync(w);
 }
 

@@ -44,6 +44,8 @@ struct dig_world {
     size_t          walls;
     struct dig_wall wall[DIG_WALLS_MAX];
     enum dig_isa    isa;
+    bool single; // velocities, loads and contacts in single precision (kernel.h); from the first
+                 // step on false with other laws than the plain one and with clumps
     double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
                        // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
 
@@ -99,11 +101,12 @@ DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
                                                      struct dig_wrench *wrench);
 
-/// Before motions are read: downloads them from a device. Without one nothing to do, and no
-/// failure.
+/// Before motions are read: copies them from single precision, or from a device. Fails with a
+/// device only.
 DIG_MUST_CHECK enum dig_status dig_world_sync_motion(struct dig_world *world);
 
-/// Before motions are written or grains removed: downloads contacts, too.
+/// Before motions are written or grains removed: the same, and contacts from a device. What is
+/// written then counts.
 DIG_MUST_CHECK enum dig_status dig_world_sync(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);

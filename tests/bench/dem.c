@@ -42,6 +42,7 @@ static void build(struct dig_world *const world, struct dig_grains *const grains
     world->dt_s                  = 6.25e-5;
     world->gravity_mps2[2]       = -9.81;
     world->isa                   = dig_kernel_best();
+    world->single                = true;
     world->walls                 = sizeof wall / sizeof wall[0];
     memcpy(world->wall, wall, sizeof wall);
     dig_world_init(world, grains);
