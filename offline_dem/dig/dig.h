@@ -1,5 +1,5 @@
 // One dig, from an empty box to a curve: pour, level, drive the bucket, record.
-// One process a dig: nothing here uses threads, and the same inputs give the same bits.
+// The same inputs give the same bits, on any number of threads.
 
 #ifndef DIG_OFFLINE_DEM_DIG_DIG_H
 #define DIG_OFFLINE_DEM_DIG_DIG_H
@@ -12,6 +12,7 @@
 #include "offline_dem/kernel/bed.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct dig_device;
@@ -20,6 +21,7 @@ struct dig_device;
 struct dig_stepper {
     struct dig_device *device;           // NULL: the kernel
     bool               double_precision; // of the kernel
+    size_t             threads; // of the kernel in a large bed; 0, 1: none beside the caller
 };
 
 /// Called from the computing thread every few hundred steps with the simulated time done and in

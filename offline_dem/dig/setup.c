@@ -2,6 +2,7 @@
 
 #include "core/units.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/crew.h"
 #include "offline_dem/world/offloaded.h"
 
 #include <math.h>
@@ -128,11 +129,13 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
 enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
                                   struct dig_world *const world, struct dig_error *const error)
 {
-    world->single = !stepper->double_precision;
-    if (stepper->device == NULL) {
-        return DIG_OK;
+    world->single          = !stepper->double_precision;
+    enum dig_status status = DIG_OK;
+    if (stepper->device != NULL) {
+        status = dig_offload(world, stepper->device);
+    } else if (stepper->threads > 1) {
+        status = dig_crew_create(stepper->threads, &world->crew);
     }
-    const enum dig_status status = dig_offload(world, stepper->device);
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
@@ -140,6 +143,8 @@ void dig_setup_finish(struct dig_world *const world)
 {
     dig_bodies_destroy(world->bodies);
     world->bodies = NULL;
+    dig_crew_destroy(world->crew);
+    world->crew = NULL;
     dig_world_finish(world);
 }
 

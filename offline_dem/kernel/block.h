@@ -141,12 +141,11 @@ INLINED void find_forces(const struct dig_law_single law, const float dt_s, cons
 }
 
 INLINED void block_single_body(const struct dig_law *const law, const double dt_s,
-                               const double period_m, const size_t count,
-                               float *const               histories[DIG_HISTORY_VALUES],
+                               const double period_m, const struct single_contacts *const contacts,
                                struct block_single *const block)
 {
-    const size_t padded = round_up(count, LANES_SINGLE);
-    for (size_t c = count; c < padded; c++) {
+    const size_t padded = round_up(contacts->count, LANES_SINGLE);
+    for (size_t c = contacts->count; c < padded; c++) {
         for (int k = 0; k < 3; k++) {
             block->d_m[k][c] = FAR_m;
         }
@@ -156,7 +155,7 @@ INLINED void block_single_body(const struct dig_law *const law, const double dt_
     } else {
         find_normals(false, law->reach_m, 0.0, padded, block);
     }
-    find_forces(dig_law_to_single(law), (float)dt_s, padded, histories, block);
+    find_forces(dig_law_to_single(law), (float)dt_s, padded, contacts->history, block);
 }
 
 #endif // DIG_OFFLINE_DEM_KERNEL_BLOCK_H

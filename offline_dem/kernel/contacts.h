@@ -22,6 +22,10 @@ struct dig_contacts {
     uint32_t *i;    // grain
     uint32_t *j;    // grain, or surface
     uint32_t *slot; // place in the neighbour list
+    // Contacts of slab s (grains.h) are slab_first[s] … slab_first[s + 1] - 1. NULL: all are of the
+    // only slab.
+    uint32_t *slab_first; // [slabs + 1]
+    size_t    slabs;
     // sx sy sz mx my mz: in single precision in single_history, else in history. The other is
     // empty.
     bool    single; // set while the list is empty
@@ -55,32 +59,50 @@ static inline void dig_contacts_set_history(struct dig_contacts *const list, con
     }
 }
 
-/// Grows the list. DIG_ENOMEM leaves it as it was.
-DIG_MUST_CHECK enum dig_status dig_contacts_grow(struct dig_contacts *list);
+static inline size_t dig_contacts_slab_first(const struct dig_contacts *const list,
+                                             const size_t                     slab)
+{
+    return list->slab_first == NULL ? slab * list->n : list->slab_first[slab];
+}
 
-/// Appends a contact with the history of contact `at` of `from`, a list of the same precision
-/// (NULL: zero). DIG_ENOMEM leaves the list as it was. Inline, because contact detection appends
-/// every contact.
+/// Room for the marks of so many slabs. DIG_ENOMEM leaves the list as it was.
+DIG_MUST_CHECK enum dig_status dig_contacts_set_slabs(struct dig_contacts *list, size_t slabs);
+
+/// Makes room for so many contacts, and for more to come. DIG_ENOMEM leaves the list as it was.
+DIG_MUST_CHECK enum dig_status dig_contacts_grow(struct dig_contacts *list, size_t n);
+
+/// Makes it n contacts, which are to be put. DIG_ENOMEM leaves the list as it was.
+DIG_MUST_CHECK enum dig_status dig_contacts_reserve(struct dig_contacts *list, size_t n);
+
+/// Writes contact c with the history of contact `at` of `from`, a list of the same precision (NULL:
+/// zero). Inline, because contact detection writes every contact.
+static inline void dig_contacts_put(struct dig_contacts *const list, const size_t c,
+                                    const uint32_t i, const uint32_t j, const uint32_t slot,
+                                    const struct dig_contacts *const from, const uint32_t at)
+{
+    list->i[c]    = i;
+    list->j[c]    = j;
+    list->slot[c] = slot;
+    if (list->single) {
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->single_history[m][c] = from == NULL ? 0.0F : from->single_history[m][at];
+        }
+    } else {
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][c] = from == NULL ? 0.0 : from->history[m][at];
+        }
+    }
+}
+
+/// Appends a contact likewise. DIG_ENOMEM leaves the list as it was.
 DIG_MUST_CHECK static inline enum dig_status
 dig_contacts_add(struct dig_contacts *const list, const uint32_t i, const uint32_t j,
                  const uint32_t slot, const struct dig_contacts *const from, const uint32_t at)
 {
-    if (list->n == list->room && dig_contacts_grow(list) != DIG_OK) {
+    if (list->n == list->room && dig_contacts_grow(list, list->n + 1) != DIG_OK) {
         return DIG_ENOMEM;
     }
-    const size_t n = list->n++;
-    list->i[n]     = i;
-    list->j[n]     = j;
-    list->slot[n]  = slot;
-    if (list->single) {
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            list->single_history[m][n] = from == NULL ? 0.0F : from->single_history[m][at];
-        }
-    } else {
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            list->history[m][n] = from == NULL ? 0.0 : from->history[m][at];
-        }
-    }
+    dig_contacts_put(list, list->n++, i, j, slot, from, at);
     return DIG_OK;
 }
 

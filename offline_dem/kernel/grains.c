@@ -38,6 +38,7 @@ enum dig_status dig_grains_create(const size_t types, const struct dig_grain_typ
         .load    = allocate(n, sizeof *made.load),
         .type_of = allocate(n, sizeof *made.type_of),
         .id      = allocate(n, sizeof *made.id),
+        .slabs   = { .count = 1, .grains = n + 1 },
     };
     enum dig_status status = DIG_ENOMEM;
     if (made.motion == NULL || made.load == NULL || made.type_of == NULL || made.id == NULL) {
@@ -85,7 +86,8 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
             kept++;
         }
     }
-    grains->n = kept;
+    grains->n     = kept;
+    grains->slabs = (struct dig_slabs){ .count = 1, .grains = kept + 1 };
 }
 
 enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
@@ -150,21 +152,43 @@ double dig_grains_kinetic_J(const struct dig_grains *const grains)
     return sum_J;
 }
 
+// Slabs of fewer grains are not worth their halos.
+#define SLAB_GRAINS 16384
+
+void dig_grains_set_slabs(struct dig_grains *const grains, const size_t reach)
+{
+    assert(!grains->in_single);
+    const size_t least = reach > SLAB_GRAINS / 2 ? 2 * reach : SLAB_GRAINS;
+    const size_t count = grains->n / least;
+    grains->slabs      = (struct dig_slabs){ .count = 1, .grains = grains->n + 1 };
+    if (count > 1) {
+        const size_t each = (grains->n + count - 1) / count;
+        grains->slabs     = (struct dig_slabs){ (grains->n + each - 1) / each, each, reach };
+    }
+}
+
+static enum dig_status make_single_room(struct dig_grains *const grains)
+{
+    const size_t loads = grains->n + 2 * grains->slabs.halo * grains->slabs.count;
+    if (grains->single_motion == NULL) {
+        grains->single_motion = allocate(grains->n, sizeof *grains->single_motion);
+    }
+    if (grains->single_load == NULL || grains->single_load_room < loads) {
+        free(grains->single_load);
+        grains->single_load_room = loads + loads / 8;
+        grains->single_load      = allocate(grains->single_load_room, sizeof *grains->single_load);
+    }
+    return grains->single_motion == NULL || grains->single_load == NULL ? DIG_ENOMEM : DIG_OK;
+}
+
 enum dig_status dig_grains_begin_single(struct dig_grains *const grains)
 {
     if (grains->in_single) {
         return DIG_OK;
     }
-    if (grains->single_motion == NULL) {
-        struct dig_single_motion *const motion = allocate(grains->n, sizeof *motion);
-        struct dig_single_load *const   load   = allocate(grains->n, sizeof *load);
-        if (motion == NULL || load == NULL) {
-            free(motion);
-            free(load);
-            return DIG_ENOMEM;
-        }
-        grains->single_motion = motion;
-        grains->single_load   = load;
+    const enum dig_status status = make_single_room(grains);
+    if (status != DIG_OK) {
+        return status;
     }
     for (size_t i = 0; i < grains->n; i++) {
         for (int k = 0; k < 3; k++) {

@@ -46,6 +46,14 @@ struct dig_grain_type {
     bool   driven;
 };
 
+/// Consecutive grains whose contacts are computed together, and may be by a thread of their own.
+/// The contacts that grains of a slab list reach at most `halo` grains into the slabs beside it.
+struct dig_slabs {
+    size_t count;  // >= 1; more than one in single precision only
+    size_t grains; // of each but the last, >= 2 halo
+    size_t halo;   // 0 for one slab
+};
+
 struct dig_grains {
     size_t                n;
     size_t                types;
@@ -59,7 +67,9 @@ struct dig_grains {
     // Between dig_grains_begin_single() and _end_single() in place of motion and load.
     bool                      in_single;
     struct dig_single_motion *single_motion; // [n]
-    struct dig_single_load   *single_load;   // [n]
+    struct dig_single_load   *single_load;   // of the slabs, see dig_grains_slab_load()
+    size_t                    single_load_room;
+    struct dig_slabs          slabs;
 };
 
 /// n grains at rest at (x, y, z), grain i of type[type_of[i]]. DIG_EINVAL for a type out of range,
@@ -92,6 +102,23 @@ void dig_grains_read_single(struct dig_grains *grains);
 /// The same, and motion and load count again, for those who write them.
 void dig_grains_end_single(struct dig_grains *grains);
 
+/// Splits the grains into slabs, or none, where contacts reach so many grains. Not while motions
+/// are in single precision.
+void dig_grains_set_slabs(struct dig_grains *grains, size_t reach);
+
+static inline size_t dig_grains_slab_first(const struct dig_grains *const grains, const size_t slab)
+{
+    return slab < grains->slabs.count ? slab * grains->slabs.grains : grains->n;
+}
+
+/// Loads from the contacts of a slab, to be indexed by grain: its own, and `halo` on either side.
+/// Every slab has its own halos, so that slabs do not write where others do.
+static inline struct dig_single_load *dig_grains_slab_load(const struct dig_grains *const grains,
+                                                           const size_t                   slab)
+{
+    return grains->single_load + grains->slabs.halo * (2 * slab + 1);
+}
+
 /// Position of a grain in either precision.
 static inline const double *dig_grains_position(const struct dig_grains *const grains,
                                                 const size_t                   i)
@@ -118,14 +145,17 @@ static inline struct dig_motion dig_grains_motion(const struct dig_grains *const
 static inline void dig_grains_add_load(struct dig_grains *const grains, const size_t i,
                                        const double f_N[3], const double t_Nm[3])
 {
-    for (int k = 0; k < 3; k++) {
-        if (grains->in_single) {
-            grains->single_load[i].f_N[k] += (float)f_N[k];
-            grains->single_load[i].t_Nm[k] += (float)t_Nm[k];
-        } else {
+    if (!grains->in_single) {
+        for (int k = 0; k < 3; k++) {
             grains->load[i].f_N[k] += f_N[k];
             grains->load[i].t_Nm[k] += t_Nm[k];
         }
+        return;
+    }
+    struct dig_single_load *const load = dig_grains_slab_load(grains, i / grains->slabs.grains) + i;
+    for (int k = 0; k < 3; k++) {
+        load->f_N[k] += (float)f_N[k];
+        load->t_Nm[k] += (float)t_Nm[k];
     }
 }
 

@@ -53,18 +53,9 @@ INLINED void find_histories(struct dig_contacts *const list, const size_t first,
     }
 }
 
-INLINED void find_single_histories(struct dig_contacts *const list, const size_t first,
-                                   float *histories[DIG_HISTORY_VALUES])
+INLINED size_t block_count(const size_t first, const size_t end)
 {
-    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        histories[m] = list->single_history[m] + first;
-    }
-}
-
-INLINED size_t block_count(const struct dig_contacts *const list, const size_t first)
-{
-    const size_t left = list->n - first;
-    return left < DIG_BLOCK ? left : DIG_BLOCK;
+    return end - first < DIG_BLOCK ? end - first : DIG_BLOCK;
 }
 
 // Blocks are cleared once a list: the analyzer does not see that every stage fills the operands of
@@ -77,7 +68,7 @@ INLINED void pairs_body(const bool general, const struct dig_law law, const doub
     memset(&block, 0, sizeof block);
     double *histories[DIG_HISTORY_VALUES] = { NULL };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
-        const size_t count = block_count(list, first);
+        const size_t count = block_count(first, list->n);
         gather(list, grains->motion, first, count, &block);
         if (period_m > 0.0) {
             fold(period_m, count, block.in[1]);
@@ -90,17 +81,19 @@ INLINED void pairs_body(const bool general, const struct dig_law law, const doub
 
 INLINED void pairs_single_body(const struct dig_law *const law, const double dt_s,
                                const double period_m, struct dig_contacts *const list,
-                               struct dig_grains *const grains)
+                               const size_t slab, struct dig_grains *const grains)
 {
-    struct block_single block;
+    struct dig_single_load *const load = dig_grains_slab_load(grains, slab);
+    const size_t                  end  = dig_contacts_slab_first(list, slab + 1);
+    struct single_contacts        contacts;
+    struct block_single           block;
     memset(&block, 0, sizeof block);
-    float *histories[DIG_HISTORY_VALUES] = { NULL };
-    for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
-        const size_t count = block_count(list, first);
-        gather_single(list, grains->single_motion, first, count, &block);
-        find_single_histories(list, first, histories);
-        block_single_body(law, dt_s, period_m, count, histories, &block);
-        scatter_single(list, &block, first, count, grains->single_load);
+    for (size_t first = dig_contacts_slab_first(list, slab); first < end; first += DIG_BLOCK) {
+        begin_block(list, first, block_count(first, end), &contacts);
+        gather_single(&contacts, grains->single_motion, &block);
+        block_single_body(law, dt_s, period_m, &contacts, &block);
+        scatter_single(&contacts, &block, load);
+        end_block(&contacts, first, list);
     }
 }
 
@@ -113,7 +106,7 @@ INLINED void walls_body(const bool general, const struct dig_law law, const doub
     memset(&block, 0, sizeof block);
     double *histories[DIG_HISTORY_VALUES] = { NULL };
     for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
-        const size_t count = block_count(list, first);
+        const size_t count = block_count(first, list->n);
         gather_walls(list, wall, law.reach_m, grains->motion, first, count, &block);
         find_histories(list, first, histories);
         block_body(general, law, dt_s, count, histories, &block);
@@ -123,17 +116,20 @@ INLINED void walls_body(const bool general, const struct dig_law law, const doub
 
 INLINED void walls_single_body(const struct dig_law *const law, const double dt_s,
                                const struct dig_wall wall[], struct dig_contacts *const list,
-                               struct dig_grains *const grains, four *const sum_N)
+                               const size_t slab, struct dig_grains *const grains,
+                               four *const sum_N)
 {
-    struct block_single block;
+    struct dig_single_load *const load = dig_grains_slab_load(grains, slab);
+    const size_t                  end  = dig_contacts_slab_first(list, slab + 1);
+    struct single_contacts        contacts;
+    struct block_single           block;
     memset(&block, 0, sizeof block);
-    float *histories[DIG_HISTORY_VALUES] = { NULL };
-    for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
-        const size_t count = block_count(list, first);
-        gather_walls_single(list, wall, law->reach_m, grains->single_motion, first, count, &block);
-        find_single_histories(list, first, histories);
-        block_single_body(law, dt_s, 0.0, count, histories, &block);
-        scatter_walls_single(list, &block, first, count, grains->single_load, sum_N);
+    for (size_t first = dig_contacts_slab_first(list, slab); first < end; first += DIG_BLOCK) {
+        begin_block(list, first, block_count(first, end), &contacts);
+        gather_walls_single(&contacts, wall, law->reach_m, grains->single_motion, &block);
+        block_single_body(law, dt_s, 0.0, &contacts, &block);
+        scatter_walls_single(&contacts, &block, load, sum_N);
+        end_block(&contacts, first, list);
     }
 }
 
@@ -184,13 +180,25 @@ INLINED four advance_one_single(const struct inertia *const inertia, const doubl
 
 INLINED four advance_one(const bool single, const struct inertia inertia[], const double kick_s,
                          const double dt_s, const double (*const reference_m)[4], const size_t i,
-                         struct dig_grains *const grains)
+                         struct dig_single_load *const single_load, struct dig_grains *const grains)
 {
     const struct inertia *const of = &inertia[grains->type_of[i]];
     return single ? advance_one_single(of, kick_s, dt_s, reference_m[i], &grains->single_motion[i],
-                                       &grains->single_load[i])
+                                       &single_load[i])
                   : advance_one_double(of, kick_s, dt_s, reference_m[i], &grains->motion[i],
                                        &grains->load[i]);
+}
+
+// Loads on grains first … end - 1 of a slab from the halo of the slab beside it.
+INLINED void take_halo(const size_t first, const size_t end, struct dig_single_load *const beside,
+                       struct dig_single_load *const own)
+{
+    const eight_single zero = { 0.0F };
+    for (size_t i = first; i < end; i++) {
+        const eight_single row = load_eight(&beside[i]);
+        add_load(&own[i], &row);
+        store_eight(&beside[i], &zero);
+    }
 }
 
 // Whether any of four grains has left its margin.
@@ -223,25 +231,35 @@ INLINED void find_inertia(const double gravity_mps2[3], const struct dig_grains 
 }
 
 INLINED bool advance_body(const bool single, const double gravity_mps2[3], const double kick_s,
-                          const double             dt_s, const double (*const reference_m)[4],
-                          struct dig_grains *const grains)
+                          const double dt_s, const double (*const reference_m)[4],
+                          const size_t slab, struct dig_grains *const grains)
 {
     struct inertia inertia[DIG_GRAIN_TYPES_MAX];
     find_inertia(gravity_mps2, grains, inertia);
-    four_index   left = { 0, 0, 0, 0 };
-    const size_t n    = grains->n;
-    size_t       k    = 0;
-    for (; k + 4 <= n; k += 4) {
+    struct dig_single_load *const load  = dig_grains_slab_load(grains, slab);
+    const size_t                  first = dig_grains_slab_first(grains, slab);
+    const size_t                  end   = dig_grains_slab_first(grains, slab + 1);
+    const size_t                  halo  = grains->slabs.halo;
+    if (slab > 0) {
+        const size_t last = first + halo < end ? first + halo : end;
+        take_halo(first, last, dig_grains_slab_load(grains, slab - 1), load);
+    }
+    if (slab + 1 < grains->slabs.count) {
+        take_halo(end - halo, end, dig_grains_slab_load(grains, slab + 1), load);
+    }
+    four_index left = { 0, 0, 0, 0 };
+    size_t     k    = first;
+    for (; k + 4 <= end; k += 4) {
         four d[4];
 #pragma GCC unroll 4
         for (size_t l = 0; l < 4; l++) {
-            d[l] = advance_one(single, inertia, kick_s, dt_s, reference_m, k + l, grains);
+            d[l] = advance_one(single, inertia, kick_s, dt_s, reference_m, k + l, load, grains);
         }
         left |= left_margin(d);
     }
     four rest[4] = { { 0.0 }, { 0.0 }, { 0.0 }, { 0.0 } };
-    for (size_t l = 0; k + l < n; l++) {
-        rest[l] = advance_one(single, inertia, kick_s, dt_s, reference_m, k + l, grains);
+    for (size_t l = 0; k + l < end; l++) {
+        rest[l] = advance_one(single, inertia, kick_s, dt_s, reference_m, k + l, load, grains);
     }
     left |= left_margin(rest);
     return (left[0] | left[1] | left[2] | left[3]) != 0;
@@ -261,23 +279,24 @@ INLINED bool advance_body(const bool single, const double gravity_mps2[3], const
     }                                                                                              \
     attribute static void pairs_##suffix(const struct dig_law *const law, const double dt_s,       \
                                          const double period_m, struct dig_contacts *const list,   \
-                                         struct dig_grains *const grains)                          \
+                                         const size_t slab, struct dig_grains *const grains)       \
     {                                                                                              \
         if (list->single) {                                                                        \
-            pairs_single_body(law, dt_s, period_m, list, grains);                                  \
+            pairs_single_body(law, dt_s, period_m, list, slab, grains);                            \
         } else if (law->general) {                                                                 \
             pairs_body(true, *law, dt_s, period_m, list, grains);                                  \
         } else {                                                                                   \
             pairs_body(false, *law, dt_s, period_m, list, grains);                                 \
         }                                                                                          \
     }                                                                                              \
-    attribute static void walls_##suffix(                                                          \
-        const struct dig_law *const law, const double dt_s, const struct dig_wall wall[],          \
-        struct dig_contacts *const list, struct dig_grains *const grains, double on_walls_N[3])    \
+    attribute static void walls_##suffix(const struct dig_law *const law, const double dt_s,       \
+                                         const struct dig_wall      wall[],                        \
+                                         struct dig_contacts *const list, const size_t slab,       \
+                                         struct dig_grains *const grains, double on_walls_N[3])    \
     {                                                                                              \
         four sum_N = { on_walls_N[0], on_walls_N[1], on_walls_N[2], 0.0 };                         \
         if (list->single) {                                                                        \
-            walls_single_body(law, dt_s, wall, list, grains, &sum_N);                              \
+            walls_single_body(law, dt_s, wall, list, slab, grains, &sum_N);                        \
         } else if (law->general) {                                                                 \
             walls_body(true, *law, dt_s, wall, list, grains, &sum_N);                              \
         } else {                                                                                   \
@@ -289,11 +308,11 @@ INLINED bool advance_body(const bool single, const double gravity_mps2[3], const
     }                                                                                              \
     attribute static bool advance_##suffix(const double gravity_mps2[3], const double kick_s,      \
                                            const double dt_s, const double(*const reference_m)[4], \
-                                           struct dig_grains *const grains)                        \
+                                           const size_t slab, struct dig_grains *const grains)     \
     {                                                                                              \
         return grains->in_single                                                                   \
-                   ? advance_body(true, gravity_mps2, kick_s, dt_s, reference_m, grains)           \
-                   : advance_body(false, gravity_mps2, kick_s, dt_s, reference_m, grains);         \
+                   ? advance_body(true, gravity_mps2, kick_s, dt_s, reference_m, slab, grains)     \
+                   : advance_body(false, gravity_mps2, kick_s, dt_s, reference_m, slab, grains);   \
     }
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -326,22 +345,22 @@ void dig_kernel_block(const enum dig_isa isa, const struct dig_law *const law, c
 }
 
 void dig_kernel_pairs(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
-                      const double period_y_m, struct dig_contacts *const list,
+                      const double period_y_m, struct dig_contacts *const list, const size_t slab,
                       struct dig_grains *const grains)
 {
-    CALL(isa, pairs, law, dt_s, period_y_m, list, grains);
+    CALL(isa, pairs, law, dt_s, period_y_m, list, slab, grains);
 }
 
 void dig_kernel_walls(const enum dig_isa isa, const struct dig_law *const law, const double dt_s,
                       const struct dig_wall wall[], struct dig_contacts *const list,
-                      struct dig_grains *const grains, double on_walls_N[3])
+                      const size_t slab, struct dig_grains *const grains, double on_walls_N[3])
 {
-    CALL(isa, walls, law, dt_s, wall, list, grains, on_walls_N);
+    CALL(isa, walls, law, dt_s, wall, list, slab, grains, on_walls_N);
 }
 
 bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], const double kick_s,
-                        const double dt_s, const double reference_m[][4],
+                        const double dt_s, const double reference_m[][4], const size_t slab,
                         struct dig_grains *const grains)
 {
-    return CALL(isa, advance, gravity_mps2, kick_s, dt_s, reference_m, grains);
+    return CALL(isa, advance, gravity_mps2, kick_s, dt_s, reference_m, slab, grains);
 }

@@ -21,6 +21,49 @@ struct block_single {
     _Alignas(64) float normal[4][DIG_BLOCK]; // fields of struct dig_contact_normal_single
 };
 
+/// The contacts of a block. At the end of a slab they are a copy: the block is filled up with
+/// contacts of grains far apart, and in the list other contacts follow.
+struct single_contacts {
+    size_t          count;
+    const uint32_t *i, *j;
+    float          *history[DIG_HISTORY_VALUES];
+    uint32_t        copy_i[DIG_BLOCK], copy_j[DIG_BLOCK];
+    _Alignas(64) float copy[DIG_HISTORY_VALUES][DIG_BLOCK];
+};
+
+INLINED void begin_block(const struct dig_contacts *const list, const size_t first,
+                         const size_t count, struct single_contacts *const contacts)
+{
+    contacts->count = count;
+    contacts->i     = list->i + first;
+    contacts->j     = list->j + first;
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        contacts->history[m] = list->single_history[m] + first;
+    }
+    if (count == DIG_BLOCK) {
+        return;
+    }
+    for (size_t c = 0; c < DIG_BLOCK; c++) {
+        const size_t from   = first + (c < count ? c : 0);
+        contacts->copy_i[c] = list->i[from];
+        contacts->copy_j[c] = list->j[from];
+    }
+    contacts->i = contacts->copy_i;
+    contacts->j = contacts->copy_j;
+    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+        memcpy(contacts->copy[m], list->single_history[m] + first, count * sizeof(float));
+        contacts->history[m] = contacts->copy[m];
+    }
+}
+
+INLINED void end_block(const struct single_contacts *const contacts, const size_t first,
+                       struct dig_contacts *const list)
+{
+    for (int m = 0; m < DIG_HISTORY_VALUES && contacts->count < DIG_BLOCK; m++) {
+        memcpy(list->single_history[m] + first, contacts->copy[m], contacts->count * sizeof(float));
+    }
+}
+
 INLINED eight_single load_eight(const void *const row)
 {
     eight_single v;
@@ -126,29 +169,27 @@ INLINED void gather_eight(const uint32_t *const i, const uint32_t *const j,
     }
 }
 
-// Padding beyond the last contact names grains that exist.
-INLINED void gather_single(const struct dig_contacts *const      list,
-                           const struct dig_single_motion *const motion, const size_t first,
-                           const size_t count, struct block_single *const block)
+INLINED void gather_single(const struct single_contacts *const   contacts,
+                           const struct dig_single_motion *const motion,
+                           struct block_single *const            block)
 {
-    for (size_t c = 0; c < count; c += 8) {
-        gather_eight(list->i + first + c, list->j + first + c, motion, c, block);
+    for (size_t c = 0; c < contacts->count; c += 8) {
+        gather_eight(contacts->i + c, contacts->j + c, motion, c, block);
     }
 }
 
-INLINED void scatter_single(const struct dig_contacts *const list, struct block_single *const block,
-                            const size_t first, const size_t count,
-                            struct dig_single_load *const load)
+INLINED void scatter_single(const struct single_contacts *const contacts,
+                            struct block_single *const block, struct dig_single_load *const load)
 {
-    for (size_t c = 0; c < count; c += 8) {
+    for (size_t c = 0; c < contacts->count; c += 8) {
         eight_single on_i[8];
         eight_single on_j[8];
         get_eight(block->out, block->out + 3, c, false, on_i);
         get_eight(block->out, block->out + 6, c, true, on_j);
 #pragma GCC unroll 8
         for (size_t l = 0; l < 8; l++) {
-            add_load(&load[list->i[first + c + l]], &on_i[l]);
-            add_load(&load[list->j[first + c + l]], &on_j[l]);
+            add_load(&load[contacts->i[c + l]], &on_i[l]);
+            add_load(&load[contacts->j[c + l]], &on_j[l]);
         }
     }
 }

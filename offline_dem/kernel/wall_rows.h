@@ -78,21 +78,21 @@ INLINED void scatter_walls(const struct dig_contacts *const list,
     }
 }
 
-INLINED void gather_walls_single(const struct dig_contacts *const list,
+INLINED void gather_walls_single(const struct single_contacts *const contacts,
                                  const struct dig_wall wall[], const double radius_m,
-                                 const struct dig_single_motion *const motion, const size_t first,
-                                 const size_t count, struct block_single *const block)
+                                 const struct dig_single_motion *const motion,
+                                 struct block_single *const            block)
 {
     const eight_single zero = { 0.0F };
-    for (size_t c = 0; c < count; c += 8) {
+    for (size_t c = 0; c < contacts->count; c += 8) {
         four         n[8];
         four         x[8];
         eight_single v_w[8];
 #pragma GCC unroll 8
         for (size_t l = 0; l < 8; l++) {
-            const struct dig_single_motion *const m = &motion[list->i[first + c + l]];
+            const struct dig_single_motion *const m = &motion[contacts->i[c + l]];
 
-            n[l]   = load_four((const double *)&wall[list->j[first + c + l]]);
+            n[l]   = load_four((const double *)&wall[contacts->j[c + l]]);
             x[l]   = load_four(m->x_m);
             v_w[l] = load_eight(m->v_mps);
         }
@@ -106,18 +106,17 @@ INLINED void gather_walls_single(const struct dig_contacts *const list,
     }
 }
 
-INLINED void scatter_walls_single(const struct dig_contacts *const list,
-                                  struct block_single *const block, const size_t first,
-                                  const size_t count, struct dig_single_load *const load,
-                                  four *const on_walls_N)
+INLINED void scatter_walls_single(const struct single_contacts *const contacts,
+                                  struct block_single *const          block,
+                                  struct dig_single_load *const load, four *const on_walls_N)
 {
-    for (size_t c = 0; c < count; c += 8) {
+    for (size_t c = 0; c < contacts->count; c += 8) {
         eight_single row[8];
         get_eight(block->out, block->out + 3, c, false, row);
 #pragma GCC unroll 8
         for (size_t l = 0; l < 8; l++) {
             const four_single f = __builtin_shufflevector(row[l], row[l], 0, 1, 2, 3);
-            add_load(&load[list->i[first + c + l]], &row[l]);
+            add_load(&load[contacts->i[c + l]], &row[l]);
             *on_walls_N -= __builtin_convertvector(f, four);
         }
     }

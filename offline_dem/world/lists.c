@@ -13,6 +13,9 @@
 static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
 #define CONTACT_MARGIN_RADII 0.008
 #define CONTACT_MARGIN_STEPS 20
+// Cells along which grains are sorted: the reach of most pairs, so that these lie in neighbouring
+// layers of cells, and near each other in memory.
+#define SORT_RADII 2.35
 
 static double speed(const struct dig_grains *const grains, const size_t i)
 {
@@ -97,7 +100,7 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     for (size_t k = 0; k < w->grains.types; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    status = dig_neighbours_sort(&w->grains, 2.0 * radius_max_m, order);
+    status = dig_neighbours_sort(&w->grains, SORT_RADII * radius_max_m, order);
     if (status != DIG_OK) {
         goto done;
     }
@@ -122,6 +125,9 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         const bool like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
         find_slots(&w->neighbours, like, &w->pair[l]);
+    }
+    if (w->single) {
+        dig_grains_set_slabs(&w->grains, dig_neighbours_reach(&w->neighbours));
     }
     w->list_rebuilds++;
 

@@ -1,6 +1,7 @@
 #include "offline_dem/world/world.h"
 
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/crew.h"
 #include "offline_dem/world/lists.h"
 #include "offline_dem/world/offloaded.h"
 #include "offline_dem/world/surfaces.h"
@@ -83,18 +84,16 @@ static enum dig_status prepare(struct dig_world *const w)
     if (status == DIG_OK && w->single) {
         status = dig_grains_begin_single(&w->grains);
     }
-    return status;
-}
-
-static void add_pair_loads(struct dig_world *const w)
-{
-    for (size_t a = 0; a < w->grains.types; a++) {
-        for (size_t b = a; b < w->grains.types; b++) {
-            const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
-            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l],
-                             &w->grains);
+    const size_t slabs = w->grains.slabs.count;
+    if (status == DIG_OK && slabs > w->slab_sums_room) {
+        struct dig_slab_sums *const more = realloc(w->slab_sums, slabs * sizeof *more);
+        if (more == NULL) {
+            return DIG_ENOMEM;
         }
+        w->slab_sums      = more;
+        w->slab_sums_room = slabs;
     }
+    return status;
 }
 
 static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench *const sum)
@@ -102,6 +101,78 @@ static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench 
     for (int k = 0; k < 3; k++) {
         sum->f_N[k] += wrench->f_N[k];
         sum->t_Nm[k] += wrench->t_Nm[k];
+    }
+}
+
+static void add_contact_loads(struct dig_world *const w, const size_t slab)
+{
+    struct dig_slab_sums *const sums = &w->slab_sums[slab];
+    *sums                            = (struct dig_slab_sums){ .left = false };
+    for (size_t a = 0; a < w->grains.types; a++) {
+        for (size_t b = a; b < w->grains.types; b++) {
+            const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
+            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l], slab,
+                             &w->grains);
+        }
+    }
+    dig_surfaces_add_loads(w, slab, &sums->on_tool, &sums->on_walls);
+}
+
+static void advance(struct dig_world *const w, const size_t slab)
+{
+    w->slab_sums[slab].left =
+        dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s, w->dt_s,
+                           (const double(*)[4])w->reference_m, slab, &w->grains);
+}
+
+size_t dig_world_first_slab(const struct dig_world *const w, const size_t member)
+{
+    return member * w->grains.slabs.count / dig_crew_members(w->crew);
+}
+
+// A slab is advanced as soon as its contacts and those beside it are done, while it is still in the
+// cache. The first and the last slab of a member wait for those of other members.
+static void add_loads_and_advance(void *const context, const size_t member)
+{
+    struct dig_world *const w     = context;
+    const size_t            first = dig_world_first_slab(w, member);
+    const size_t            end   = dig_world_first_slab(w, member + 1);
+    for (size_t slab = first; slab < end; slab++) {
+        add_contact_loads(w, slab);
+        if (slab > first + 1) {
+            advance(w, slab - 1);
+        }
+    }
+}
+
+static void advance_ends(void *const context, const size_t member)
+{
+    struct dig_world *const w     = context;
+    const size_t            first = dig_world_first_slab(w, member);
+    const size_t            end   = dig_world_first_slab(w, member + 1);
+    if (first < end) {
+        advance(w, first);
+    }
+    if (first + 1 < end) {
+        advance(w, end - 1);
+    }
+}
+
+static void add_all_loads(void *const context, const size_t member)
+{
+    struct dig_world *const w = context;
+    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
+         slab++) {
+        add_contact_loads(w, slab);
+    }
+}
+
+static void advance_all(void *const context, const size_t member)
+{
+    struct dig_world *const w = context;
+    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
+         slab++) {
+        advance(w, slab);
     }
 }
 
@@ -114,13 +185,22 @@ enum dig_status dig_world_step(struct dig_world *const w)
     if (status != DIG_OK) {
         return status;
     }
-    add_pair_loads(w);
-    dig_surfaces_add_loads(w);
     if (w->bodies != NULL) {
+        dig_crew_run(w->crew, add_all_loads, w);
         dig_bodies_apply_loads(w);
+        dig_crew_run(w->crew, advance_all, w);
+    } else {
+        dig_crew_run(w->crew, add_loads_and_advance, w);
+        dig_crew_run(w->crew, advance_ends, w);
     }
-    w->stale = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
-                                  w->dt_s, (const double(*)[4])w->reference_m, &w->grains);
+    w->on_tool  = w->slab_sums[0].on_tool;
+    w->on_walls = w->slab_sums[0].on_walls;
+    w->stale    = w->slab_sums[0].left;
+    for (size_t slab = 1; slab < w->grains.slabs.count; slab++) {
+        add_wrench(&w->slab_sums[slab].on_tool, &w->on_tool);
+        add_wrench(&w->slab_sums[slab].on_walls, &w->on_walls);
+        w->stale = w->stale || w->slab_sums[slab].left;
+    }
     if (w->bodies != NULL) {
         dig_bodies_step_rocks(w);
     }
@@ -159,6 +239,9 @@ void dig_world_finish(struct dig_world *const world)
     }
     dig_offloaded_destroy(world->offloaded);
     world->offloaded = NULL;
+    free(world->slab_sums);
+    world->slab_sums      = NULL;
+    world->slab_sums_room = 0;
     dig_grains_finish(&world->grains);
     dig_lists_finish(world);
 }
