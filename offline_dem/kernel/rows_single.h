@@ -123,14 +123,14 @@ INLINED void put_eight(const eight_single row[8], float (*const field)[DIG_BLOCK
 INLINED void get_eight(float (*const force)[DIG_BLOCK], float (*const torque)[DIG_BLOCK],
                        const size_t c, const bool reaction, eight_single row[8])
 {
-    eight_single column[8] = { { 0.0F } };
+    eight_single field[8] = { { 0.0F } };
 #pragma GCC unroll 3
     for (size_t k = 0; k < 3; k++) {
-        memcpy(&column[k], &force[k][c], sizeof column[k]);
-        memcpy(&column[4 + k], &torque[k][c], sizeof column[4 + k]);
-        column[k] = reaction ? -column[k] : column[k];
+        memcpy(&field[k], &force[k][c], sizeof field[k]);
+        memcpy(&field[4 + k], &torque[k][c], sizeof field[4 + k]);
+        field[k] = reaction ? -field[k] : field[k];
     }
-    transpose_eight(column, row);
+    transpose_eight(field, row);
 }
 
 INLINED void add_load(struct dig_single_load *const load, const eight_single *const row)

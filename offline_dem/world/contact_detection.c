@@ -166,18 +166,18 @@ static void put_slab_pairs(struct dig_world *const w, const size_t slab)
 
 static void find_member_pairs(void *const context, const size_t member)
 {
-    struct dig_world *const w = context;
-    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
-         slab++) {
+    struct dig_world *const w   = context;
+    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
         find_slab_pairs(w, slab);
     }
 }
 
 static void put_member_pairs(void *const context, const size_t member)
 {
-    struct dig_world *const w = context;
-    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
-         slab++) {
+    struct dig_world *const w   = context;
+    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
         put_slab_pairs(w, slab);
     }
 }

@@ -6,7 +6,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-// A member looks so often for work before it sleeps: the phases of a step follow each other closely.
+// A member looks so often for work before it sleeps: the phases of a step follow each other
+// closely.
 #define LOOKS 4000
 
 struct member {
@@ -24,10 +25,10 @@ struct dig_crew {
     // The work under way. `call` counts up when it is handed out; `working` members have not yet
     // finished it.
     void (*work)(void *context, size_t member);
-    void          *context;
-    atomic_size_t  call;
-    atomic_size_t  working;
-    atomic_bool    dismissed;
+    void         *context;
+    atomic_size_t call;
+    atomic_size_t working;
+    atomic_bool   dismissed;
 };
 
 static void wait_for_call(struct dig_crew *const crew, const size_t last)
@@ -116,8 +117,13 @@ size_t dig_crew_members(const struct dig_crew *const crew)
     return crew == NULL ? 1 : crew->members;
 }
 
+size_t dig_crew_share(const struct dig_crew *const crew, const size_t items, const size_t member)
+{
+    return member * items / dig_crew_members(crew);
+}
+
 void dig_crew_run(struct dig_crew *const crew, void (*const work)(void *context, size_t member),
-                  void *const context)
+                  void *const            context)
 {
     if (crew == NULL) {
         work(context, 0);

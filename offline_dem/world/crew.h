@@ -16,6 +16,9 @@ DIG_MUST_CHECK enum dig_status dig_crew_create(size_t members, struct dig_crew *
 
 size_t dig_crew_members(const struct dig_crew *crew); // 1 for NULL
 
+/// The first of so many items that is a member's; those up to the next member's first are its own.
+size_t dig_crew_share(const struct dig_crew *crew, size_t items, size_t member);
+
 /// Calls work(context, member) for every member, member 0 on the caller's thread, and returns when
 /// all are done. NULL: the caller alone. Costs some microseconds.
 void dig_crew_run(struct dig_crew *crew, void (*work)(void *context, size_t member), void *context);

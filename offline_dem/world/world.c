@@ -125,18 +125,13 @@ static void advance(struct dig_world *const w, const size_t slab)
                            (const double(*)[4])w->reference_m, slab, &w->grains);
 }
 
-size_t dig_world_first_slab(const struct dig_world *const w, const size_t member)
-{
-    return member * w->grains.slabs.count / dig_crew_members(w->crew);
-}
-
 // A slab is advanced as soon as its contacts and those beside it are done, while it is still in the
 // cache. The first and the last slab of a member wait for those of other members.
 static void add_loads_and_advance(void *const context, const size_t member)
 {
     struct dig_world *const w     = context;
-    const size_t            first = dig_world_first_slab(w, member);
-    const size_t            end   = dig_world_first_slab(w, member + 1);
+    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
+    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
     for (size_t slab = first; slab < end; slab++) {
         add_contact_loads(w, slab);
         if (slab > first + 1) {
@@ -148,8 +143,8 @@ static void add_loads_and_advance(void *const context, const size_t member)
 static void advance_ends(void *const context, const size_t member)
 {
     struct dig_world *const w     = context;
-    const size_t            first = dig_world_first_slab(w, member);
-    const size_t            end   = dig_world_first_slab(w, member + 1);
+    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
+    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
     if (first < end) {
         advance(w, first);
     }
@@ -160,18 +155,18 @@ static void advance_ends(void *const context, const size_t member)
 
 static void add_all_loads(void *const context, const size_t member)
 {
-    struct dig_world *const w = context;
-    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
-         slab++) {
+    struct dig_world *const w   = context;
+    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
         add_contact_loads(w, slab);
     }
 }
 
 static void advance_all(void *const context, const size_t member)
 {
-    struct dig_world *const w = context;
-    for (size_t slab = dig_world_first_slab(w, member); slab < dig_world_first_slab(w, member + 1);
-         slab++) {
+    struct dig_world *const w   = context;
+    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
         advance(w, slab);
     }
 }

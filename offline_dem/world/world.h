@@ -95,9 +95,6 @@ struct dig_world {
     size_t          list_rebuilds, contact_rebuilds; // counts, for tuning
 };
 
-/// The slabs of a member of the crew begin here.
-size_t dig_world_first_slab(const struct dig_world *world, size_t member);
-
 /// Takes over *grains. The caller fills the fixed fields of a zeroed *world; the laws before the
 /// first step.
 void dig_world_init(struct dig_world *world, struct dig_grains *grains);

@@ -1,8 +1,8 @@
-// Threads that share a step: every member works once a call, and a large bed moves bit for bit alike
-// on any number of them.
+// Threads that share a step: every member works once a call, and a large bed moves bit for bit
+// alike on any number of them.
 
-#include "offline_dem/world/crew.h"
 #include "offline_dem/law/random.h"
+#include "offline_dem/world/crew.h"
 #include "tests/dem_fixture.h"
 
 #include <stdatomic.h>
@@ -48,8 +48,8 @@ static struct dig_world make_bar(void)
     for (size_t i = 0; i < MANY; i++) {
         const size_t at[3] = { i / ACROSS / ACROSS, i % ACROSS, i / ACROSS % ACROSS };
         for (size_t k = 0; k < 3; k++) {
-            x[i][k] = 2.0 * GRAIN_m * (double)at[k] +
-                      dig_random_between(&random, -0.02, 0.02) * GRAIN_m;
+            x[i][k] =
+                2.0 * GRAIN_m * (double)at[k] + dig_random_between(&random, -0.02, 0.02) * GRAIN_m;
         }
     }
     struct dig_world world = dem_world(MANY, (const double(*)[3])x, dem_material(0.5, 0.3));
