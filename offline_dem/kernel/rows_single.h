@@ -77,14 +77,14 @@ INLINED void store_eight(void *const row, const eight_single *const v)
 }
 
 // Eight rows become eight columns: pairs, then fours, then halves of the vectors are interleaved.
-INLINED void transpose_eight(const eight_single row[8], eight_single column[8])
+INLINED void transpose_eight(const eight_single from[8], eight_single to[8])
 {
     eight_single pair[8];
     eight_single quad[8];
 #pragma GCC unroll 4
     for (size_t k = 0; k < 8; k += 2) {
-        const eight_single a = row[k];
-        const eight_single b = row[k + 1];
+        const eight_single a = from[k];
+        const eight_single b = from[k + 1];
         pair[k]              = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
         pair[k + 1]          = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
     }
@@ -102,8 +102,8 @@ INLINED void transpose_eight(const eight_single row[8], eight_single column[8])
     for (size_t k = 0; k < 4; k++) {
         const eight_single a = quad[k];
         const eight_single b = quad[k + 4];
-        column[k]            = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
-        column[k + 4]        = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+        to[k]                = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+        to[k + 4]            = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
     }
 }
 
