@@ -1,0 +1,128 @@
+// Threads that share a step: every member works once a call, and a large bed moves bit for bit
+// alike on any number of them.
+
+#include "offline_dem/law/random.h"
+#include "offline_dem/world/crew.h"
+#include "tests/dem_fixture.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+#define ACROSS 18
+#define LONG   110 // three slabs (kernel/grains.c)
+#define MANY   ((size_t)ACROSS * ACROSS * LONG)
+
+static atomic_size_t worked[5];
+
+static void count(void *const context, const size_t member)
+{
+    (void)context;
+    atomic_fetch_add(&worked[member], 1);
+}
+
+static void every_member_works_once_a_call(void **state)
+{
+    (void)state;
+    struct dig_crew *crew = NULL;
+    dig_crew_run(NULL, count, NULL);
+    assert_int_equal(atomic_load(&worked[0]), 1);
+    assert_int_equal(dig_crew_members(NULL), 1);
+    assert_int_equal(dig_crew_create(5, &crew), DIG_OK);
+    assert_int_equal(dig_crew_members(crew), 5);
+    for (size_t k = 1; k <= 3000; k++) {
+        dig_crew_run(crew, count, NULL);
+        for (size_t m = 0; m < 5; m++) {
+            assert_int_equal(atomic_load(&worked[m]), k + (m == 0));
+        }
+    }
+    dig_crew_destroy(crew);
+    dig_crew_destroy(NULL);
+}
+
+// A long bar of grains that touch, and shake.
+static struct dig_world make_bar(void)
+{
+    struct dig_random random = { .state = 3 };
+    double(*const x)[3]      = malloc(MANY * sizeof *x);
+    assert_non_null(x);
+    for (size_t i = 0; i < MANY; i++) {
+        const size_t at[3] = { i / ACROSS / ACROSS, i % ACROSS, i / ACROSS % ACROSS };
+        for (size_t k = 0; k < 3; k++) {
+            x[i][k] =
+                2.0 * GRAIN_m * (double)at[k] + dig_random_between(&random, -0.02, 0.02) * GRAIN_m;
+        }
+    }
+    struct dig_world world = dem_world(MANY, (const double(*)[3])x, dem_material(0.5, 0.3));
+    free(x);
+    for (size_t i = 0; i < MANY; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            world.grains.motion[i].v_mps[k]   = dig_random_between(&random, -0.2, 0.2);
+            world.grains.motion[i].w_radps[k] = dig_random_between(&random, -20.0, 20.0);
+        }
+    }
+    dem_add_wall(&world, 1.0, 0.0, 0.0, 0.0);
+    return world;
+}
+
+static void a_large_bed_moves_alike_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    struct dig_world alone = make_bar();
+    alone.single           = true;
+    dem_run(&alone, 120);
+    assert_true(alone.grains.slabs.count >= 2 && alone.list_rebuilds > 1);
+    assert_int_equal(dig_world_sync_motion(&alone), DIG_OK);
+    for (size_t threads = 2; threads <= 5; threads++) {
+        struct dig_world shared = make_bar();
+        shared.single           = true;
+        assert_int_equal(dig_crew_create(threads, &shared.crew), DIG_OK);
+        dem_run(&shared, 120);
+        assert_int_equal(dig_world_sync_motion(&shared), DIG_OK);
+        assert_memory_equal(alone.grains.id, shared.grains.id, MANY * sizeof *alone.grains.id);
+        assert_memory_equal(alone.grains.motion, shared.grains.motion,
+                            MANY * sizeof *alone.grains.motion);
+        assert_memory_equal(&alone.on_walls, &shared.on_walls, sizeof alone.on_walls);
+        dig_crew_destroy(shared.crew);
+        dig_world_finish(&shared);
+    }
+    dig_world_finish(&alone);
+}
+
+// In double precision a bed has no slabs: no contact is lost or counted twice between them.
+static void slabs_lose_no_contact(void **state)
+{
+    (void)state;
+    struct dig_world split = make_bar();
+    struct dig_world whole = make_bar();
+    split.single           = true;
+    dem_run(&split, 60);
+    dem_run(&whole, 60);
+    assert_true(split.grains.slabs.count >= 2 && whole.grains.slabs.count == 1);
+    assert_int_equal(dig_world_sync_motion(&split), DIG_OK);
+    double most_m  = 0.0;
+    double moved_m = 0.0;
+    for (uint32_t i = 0; i < MANY; i++) {
+        // Both are sorted alike: rounding has moved no grain over the side of a cell.
+        assert_int_equal(split.grains.id[i], whole.grains.id[i]);
+        for (size_t k = 0; k < 3; k++) {
+            const double a_m = split.grains.motion[i].x_m[k];
+            const double b_m = whole.grains.motion[i].x_m[k];
+            most_m           = fmax(most_m, fabs(a_m - b_m));
+            moved_m          = fmax(moved_m, fabs(split.grains.motion[i].v_mps[k]));
+        }
+    }
+    assert_true(most_m < 1e-7 * GRAIN_m / 1e-3);
+    assert_true(moved_m > 0.1);
+    dig_world_finish(&split);
+    dig_world_finish(&whole);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_member_works_once_a_call),
+        cmocka_unit_test(a_large_bed_moves_alike_on_any_number_of_threads),
+        cmocka_unit_test(slabs_lose_no_contact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
