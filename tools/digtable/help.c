@@ -29,9 +29,11 @@ static const struct dig_command commands[] = {
       "Adds digs that something else measured or computed to a table.",
       "The map says which column holds what.",
       "digtable import curves.csv --map curve_map.yaml -o measured.sqlite\n" },
-    { "merge", "OUT.sqlite IN.sqlite...", "Puts the runs of all tables, each once, into a new one.",
-      "The bytes of the new table do not depend on the order of the others.",
-      "digtable merge rig.sqlite part*.sqlite\n" },
+    { "merge", "OUT.sqlite IN...", "Puts the runs of all tables, each once, into a new one.",
+      "IN is a table, or a folder of them. The bytes of the new table do not depend on their "
+      "order.",
+      "digtable merge rig.sqlite part*.sqlite\n"
+      "digtable merge rig.sqlite rig.sqlite.jobs/shards\n" },
     { "seal", "TABLE.sqlite", "Seals a table of an older version.",
       "The table is checked, and shows a flipped bit from then on whenever it is read.",
       "digtable seal old.sqlite\n" },
