@@ -74,7 +74,7 @@ for ((i = 0; i < 600; i++)); do [ -s "$jobs/part/3.sqlite" ] && break; sleep 0.0
 kill -STOP $pid
 check "a shard that grows is running" eval 'is "$(state running)" 1 && is "$(state failed)" 0'
 submit
-check "and not begun again" eval 'is $code 1 && grep -q "1 shards are computed elsewhere" $work/err'
+check "and not begun again" eval 'is $code 1 && grep -q "1 shards are left, 1 of them computed elsewhere" $work/err'
 kill -CONT $pid
 wait $pid
 submit

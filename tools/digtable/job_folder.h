@@ -54,7 +54,7 @@ DIG_MUST_CHECK enum dig_status dig_job_folder_open(const char *path, struct dig_
 /// Lets go of the lock; harmless without.
 void dig_job_folder_close(struct dig_job_folder *folder);
 
-/// The path of a file in the folder; "" where it is too long.
+/// The path of a file in the folder. Returns path.
 const char *dig_job_folder_file(const struct dig_job_folder *folder, const char *name,
                                 char path[PATH_MAX]);
 

@@ -1,13 +1,10 @@
 #include "tools/digtable/slurm.h"
 
-#include "core/text.h"
 #include "tools/digtable/process.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // Runs one of Slurm's commands; what it says is *out, to be closed, on success only.
 static enum dig_status ask(const char *const argv[const], const char *const without,

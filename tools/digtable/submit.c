@@ -92,7 +92,13 @@ static enum dig_status compute(const struct dig_arguments *const a, struct submi
     (void)snprintf(workers, sizeof workers, "%lu", a->workers);
     (void)dig_job_folder_file(&s->folder, "run.sh", script);
     const char *const        argv[]  = { "xargs", "-P", workers, "-n", "1", "sh", script, NULL };
-    const struct dig_process process = { argv, "SLURM_", numbers, stderr, a->stop };
+    const struct dig_process process = {
+        .argv    = argv,
+        .without = "SLURM_", // within a job of Slurm's, too, this is none
+        .in      = numbers,
+        .out     = stderr,
+        .stop    = a->stop,
+    };
     for (size_t task = 1; task <= s->folder.plan.tasks; task++) {
         if (s->submit[task]) {
             (void)fprintf(numbers, "%zu\n", task);
@@ -111,7 +117,7 @@ static enum dig_status merge(const struct submission *const s, struct dig_error 
     char              script[PATH_MAX];
     const char *const argv[] = { "sh", dig_job_folder_file(&s->folder, "run.sh", script), "merge",
                                  NULL };
-    const struct dig_process process = { argv, "SLURM_", NULL, stderr, NULL };
+    const struct dig_process process = { .argv = argv, .without = "SLURM_", .out = stderr };
     if (dig_process_run(&process, NULL) == DIG_OK) {
         return DIG_OK;
     }
@@ -135,7 +141,9 @@ static enum dig_status unfinished(const struct dig_arguments *const a,
                                  count[DIG_SHARD_FAILED], s->folder.plan.tasks, task, words);
         }
     }
-    return dig_error_set(error, DIG_EIO, "%zu shards are computed elsewhere, try again later",
+    return dig_error_set(error, DIG_EIO,
+                         "%zu shards are left, %zu of them computed elsewhere; try again later",
+                         s->folder.plan.tasks - count[DIG_SHARD_DONE],
                          count[DIG_SHARD_RUNNING] + count[DIG_SHARD_PENDING]);
 }
 
