@@ -57,6 +57,23 @@ check "a name that Slurm would replace a part of is refused" eval 'is $code 2 &&
 
 # Two at the same time, before anything runs: the nodes take nothing yet.
 scontrol update PartitionName=dig State=DOWN
+
+# One that is killed when its array is queued, and before it knows.
+mkdir "$work/cut"
+cat >"$work/cut/sbatch" <<EOF
+#!/bin/sh
+$(command -v sbatch) "\$@"
+case "\$*" in *--array=*) kill -KILL \$PPID ;; esac
+EOF
+chmod +x "$work/cut/sbatch"
+PATH=$work/cut:$PATH digtable submit $scene $grid -o "$work/cut.sqlite" --slurm --tasks 3
+check "a submit is killed behind sbatch" eval 'is $code 137 && is $(tasks_queued) 3 && is $(merges_queued) 0'
+digtable submit $scene $grid -o "$work/cut.sqlite" --slurm
+check "the next one finds its tasks, and submits the merge alone" \
+    eval 'is $code 0 && grep -q "3 pending; the merge submitted" $work/err && is $(tasks_queued) 3 && is $(merges_queued) 1'
+scancel --user="$(id -u)"
+check "both are taken out of the queue" wait_until 60 queue_is_empty
+
 for i in 1 2; do
     "$BIN/digtable" submit $scene $grid -o "$table" --slurm --tasks 3 --time 30 2>"$work/submit$i.err" </dev/null &
     eval "submit$i=$!"
