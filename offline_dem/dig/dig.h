@@ -17,10 +17,10 @@
 
 struct dig_device;
 
-/// Who steps the grains; NULL: the kernel, in single precision where it can (kernel.h).
+/// Who steps the grains; NULL: the kernel, in double precision.
 struct dig_stepper {
     struct dig_device *device;           // NULL: the kernel
-    bool               double_precision; // of the kernel
+    bool               single_precision; // of the kernel, where it can (kernel.h)
     size_t             threads; // of the kernel in a large bed; 0, 1: none beside the caller
 };
 

@@ -109,7 +109,6 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         .dt_s         = dig_grain_types_time_step_s(scene, gravel, &found),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
-        .single       = true,
         .bodies       = bodies,
         .period_y_m   = dig_scene_period_m(scene),
     };
@@ -129,7 +128,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
 enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
                                   struct dig_world *const world, struct dig_error *const error)
 {
-    world->single          = !stepper->double_precision;
+    world->single          = stepper->single_precision;
     enum dig_status status = DIG_OK;
     if (stepper->device != NULL) {
         status = dig_offload(world, stepper->device);

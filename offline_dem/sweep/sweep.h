@@ -41,6 +41,10 @@ struct dig_engine {
 /// of the sources and the compiler settings its numbers depend on.
 struct dig_engine dig_engine_kernel(void);
 
+/// The same in single precision, where the law allows (offline_dem/kernel/kernel.h): faster, and
+/// other digs of the same gravel.
+struct dig_engine dig_engine_single(void);
+
 /// Progress of a sweep. digs_under_way counts fractions of running digs.
 struct dig_sweep_state {
     size_t digs_total, digs_done; // of the whole plan, stored ones included

@@ -13,9 +13,11 @@
 static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
 #define CONTACT_MARGIN_RADII 0.008
 #define CONTACT_MARGIN_STEPS 20
-// Cells along which grains are sorted: the reach of most pairs, so that these lie in neighbouring
-// layers of cells, and near each other in memory.
-#define SORT_RADII 2.35
+// Cells along which grains are sorted. In single precision the reach of most pairs, so that these
+// lie in neighbouring layers of cells, and near each other in memory; in double precision what the
+// tables that ship were dug with.
+#define SORT_RADII        2.0
+#define SORT_RADII_SINGLE 2.35
 
 static double speed(const struct dig_grains *const grains, const size_t i)
 {
@@ -100,7 +102,8 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     for (size_t k = 0; k < w->grains.types; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    status = dig_neighbours_sort(&w->grains, SORT_RADII * radius_max_m, order);
+    status = dig_neighbours_sort(
+        &w->grains, (w->single ? SORT_RADII_SINGLE : SORT_RADII) * radius_max_m, order);
     if (status != DIG_OK) {
         goto done;
     }

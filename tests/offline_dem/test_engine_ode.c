@@ -10,7 +10,7 @@ static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 static struct dig_recording dig_with(const bool ode, const struct dig_scene *const scene,
                                      const struct dig_bed *const bed)
 {
-    const struct dig_stepper           kernel = { .double_precision = true };
+    const struct dig_stepper           kernel = { .device = NULL };
     const struct dig_engine            engine = dig_engine_ode();
     const struct dig_trajectory *const t      = &scene->trajectory[0];
     struct dig_recording               r      = { 0 };

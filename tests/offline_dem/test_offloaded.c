@@ -17,7 +17,7 @@ static struct dig_recording dig_on(struct dig_device *const      device,
 {
     struct dig_recording     r       = { 0 };
     struct dig_error         error   = { "" };
-    const struct dig_stepper stepper = { .device = device, .double_precision = true };
+    const struct dig_stepper stepper = { .device = device };
     if (dig_dig_run(&stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
         DIG_OK) {
         fail_msg("%s", error.text);
