@@ -150,8 +150,10 @@ static void dig(const int g, const struct dig_scene *const scene, const uint64_t
     struct dig_bed          bed   = { 0 };
     struct dig_recording    r     = { 0 };
     struct dig_error        error = { "" };
-    if (dig_bed_pour(NULL, scene, &base, seed, NULL, &bed, &error) != DIG_OK ||
-        dig_dig_run(NULL, scene, &base, &bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
+    // Every other bed in single precision.
+    const struct dig_stepper stepper = { .single_precision = seed % 2 == 1 };
+    if (dig_bed_pour(&stepper, scene, &base, seed, NULL, &bed, &error) != DIG_OK ||
+        dig_dig_run(&stepper, scene, &base, &bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
             DIG_OK) {
         fail_msg("%s: %s", gravel[g].name, error.text);
     }
