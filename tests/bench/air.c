@@ -125,8 +125,10 @@ int main(const int argc, char *argv[])
             all.tied += t->tied;
         }
     }
-    printf("%-40s %5d %6d %12d %5d\n", "all breaks", all.runs, all.named, all.alone, all.tied);
-    printf("%.2f s of one core a check\n",
-           bench.spent_s / fmax(1.0, all.runs + bench.tally[AIR_BREAKS].runs));
+    const struct tally *const right = &bench.tally[AIR_BREAKS];
+    printf("broken: named %d of %d, nothing else %d of %d, with another answer %d of %d\n",
+           all.named, all.runs, all.alone, all.runs, all.tied, all.runs);
+    printf("nothing broken: nothing said %d of %d\n", right->alone, right->runs);
+    printf("%.2f s of one core a check\n", bench.spent_s / fmax(1.0, all.runs + right->runs));
     return EXIT_SUCCESS;
 }

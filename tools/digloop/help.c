@@ -91,7 +91,8 @@ const struct dig_program *digloop_program(void)
                          NULL,
                          "digloop identify tables/rig.sqlite simpleA_1.csv --json >id.json\n"
                                 "digloop predict tables/rig.sqlite --identified id.json --trajectory actual\n" },
-        .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input\n",
+        .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input, or a check that "
+                       "finds something wrong\n",
         .commands    = sizeof commands / sizeof commands[0],
         .command     = commands,
         .options     = sizeof options / sizeof options[0],
