@@ -10,7 +10,7 @@
 DIG_BOTH static inline bool dig_device_touches(const struct dig_law *const        law,
                                                const struct dig_kinematics *const t)
 {
-    return dig_law_normal(law->reach_m, t->dx_m, t->dy_m, t->dz_m).delta_m > 0.0;
+    return dig_law_normal(t->dx_m, t->dy_m, t->dz_m).d_m < law->reach_m;
 }
 
 DIG_BOTH static inline void dig_device_step_pair(const struct dig_device_view *const view,

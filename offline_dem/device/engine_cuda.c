@@ -30,8 +30,7 @@ static enum dig_status pour(const struct dig_scene *const  scene,
     if (card == NULL) {
         return status;
     }
-    const struct dig_stepper stepper = { .device = card };
-    status = dig_bed_pour_checked(&stepper, scene, gravel, seed, progress, bed, error);
+    status = dig_bed_pour_checked(card, scene, gravel, seed, progress, bed, error);
     card->destroy(card);
     return status;
 }
@@ -47,9 +46,7 @@ static enum dig_status dig(const struct dig_scene *const  scene,
     if (card == NULL) {
         return status;
     }
-    const struct dig_stepper stepper = { .device = card };
-    status =
-        dig_dig_run(&stepper, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
+    status = dig_dig_run(card, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
     card->destroy(card);
     return status;
 }

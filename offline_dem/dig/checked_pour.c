@@ -72,15 +72,15 @@ enum dig_status dig_bed_check(const struct dig_scene *const  scene,
     return status == DIG_OK ? check_bed(scene, gravel, bed, CHECK_FILE_s, error) : status;
 }
 
-enum dig_status dig_bed_pour_checked(const struct dig_stepper *const stepper,
-                                     const struct dig_scene *const   scene,
+enum dig_status dig_bed_pour_checked(struct dig_device *const       device,
+                                     const struct dig_scene *const  scene,
                                      const struct dig_gravel *const gravel, const uint64_t seed,
                                      const struct dig_progress *const progress,
                                      struct dig_bed *const bed, struct dig_error *const error)
 {
     assert(scene != NULL && gravel != NULL && bed != NULL);
     struct dig_bed  poured = { 0 };
-    enum dig_status status = dig_bed_pour(stepper, scene, gravel, seed, progress, &poured, error);
+    enum dig_status status = dig_bed_pour(device, scene, gravel, seed, progress, &poured, error);
     if (status == DIG_OK && scene->time_step_s > 0.0 && !scene->may_tremble) {
         status = check_bed(scene, gravel, &poured, CHECK_s, error);
     }

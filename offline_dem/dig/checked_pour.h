@@ -10,8 +10,8 @@
 /// not say may_tremble, 0.1 s of a copy of the bed under dig_energy_drift_detect(): some per cent
 /// of the cost of pouring. DIG_EINVAL when the energy drifts; *error names the key, the step and
 /// the longest safe one. *bed is written on success only.
-DIG_MUST_CHECK enum dig_status dig_bed_pour_checked(const struct dig_stepper *stepper,
-                                                    const struct dig_scene   *scene,
+DIG_MUST_CHECK enum dig_status dig_bed_pour_checked(struct dig_device       *device,
+                                                    const struct dig_scene  *scene,
                                                     const struct dig_gravel *gravel, uint64_t seed,
                                                     const struct dig_progress *progress,
                                                     struct dig_bed *bed, struct dig_error *error);

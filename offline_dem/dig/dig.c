@@ -5,6 +5,7 @@
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/dig/vtk.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/offloaded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -168,8 +169,7 @@ static enum dig_status run_all(struct run *const d, struct dig_recording *const 
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
-                            const struct dig_scene *const   scene,
+enum dig_status dig_dig_run(struct dig_device *const device, const struct dig_scene *const scene,
                             const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                             const struct dig_trajectory *const trajectory,
                             const char *const vtk_dir, const struct dig_progress *const progress,
@@ -204,8 +204,9 @@ enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
         status = dig_input_checks_outside(&d.world, error);
         status = status == DIG_OK ? dig_input_checks_overlap(&d.world, error) : status;
         status = status == DIG_OK ? dig_input_checks_start(&d.world, &d.tool, error) : status;
-        if (status == DIG_OK && stepper != NULL) {
-            status = dig_setup_stepper(stepper, &d.world, error);
+        if (status == DIG_OK && device != NULL) {
+            status = dig_offload(&d.world, device);
+            status = status == DIG_OK ? status : dig_setup_explain(status, error);
         }
         status = status == DIG_OK ? run_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);

@@ -1,5 +1,5 @@
 // One dig, from an empty box to a curve: pour, level, drive the bucket, record.
-// The same inputs give the same bits, on any number of threads.
+// One process a dig: nothing here uses threads, and the same inputs give the same bits.
 
 #ifndef DIG_OFFLINE_DEM_DIG_DIG_H
 #define DIG_OFFLINE_DEM_DIG_DIG_H
@@ -11,18 +11,9 @@
 #include "core/status.h"
 #include "offline_dem/kernel/bed.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 struct dig_device;
-
-/// Who steps the grains; NULL: the kernel, in single precision where it can (kernel.h).
-struct dig_stepper {
-    struct dig_device *device;           // NULL: the kernel
-    bool               double_precision; // of the kernel
-    size_t             threads; // of the kernel in a large bed; 0, 1: none beside the caller
-};
 
 /// Called from the computing thread every few hundred steps with the simulated time done and in
 /// total, packing included. Return false to stop; the call then returns DIG_ESTALE and writes
@@ -32,14 +23,14 @@ struct dig_progress {
     void *context;
 };
 
-/// Pours and levels a bed of this gravel. A device (offline_dem/world/device.h) moves no rocks. The
-/// kernel takes 4 s of one core with AVX-512 for
+/// Pours and levels a bed of this gravel. A device (offline_dem/world/device.h) steps the grains,
+/// but no movable rocks; NULL: the kernel does. The kernel takes 4 s of one core with AVX-512 for
 /// 7000 grains, half a minute without. *bed is written on success only; error may be NULL.
 /// DIG_EINVAL when the scene or the gravel cannot be computed or the scene's time step is too long
 /// for it, DIG_EUNREACHABLE when the grains do not fit, DIG_ESTALE when stopped, DIG_EIO when the
 /// device fails, DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_stepper *stepper,
-                                            const struct dig_scene   *scene,
+DIG_MUST_CHECK enum dig_status dig_bed_pour(struct dig_device       *device,
+                                            const struct dig_scene  *scene,
                                             const struct dig_gravel *gravel, uint64_t seed,
                                             const struct dig_progress *progress,
                                             struct dig_bed *bed, struct dig_error *error);
@@ -48,11 +39,9 @@ DIG_MUST_CHECK enum dig_status dig_bed_pour(const struct dig_stepper *stepper,
 /// s of digging in 7000 grains. Pictures go into vtk_dir, 10 a second of digging
 /// (offline_dem/dig/vtk.h); NULL: none. Fails as dig_bed_pour(), for an impossible bed or
 /// trajectory, and with DIG_EIO when a picture cannot be written.
-DIG_MUST_CHECK enum dig_status
-dig_dig_run(const struct dig_stepper *stepper, const struct dig_scene *scene,
-            const struct dig_gravel *gravel, const struct dig_bed *bed,
-            const struct dig_trajectory *trajectory, const char *vtk_dir,
-            const struct dig_progress *progress, struct dig_recording *recording,
-            struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_dig_run(
+    struct dig_device *device, const struct dig_scene *scene, const struct dig_gravel *gravel,
+    const struct dig_bed *bed, const struct dig_trajectory *trajectory, const char *vtk_dir,
+    const struct dig_progress *progress, struct dig_recording *recording, struct dig_error *error);
 
 #endif // DIG_OFFLINE_DEM_DIG_DIG_H

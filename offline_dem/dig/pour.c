@@ -4,6 +4,7 @@
 #include "offline_dem/dig/packing.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/offloaded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -89,18 +90,22 @@ struct pour {
     const struct dig_scene  *scene;
     const struct dig_gravel *gravel;
     struct dig_ode_scene    *ode;
-    struct dig_stepper       stepper;
+    struct dig_device       *device; // NULL: the kernel steps
     struct dig_grain_types   types;
     struct dig_world         world;
 };
 
-// The world of a bed.
+// The world of a bed, stepped by the kernel or by the device.
 static enum dig_status make_world(struct pour *const p, const struct dig_bed *const bed,
                                   const double fall_mps, struct dig_error *const error)
 {
     enum dig_status status =
         dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->types, &p->world, error);
-    return status == DIG_OK ? dig_setup_stepper(&p->stepper, &p->world, error) : status;
+    if (status == DIG_OK && p->device != NULL) {
+        status = dig_offload(&p->world, p->device);
+        status = status == DIG_OK ? status : dig_setup_explain(status, error);
+    }
+    return status;
 }
 
 static enum dig_status copy_bed(struct pour *const p, const size_t material[],
@@ -159,8 +164,7 @@ static enum dig_status settle_and_level(struct pour *const               p,
     return status == DIG_OK ? status : dig_setup_explain(status, error);
 }
 
-enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
-                             const struct dig_scene *const   scene,
+enum dig_status dig_bed_pour(struct dig_device *const device, const struct dig_scene *const scene,
                              const struct dig_gravel *const gravel, const uint64_t seed,
                              const struct dig_progress *const progress, struct dig_bed *const bed,
                              struct dig_error *const error)
@@ -175,10 +179,7 @@ enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
         return dig_setup_explain(status, error);
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct pour                 p   = { .scene = scene, .gravel = gravel, .ode = ode };
-    if (stepper != NULL) {
-        p.stepper = *stepper;
-    }
+    struct pour p = { .scene = scene, .gravel = gravel, .ode = ode, .device = device };
     if (ode == NULL) {
         status = dig_setup_explain(DIG_ENOMEM, error);
     } else {

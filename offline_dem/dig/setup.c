@@ -2,8 +2,6 @@
 
 #include "core/units.h"
 #include "offline_dem/world/bodies.h"
-#include "offline_dem/world/crew.h"
-#include "offline_dem/world/offloaded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,7 +107,6 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         .dt_s         = dig_grain_types_time_step_s(scene, gravel, &found),
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
-        .single       = true,
         .bodies       = bodies,
         .period_y_m   = dig_scene_period_m(scene),
     };
@@ -126,25 +123,10 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     return DIG_OK;
 }
 
-enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
-                                  struct dig_world *const world, struct dig_error *const error)
-{
-    world->single          = !stepper->double_precision;
-    enum dig_status status = DIG_OK;
-    if (stepper->device != NULL) {
-        status = dig_offload(world, stepper->device);
-    } else if (stepper->threads > 1) {
-        status = dig_crew_create(stepper->threads, &world->crew);
-    }
-    return status == DIG_OK ? status : dig_setup_explain(status, error);
-}
-
 void dig_setup_finish(struct dig_world *const world)
 {
     dig_bodies_destroy(world->bodies);
     world->bodies = NULL;
-    dig_crew_destroy(world->crew);
-    world->crew = NULL;
     dig_world_finish(world);
 }
 

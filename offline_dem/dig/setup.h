@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "core/recording.h"
 #include "core/scene.h"
-#include "offline_dem/dig/dig.h"
 #include "offline_dem/kernel/bed.h"
 #include "offline_dem/world/grain_types.h"
 #include "offline_dem/world/ode_scene.h"
@@ -30,11 +29,7 @@ DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
                                                double fall_mps, struct dig_grain_types *types,
                                                struct dig_world *world, struct dig_error *error);
 
-/// Who steps a world that has not made a step. DIG_ENOMEM leaves it with the kernel.
-DIG_MUST_CHECK enum dig_status dig_setup_stepper(const struct dig_stepper *stepper,
-                                                 struct dig_world *world, struct dig_error *error);
-
-/// Frees the world, its bodies and its crew.
+/// Frees the world and its bodies.
 void dig_setup_finish(struct dig_world *world);
 
 /// Moves ODE's bucket along the trajectory to time_s, and reads the tool from there. The velocity

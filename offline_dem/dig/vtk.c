@@ -62,7 +62,9 @@ static void add_contact_forces(const struct dig_world *const world, const struct
                .jy_radps = b->w_radps[1],
                .jz_radps = b->w_radps[2],
         };
-        struct dig_contact_history     history = dig_contacts_history(list, c);
+        struct dig_contact_history     history = { list->history[0][c], list->history[1][c],
+                                                   list->history[2][c], list->history[3][c],
+                                                   list->history[4][c], list->history[5][c] };
         const struct dig_contact_force force   = dig_law_apply(&law, 0.0, &kinematics, &history);
         const double                   f_N[3]  = { force.fx_N, force.fy_N, force.fz_N };
         const double half_N = 0.5 * sqrt(f_N[0] * f_N[0] + f_N[1] * f_N[1] + f_N[2] * f_N[2]);

@@ -17,60 +17,27 @@ static void *grow(void *const old, const size_t used, const size_t room, const s
     return p;
 }
 
-enum dig_status dig_contacts_grow(struct dig_contacts *const list, const size_t n)
+enum dig_status dig_contacts_grow(struct dig_contacts *const list)
 {
-    const size_t        room = (2 * n / DIG_BLOCK + 8) * DIG_BLOCK;
+    const size_t        room = 2 * list->room + (size_t)8 * DIG_BLOCK;
     struct dig_contacts more = {
-        .n      = list->n,
-        .room   = room,
-        .i      = grow(list->i, list->n, room, sizeof *more.i),
-        .j      = grow(list->j, list->n, room, sizeof *more.j),
-        .slot   = grow(list->slot, list->n, room, sizeof *more.slot),
-        .single = list->single,
-        .slabs  = list->slabs,
+        .n    = list->n,
+        .room = room,
+        .i    = grow(list->i, list->n, room, sizeof *more.i),
+        .j    = grow(list->j, list->n, room, sizeof *more.j),
+        .slot = grow(list->slot, list->n, room, sizeof *more.slot),
     };
-    bool ok = more.i != NULL && more.j != NULL && more.slot != NULL;
+    int ok = more.i != NULL && more.j != NULL && more.slot != NULL;
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        if (list->single) {
-            more.single_history[m] = grow(list->single_history[m], list->n, room, sizeof(float));
-            ok                     = ok && more.single_history[m] != NULL;
-        } else {
-            more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
-            ok              = ok && more.history[m] != NULL;
-        }
+        more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
+        ok              = ok && more.history[m] != NULL;
     }
     if (!ok) {
         dig_contacts_finish(&more);
         return DIG_ENOMEM;
     }
-    more.slab_first  = list->slab_first;
-    list->slab_first = NULL;
     dig_contacts_finish(list);
     *list = more;
-    return DIG_OK;
-}
-
-enum dig_status dig_contacts_reserve(struct dig_contacts *const list, const size_t n)
-{
-    if (n > list->room && dig_contacts_grow(list, n) != DIG_OK) {
-        return DIG_ENOMEM;
-    }
-    list->n = n;
-    return DIG_OK;
-}
-
-enum dig_status dig_contacts_set_slabs(struct dig_contacts *const list, const size_t slabs)
-{
-    if (list->slabs == slabs && list->slab_first != NULL) {
-        return DIG_OK;
-    }
-    uint32_t *const first = calloc(slabs + 1, sizeof *first);
-    if (first == NULL) {
-        return DIG_ENOMEM;
-    }
-    free(list->slab_first);
-    list->slab_first = first;
-    list->slabs      = slabs;
     return DIG_OK;
 }
 
@@ -87,7 +54,9 @@ void dig_contacts_renumber(struct dig_contacts *const list, const bool pairs,
         list->i[kept]    = i;
         list->j[kept]    = j;
         list->slot[kept] = DIG_NO_SLOT;
-        dig_contacts_set_history(list, kept, dig_contacts_history(list, c));
+        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+            list->history[m][kept] = list->history[m][c];
+        }
         kept++;
     }
     list->n = kept;
@@ -101,10 +70,8 @@ void dig_contacts_finish(struct dig_contacts *const list)
     free(list->i);
     free(list->j);
     free(list->slot);
-    free(list->slab_first);
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
         free(list->history[m]);
-        free(list->single_history[m]);
     }
     *list = (struct dig_contacts){ 0 };
 }

@@ -38,7 +38,6 @@ enum dig_status dig_grains_create(const size_t types, const struct dig_grain_typ
         .load    = allocate(n, sizeof *made.load),
         .type_of = allocate(n, sizeof *made.type_of),
         .id      = allocate(n, sizeof *made.id),
-        .slabs   = { .count = 1, .grains = n + 1 },
     };
     enum dig_status status = DIG_ENOMEM;
     if (made.motion == NULL || made.load == NULL || made.type_of == NULL || made.id == NULL) {
@@ -72,7 +71,6 @@ error:
 
 void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[])
 {
-    assert(!grains->in_single);
     size_t kept = 0;
     for (size_t i = 0; i < grains->n; i++) {
         if (!drop[i]) {
@@ -86,13 +84,11 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
             kept++;
         }
     }
-    grains->n     = kept;
-    grains->slabs = (struct dig_slabs){ .count = 1, .grains = kept + 1 };
+    grains->n = kept;
 }
 
 enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
 {
-    assert(!grains->in_single);
     const size_t      n    = grains->n;
     struct dig_grains made = {
         .motion  = allocate(n, sizeof *made.motion),
@@ -131,8 +127,6 @@ void dig_grains_finish(struct dig_grains *const grains)
     }
     free(grains->motion);
     free(grains->load);
-    free(grains->single_motion);
-    free(grains->single_load);
     free(grains->type_of);
     free(grains->id);
     free(grains->clump);
@@ -152,78 +146,15 @@ double dig_grains_kinetic_J(const struct dig_grains *const grains)
     return sum_J;
 }
 
-// Slabs of fewer grains are not worth their halos.
-#define SLAB_GRAINS 16384
-
-void dig_grains_set_slabs(struct dig_grains *const grains, const size_t reach)
-{
-    assert(!grains->in_single);
-    const size_t least = reach > SLAB_GRAINS / 2 ? 2 * reach : SLAB_GRAINS;
-    const size_t count = grains->n / least;
-    grains->slabs      = (struct dig_slabs){ .count = 1, .grains = grains->n + 1 };
-    if (count > 1) {
-        const size_t each = (grains->n + count - 1) / count;
-        grains->slabs     = (struct dig_slabs){ (grains->n + each - 1) / each, each, reach };
-    }
-}
-
-static enum dig_status make_single_room(struct dig_grains *const grains)
-{
-    const size_t loads = grains->n + 2 * grains->slabs.halo * grains->slabs.count;
-    if (grains->single_motion == NULL) {
-        grains->single_motion = allocate(grains->n, sizeof *grains->single_motion);
-    }
-    if (grains->single_load == NULL || grains->single_load_room < loads) {
-        free(grains->single_load);
-        grains->single_load_room = loads + loads / 8;
-        grains->single_load      = allocate(grains->single_load_room, sizeof *grains->single_load);
-    }
-    return grains->single_motion == NULL || grains->single_load == NULL ? DIG_ENOMEM : DIG_OK;
-}
-
-enum dig_status dig_grains_begin_single(struct dig_grains *const grains)
-{
-    if (grains->in_single) {
-        return DIG_OK;
-    }
-    const enum dig_status status = make_single_room(grains);
-    if (status != DIG_OK) {
-        return status;
-    }
-    for (size_t i = 0; i < grains->n; i++) {
-        for (int k = 0; k < 3; k++) {
-            grains->single_motion[i].x_m[k]     = grains->motion[i].x_m[k];
-            grains->single_motion[i].v_mps[k]   = (float)grains->motion[i].v_mps[k];
-            grains->single_motion[i].w_radps[k] = (float)grains->motion[i].w_radps[k];
-        }
-    }
-    grains->in_single = true;
-    return DIG_OK;
-}
-
-void dig_grains_read_single(struct dig_grains *const grains)
-{
-    for (size_t i = 0; i < grains->n && grains->in_single; i++) {
-        grains->motion[i] = dig_grains_motion(grains, i);
-    }
-}
-
-void dig_grains_end_single(struct dig_grains *const grains)
-{
-    dig_grains_read_single(grains);
-    grains->in_single = false;
-}
-
 bool dig_grains_are_sound(const struct dig_grains *const grains, const double dt_s)
 {
     assert(grains != NULL);
     for (size_t i = 0; i < grains->n; i++) {
-        const struct dig_motion m        = dig_grains_motion(grains, i);
-        const double *const     x        = m.x_m;
-        const double *const     v        = m.v_mps;
-        const double *const     o        = m.w_radps;
-        const double            radius_m = grains->type[grains->type_of[i]].radius_m;
-        const double            limit    = radius_m / dt_s;
+        const double *const x        = grains->motion[i].x_m;
+        const double *const v        = grains->motion[i].v_mps;
+        const double *const o        = grains->motion[i].w_radps;
+        const double        radius_m = grains->type[grains->type_of[i]].radius_m;
+        const double        limit    = radius_m / dt_s;
         if (!(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < limit * limit) ||
             !isfinite(x[0] + x[1] + x[2] + o[0] + o[1] + o[2])) {
             return false;

@@ -296,19 +296,6 @@ done:
     return status;
 }
 
-size_t dig_neighbours_reach(const struct dig_neighbours *const list)
-{
-    size_t reach = 0;
-    for (size_t i = 0; i < list->n; i++) {
-        for (uint32_t s = list->start[i]; s < list->start[i + 1]; s++) {
-            const size_t j     = list->other[s];
-            const size_t apart = i < j ? j - i : i - j;
-            reach              = apart > reach ? apart : reach;
-        }
-    }
-    return reach;
-}
-
 void dig_neighbours_finish(struct dig_neighbours *const list)
 {
     if (list == NULL) {

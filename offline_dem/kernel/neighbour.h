@@ -35,9 +35,6 @@ DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *gra
                                                     double period_y_m, const double margin_m[],
                                                     struct dig_neighbours *list);
 
-/// Largest distance in memory between the two grains of a pair.
-size_t dig_neighbours_reach(const struct dig_neighbours *list);
-
 void dig_neighbours_finish(struct dig_neighbours *list);
 
 #endif // DIG_OFFLINE_DEM_KERNEL_NEIGHBOUR_H

@@ -5,7 +5,6 @@
 #define DIG_OFFLINE_DEM_KERNEL_WALL_ROWS_H
 
 #include "offline_dem/kernel/rows.h"
-#include "offline_dem/kernel/rows_single.h"
 #include "offline_dem/law/wall.h"
 
 // d of grains at x from walls: the distance along the normal. A grain pressed through a wall stays
@@ -74,50 +73,6 @@ INLINED void scatter_walls(const struct dig_contacts *const list,
             add_four(to->f_N, &f[l]);
             add_four(to->t_Nm, &t[l]);
             *on_walls_N -= f[l];
-        }
-    }
-}
-
-INLINED void gather_walls_single(const struct single_contacts *const contacts,
-                                 const struct dig_wall wall[], const double radius_m,
-                                 const struct dig_single_motion *const motion,
-                                 struct block_single *const            block)
-{
-    const eight_single zero = { 0.0F };
-    for (size_t c = 0; c < contacts->count; c += 8) {
-        four         n[8];
-        four         x[8];
-        eight_single v_w[8];
-#pragma GCC unroll 8
-        for (size_t l = 0; l < 8; l++) {
-            const struct dig_single_motion *const m = &motion[contacts->i[c + l]];
-
-            n[l]   = load_four((const double *)&wall[contacts->j[c + l]]);
-            x[l]   = load_four(m->x_m);
-            v_w[l] = load_eight(m->v_mps);
-        }
-        put_walls(n, x, 1e-3 * radius_m, block->d_m, c);
-        put_walls(n + 4, x + 4, 1e-3 * radius_m, block->d_m, c + 4);
-        put_eight(v_w, block->in, c);
-#pragma GCC unroll 3
-        for (size_t k = 0; k < 3; k++) {
-            memcpy(&block->in[6 + k][c], &zero, sizeof zero);
-        }
-    }
-}
-
-INLINED void scatter_walls_single(const struct single_contacts *const contacts,
-                                  struct block_single *const          block,
-                                  struct dig_single_load *const load, four *const on_walls_N)
-{
-    for (size_t c = 0; c < contacts->count; c += 8) {
-        eight_single row[8];
-        get_eight(block->out, block->out + 3, c, false, row);
-#pragma GCC unroll 8
-        for (size_t l = 0; l < 8; l++) {
-            const four_single f = __builtin_shufflevector(row[l], row[l], 0, 1, 2, 3);
-            add_load(&load[contacts->i[c + l]], &row[l]);
-            *on_walls_N -= __builtin_convertvector(f, four);
         }
     }
 }

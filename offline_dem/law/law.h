@@ -30,6 +30,12 @@
 #include <math.h>
 #include <stdbool.h>
 
+/// History of a contact while it lasts; zero when the contact begins.
+struct dig_contact_history {
+    double sx_m, sy_m, sz_m;    // tangential displacement xi
+    double mx_Nm, my_Nm, mz_Nm; // rolling torque M on j (and -M on i)
+};
+
 /// Constants of the contacts between two grain types, or of one type with walls and plates.
 struct dig_law {
     double reach_m;         // contact below this distance
@@ -61,6 +67,22 @@ struct dig_law_material {
     enum dig_normal_law  normal_law;
     enum dig_rolling_law rolling_law;
     double               cohesion_Jpm3;
+};
+
+/// Relative state of two bodies in contact: d = x_i - x_j, velocities of the centres (of a wall or
+/// plate: of its contact point) and rotations.
+struct dig_kinematics {
+    double dx_m, dy_m, dz_m;
+    double vx_mps, vy_mps, vz_mps; // v_i - v_j
+    double ix_radps, iy_radps, iz_radps;
+    double jx_radps, jy_radps, jz_radps;
+};
+
+/// Force and torque of the contact on i; j gets the opposite force and its own torque.
+struct dig_contact_force {
+    double fx_N, fy_N, fz_N;
+    double ix_Nm, iy_Nm, iz_Nm;
+    double jx_Nm, jy_Nm, jz_Nm;
 };
 
 /// Constants for an effective radius and mass; the caller sets reach and levers.
@@ -117,97 +139,169 @@ static inline struct dig_law dig_law_wall(const struct dig_law_material *const m
     return law;
 }
 
-/// Relative state of two bodies in contact: d = x_i - x_j, velocities of the centres (of a wall or
-/// plate: of its contact point) and rotations.
-struct dig_kinematics {
-    double dx_m, dy_m, dz_m;
-    double vx_mps, vy_mps, vz_mps; // v_i - v_j
-    double ix_radps, iy_radps, iz_radps;
-    double jx_radps, jy_radps, jz_radps;
+/// Contact normal: the unit vector n from j to i, and the distance of the centres.
+struct dig_contact_normal {
+    double nx, ny, nz, d_m;
 };
 
-/// The constants that the plain law reads, in single precision.
-struct dig_law_single {
-    float reach_m, lever_i_m, lever_j_m;
-    float normal_Npm, damping_Nspm, rolling_Nmprad;
-    float friction, rolling_lever_m;
+/// Trial state: springs advanced over the step, before friction caps them.
+struct dig_trial {
+    double normal_N;
+    double vx_mps, vy_mps, vz_mps; // slip of the contact point
+    double spring2_m2;             // |xi|^2
+    double torque2_Nm2;            // |M|^2
 };
 
-static inline struct dig_law_single dig_law_to_single(const struct dig_law *const law)
-{
-    return (struct dig_law_single){
-        .reach_m         = (float)law->reach_m,
-        .lever_i_m       = (float)law->lever_i_m,
-        .lever_j_m       = (float)law->lever_j_m,
-        .normal_Npm      = (float)law->normal_Npm,
-        .damping_Nspm    = (float)law->damping_Nspm,
-        .rolling_Nmprad  = (float)law->rolling_Nmprad,
-        .friction        = (float)law->friction,
-        .rolling_lever_m = (float)law->rolling_lever_m,
-    };
-}
+/// Factors by which friction caps springs and damping; 1 where the contact does not slip or roll.
+struct dig_caps {
+    double spring, damping, torque;
+};
 
-// A function of one contact, without branches, so that a loop over contacts vectorises.
+// One contact over one step in four stages without branches, so that a loop over contacts
+// vectorises. Each stage waits for the one before; with many contacts at one stage the processor
+// fills that wait.
 #define DIG_LAW_STAGE DIG_BOTH __attribute__((always_inline)) static inline
 
-// The law itself stands in law_step.h, and is compiled for both precisions.
-#define DIG_REAL         double
-#define DIG_LAW_NAME(x)  x
-#define DIG_REAL_SQRT(x) sqrt(x)
-#define DIG_REAL_FABS(x) fabs(x)
-#include "offline_dem/law/law_step.h"
-#undef DIG_REAL
-#undef DIG_LAW_NAME
-#undef DIG_REAL_SQRT
-#undef DIG_REAL_FABS
-
-#define DIG_REAL         float
-#define DIG_LAW_NAME(x)  x##_single
-#define DIG_REAL_SQRT(x) sqrtf(x)
-#define DIG_REAL_FABS(x) fabsf(x)
-#include "offline_dem/law/law_step.h"
-#undef DIG_REAL
-#undef DIG_LAW_NAME
-#undef DIG_REAL_SQRT
-#undef DIG_REAL_FABS
-
-DIG_LAW_STAGE struct dig_contact_normal dig_law_normal(const double reach_m, const double dx_m,
-                                                       const double dy_m, const double dz_m)
+DIG_LAW_STAGE struct dig_contact_normal dig_law_normal(const double dx_m, const double dy_m,
+                                                       const double dz_m)
 {
     // The constant keeps a lane of padding from dividing by zero.
     const double d_m = sqrt(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m + 1e-300);
     const double inv = 1.0 / d_m;
-    return (struct dig_contact_normal){ dx_m * inv, dy_m * inv, dz_m * inv, reach_m - d_m };
+    return (struct dig_contact_normal){ dx_m * inv, dy_m * inv, dz_m * inv, d_m };
 }
 
-/// The same in single precision, but for the overlap: a small difference of two distances, it is
-/// (reach^2 - d^2) / (reach + d), whose numerator is formed in double precision. So it errs by
-/// parts of itself, not of the distance. One quotient serves the normal and the overlap.
-DIG_LAW_STAGE struct dig_contact_normal_single
-dig_law_normal_single(const double reach_m, const double dx_m, const double dy_m, const double dz_m)
+/// Advances the history by slip and rolling. Reads only the velocities of t.
+DIG_LAW_STAGE struct dig_trial dig_law_trial(const struct dig_law law, const double dt_s,
+                                             const struct dig_contact_normal   n,
+                                             const struct dig_kinematics       t,
+                                             struct dig_contact_history *const history)
 {
-    const float inside_m2 = (float)(reach_m * reach_m - (dx_m * dx_m + dy_m * dy_m + dz_m * dz_m));
-    const float x_m       = (float)dx_m;
-    const float y_m       = (float)dy_m;
-    const float z_m       = (float)dz_m;
-    const float d_m       = sqrtf(x_m * x_m + y_m * y_m + z_m * z_m + 1e-30F);
-    const float sum_m     = (float)reach_m + d_m;
-    const float inverse   = 1.0F / (d_m * sum_m);
-    const float inv       = inverse * sum_m;
-    return (struct dig_contact_normal_single){ x_m * inv, y_m * inv, z_m * inv,
-                                               inside_m2 * (d_m * inverse) };
+    // Normal
+    const double delta_m = law.reach_m - n.d_m;
+    const double vn_mps  = t.vx_mps * n.nx + t.vy_mps * n.ny + t.vz_mps * n.nz;
+
+    // Slip of the contact point
+    const double ci_m = law.lever_i_m - 0.5 * delta_m;
+    const double cj_m = law.lever_j_m > 0.0 ? law.lever_j_m - 0.5 * delta_m : 0.0;
+    const double wx   = ci_m * t.ix_radps + cj_m * t.jx_radps;
+    const double wy   = ci_m * t.iy_radps + cj_m * t.jy_radps;
+    const double wz   = ci_m * t.iz_radps + cj_m * t.jz_radps;
+    const double vx   = t.vx_mps - vn_mps * n.nx - (wy * n.nz - wz * n.ny);
+    const double vy   = t.vy_mps - vn_mps * n.ny - (wz * n.nx - wx * n.nz);
+    const double vz   = t.vz_mps - vn_mps * n.nz - (wx * n.ny - wy * n.nx);
+
+    // Tangential spring
+    double       sx = history->sx_m + vx * dt_s;
+    double       sy = history->sy_m + vy * dt_s;
+    double       sz = history->sz_m + vz * dt_s;
+    const double sn = sx * n.nx + sy * n.ny + sz * n.nz;
+    sx -= sn * n.nx;
+    sy -= sn * n.ny;
+    sz -= sn * n.nz;
+
+    // Rolling spring
+    double       rx = t.ix_radps - t.jx_radps;
+    double       ry = t.iy_radps - t.jy_radps;
+    double       rz = t.iz_radps - t.jz_radps;
+    const double rn = rx * n.nx + ry * n.ny + rz * n.nz;
+    const double kr = law.rolling_Nmprad * dt_s;
+    rx              = history->mx_Nm + kr * (rx - rn * n.nx);
+    ry              = history->my_Nm + kr * (ry - rn * n.ny);
+    rz              = history->mz_Nm + kr * (rz - rn * n.nz);
+
+    *history = (struct dig_contact_history){ sx, sy, sz, rx, ry, rz };
+    return (struct dig_trial){
+        .normal_N    = law.normal_Npm * delta_m - law.damping_Nspm * vn_mps,
+        .vx_mps      = vx,
+        .vy_mps      = vy,
+        .vz_mps      = vz,
+        .spring2_m2  = sx * sx + sy * sy + sz * sz,
+        .torque2_Nm2 = rx * rx + ry * ry + rz * rz,
+    };
 }
 
-/// One contact over one step. Bodies apart get zeros, and *history is cleared.
+/// True where dig_law_caps() may return less than 1, decided without a square root. Never false
+/// where it does.
+DIG_LAW_STAGE bool dig_law_may_cap(const struct dig_law law, const struct dig_trial trial)
+{
+    const double more     = 1.0 + 1e-12; // above the rounding of either side
+    const double load_N   = fabs(trial.normal_N);
+    const double grip_N   = law.friction * load_N;
+    const double limit_Nm = law.rolling_lever_m * load_N;
+    return (more * law.normal_Npm * law.normal_Npm * trial.spring2_m2 >= grip_N * grip_N) |
+           (more * trial.torque2_Nm2 >= limit_Nm * limit_Nm);
+}
+
+/// Reads the normal force and the two squares of the trial.
+DIG_LAW_STAGE struct dig_caps dig_law_caps(const struct dig_law law, const struct dig_trial trial)
+{
+    const double load_N    = fabs(trial.normal_N);
+    const double spring_N  = law.normal_Npm * sqrt(trial.spring2_m2);
+    const double grip_N    = law.friction * load_N;
+    const bool   slides    = spring_N > grip_N;
+    const double torque_Nm = sqrt(trial.torque2_Nm2);
+    const double limit_Nm  = law.rolling_lever_m * load_N;
+    return (struct dig_caps){
+        .spring  = slides ? grip_N / spring_N : 1.0,
+        .damping = slides ? 0.0 : 1.0,
+        .torque  = torque_Nm > limit_Nm ? limit_Nm / torque_Nm : 1.0,
+    };
+}
+
+/// Reads the normal force and the slip of the trial. Bodies apart get zeros, and *history is
+/// cleared.
+DIG_LAW_STAGE struct dig_contact_force dig_law_force(const struct dig_law              law,
+                                                     const struct dig_contact_normal   n,
+                                                     const struct dig_trial            trial,
+                                                     const struct dig_caps             caps,
+                                                     struct dig_contact_history *const history)
+{
+    const bool   touching = n.d_m < law.reach_m;
+    const double delta_m  = law.reach_m - n.d_m;
+    const double ci_m     = law.lever_i_m - 0.5 * delta_m;
+    const double cj_m     = law.lever_j_m > 0.0 ? law.lever_j_m - 0.5 * delta_m : 0.0;
+
+    const double sx = history->sx_m * caps.spring;
+    const double sy = history->sy_m * caps.spring;
+    const double sz = history->sz_m * caps.spring;
+    const double rx = history->mx_Nm * caps.torque;
+    const double ry = history->my_Nm * caps.torque;
+    const double rz = history->mz_Nm * caps.torque;
+    const double tx = -law.normal_Npm * sx - law.damping_Nspm * (trial.vx_mps * caps.damping);
+    const double ty = -law.normal_Npm * sy - law.damping_Nspm * (trial.vy_mps * caps.damping);
+    const double tz = -law.normal_Npm * sz - law.damping_Nspm * (trial.vz_mps * caps.damping);
+    const double ax = n.ny * tz - n.nz * ty;
+    const double ay = n.nz * tx - n.nx * tz;
+    const double az = n.nx * ty - n.ny * tx;
+
+    history->sx_m  = touching ? sx : 0.0;
+    history->sy_m  = touching ? sy : 0.0;
+    history->sz_m  = touching ? sz : 0.0;
+    history->mx_Nm = touching ? rx : 0.0;
+    history->my_Nm = touching ? ry : 0.0;
+    history->mz_Nm = touching ? rz : 0.0;
+    return (struct dig_contact_force){
+        .fx_N  = touching ? trial.normal_N * n.nx + tx : 0.0,
+        .fy_N  = touching ? trial.normal_N * n.ny + ty : 0.0,
+        .fz_N  = touching ? trial.normal_N * n.nz + tz : 0.0,
+        .ix_Nm = touching ? -ci_m * ax - rx : 0.0,
+        .iy_Nm = touching ? -ci_m * ay - ry : 0.0,
+        .iz_Nm = touching ? -ci_m * az - rz : 0.0,
+        .jx_Nm = touching ? -cj_m * ax + rx : 0.0,
+        .jy_Nm = touching ? -cj_m * ay + ry : 0.0,
+        .jz_Nm = touching ? -cj_m * az + rz : 0.0,
+    };
+}
+
+/// One contact over one step: all stages. Bodies apart get zeros, and *history is cleared.
 DIG_LAW_STAGE struct dig_contact_force dig_law_step(const struct dig_law law, const double dt_s,
                                                     const struct dig_kinematics       t,
                                                     struct dig_contact_history *const history)
 {
-    const struct dig_contact_normal n = dig_law_normal(law.reach_m, t.dx_m, t.dy_m, t.dz_m);
-    const struct dig_contact_motion m = { t.vx_mps,   t.vy_mps,   t.vz_mps,
-                                          t.ix_radps, t.iy_radps, t.iz_radps,
-                                          t.jx_radps, t.jy_radps, t.jz_radps };
-    return dig_law_force(law, dt_s, n, m, history);
+    const struct dig_contact_normal n     = dig_law_normal(t.dx_m, t.dy_m, t.dz_m);
+    const struct dig_trial          trial = dig_law_trial(law, dt_s, n, t, history);
+    return dig_law_force(law, n, trial, dig_law_caps(law, trial), history);
 }
 
 #endif // DIG_OFFLINE_DEM_LAW_LAW_H

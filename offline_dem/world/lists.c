@@ -13,21 +13,17 @@
 static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
 #define CONTACT_MARGIN_RADII 0.008
 #define CONTACT_MARGIN_STEPS 20
-// Cells along which grains are sorted: the reach of most pairs, so that these lie in neighbouring
-// layers of cells, and near each other in memory.
-#define SORT_RADII 2.35
 
-static double speed(const struct dig_grains *const grains, const size_t i)
+static double speed(const struct dig_motion *const m)
 {
-    const struct dig_motion m = dig_grains_motion(grains, i);
-    return sqrt(m.v_mps[0] * m.v_mps[0] + m.v_mps[1] * m.v_mps[1] + m.v_mps[2] * m.v_mps[2]);
+    return sqrt(m->v_mps[0] * m->v_mps[0] + m->v_mps[1] * m->v_mps[1] + m->v_mps[2] * m->v_mps[2]);
 }
 
 static double contact_margin(const struct dig_world *const w, const size_t i)
 {
     const struct dig_grains *const g = &w->grains;
     return CONTACT_MARGIN_RADII * g->type[g->type_of[i]].radius_m +
-           CONTACT_MARGIN_STEPS * w->dt_s * speed(g, i);
+           CONTACT_MARGIN_STEPS * w->dt_s * speed(&g->motion[i]);
 }
 
 void dig_lists_renumber(struct dig_world *const w, const uint32_t new_index[])
@@ -62,13 +58,11 @@ static void find_slots(const struct dig_neighbours *const near, const bool like,
         if (slot == DIG_NO_SLOT) {
             slot = find_slot(near, j, i);
             if (like && slot != DIG_NO_SLOT) {
-                list->i[c]                         = j;
-                list->j[c]                         = i;
-                const struct dig_contact_history h = dig_contacts_history(list, c);
-                dig_contacts_set_history(list, c,
-                                         (struct dig_contact_history){ -h.sx_m, -h.sy_m, -h.sz_m,
-                                                                       -h.mx_Nm, -h.my_Nm,
-                                                                       -h.mz_Nm });
+                list->i[c] = j;
+                list->j[c] = i;
+                for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
+                    list->history[m][c] = -list->history[m][c];
+                }
             }
         }
         list->slot[c] = slot;
@@ -100,7 +94,7 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     for (size_t k = 0; k < w->grains.types; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    status = dig_neighbours_sort(&w->grains, SORT_RADII * radius_max_m, order);
+    status = dig_neighbours_sort(&w->grains, 2.0 * radius_max_m, order);
     if (status != DIG_OK) {
         goto done;
     }
@@ -115,7 +109,7 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     dig_bodies_renumber(w->bodies, new_index);
     for (size_t i = 0; i < n; i++) {
         const double radius_m = w->grains.type[w->grains.type_of[i]].radius_m;
-        const double moving_m = skin.steps * w->dt_s * speed(&w->grains, i);
+        const double moving_m = skin.steps * w->dt_s * speed(&w->grains.motion[i]);
         margin[i]             = fmin(skin.radii * radius_m + moving_m, skin.most_radii * radius_m);
     }
     status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->neighbours);
@@ -125,9 +119,6 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         const bool like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
         find_slots(&w->neighbours, like, &w->pair[l]);
-    }
-    if (w->single) {
-        dig_grains_set_slabs(&w->grains, dig_neighbours_reach(&w->neighbours));
     }
     w->list_rebuilds++;
 
@@ -146,7 +137,7 @@ static bool is_covered(const struct dig_world *const w)
         return false;
     }
     for (size_t i = 0; i < w->grains.n; i++) {
-        const double *const x    = dig_grains_position(&w->grains, i);
+        const double *const x    = w->grains.motion[i].x_m;
         const double *const was  = w->neighbours.reference_m[i];
         const double        d[3] = { x[0] - was[0], x[1] - was[1], x[2] - was[2] };
         const double        left = was[3] - w->reference_m[i][3];
@@ -160,7 +151,7 @@ static bool is_covered(const struct dig_world *const w)
 static void set_margins(struct dig_world *const w)
 {
     for (size_t i = 0; i < w->grains.n; i++) {
-        memcpy(w->reference_m[i], dig_grains_position(&w->grains, i), 3 * sizeof(double));
+        memcpy(w->reference_m[i], w->grains.motion[i].x_m, 3 * sizeof(double));
         w->reference_m[i][3] = contact_margin(w, i);
     }
     if (w->tool != NULL) {
@@ -185,7 +176,6 @@ enum dig_status dig_lists_update(struct dig_world *const w)
     }
     set_margins(w);
     if (!is_covered(w)) {
-        dig_grains_end_single(&w->grains);
         const enum dig_status status = dig_lists_rebuild(w, neighbour_skin);
         if (status != DIG_OK) {
             return status;

@@ -163,7 +163,7 @@ enum dig_status dig_obstacles_detect(struct dig_obstacles *const   o,
         for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
             double closest_m[3];
             double image_m[3];
-            nearest_image(world, &o->rock[r], dig_grains_position(g, i), image_m);
+            nearest_image(world, &o->rock[r], g->motion[i].x_m, image_m);
             if (dig_rock_closest(&o->rock[r], image_m, closest_m) < reach_m + o->margin_m[r]) {
                 const uint32_t at = old[i * o->rocks + r];
                 status            = dig_contacts_add(&fresh[type], i, r, r,
@@ -213,12 +213,12 @@ static void apply_block(struct dig_world *const world, struct dig_obstacles *con
                         const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
+        struct dig_load *const load = &world->grains.load[list->i[first + c]];
         struct dig_rock *const rock = &o->rock[list->j[first + c]];
         const double *const    a    = arm_m[c];
-        const double           f[3] = { block->out[0][c], block->out[1][c], block->out[2][c] };
-        const double           t[3] = { block->out[3][c], block->out[4][c], block->out[5][c] };
-        dig_grains_add_load(&world->grains, list->i[first + c], f, t);
         for (int k = 0; k < 3; k++) {
+            load->f_N[k] += block->out[k][c];
+            load->t_Nm[k] += block->out[3 + k][c];
             rock->f_N[k] -= block->out[k][c];
             rock->t_Nm[k] += block->out[6 + k][c] - (a[(k + 1) % 3] * block->out[(k + 2) % 3][c] -
                                                      a[(k + 2) % 3] * block->out[(k + 1) % 3][c]);
@@ -241,8 +241,9 @@ void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *co
             struct dig_block block;
             double           arm_m[DIG_BLOCK][3];
             for (size_t c = 0; c < count; c++) {
-                const struct dig_motion m = dig_grains_motion(&world->grains, list->i[first + c]);
-                fill_block(world, &o->rock[list->j[first + c]], &m, radius_m, c, &block, arm_m[c]);
+                fill_block(world, &o->rock[list->j[first + c]],
+                           &world->grains.motion[list->i[first + c]], radius_m, c, &block,
+                           arm_m[c]);
             }
             dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, list, first, count,
                              &block);

@@ -37,7 +37,6 @@ enum dig_status dig_offload(struct dig_world *const w, struct dig_device *const 
     o->is_synced        = true;
     o->is_motion_synced = true;
     w->offloaded        = o;
-    w->single           = false;
     w->stale            = true;
     return DIG_OK;
 }

@@ -100,12 +100,12 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t          i = list->i[first + c];
-    const struct dig_motion m = dig_grains_motion(&w->grains, i);
-    struct near_plates      near;
+    const uint32_t                 i = list->i[first + c];
+    const struct dig_motion *const m = &w->grains.motion[i];
+    struct near_plates             near;
     near.count = 0;
     double body_m[3];
-    dig_tool_to_body(w->tool, m.x_m, body_m);
+    dig_tool_to_body(w->tool, m->x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
     while (c + used < count && list->i[first + c + used] == i) {
@@ -125,9 +125,9 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
     }
     for (size_t k = 0; k < near.count; k++) {
         if (near.is_contact[k]) {
-            fill_plate(w->tool, body_m, near.closest_m[k], &m, c + k, block, arm_m[c + k]);
+            fill_plate(w->tool, body_m, near.closest_m[k], m, c + k, block, arm_m[c + k]);
         } else {
-            fill_contact(block, c + k, &m, (const double[3]){ FAR_m, 0.0, 0.0 },
+            fill_contact(block, c + k, m, (const double[3]){ FAR_m, 0.0, 0.0 },
                          (const double[3]){ 0.0, 0.0, 0.0 });
             memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
         }
@@ -137,19 +137,20 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
 
 static void add_loads(struct dig_world *const w, const struct dig_contacts *const list,
                       const size_t first, const size_t count, const struct dig_block *const block,
-                      const double arm_m[DIG_BLOCK][3], struct dig_wrench *const sum)
+                      const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
-        double f[3];
-        double on_grain[3];
-        double t[3];
+        struct dig_load *const load = &w->grains.load[list->i[first + c]];
+        double                 f[3];
+        double                 t[3];
         for (int k = 0; k < 3; k++) {
-            f[k]        = block->out[k][c];
-            on_grain[k] = block->out[3 + k][c];
-            t[k]        = block->out[6 + k][c];
+            f[k] = block->out[k][c];
+            t[k] = block->out[6 + k][c];
+            load->f_N[k] += f[k];
+            load->t_Nm[k] += block->out[3 + k][c];
         }
-        dig_grains_add_load(&w->grains, list->i[first + c], f, on_grain);
-        const double *const a = arm_m[c];
+        const double *const      a   = arm_m[c];
+        struct dig_wrench *const sum = &w->on_tool;
         for (int k = 0; k < 3; k++) {
             sum->f_N[k] -= f[k];
             sum->t_Nm[k] +=
@@ -159,11 +160,10 @@ static void add_loads(struct dig_world *const w, const struct dig_contacts *cons
 }
 
 // A block ends before a grain whose plates would not all fit.
-static size_t block_length(const struct dig_contacts *const list, const size_t first,
-                           const size_t end)
+static size_t block_length(const struct dig_contacts *const list, const size_t first)
 {
-    if (end - first <= DIG_BLOCK) {
-        return end - first;
+    if (list->n - first <= DIG_BLOCK) {
+        return list->n - first;
     }
     size_t count = DIG_BLOCK;
     while (list->i[first + count] == list->i[first + count - 1]) {
@@ -173,33 +173,34 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
 }
 
 // Contacts of grains of one type with the plates.
-static void step_plates(struct dig_world *const w, const size_t type, const size_t slab,
-                        struct dig_wrench *const on_tool)
+static void step_plates(struct dig_world *const w, const struct dig_law *const law,
+                        const double radius_m, struct dig_contacts *const list)
 {
-    struct dig_contacts *const list     = &w->surface[DIG_GRAIN_TYPES_MAX + type];
-    const double               radius_m = w->grains.type[type].radius_m;
-    const size_t               end      = dig_contacts_slab_first(list, slab + 1);
-    for (size_t first = dig_contacts_slab_first(list, slab); first < end;) {
-        const size_t     count = block_length(list, first, end);
+    for (size_t first = 0; first < list->n;) {
+        const size_t     count = block_length(list, first);
         struct dig_block block;
         double           arm_m[DIG_BLOCK][3];
         for (size_t c = 0; c < count;) {
             c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
         }
-        dig_kernel_block(w->isa, &w->tool_law[type], w->dt_s, list, first, count, &block);
-        add_loads(w, list, first, count, &block, (const double(*)[3])arm_m, on_tool);
+        dig_kernel_block(w->isa, law, w->dt_s, list, first, count, &block);
+        add_loads(w, list, first, count, &block, (const double(*)[3])arm_m);
         first += count;
     }
 }
 
-void dig_surfaces_add_loads(struct dig_world *const w, const size_t slab,
-                            struct dig_wrench *const on_tool, struct dig_wrench *const on_walls)
+void dig_surfaces_add_loads(struct dig_world *const w)
 {
+    w->on_tool  = (struct dig_wrench){ 0 };
+    w->on_walls = (struct dig_wrench){ 0 };
     for (size_t type = 0; type < w->grains.types; type++) {
-        dig_kernel_walls(w->isa, &w->wall_law[type], w->dt_s, w->wall, &w->surface[type], slab,
-                         &w->grains, on_walls->f_N);
+        const struct dig_law *const law = &w->wall_law[type];
+        dig_kernel_walls(w->isa, law, w->dt_s, w->wall, &w->surface[type], &w->grains,
+                         w->on_walls.f_N);
     }
     for (size_t type = 0; type < w->grains.types; type++) {
-        step_plates(w, type, slab, on_tool);
+        const double                radius_m = w->grains.type[type].radius_m;
+        const struct dig_law *const law      = &w->tool_law[type];
+        step_plates(w, law, radius_m, &w->surface[DIG_GRAIN_TYPES_MAX + type]);
     }
 }

@@ -10,9 +10,7 @@
 
 #include "offline_dem/world/world.h"
 
-/// Adds the loads of walls and tool to the grains of a slab, and what they feel to on_tool and
-/// on_walls.
-void dig_surfaces_add_loads(struct dig_world *world, size_t slab, struct dig_wrench *on_tool,
-                            struct dig_wrench *on_walls);
+/// Adds the loads of walls and tool to the grains, and fills on_tool and on_walls.
+void dig_surfaces_add_loads(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_WORLD_SURFACES_H

@@ -1,7 +1,6 @@
 #include "offline_dem/world/world.h"
 
 #include "offline_dem/world/bodies.h"
-#include "offline_dem/world/crew.h"
 #include "offline_dem/world/lists.h"
 #include "offline_dem/world/offloaded.h"
 #include "offline_dem/world/surfaces.h"
@@ -46,54 +45,15 @@ enum dig_status dig_world_drop(struct dig_world *const w, const unsigned char dr
     return DIG_OK;
 }
 
-// Before the first contact. Plates have few contacts and stay in double precision.
-static void choose_precision(struct dig_world *const w)
+static void add_pair_loads(struct dig_world *const w)
 {
-    bool plain = w->bodies == NULL || w->bodies->clumps == 0;
     for (size_t a = 0; a < w->grains.types; a++) {
-        plain = plain && !w->wall_law[a].general;
         for (size_t b = a; b < w->grains.types; b++) {
-            plain = plain && !w->pair_law[a * DIG_GRAIN_TYPES_MAX + b].general;
+            const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
+            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l],
+                             &w->grains);
         }
     }
-    w->single = w->single && plain;
-    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        w->pair[l].single           = w->single;
-        w->detection.pair[l].single = w->single;
-    }
-    for (size_t type = 0; type < DIG_GRAIN_TYPES_MAX; type++) {
-        w->surface[type].single           = w->single;
-        w->detection.surface[type].single = w->single;
-    }
-}
-
-// Everything a step needs before forces are computed.
-static enum dig_status prepare(struct dig_world *const w)
-{
-    if (w->tool != NULL && !w->stale &&
-        dig_tool_travel_m(w->tool, w->tool_reference, w->tool->pose) > w->tool_margin_m) {
-        w->stale = true;
-    }
-    enum dig_status status = DIG_OK;
-    if (w->stale) {
-        if (w->contact_rebuilds == 0) {
-            choose_precision(w);
-        }
-        status = dig_grains_are_sound(&w->grains, w->dt_s) ? dig_lists_update(w) : DIG_EINVAL;
-    }
-    if (status == DIG_OK && w->single) {
-        status = dig_grains_begin_single(&w->grains);
-    }
-    const size_t slabs = w->grains.slabs.count;
-    if (status == DIG_OK && slabs > w->slab_sums_room) {
-        struct dig_slab_sums *const more = realloc(w->slab_sums, slabs * sizeof *more);
-        if (more == NULL) {
-            return DIG_ENOMEM;
-        }
-        w->slab_sums      = more;
-        w->slab_sums_room = slabs;
-    }
-    return status;
 }
 
 static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench *const sum)
@@ -104,98 +64,31 @@ static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench 
     }
 }
 
-static void add_contact_loads(struct dig_world *const w, const size_t slab)
-{
-    struct dig_slab_sums *const sums = &w->slab_sums[slab];
-    *sums                            = (struct dig_slab_sums){ .left = false };
-    for (size_t a = 0; a < w->grains.types; a++) {
-        for (size_t b = a; b < w->grains.types; b++) {
-            const size_t l = a * DIG_GRAIN_TYPES_MAX + b;
-            dig_kernel_pairs(w->isa, &w->pair_law[l], w->dt_s, w->period_y_m, &w->pair[l], slab,
-                             &w->grains);
-        }
-    }
-    dig_surfaces_add_loads(w, slab, &sums->on_tool, &sums->on_walls);
-}
-
-static void advance(struct dig_world *const w, const size_t slab)
-{
-    w->slab_sums[slab].left =
-        dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s, w->dt_s,
-                           (const double(*)[4])w->reference_m, slab, &w->grains);
-}
-
-// A slab is advanced as soon as its contacts and those beside it are done, while it is still in the
-// cache. The first and the last slab of a member wait for those of other members.
-static void add_loads_and_advance(void *const context, const size_t member)
-{
-    struct dig_world *const w     = context;
-    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
-    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = first; slab < end; slab++) {
-        add_contact_loads(w, slab);
-        if (slab > first + 1) {
-            advance(w, slab - 1);
-        }
-    }
-}
-
-static void advance_ends(void *const context, const size_t member)
-{
-    struct dig_world *const w     = context;
-    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
-    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    if (first < end) {
-        advance(w, first);
-    }
-    if (first + 1 < end) {
-        advance(w, end - 1);
-    }
-}
-
-static void add_all_loads(void *const context, const size_t member)
-{
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
-        add_contact_loads(w, slab);
-    }
-}
-
-static void advance_all(void *const context, const size_t member)
-{
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
-        advance(w, slab);
-    }
-}
-
 enum dig_status dig_world_step(struct dig_world *const w)
 {
     if (w->offloaded != NULL) {
         return dig_offloaded_step(w);
     }
-    const enum dig_status status = prepare(w);
-    if (status != DIG_OK) {
-        return status;
+    if (w->tool != NULL && !w->stale &&
+        dig_tool_travel_m(w->tool, w->tool_reference, w->tool->pose) > w->tool_margin_m) {
+        w->stale = true;
     }
+    if (w->stale) {
+        if (!dig_grains_are_sound(&w->grains, w->dt_s)) {
+            return DIG_EINVAL;
+        }
+        const enum dig_status status = dig_lists_update(w);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    add_pair_loads(w);
+    dig_surfaces_add_loads(w);
     if (w->bodies != NULL) {
-        dig_crew_run(w->crew, add_all_loads, w);
         dig_bodies_apply_loads(w);
-        dig_crew_run(w->crew, advance_all, w);
-    } else {
-        dig_crew_run(w->crew, add_loads_and_advance, w);
-        dig_crew_run(w->crew, advance_ends, w);
     }
-    w->on_tool  = w->slab_sums[0].on_tool;
-    w->on_walls = w->slab_sums[0].on_walls;
-    w->stale    = w->slab_sums[0].left;
-    for (size_t slab = 1; slab < w->grains.slabs.count; slab++) {
-        add_wrench(&w->slab_sums[slab].on_tool, &w->on_tool);
-        add_wrench(&w->slab_sums[slab].on_walls, &w->on_walls);
-        w->stale = w->stale || w->slab_sums[slab].left;
-    }
+    w->stale = dig_kernel_advance(w->isa, w->gravity_mps2, w->started ? w->dt_s : 0.5 * w->dt_s,
+                                  w->dt_s, (const double(*)[4])w->reference_m, &w->grains);
     if (w->bodies != NULL) {
         dig_bodies_step_rocks(w);
     }
@@ -217,13 +110,11 @@ enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wren
 
 enum dig_status dig_world_sync_motion(struct dig_world *const w)
 {
-    dig_grains_read_single(&w->grains);
     return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync_motion(w);
 }
 
 enum dig_status dig_world_sync(struct dig_world *const w)
 {
-    dig_grains_end_single(&w->grains);
     return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync(w);
 }
 
@@ -234,9 +125,6 @@ void dig_world_finish(struct dig_world *const world)
     }
     dig_offloaded_destroy(world->offloaded);
     world->offloaded = NULL;
-    free(world->slab_sums);
-    world->slab_sums      = NULL;
-    world->slab_sums_room = 0;
     dig_grains_finish(&world->grains);
     dig_lists_finish(world);
 }

@@ -18,7 +18,6 @@
 #include <stdint.h>
 
 struct dig_bodies;
-struct dig_crew;
 struct dig_offloaded;
 
 #define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
@@ -29,9 +28,6 @@ struct dig_offloaded;
 struct dig_contact_detection {
     uint32_t           *old_pair, *old_surface, *near_pairs;
     size_t              pair_room, surface_room, near_room; // allocated entries
-    uint32_t           *near_count;                         // [grains] near pairs of each
-    uint32_t           *count; // [slabs x DIG_PAIR_LISTS] contacts of a slab in each list
-    size_t              near_count_room, count_room;
     struct dig_contacts pair[DIG_PAIR_LISTS];
     struct dig_contacts surface[DIG_SURFACE_LISTS];
 };
@@ -48,13 +44,8 @@ struct dig_world {
     size_t          walls;
     struct dig_wall wall[DIG_WALLS_MAX];
     enum dig_isa    isa;
-    bool single; // velocities, loads and contacts in single precision (kernel.h); from the first
-                 // step on false with other laws than the plain one and with clumps
     double period_y_m; // > 0: no sides, y repeats; more than 8 radii of the largest grain and the
                        // tool's width with as much beside it. Grains stay in [-P/2, P/2] nearly
-
-    // Threads that share the slabs of a step, owned by the caller; NULL: none. They change no bit.
-    struct dig_crew *crew;
 
     // May be moved between steps; NULL: no tool.
     struct dig_tool *tool;
@@ -72,13 +63,6 @@ struct dig_world {
     struct dig_wrench on_tool;  // of the last step of the kernel
     struct dig_wrench sum_tool; // of the steps since dig_world_take_wrench()
     struct dig_wrench on_walls; // of the last step of the kernel
-
-    // What the slabs of a step give besides motion: summed in their order.
-    struct dig_slab_sums {
-        struct dig_wrench on_tool, on_walls;
-        bool              left; // a grain has left its margin
-    } * slab_sums;              // [slabs]
-    size_t slab_sums_room;
 
     // Lists and their margins.
     struct dig_neighbours neighbours;
@@ -115,12 +99,11 @@ DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
                                                      struct dig_wrench *wrench);
 
-/// Before motions are read: copies them from single precision, or from a device. Fails with a
-/// device only.
+/// Before motions are read: downloads them from a device. Without one nothing to do, and no
+/// failure.
 DIG_MUST_CHECK enum dig_status dig_world_sync_motion(struct dig_world *world);
 
-/// Before motions are written or grains removed: the same, and contacts from a device. What is
-/// written then counts.
+/// Before motions are written or grains removed: downloads contacts, too.
 DIG_MUST_CHECK enum dig_status dig_world_sync(struct dig_world *world);
 
 void dig_world_finish(struct dig_world *world);

@@ -1,15 +1,12 @@
 // The grain kernel alone, for tests/bench/dem.sh: makes a bed in a box without a tool, and steps
 // it.
 //   dem pour GRAINS BED.csv        drops about so many grains into a square box and lets them
-//                                  settle
-//   dem step BED.csv SIDE_m STEPS [THREADS]
-//                                  steps them after a start of 200; prints grains, particle-steps a
-//                                  second of processor time, kB of memory at the most, and the
-//                                  seconds that passed
+//   settle dem step BED.csv SIDE_m STEPS  steps them after a start of 200; prints grains,
+//   particle-steps a
+//                                  second of processor time, and kB of memory at the most
 // Gravel and time step are those of config/scenes/rig.yaml.
 
 #include "offline_dem/law/random.h"
-#include "offline_dem/world/crew.h"
 #include "offline_dem/world/world.h"
 #include "tests/dem_grains.h"
 
@@ -45,7 +42,6 @@ static void build(struct dig_world *const world, struct dig_grains *const grains
     world->dt_s                  = 6.25e-5;
     world->gravity_mps2[2]       = -9.81;
     world->isa                   = dig_kernel_best();
-    world->single                = true;
     world->walls                 = sizeof wall / sizeof wall[0];
     memcpy(world->wall, wall, sizeof wall);
     dig_world_init(world, grains);
@@ -119,21 +115,11 @@ static int pour(const size_t want, const char *const path)
     return bad;
 }
 
-static double clock_s(const clockid_t clock)
-{
-    struct timespec t;
-    (void)clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static double cpu_s(void)
 {
-    return clock_s(CLOCK_PROCESS_CPUTIME_ID);
-}
-
-static double now_s(void)
-{
-    return clock_s(CLOCK_MONOTONIC);
+    struct timespec t;
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static size_t read_bed(const char *const path, double **const x)
@@ -168,8 +154,7 @@ static size_t read_bed(const char *const path, double **const x)
     return *x == NULL ? 0 : n;
 }
 
-static int step(const char *const path, const double side_m, const size_t steps,
-                const size_t threads)
+static int step(const char *const path, const double side_m, const size_t steps)
 {
     double                 *x;
     const size_t            n = read_bed(path, &x);
@@ -182,20 +167,13 @@ static int step(const char *const path, const double side_m, const size_t steps,
     }
     free(x);
     build(&world, &grains, side_m);
-    if (threads > 1 && dig_crew_create(threads, &world.crew) != DIG_OK) {
-        return 1;
-    }
     int          bad    = run(&world, WARM);
     const double from_s = cpu_s();
-    const double wall_s = now_s();
     bad |= run(&world, steps);
     const double  took_s = cpu_s() - from_s;
-    const double  wait_s = now_s() - wall_s;
     struct rusage usage;
     (void)getrusage(RUSAGE_SELF, &usage);
-    (void)printf("%zu %.6g %ld %.4g\n", n, (double)n * (double)steps / took_s, usage.ru_maxrss,
-                 wait_s);
-    dig_crew_destroy(world.crew);
+    (void)printf("%zu %.6g %ld\n", n, (double)n * (double)steps / took_s, usage.ru_maxrss);
     dig_world_finish(&world);
     return bad;
 }
@@ -205,11 +183,9 @@ int main(const int count, char **const word)
     if (count == 4 && strcmp(word[1], "pour") == 0) {
         return pour(strtoul(word[2], NULL, 10), word[3]);
     }
-    if ((count == 5 || count == 6) && strcmp(word[1], "step") == 0) {
-        return step(word[2], strtod(word[3], NULL), strtoul(word[4], NULL, 10),
-                    count == 6 ? strtoul(word[5], NULL, 10) : 1);
+    if (count == 5 && strcmp(word[1], "step") == 0) {
+        return step(word[2], strtod(word[3], NULL), strtoul(word[4], NULL, 10));
     }
-    (void)fprintf(stderr,
-                  "usage: dem pour GRAINS BED.csv | dem step BED.csv SIDE_m STEPS [THREADS]\n");
+    (void)fprintf(stderr, "usage: dem pour GRAINS BED.csv | dem step BED.csv SIDE_m STEPS\n");
     return 2;
 }

@@ -1,9 +1,7 @@
 #!/bin/bash
 # The discrete element engine beside LIGGGHTS-PUBLIC (Debian's package liggghts): the same bed, law and
-# time step, one core each in turn, LIGGGHTS at the best skin of a scan, ours at the best of three
-# runs. Processor time of the program, so that a busy machine disturbs both alike. The largest bed is
-# also stepped by all cores, by the time that passes: this asks for a quiet machine. One line each:
-# name ratio unit detail.
+# time step, one core each in turn, LIGGGHTS at the best skin of a scan. Processor time of the
+# program, so that a busy machine disturbs both alike. One line each: name ratio unit detail.
 #   BUILD=build tests/bench/dem.sh       minutes; BENCH_QUICK=1: two sizes, few steps, a short dig
 set -eu
 build=${BUILD:-build}
@@ -73,15 +71,6 @@ deck() { # SIDE_m SKIN STEPS
     printf 'fix integr all nve/sphere\nthermo 1000000\nrun %s\n' "$3"
 }
 
-ours() { # SIDE_m STEPS: particle-steps a second and kB, the best of three runs
-    local k
-    for k in 1 2 3; do "$dem" step "$work/bed.csv" "$1" "$2"; done | sort -k2,2g | awk 'END { print $2, $3 }'
-}
-
-passed() { # SIDE_m STEPS THREADS: seconds that pass
-    "$dem" step "$work/bed.csv" "$1" "$2" "$3" | awk '{ print $4 }'
-}
-
 theirs() { # SIDE_m SKIN STEPS: processor seconds of so many steps, the start taken off
     deck "$1" "$2" 200 >"$work/in.start"
     deck "$1" "$2" $((200 + $3)) >"$work/in.run"
@@ -108,7 +97,7 @@ for n in $sizes; do
     done
     # The rig's bed holds 7000 grains.
     [ -n "$dig_skin" ] && [ "$n" != 7000 ] || dig_skin=$best_skin
-    read -r speed kB < <(ours "$side" "$steps")
+    read -r _ speed kB < <("$dem" step "$work/bed.csv" "$side" "$steps")
     awk -v n="$grains" -v ours="$speed" -v steps="$steps" -v took="$best" -v skin="$best_skin" 'BEGIN {
         theirs = n * steps / took
         printf "dem_steps_%dk %.2f ratio %d grains: %.2f M particle-steps/s, LIGGGHTS %.2f M at skin %s m\n",
@@ -122,15 +111,6 @@ echo $ours_at | awk 'NF > 3 { for (k = 1; k <= NF; k += 3) { x = log($k); y = lo
     printf "dem_exponent %.3f exponent processor time of a step over the number of grains, %d sizes\n",
         (n * sxy - sx * sy) / (n * sxx - sx * sx), n
     printf "dem_memory %.2f kB/grain peak, %d to %d grains\n", ($NF - $3) / ($(NF - 2) - $1), $1, $(NF - 2) }'
-
-# The last bed once more, by all cores: in turn, the best of three runs of either
-cores=$(nproc)
-for k in 1 2 3; do
-    echo "$(passed "$side" "$steps" 1) $(passed "$side" "$steps" "$cores")"
-done | awk -v cores="$cores" -v n="$grains" '
-    { alone = NR == 1 || $1 < alone ? $1 : alone; shared = NR == 1 || $2 < shared ? $2 : shared }
-    END { printf "dem_threads %.2f ratio %d grains on %d cores: %.2f s, on one %.2f s\n",
-        alone / shared, n, cores, shared, alone }'
 
 # One whole dig of the rig scene: from the same bed, poured before the clock starts
 dig="$build/bin/digtable dig $root/config/scenes/rig.yaml --trajectory actual --friction .5 --rolling .5 --density 2500"

@@ -64,10 +64,6 @@ static enum dig_status watch(struct dig_world *const world, struct row *const ro
         if (s < steps - steps / 3 || s % EVERY != 0) {
             continue;
         }
-        const enum dig_status synced = dig_world_sync_motion(world);
-        if (synced != DIG_OK) {
-            return synced;
-        }
         size_t picked = 0;
         row->touching += (double)count_touching(world, &picked) / (double)row->grains;
         row->picked += (double)picked / (double)row->grains;

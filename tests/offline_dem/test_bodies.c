@@ -72,7 +72,6 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
         dig_ode_scene_destroy(ode);
     }
     dig_bed_finish(&bed);
-    world.single = false; // motions are read, and compared more finely
     return world;
 }
 

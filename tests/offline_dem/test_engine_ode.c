@@ -7,16 +7,13 @@
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
-static struct dig_recording dig_with(const bool ode, const struct dig_scene *const scene,
-                                     const struct dig_bed *const bed)
+static struct dig_recording dig_with(const struct dig_engine *const engine,
+                                     const struct dig_scene *const  scene,
+                                     const struct dig_bed *const    bed)
 {
-    const struct dig_stepper           kernel = { .double_precision = true };
-    const struct dig_engine            engine = dig_engine_ode();
-    const struct dig_trajectory *const t      = &scene->trajectory[0];
-    struct dig_recording               r      = { 0 };
-    struct dig_error                   error  = { "" };
-    if ((ode ? engine.dig(scene, &gravel, bed, t, NULL, NULL, &r, &error)
-             : dig_dig_run(&kernel, scene, &gravel, bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
+    struct dig_recording r     = { 0 };
+    struct dig_error     error = { "" };
+    if (engine->dig(scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     return r;
@@ -25,11 +22,12 @@ static struct dig_recording dig_with(const bool ode, const struct dig_scene *con
 // Every window of a dig of some thousand steps.
 static void digs_agree(const struct dig_scene *const scene)
 {
-    const struct dig_engine ode = dig_engine_ode();
+    const struct dig_engine kernel = dig_engine_kernel();
+    const struct dig_engine ode    = dig_engine_ode();
     struct dig_bed          bed;
     assert_int_equal(ode.pour(scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
-    struct dig_recording ours   = dig_with(false, scene, &bed);
-    struct dig_recording theirs = dig_with(true, scene, &bed);
+    struct dig_recording ours   = dig_with(&kernel, scene, &bed);
+    struct dig_recording theirs = dig_with(&ode, scene, &bed);
     assert_int_equal(ours.rows, theirs.rows);
     double most_N = 0.0;
     for (size_t k = 0; k < ours.rows; k++) {

@@ -68,81 +68,22 @@ static size_t touching(const struct dig_world *const world)
     return count;
 }
 
-static void same_bits(const bool single)
+static void every_variant_gives_the_same_bits(void **state)
 {
+    (void)state;
     struct dig_world first = make_cloud(1, 0.3);
     first.isa              = DIG_ISA_BASE;
-    first.single           = single;
     dem_run(&first, 600);
-    assert_int_equal(dig_world_sync_motion(&first), DIG_OK);
     for (enum dig_isa isa = DIG_ISA_AVX2; isa <= dig_kernel_best(); isa++) {
         struct dig_world other = make_cloud(1, 0.3);
         other.isa              = isa;
-        other.single           = single;
         dem_run(&other, 600);
-        assert_int_equal(dig_world_sync_motion(&other), DIG_OK);
         assert_memory_equal(first.grains.motion, other.grains.motion,
                             GRAINS * sizeof *first.grains.motion);
         assert_memory_equal(first.grains.id, other.grains.id, GRAINS * sizeof *first.grains.id);
         dig_world_finish(&other);
     }
     dig_world_finish(&first);
-}
-
-static void every_variant_gives_the_same_bits(void **state)
-{
-    (void)state;
-    same_bits(false);
-    same_bits(true);
-}
-
-// Two clouds in either precision: rounding alone parts them, before chaos does.
-static void single_precision_moves_grains_alike(void **state)
-{
-    (void)state;
-    struct dig_world exact = make_cloud(7, 0.3);
-    struct dig_world rough = make_cloud(7, 0.3);
-    size_t           met   = 0;
-    rough.single           = true;
-    for (int k = 0; k < 10; k++) {
-        dem_run(&exact, 20);
-        dem_run(&rough, 20);
-        met += touching(&exact);
-        assert_true(rough.grains.in_single && !exact.grains.in_single);
-        assert_int_equal(dig_world_sync_motion(&rough), DIG_OK);
-        for (uint32_t i = 0; i < GRAINS; i++) {
-            for (size_t a = 0; a < 3; a++) {
-                assert_close(dem_grain(&rough, i)->x_m[a], dem_grain(&exact, i)->x_m[a], 1e-8);
-                assert_close(dem_grain(&rough, i)->v_mps[a], dem_grain(&exact, i)->v_mps[a], 1e-5);
-            }
-        }
-    }
-    assert_true(met > GRAINS);
-    dig_world_finish(&exact);
-    dig_world_finish(&rough);
-}
-
-// What is read between steps, and what is written, must not depend on where the motions are kept.
-static void motions_in_single_precision_can_be_read_and_written(void **state)
-{
-    (void)state;
-    const double     x[2][3] = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 } };
-    struct dig_world world   = dem_world(2, x, dem_material(0.5, 0.5));
-    world.single             = true;
-    world.gravity_mps2[2]    = -GRAVITY;
-    dem_run(&world, 101);
-    assert_int_equal(dig_world_sync_motion(&world), DIG_OK);
-    const double fall_mps = dem_grain(&world, 0)->v_mps[2];
-    // Every step rounds.
-    assert_close(fall_mps, -GRAVITY * 100.5 * STEP_s, 101.0 * 0x1p-24 * fabs(fall_mps));
-    assert_int_equal(dig_world_sync(&world), DIG_OK);
-    dem_grain(&world, 1)->v_mps[2] = 1.0;
-    dig_world_mark_stale(&world);
-    dem_run(&world, 1);
-    assert_int_equal(dig_world_sync_motion(&world), DIG_OK);
-    assert_close(dem_grain(&world, 0)->v_mps[2], fall_mps - GRAVITY * STEP_s, 1e-6);
-    assert_close(dem_grain(&world, 1)->v_mps[2], 1.0 - GRAVITY * STEP_s, 1e-6);
-    dig_world_finish(&world);
 }
 
 static void momentum_and_angular_momentum_are_kept(void **state)
@@ -336,8 +277,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_variant_gives_the_same_bits),
-        cmocka_unit_test(single_precision_moves_grains_alike),
-        cmocka_unit_test(motions_in_single_precision_can_be_read_and_written),
         cmocka_unit_test(momentum_and_angular_momentum_are_kept),
         cmocka_unit_test(grains_of_two_sizes_keep_momentum_too),
         cmocka_unit_test(collisions_take_energy_away),

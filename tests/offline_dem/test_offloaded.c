@@ -15,10 +15,9 @@ static struct dig_recording dig_on(struct dig_device *const      device,
                                    const struct dig_scene *const scene,
                                    const struct dig_bed *const   bed)
 {
-    struct dig_recording     r       = { 0 };
-    struct dig_error         error   = { "" };
-    const struct dig_stepper stepper = { .device = device, .double_precision = true };
-    if (dig_dig_run(&stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
+    struct dig_recording r     = { 0 };
+    struct dig_error     error = { "" };
+    if (dig_dig_run(device, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
         DIG_OK) {
         fail_msg("%s", error.text);
     }
@@ -287,12 +286,8 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
     scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
     struct dig_bed on_host;
     struct dig_bed on_card;
-    assert_int_equal(dig_bed_pour(&(struct dig_stepper){ .device = host }, &scene, &gravel, 1, NULL,
-                                  &on_host, NULL),
-                     DIG_OK);
-    assert_int_equal(dig_bed_pour(&(struct dig_stepper){ .device = card }, &scene, &gravel, 1, NULL,
-                                  &on_card, NULL),
-                     DIG_OK);
+    assert_int_equal(dig_bed_pour(host, &scene, &gravel, 1, NULL, &on_host, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(card, &scene, &gravel, 1, NULL, &on_card, NULL), DIG_OK);
     assert_int_equal(on_card.grains, on_host.grains);
     assert_memory_equal(on_card.x_m, on_host.x_m, on_host.grains * sizeof *on_host.x_m);
     assert_memory_equal(on_card.z_m, on_host.z_m, on_host.grains * sizeof *on_host.z_m);

@@ -41,15 +41,14 @@ static struct dig_recording pull(const enum engine engine, const struct dig_scen
     const struct dig_bed bed      = {
              .grains = 1, .x_m = x_m, .y_m = y_m, .z_m = z_m, .radius_m = radius
     };
-    const struct dig_trajectory *const t       = &scene->trajectory[0];
-    const struct dig_engine            ode     = dig_engine_ode();
-    struct dig_device *const           host    = engine == DEVICE ? dem_host_device_create() : NULL;
-    const struct dig_stepper           stepper = { .device = host };
-    struct dig_recording               r       = { 0 };
-    struct dig_error                   error   = { "" };
+    const struct dig_trajectory *const t     = &scene->trajectory[0];
+    const struct dig_engine            ode   = dig_engine_ode();
+    struct dig_device *const           host  = engine == DEVICE ? dem_host_device_create() : NULL;
+    struct dig_recording               r     = { 0 };
+    struct dig_error                   error = { "" };
     if ((engine == ODE
              ? ode.dig(scene, &gravel, &bed, t, NULL, NULL, &r, &error)
-             : dig_dig_run(&stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
+             : dig_dig_run(host, scene, &gravel, &bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     if (host != NULL) {
