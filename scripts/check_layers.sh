@@ -28,7 +28,8 @@ core                   approach approach_set bed_plan command_line contact curve
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
-files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json machine_yaml model_json
+files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml
+                       model_json
                        recording_csv scene_yaml
 estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench

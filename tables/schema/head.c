@@ -64,8 +64,12 @@ static enum dig_status check_integrity(sqlite3 *const db, const char *const path
     }
     const char *const found = (const char *)sqlite3_column_text(s, 0);
     if (found == NULL || strcmp(found, "ok") != 0) {
+        // SQLite says in which database first, on a line of its own.
+        const char *const line = found != NULL ? strchr(found, '\n') : NULL;
         status = dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
-                               found != NULL ? found : "?");
+                               line != NULL    ? line + 1
+                               : found != NULL ? found
+                                               : "?");
     }
     (void)sqlite3_finalize(s);
 

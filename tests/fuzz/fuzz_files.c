@@ -13,6 +13,7 @@
 #include "files/curves_csv.h"
 #include "files/grid_yaml.h"
 #include "files/identity_json.h"
+#include "files/job_plan.h"
 #include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/model_json.h"
@@ -45,6 +46,12 @@ static enum dig_status read_grid(const char *const path, struct dig_error *const
 {
     struct dig_grid grid;
     return dig_grid_read(path, &grid, e);
+}
+
+static enum dig_status read_job_plan(const char *const path, struct dig_error *const e)
+{
+    struct dig_job_plan plan;
+    return dig_job_plan_read(path, &plan, e);
 }
 
 static enum dig_status read_machine(const char *const path, struct dig_error *const e)
@@ -181,6 +188,7 @@ static struct {
 } target[] = {
     { "scene", "config/scenes/rig.yaml", read_scene, NULL, 0, 0, 0 },
     { "grid", "config/grids/rig.yaml", read_grid, NULL, 0, 0, 0 },
+    { "job plan", "tests/data/formats/plan.yaml", read_job_plan, NULL, 0, 0, 0 },
     { "machine", "config/machines/zx200.yaml", read_machine, NULL, 0, 0, 0 },
     { "rig machine", "config/machines/rig_sensor.yaml", read_machine, NULL, 0, 0, 0 },
     { "force recording", "tests/data/formats/force_recording.csv", read_force, NULL, 0, 0, 0 },

@@ -72,6 +72,9 @@ json() { # NAME ARGUMENT…: NAME is a program, or one and its command
 }
 /usr/bin/python3 -c pass 2>"$work/err" || { skip_check "JSON" "no Python here"; finish; exit; }
 json "digtable list" $table --json
+mkdir "$work/t.sqlite.jobs"
+cp tests/data/formats/plan.yaml "$work/t.sqlite.jobs"
+json "digtable status" "$work/t.sqlite" --json
 json "digtable check" tests/data/formats/table.sqlite --json
 json "digtable show" $table 0 --json
 json "digloop identify" $table ${dig}__simpleA.csv --json

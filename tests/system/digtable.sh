@@ -96,6 +96,14 @@ check "into a table that is sound and complete" is "$code" 0
 digtable export "$work/whole.sqlite" --runs -o "$work/whole_runs.csv"
 digtable export "$work/merged.sqlite" --runs
 check "with the runs of one go, byte by byte" cmp "$work/whole_runs.csv" "$work/out"
+mkdir "$work/shards"
+cp "$work"/shard{1,2,3}.sqlite "$work/shards"
+echo "no table" >"$work/shards/notes.txt"
+digtable merge "$work/folder.sqlite" "$work/shards"
+check "a folder stands for its tables" eval 'is $code 0 && cmp $work/folder.sqlite $work/merged.sqlite'
+rm "$work/shards/"*.sqlite
+digtable merge "$work/none.sqlite" "$work/shards"
+check "one without any is refused" eval 'is $code 2 && grep -q "shards: holds no table" $work/err && [ ! -e $work/none.sqlite ]'
 digtable merge "$work/again.sqlite" "$work"/shard{1,2,3}.sqlite "$work/merged.sqlite"
 check "in any order and with repetitions the file is the same" cmp "$work/merged.sqlite" "$work/again.sqlite"
 digtable generate $scene $grid -o "$work/merged.sqlite"

@@ -45,7 +45,7 @@ refused "import of a CSV with a text" 'curves.csv:3: column Fz_N: "one", expecte
 cp $scene "$work/low.yaml"
 sed -i 's/one,1,1,0/1,1,3.2,0/' "$work/curves.csv"
 refused "import of a dig too deep" 'curves.csv:3: column depth: "3.2", expected a factor of 0.2 to 3' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
-refused "merge without inputs" "expected OUT.sqlite IN.sqlite" merge "$out"
+refused "merge without inputs" "expected OUT.sqlite IN" merge "$out"
 refused "an engine that is not built in" "--engine edem: expected kernel, ode or cuda" generate $scene $grid --engine edem -o "$out"
 refused "a trajectory the scene lacks" "trajectories: no \"waltz\", expected one of: scrape" dig $scene --trajectory waltz --friction .5 --rolling .2 --density 2500 -o "$out"
 refused "a scene that is not there" "absent.yaml: No such file" dig "$work/absent.yaml" "${dig[@]}" -o "$out"

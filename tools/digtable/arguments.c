@@ -4,6 +4,7 @@
 #include "core/help.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "files/job_plan.h"
 #include "tools/digtable/help.h"
 
 #include <getopt.h>
@@ -120,6 +121,27 @@ static bool take_engine(const char *const value, enum dig_engine_choice *const e
     return false;
 }
 
+// --time 1:00:00 is two words for sbatch, --sbatch-arg one.
+static const char *take_submit_option(const int option, const char *const value,
+                                      struct dig_arguments *const a)
+{
+    if (option == OPTION_TASKS) {
+        return dig_cli_count(value, 1, DIG_JOB_TASKS_MAX, &a->tasks) ? NULL : "1 to 10000";
+    }
+    if (option == OPTION_SLURM) {
+        a->slurm = true;
+        return NULL;
+    }
+    if (a->slurm_options + 2 > DIG_SLURM_OPTIONS_MAX) {
+        return "fewer words for sbatch";
+    }
+    if (option != OPTION_SBATCH_ARG) {
+        a->slurm_option[a->slurm_options++] = option == OPTION_TIME ? "--time" : "--partition";
+    }
+    a->slurm_option[a->slurm_options++] = value;
+    return NULL;
+}
+
 // One option into the arguments; NULL, or what was expected instead of its value.
 static const char *take_option(const int option, const char *const value,
                                struct dig_arguments *const a)
@@ -161,6 +183,11 @@ static const char *take_option(const int option, const char *const value,
         ok = dig_number_read(value, 0.0, 1e9, &a->time_limit_s);
         return ok ? NULL : "seconds, >= 0";
     case OPTION_SHARD: return parse_shard(value, a) ? NULL : "I/N, I from 1 to N";
+    case OPTION_TASKS:
+    case OPTION_SLURM:
+    case OPTION_TIME:
+    case OPTION_PARTITION:
+    case OPTION_SBATCH_ARG: return take_submit_option(option, value, a);
     case OPTION_CHANNEL:
         ok = parse_channel(value, &a->channel);
         return ok ? NULL : "My, Fx, Fz or carried";

@@ -13,7 +13,8 @@
 
 enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 
-#define DIG_POSITIONALS_MAX 1024 // tables to merge
+#define DIG_POSITIONALS_MAX   1024 // tables to merge
+#define DIG_SLURM_OPTIONS_MAX 32   // words for sbatch
 
 /// Engines of --engine.
 enum dig_engine_choice { DIG_ENGINE_KERNEL, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
@@ -28,10 +29,13 @@ struct dig_arguments {
     double                 young_Pa;                // NaN: the scene's
     unsigned long          seed, workers, packings; // 0 packings: the grid's
     unsigned long          shard, shards;           // from 0; 0 shards: all
+    unsigned long          tasks;                   // 0: not given
+    const char            *slurm_option[DIG_SLURM_OPTIONS_MAX];
+    size_t                 slurm_options;
     double                 time_limit_s;
     enum dig_channel       channel;
     enum dig_engine_choice engine;
-    bool                   csv, json, runs, effects, complete, quiet;
+    bool                   csv, json, runs, effects, complete, quiet, slurm;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };

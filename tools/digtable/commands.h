@@ -7,6 +7,8 @@
 
 int dig_cli_dig(const struct dig_arguments *a);
 int dig_cli_generate(const struct dig_arguments *a);
+int dig_cli_submit(const struct dig_arguments *a);
+int dig_cli_status(const struct dig_arguments *a);
 int dig_cli_list(const struct dig_arguments *a);
 int dig_cli_check(const struct dig_arguments *a);
 int dig_cli_seal(const struct dig_arguments *a);

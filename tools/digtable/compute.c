@@ -1,17 +1,15 @@
 // digtable dig and digtable generate.
 
 #include "core/text.h"
-#include "files/grid_yaml.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
-#include "offline_dem/device/engine_cuda.h"
 #include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/dig/input_checks.h"
-#include "offline_dem/reference/engine_ode.h"
 #include "offline_dem/sweep/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
+#include "tools/digtable/engine.h"
 #include "tools/digtable/plan.h"
 #include "tools/digtable/progress.h"
 #include "tools/digtable/saved_bed.h"
@@ -45,16 +43,6 @@ static int report_dig(void *const context, const double done_s, const double tot
     return *w->stop == 0;
 }
 
-static struct dig_engine engine_of(const struct dig_arguments *const a)
-{
-    switch (a->engine) {
-    case DIG_ENGINE_ODE: return dig_engine_ode();
-    case DIG_ENGINE_CUDA: return dig_engine_cuda();
-    case DIG_ENGINE_KERNEL: break;
-    }
-    return dig_engine_kernel();
-}
-
 static enum dig_status get_bed(const struct dig_arguments *const a,
                                const struct dig_scene *const     scene,
                                const struct dig_gravel *const gravel, struct dig_bed *const bed,
@@ -74,7 +62,8 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
     struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "bed",
                                          a->stop };
     const struct dig_progress  progress = { report_dig, &watch };
-    const enum dig_status status = engine_of(a).pour(scene, gravel, a->seed, &progress, bed, error);
+    const enum dig_status      status =
+        dig_cli_engine(a).pour(scene, gravel, a->seed, &progress, bed, error);
     if (status == DIG_OK && watch.line.tty) {
         dig_progress_end(&watch.line, true);
     }
@@ -95,8 +84,8 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
         status = dig_cli_bed_write(a->save_bed, bed, error);
     }
     if (status == DIG_OK) {
-        status =
-            engine_of(a).dig(scene, gravel, bed, trajectory, a->vtk, &progress, &recording, error);
+        status = dig_cli_engine(a).dig(scene, gravel, bed, trajectory, a->vtk, &progress,
+                                       &recording, error);
     }
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);
@@ -234,7 +223,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
 {
     struct dig_error        error  = { "" };
     struct dig_store       *store  = NULL;
-    const struct dig_engine engine = engine_of(a);
+    const struct dig_engine engine = dig_cli_engine(a);
     enum dig_status         status = dig_plan_check(plan, scene, &engine, &error);
     if (status == DIG_OK) {
         status = dig_store_create(a->output, scene, &store, &error);
@@ -264,27 +253,17 @@ int dig_cli_generate(const struct dig_arguments *const a)
     if (a->output == NULL) {
         return dig_cli_bad_usage("generate: %s missing", "-o TABLE.sqlite");
     }
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    struct dig_grid  grid;
-    struct dig_plan  plan   = { .shard = a->shard, .shards = a->shards };
-    enum dig_status  status = dig_scene_read(a->positional[0], &scene, &error);
-    if (status == DIG_OK) {
-        status = dig_grid_read(a->positional[1], &grid, &error);
-    }
-    if (status == DIG_OK) {
-        status = dig_grid_trajectories(a->positional[1], &grid, &scene, &plan.trajectories,
-                                       plan.trajectory, &error);
-    }
+    struct dig_error       error = { "" };
+    struct dig_scene       scene;
+    struct dig_plan        plan   = { .points = 0 };
+    struct dig_plan_point *point  = NULL;
+    const enum dig_status  status = dig_plan_read(a->positional[0], a->positional[1], a->packings,
+                                                  &scene, &plan, &point, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    struct dig_plan_point *const point = dig_plan_points(&grid, a->packings, &plan.points);
-    if (point == NULL) {
-        (void)dig_error_set(&error, DIG_ENOMEM, "no memory for the grid");
-        return dig_cli_work_failed(DIG_ENOMEM, &error);
-    }
-    plan.point     = point;
+    plan.shard     = a->shard;
+    plan.shards    = a->shards;
     const int code = sweep(a, &scene, &plan);
     free(point);
     return code;

@@ -1,7 +1,10 @@
 #include "tools/digtable/plan.h"
 
+#include "core/sha256.h"
+#include "files/scene_yaml.h"
 #include "offline_dem/dig/input_checks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -137,6 +140,66 @@ struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const 
     }
     *count = n;
     return point;
+}
+
+enum dig_status dig_plan_read(const char *const scene_path, const char *const grid_path,
+                              const size_t packings, struct dig_scene *const scene,
+                              struct dig_plan *const plan, struct dig_plan_point **const point,
+                              struct dig_error *const error)
+{
+    struct dig_scene read;
+    struct dig_grid  grid;
+    struct dig_plan  made   = { .points = 0 };
+    enum dig_status  status = dig_scene_read(scene_path, &read, error);
+    if (status == DIG_OK) {
+        status = dig_grid_read(grid_path, &grid, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_grid_trajectories(grid_path, &grid, &read, &made.trajectories, made.trajectory,
+                                       error);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
+    struct dig_plan_point *const points = dig_plan_points(&grid, packings, &made.points);
+    if (points == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the grid", grid_path);
+    }
+    made.point = points;
+    *scene     = read;
+    *plan      = made;
+    *point     = points;
+    return DIG_OK;
+}
+
+void dig_plan_hash(const struct dig_plan *const plan, const struct dig_scene *const scene,
+                   const struct dig_engine *const engine, char hex[const 65])
+{
+    struct dig_sha256 hash;
+    char              line[400];
+    char              scene_hash[65];
+    uint8_t           digest[32];
+    dig_sha256_init(&hash);
+    dig_scene_hash(scene, scene_hash);
+    int length =
+        snprintf(line, sizeof line, "scene=%s engine=%s version=%s trajectories=", scene_hash,
+                 engine->name, engine->version);
+    dig_sha256_add(&hash, line, (size_t)length);
+    for (size_t i = 0; i < plan->trajectories; i++) {
+        length = snprintf(line, sizeof line, "%zu,", plan->trajectory[i]);
+        dig_sha256_add(&hash, line, (size_t)length);
+    }
+    for (size_t i = 0; i < plan->points; i++) {
+        const struct dig_plan_point *const p = &plan->point[i];
+        length = snprintf(line, sizeof line, "\n%.17g %.17g %.17g %s %.17g %.17g %.17g %zu",
+                          p->gravel.value[0], p->gravel.value[1], p->gravel.value[2], p->effect,
+                          p->magnitude, p->approach.depth, p->approach.attack_rad, p->packings);
+        dig_sha256_add(&hash, line, (size_t)length);
+    }
+    dig_sha256_finish(&hash, digest);
+    for (size_t i = 0; i < sizeof digest; i++) {
+        (void)snprintf(&hex[2 * i], 3, "%02x", digest[i]);
+    }
 }
 
 // Every trajectory of the plan, dug so.

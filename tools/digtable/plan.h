@@ -12,6 +12,19 @@
 /// unless it is 0. NULL without memory.
 struct dig_plan_point *dig_plan_points(const struct dig_grid *grid, size_t packings, size_t *count);
 
+/// Reads a scene and a grid into a plan in one part; plan->point is *point, which the caller frees.
+/// Refuses what dig_scene_read() and dig_grid_read() refuse, and a trajectory the scene lacks. All
+/// three are written on success only.
+DIG_MUST_CHECK enum dig_status dig_plan_read(const char *scene_path, const char *grid_path,
+                                             size_t packings, struct dig_scene *scene,
+                                             struct dig_plan *plan, struct dig_plan_point **point,
+                                             struct dig_error *error);
+
+/// The SHA-256 of all that the runs of the plan follow from: scene, engine with its version, points
+/// in their order, trajectories. Not of its shards.
+void dig_plan_hash(const struct dig_plan *plan, const struct dig_scene *scene,
+                   const struct dig_engine *engine, char hex[65]);
+
 /// Refuses a point whose effect the engine cannot put into the scene at that magnitude, and one
 /// whose approach takes a trajectory of the plan out of the box or starts it in the ground.
 DIG_MUST_CHECK enum dig_status dig_plan_check(const struct dig_plan   *plan,

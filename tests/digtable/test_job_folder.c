@@ -1,0 +1,102 @@
+// Tests for tools/digtable/job_folder.c: which folder is meant, and its names. What a submit makes
+// of it, and refuses, is in tests/system/digtable_jobs.sh.
+
+#include "tools/digtable/job_folder.h"
+
+#include "tests/scratch.h"
+
+#include <sys/stat.h>
+
+static int fresh(void **state)
+{
+    char path[300];
+    char plan[400];
+    if (scratch_setup(state) != 0) {
+        return -1;
+    }
+    (void)snprintf(path, sizeof path, "%s/t.sqlite.jobs", scratch_dir);
+    (void)snprintf(plan, sizeof plan, "%s/plan.yaml", path);
+    size_t      size = 0;
+    char *const text = scratch_read("tests/data/formats/plan.yaml", &size);
+    if (mkdir(path, 0777) != 0) {
+        return -1;
+    }
+    FILE *const file = fopen(plan, "w");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+    free(text);
+    return 0;
+}
+
+static int gone(void **state)
+{
+    char path[300];
+    (void)unlink(scratch_path("t.sqlite.jobs/plan.yaml"));
+    (void)snprintf(path, sizeof path, "%s/t.sqlite.jobs", scratch_dir);
+    (void)rmdir(path);
+    return scratch_teardown(state);
+}
+
+static void table_and_folder_mean_the_same(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "t.sqlite", "t.sqlite.jobs", "t.sqlite.jobs/",
+                                         "t.sqlite.jobs///" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct dig_job_folder folder;
+        char                  path[PATH_MAX];
+        struct dig_error      error = { "" };
+        if (dig_job_folder_open(scratch_path(names[i]), &folder, &error) != DIG_OK) {
+            fail_msg("%s: %s", names[i], error.text);
+        }
+        assert_string_equal(folder.table, scratch_path("t.sqlite"));
+        assert_string_equal(folder.path, scratch_path("t.sqlite.jobs"));
+        assert_int_equal(folder.plan.tasks, 3);
+        assert_string_equal(dig_job_folder_of(&folder, "part", 7, "sqlite", path),
+                            scratch_path("t.sqlite.jobs/part/7.sqlite"));
+        assert_string_equal(dig_job_folder_of(&folder, "log", DIG_JOB_MERGE, "log", path),
+                            scratch_path("t.sqlite.jobs/log/merge.log"));
+    }
+}
+
+static void what_names_no_table_is_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "", ".", "..", "a/..", "two\nlines", "\033[31m", "none" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct dig_job_folder folder = { .lock_fd = 77 };
+        struct dig_error      error  = { "" };
+        assert_int_not_equal(dig_job_folder_open(names[i], &folder, &error), DIG_OK);
+        assert_int_equal(folder.lock_fd, 77);
+        assert_string_not_equal(error.text, "");
+    }
+}
+
+// Its files' names are longer yet.
+static void a_path_without_room_is_refused(void **state)
+{
+    (void)state;
+    static char           name[2 * PATH_MAX];
+    struct dig_job_folder folder;
+    struct dig_error      error = { "" };
+    memset(name, 'a', sizeof name - 1);
+    name[0] = '/';
+    for (size_t length = PATH_MAX - 60; length < sizeof name; length += 37) {
+        const char at = name[length];
+        name[length]  = '\0';
+        assert_int_not_equal(dig_job_folder_open(name, &folder, &error), DIG_OK);
+        name[length] = at;
+    }
+}
+
+int main(void)
+{
+#define EACH(test) cmocka_unit_test_setup_teardown(test, fresh, gone)
+    const struct CMUnitTest tests[] = {
+        EACH(table_and_folder_mean_the_same),
+        EACH(what_names_no_table_is_refused),
+        EACH(a_path_without_room_is_refused),
+    };
+    return cmocka_run_group_tests_name("job_folder", tests, NULL, NULL);
+}

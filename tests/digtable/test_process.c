@@ -1,0 +1,144 @@
+// Tests for tools/digtable/process.c
+
+#include "tools/digtable/process.h"
+
+#include "tests/scratch.h"
+
+#include <errno.h>
+#include <unistd.h>
+
+static FILE *out;
+
+static int fresh(void **state)
+{
+    (void)state;
+    out = tmpfile();
+    return out != NULL ? 0 : -1;
+}
+
+static int done(void **state)
+{
+    (void)state;
+    return fclose(out);
+}
+
+static void arguments_arrive_as_they_are(void **state)
+{
+    (void)state;
+    const char *const        argv[] = { "printf", "%s|", "a b", "it's \"$HOME\"; `x` *", "", NULL };
+    const struct dig_process process = { .argv = argv, .out = out };
+    char                     line[80];
+    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "a b|it's \"$HOME\"; `x` *||");
+}
+
+static void a_program_that_is_not_there_is_bad_input(void **state)
+{
+    (void)state;
+    const char *const        argv[]  = { "no-such-program-anywhere", NULL };
+    const struct dig_process process = { .argv = argv, .out = out };
+    struct dig_error         error   = { "" };
+    assert_int_equal(dig_process_run(&process, &error), DIG_EINVAL);
+    assert_contains(error.text, "no-such-program-anywhere: No such file");
+}
+
+static void one_that_fails_is_told_by_its_last_words(void **state)
+{
+    (void)state;
+    const char *const        argv[]  = { "sh", "-c",
+                                         "echo out; echo one >&2; echo two >&2; echo >&2; exit 3", NULL };
+    const struct dig_process process = { .argv = argv, .out = out };
+    struct dig_error         error   = { "" };
+    assert_int_equal(dig_process_run(&process, &error), DIG_EIO);
+    assert_string_equal(error.text, "sh: two");
+}
+
+static void part_of_the_environment_is_kept_from_it(void **state)
+{
+    (void)state;
+    assert_int_equal(setenv("DIG_SEEN", "seen", 1), 0);
+    assert_int_equal(setenv("HIDE_THIS", "hidden", 1), 0);
+    const char *const  argv[] = { "sh", "-c", "echo $DIG_SEEN $HIDE_THIS.", NULL };
+    char               line[80];
+    struct dig_process process = { .argv = argv, .out = out };
+    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "seen hidden.");
+    process.without = "HIDE_";
+    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "seen .");
+}
+
+static void it_reads_what_it_is_given(void **state)
+{
+    (void)state;
+    FILE *const in = tmpfile();
+    char        line[80];
+    assert_non_null(in);
+    assert_true(fputs("7\n", in) >= 0);
+    rewind(in);
+    const char *const        argv[]  = { "cat", NULL };
+    const struct dig_process process = { .argv = argv, .in = in, .out = out };
+    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "7");
+    (void)fclose(in);
+}
+
+static volatile sig_atomic_t stop;
+
+static void request_stop(const int signal)
+{
+    (void)signal;
+    stop = 1;
+}
+
+// The shell's own child would sleep on for an hour; once it is there, the shell asks to be stopped.
+static void stopped_it_ends_with_all_it_started(void **state)
+{
+    (void)state;
+    const struct sigaction action = { .sa_handler = request_stop };
+    const char *const argv[] = { "sh", "-c", "sleep 3600 & echo $!; kill -USR1 $PPID; wait", NULL };
+    const struct dig_process process = { .argv = argv, .out = out, .stop = &stop };
+    char                     line[80];
+    char                     path[64];
+    assert_int_equal(sigaction(SIGUSR1, &action, NULL), 0);
+    assert_int_equal(dig_process_run(&process, NULL), DIG_EIO);
+    dig_process_last_line(out, sizeof line, line);
+    const long child = strtol(line, NULL, 10);
+    assert_true(child > 0);
+    (void)snprintf(path, sizeof path, "/proc/%ld/cmdline", child);
+    FILE *const file = fopen(path, "r");
+    assert_true(file == NULL || fgetc(file) == EOF); // gone, or dead and not yet waited for
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+}
+
+static void the_last_line_is_cut_and_clean(void **state)
+{
+    (void)state;
+    char line[8];
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "");
+    assert_true(fputs("first\na\033[31mlong line\n \t\n\n", out) >= 0);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "a?[31ml");
+}
+
+int main(void)
+{
+#define EACH(test) cmocka_unit_test_setup_teardown(test, fresh, done)
+    const struct CMUnitTest tests[] = {
+        EACH(arguments_arrive_as_they_are),
+        EACH(a_program_that_is_not_there_is_bad_input),
+        EACH(one_that_fails_is_told_by_its_last_words),
+        EACH(part_of_the_environment_is_kept_from_it),
+        EACH(it_reads_what_it_is_given),
+        EACH(stopped_it_ends_with_all_it_started),
+        EACH(the_last_line_is_cut_and_clean),
+    };
+    return cmocka_run_group_tests_name("process", tests, NULL, NULL);
+}

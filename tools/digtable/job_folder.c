@@ -1,0 +1,323 @@
+#include "tools/digtable/job_folder.h"
+
+#include "core/name.h"
+#include "core/sha256.h"
+#include "files/text/whole.h"
+#include "tools/digtable/plan.h"
+
+#include <assert.h>
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char suffix[] = ".jobs";
+
+#define NAME_ROOM 40 // for the longest name in the folder
+
+const char *dig_job_folder_file(const struct dig_job_folder *const folder, const char *const name,
+                                char path[const PATH_MAX])
+{
+    const int length = snprintf(path, PATH_MAX, "%s/%s", folder->path, name);
+    assert(length > 0 && length < PATH_MAX);
+    (void)length;
+    return path;
+}
+
+const char *dig_job_folder_of(const struct dig_job_folder *const folder, const char *const kind,
+                              const size_t task, const char *const end, char path[const PATH_MAX])
+{
+    char name[64];
+    if (task == DIG_JOB_MERGE) {
+        (void)snprintf(name, sizeof name, "%s/merge.%s", kind, end);
+    } else {
+        (void)snprintf(name, sizeof name, "%s/%zu.%s", kind, task, end);
+    }
+    return dig_job_folder_file(folder, name, path);
+}
+
+// Names table and folder, with their whole paths; neither need be there.
+static enum dig_status find(const char *const table, struct dig_job_folder *const folder,
+                            struct dig_error *const error)
+{
+    char              here[PATH_MAX] = "";
+    const char *const slash          = strrchr(table, '/');
+    const char *const name           = slash != NULL ? slash + 1 : table;
+    if (!dig_path_ok(table) || strcmp(name, "") == 0 || strcmp(name, ".") == 0 ||
+        strcmp(name, "..") == 0) {
+        return dig_error_set(error, DIG_EINVAL, "%s: expected " DIG_PATH_RULE, table);
+    }
+    if (table[0] != '/' && getcwd(here, sizeof here) == NULL) {
+        return dig_error_set(error, DIG_EIO, "the working folder: %s", strerror(errno));
+    }
+    const int length = snprintf(folder->path, sizeof folder->path, "%s%s%s%s", here,
+                                here[0] != '\0' ? "/" : "", table, suffix);
+    if (length < 0 || (size_t)length + NAME_ROOM >= sizeof folder->path) {
+        return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", table);
+    }
+    memcpy(folder->table, folder->path, (size_t)length + 1);
+    folder->table[(size_t)length - (sizeof suffix - 1)] = '\0';
+    return DIG_OK;
+}
+
+enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folder *const folder,
+                                    struct dig_error *const error)
+{
+    assert(path != NULL && folder != NULL);
+    char                  table[PATH_MAX];
+    char                  file[PATH_MAX];
+    struct dig_job_folder found  = { .lock_fd = -1 };
+    size_t                length = (size_t)snprintf(table, sizeof table, "%s", path);
+    while (length > 1 && length < sizeof table && table[length - 1] == '/') {
+        table[--length] = '\0';
+    }
+    if (length >= sizeof suffix && length < sizeof table &&
+        strcmp(table + length - (sizeof suffix - 1), suffix) == 0) {
+        table[length - (sizeof suffix - 1)] = '\0';
+    }
+    enum dig_status status = find(table, &found, error);
+    if (status == DIG_OK) {
+        status =
+            dig_job_plan_read(dig_job_folder_file(&found, "plan.yaml", file), &found.plan, error);
+    }
+    if (status == DIG_OK) {
+        *folder = found;
+    }
+    return status;
+}
+
+void dig_job_folder_close(struct dig_job_folder *const folder)
+{
+    if (folder->lock_fd >= 0) {
+        (void)close(folder->lock_fd);
+        folder->lock_fd = -1;
+    }
+}
+
+// Nothing in it but what `digtable submit` makes first.
+static bool is_ours(const char *const path)
+{
+    DIR *const dir  = opendir(path);
+    size_t     seen = 0;
+    bool       lock = false;
+    for (const struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;) {
+        lock = lock || strcmp(entry->d_name, "lock") == 0;
+        seen += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 ? 1 : 0;
+    }
+    const bool ours = dir != NULL && (lock || seen == 0);
+    if (dir != NULL) {
+        (void)closedir(dir);
+    }
+    return ours;
+}
+
+// Makes the folder where there is none, and takes its lock.
+static enum dig_status make_and_lock(struct dig_job_folder *const       folder,
+                                     const volatile sig_atomic_t *const stop,
+                                     struct dig_error *const            error)
+{
+    char lock[PATH_MAX];
+    (void)dig_job_folder_file(folder, "lock", lock);
+    if (mkdir(folder->path, 0777) != 0 && errno != EEXIST) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", folder->path, strerror(errno));
+    }
+    if (!is_ours(folder->path)) {
+        return dig_error_set(error, DIG_EINVAL, "%s: is in the way, and not of digtable submit",
+                             folder->path);
+    }
+    folder->lock_fd = open(lock, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (folder->lock_fd < 0) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", lock, strerror(errno));
+    }
+    if (flock(folder->lock_fd, LOCK_EX | LOCK_NB) == 0) {
+        return DIG_OK;
+    }
+    if (errno == EWOULDBLOCK) {
+        (void)fprintf(stderr, "digtable: waiting for another `digtable submit` of this folder\n");
+    }
+    while (flock(folder->lock_fd, LOCK_EX) != 0) {
+        if (errno != EINTR || *stop != 0) {
+            return dig_error_set(error, DIG_EIO, "%s: %s", lock, strerror(errno));
+        }
+    }
+    return DIG_OK;
+}
+
+static enum dig_status copy(const char *const from, const char *const to,
+                            struct dig_error *const error)
+{
+    char           *text   = NULL;
+    size_t          size   = 0;
+    struct dig_out  out    = { .file = NULL };
+    enum dig_status status = dig_file_read(from, &text, &size, error);
+    if (status == DIG_OK) {
+        status = dig_out_open(&out, to, error);
+    }
+    if (status == DIG_OK) {
+        (void)fwrite(text, 1, size, out.file);
+        status = dig_out_commit(&out, error);
+    }
+    free(text);
+    return status;
+}
+
+// A name that no other folder's jobs have, in any queue, wherever this one is moved.
+static void name_job(const struct dig_job_folder *const folder, char job[const DIG_JOB_TEXT_SIZE])
+{
+    char            text[PATH_MAX + 100];
+    char            hex[65];
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    const int length =
+        snprintf(text, sizeof text, "%s %s %lld.%09ld %ld", folder->path, folder->plan.digs_sha256,
+                 (long long)now.tv_sec, now.tv_nsec, (long)getpid());
+    dig_sha256_hex(text, (size_t)length, hex);
+    (void)snprintf(job, DIG_JOB_TEXT_SIZE, "digtable-%.12s", hex);
+}
+
+// plan.yaml comes last: without it the folder is not planned, and the next submit begins anew.
+static enum dig_status fill(const struct dig_job_wanted *const wanted,
+                            struct dig_job_folder *const folder, struct dig_error *const error)
+{
+    static const char *const rooms[] = { "part", "shards", "log" };
+    char                     path[PATH_MAX];
+    if (access(folder->table, F_OK) == 0) {
+        return dig_error_set(error, DIG_EINVAL, "%s: exists, expected a new table", folder->table);
+    }
+    for (size_t i = 0; i < sizeof rooms / sizeof rooms[0]; i++) {
+        if (mkdir(dig_job_folder_file(folder, rooms[i], path), 0777) != 0 && errno != EEXIST) {
+            return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+        }
+    }
+    name_job(folder, folder->plan.job);
+    enum dig_status status =
+        copy(wanted->scene_path, dig_job_folder_file(folder, "scene.yaml", path), error);
+    if (status == DIG_OK) {
+        status = copy(wanted->grid_path, dig_job_folder_file(folder, "grid.yaml", path), error);
+    }
+    return status == DIG_OK ? dig_job_plan_write(dig_job_folder_file(folder, "plan.yaml", path),
+                                                 &folder->plan, error)
+                            : status;
+}
+
+// The plan that is there against the one wanted.
+static enum dig_status compare(const struct dig_job_wanted *const wanted,
+                               const struct dig_job_plan *const   as_wanted,
+                               struct dig_job_folder *const folder, struct dig_error *const error)
+{
+    char                             path[PATH_MAX];
+    char                             tasks[2][24];
+    const struct dig_job_plan *const there = &folder->plan;
+    const enum dig_status            status =
+        dig_job_plan_read(dig_job_folder_file(folder, "plan.yaml", path), &folder->plan, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    (void)snprintf(tasks[0], sizeof tasks[0], "%zu", there->tasks);
+    (void)snprintf(tasks[1], sizeof tasks[1], "%zu",
+                   wanted->tasks != 0 ? wanted->tasks : there->tasks);
+    const char *const same[][3] = {
+        { "the engine", there->engine, as_wanted->engine },
+        { "version", there->version, as_wanted->version },
+        { "another scene or grid, digs", there->digs_sha256, as_wanted->digs_sha256 },
+        { "--tasks", tasks[0], tasks[1] },
+    };
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        if (strcmp(same[i][1], same[i][2]) != 0) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: planned with %s %.12s, not %.12s, expected the same or a new "
+                                 "table",
+                                 folder->path, same[i][0], same[i][1], same[i][2]);
+        }
+    }
+    return DIG_OK;
+}
+
+// The copies that the tasks read are still what was planned.
+static enum dig_status check_copies(const struct dig_job_wanted *const wanted,
+                                    const struct dig_job_folder *const folder,
+                                    struct dig_error *const            error)
+{
+    char                   scene_path[PATH_MAX];
+    char                   grid_path[PATH_MAX];
+    char                   hash[65];
+    struct dig_scene       scene;
+    struct dig_plan        plan;
+    struct dig_plan_point *point = NULL;
+    const enum dig_status  status =
+        dig_plan_read(dig_job_folder_file(folder, "scene.yaml", scene_path),
+                      dig_job_folder_file(folder, "grid.yaml", grid_path), wanted->packings, &scene,
+                      &plan, &point, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    dig_plan_hash(&plan, &scene, wanted->engine, hash);
+    free(point);
+    return strcmp(hash, folder->plan.digs_sha256) == 0
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "%s: changed, or %s: expected them as they were planned", scene_path,
+                               grid_path);
+}
+
+static enum dig_status plan_of(const struct dig_job_wanted *const wanted,
+                               struct dig_job_plan *const plan, struct dig_error *const error)
+{
+    struct dig_job_plan made = { .trajectories = wanted->plan->trajectories };
+    for (size_t i = 0; i < wanted->plan->points; i++) {
+        made.beds += wanted->plan->point[i].packings;
+    }
+    // A queue takes 1000 tasks an array unless its owner says otherwise (MaxArraySize 1001).
+    made.tasks = wanted->tasks != 0 ? wanted->tasks : made.beds < 1000 ? made.beds : 1000;
+    if (made.tasks > made.beds) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "--tasks %zu: the grid has %zu beds, expected no "
+                             "more tasks",
+                             made.tasks, made.beds);
+    }
+    (void)snprintf(made.engine, sizeof made.engine, "%s", wanted->engine->name);
+    (void)snprintf(made.version, sizeof made.version, "%s", wanted->engine->version);
+    dig_plan_hash(wanted->plan, wanted->scene, wanted->engine, made.digs_sha256);
+    *plan = made;
+    return DIG_OK;
+}
+
+enum dig_status dig_job_folder_plan(const char *const                  table,
+                                    const struct dig_job_wanted *const wanted,
+                                    const volatile sig_atomic_t *const stop,
+                                    struct dig_job_folder *const       folder,
+                                    struct dig_error *const            error)
+{
+    assert(table != NULL && wanted != NULL && folder != NULL);
+    struct dig_job_folder made = { .lock_fd = -1 };
+    struct dig_job_plan   plan;
+    char                  path[PATH_MAX];
+    enum dig_status       status = find(table, &made, error);
+    if (status == DIG_OK) {
+        status = plan_of(wanted, &plan, error);
+    }
+    if (status == DIG_OK) {
+        status = make_and_lock(&made, stop, error);
+    }
+    if (status == DIG_OK) {
+        made.plan = plan;
+        status    = access(dig_job_folder_file(&made, "plan.yaml", path), F_OK) == 0
+                        ? compare(wanted, &plan, &made, error)
+                        : fill(wanted, &made, error);
+    }
+    if (status == DIG_OK) {
+        status = check_copies(wanted, &made, error);
+    }
+    if (status != DIG_OK) {
+        dig_job_folder_close(&made);
+        return status;
+    }
+    *folder = made;
+    return DIG_OK;
+}
