@@ -135,7 +135,7 @@ bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
 {
     const struct dig_lines_column *const c     = &lines->column[column];
     const struct dig_effect *const       known = dig_effect_of(c->effect);
-    return known != NULL && known->parameter[c->parameter].bent; // an error of the file is not
+    return known != NULL && known->parameter[c->parameter].bent; // a file error is no effect
 }
 
 void dig_lines_correct(const struct dig_lines *const lines, const double at[],

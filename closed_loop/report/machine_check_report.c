@@ -6,12 +6,12 @@
 
 #include <assert.h>
 
-enum { COLUMNS = 80, SENTENCE = 4000 };
+enum { COLUMNS = 80, ANSWER = 39, SENTENCE = 4000 };
 
-// A text in lines of 80 columns, the later ones indented.
-static void put_wrapped(FILE *const to, const int indent, const char *text)
+// A text in lines of 80 columns behind what stands in the first, the later ones indented.
+static void put_wrapped(FILE *const to, const int first, const int indent, const char *text)
 {
-    int column = 0;
+    int column = first;
     while (*text != '\0') {
         int word = 0;
         while (text[word] != '\0' && text[word] != ' ') {
@@ -41,10 +41,12 @@ static void put_line(FILE *const to, const struct dig_check_subject *const subje
 {
     struct dig_check_words words;
     dig_check_say(subject, item, &words);
-    (void)fprintf(to, "%-9s %-28s %s\n", dig_check_verdict_name(item->verdict), words.question,
-                  words.answer);
+    const int answer =
+        fprintf(to, "%-9s %-28s", dig_check_verdict_name(item->verdict), words.question);
+    put_wrapped(to, answer, ANSWER, words.answer);
     if (words.todo[0] != '\0') {
-        (void)fprintf(to, "          -> %s\n", words.todo);
+        const int indent = fprintf(to, "          ->");
+        put_wrapped(to, indent, indent + 1, words.todo);
     }
     if (item->or_item >= 0) {
         struct dig_check_words other;
@@ -59,7 +61,7 @@ void dig_machine_check_text(const struct dig_check_subject *const subject, FILE 
     char sentence[SENTENCE];
     dig_check_sentence(subject, sizeof sentence, sentence);
     dig_text_clean(sentence);
-    put_wrapped(to, 0, sentence);
+    put_wrapped(to, 0, 0, sentence);
     (void)fputc('\n', to);
     for (size_t i = 0; i < subject->check->items; i++) {
         put_line(to, subject, &subject->check->item[i]);

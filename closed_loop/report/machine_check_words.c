@@ -74,13 +74,31 @@ static void say_stuck(const struct dig_check_subject *const subject,
     say(words->todo, "sensor or gateway stands; what it read there was left out");
 }
 
+// Angles are shown as they are read best, which need not be how they stand in the recording.
+static void say_reading(const struct dig_reading *const best, const int joint,
+                        char text[DIG_CHECK_TEXT_SIZE])
+{
+    const double zero_deg = degrees(best->zero_rad[joint]);
+    const bool   moved    = fabs(zero_deg) > 0.0;
+    text[0]               = '\0';
+    if (best->turned[joint] && moved) {
+        say(text, " (sign turned, then %+.0f deg)", -zero_deg);
+    } else if (best->turned[joint]) {
+        say(text, " (sign turned)");
+    } else if (moved) {
+        say(text, " (%+.0f deg on what was read)", -zero_deg);
+    }
+}
+
 static void say_moves(const struct dig_check_subject *const subject,
                       const struct dig_check_item *const item, struct dig_check_words *const words)
 {
     const double *const rad = subject->check->angles_rad[item->of];
+    char                read[DIG_CHECK_TEXT_SIZE];
+    say_reading(&subject->check->reading.best, item->of, read);
     say(words->question, "%s moves", joint_of(item));
-    say(words->answer, "by %.0f deg, from %.0f to %.0f", degrees(item->value), degrees(rad[0]),
-        degrees(rad[1]));
+    say(words->answer, "by %.0f deg, from %.0f to %.0f%s", degrees(item->value), degrees(rad[0]),
+        degrees(rad[1]), read);
     say(words->todo, "move it by %.0f deg or more: nothing of it is judged",
         degrees(item->tolerance));
 }
@@ -188,8 +206,9 @@ static void say_zero(const struct dig_check_subject *const subject,
     (void)subject;
     say(words->question, "%s angle reads more by", joint_of(item));
     say_figure(item, DIG_RAD_PER_DEG, 2, "deg", words->answer);
-    say(words->todo, "offset of %s_rad in the signal map: %+.4f rad more", joint_of(item),
-        -item->value);
+    // The map adds the offset before it turns the sign.
+    say(words->todo, "offset of %s_rad in the signal map: %+.4f rad more; with sign: -1, %+.4f",
+        joint_of(item), -item->value, item->value);
 }
 
 static void say_factor(const struct dig_check_subject *const subject,
@@ -207,8 +226,10 @@ static void say_offset(const struct dig_check_subject *const subject,
     (void)subject;
     say(words->question, "%s head reads more by", joint_of(item));
     say_figure(item, bar_Pa, 2, "bar", words->answer);
-    say(words->todo, "or the rod side %+.2f bar: see which is not 0 without pressure",
-        item->at_rod / bar_Pa);
+    say(words->todo,
+        "transmitter; or in the signal map, offset of %s_head_Pa %+.3g Pa more, or of %s_rod_Pa "
+        "%+.3g: see which is not 0 without pressure",
+        joint_of(item), -item->value, joint_of(item), -item->at_rod);
 }
 
 static void say_weight(const struct dig_check_subject *const subject,

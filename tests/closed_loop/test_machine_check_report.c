@@ -3,6 +3,7 @@
 
 #include "closed_loop/report/machine_check_report.h"
 
+#include "core/units.h"
 #include "files/machine_yaml.h"
 #include "files/yaml/yaml_tree.h"
 #include "tests/testlib.h"
@@ -103,8 +104,43 @@ static void every_question_is_asked_answered_and_when_wrong_says_what_to_do(void
     dig_check_say(&subject, offset, &words);
     assert_string_equal(words.question, "boom head reads more by");
     assert_string_equal(words.answer, "+19.70 +-0.40 bar (allowed 1.70)");
-    assert_non_null(strstr(words.todo, "+3.00 bar"));
+    assert_non_null(strstr(words.todo, "of boom_head_Pa -1.97e+06 Pa more"));
+    assert_non_null(strstr(words.todo, "of boom_rod_Pa -3e+05"));
     check.items--;
+}
+
+static void an_offset_is_told_for_either_sign_of_the_map(void **state)
+{
+    (void)state;
+    struct dig_check_item *const zero = add(DIG_CHECK_ZERO, DIG_JOINT_ARM, DIG_CHECK_WRONG);
+    struct dig_check_words       words;
+    zero->value = 0.25;
+    dig_check_say(&subject, zero, &words);
+    assert_string_equal(words.todo, "offset of arm_rad in the signal map: -0.2500 rad more; with "
+                                    "sign: -1, +0.2500");
+    check.items--;
+}
+
+static void a_range_says_how_it_was_read(void **state)
+{
+    (void)state;
+    struct dig_machine_air_check   turned = { .items = 0 };
+    const struct dig_check_subject read   = { &machine, "m.yaml", "a.csv", &turned };
+    const struct dig_check_item    item   = { .question = DIG_CHECK_MOVES,
+                                              .of       = DIG_JOINT_BOOM,
+                                              .verdict  = DIG_CHECK_OK };
+    struct dig_check_words         words;
+    dig_check_say(&read, &item, &words);
+    assert_null(strchr(words.answer, '('));
+    turned.reading.best.turned[DIG_JOINT_BOOM] = true;
+    dig_check_say(&read, &item, &words);
+    assert_non_null(strstr(words.answer, "(sign turned)"));
+    turned.reading.best.zero_rad[DIG_JOINT_BOOM] = DIG_RAD_PER_DEG * 10.0;
+    dig_check_say(&read, &item, &words);
+    assert_non_null(strstr(words.answer, "(sign turned, then -10 deg)"));
+    turned.reading.best.turned[DIG_JOINT_BOOM] = false;
+    dig_check_say(&read, &item, &words);
+    assert_non_null(strstr(words.answer, "(-10 deg on what was read)"));
 }
 
 static void nothing_is_wider_than_80_columns(void **state)
@@ -204,6 +240,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_question_is_asked_answered_and_when_wrong_says_what_to_do),
+        cmocka_unit_test(an_offset_is_told_for_either_sign_of_the_map),
+        cmocka_unit_test(a_range_says_how_it_was_read),
         cmocka_unit_test(nothing_is_wider_than_80_columns),
         cmocka_unit_test(what_cannot_be_told_apart_is_told_together),
         cmocka_unit_test(a_file_without_fault_fits_in_one_sentence),

@@ -38,6 +38,19 @@ json() { check "$1 $2 --json is JSON" gives_json "$@"; } # TOOL ARGUMENT…
 json digloop identify "$table" "$reference"__simpleA.csv
 json digloop predict "$table" --identified "$work/id.json" --trajectory actual --measured "$reference"__actual.csv
 json digloop predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/next.csv"
+json digloop predict "$table" --identified "$work/id.json" --trajectory actual --machine config/machines/zx200_trench.yaml
+"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --json --machine config/machines/zx200_trench.yaml \
+    >"$work/machine.txt" 2>"$work/err"
+# A bucket ten times as long: moments and energies 10^4 times, times the root of 10.
+check "by a machine, peak and energy are lambda^4 times the table's" awk '
+    function of(key) { return match(text, "\"" key "\": [0-9.e+-]+") ? substr(text, RSTART + length(key) + 4, RLENGTH) + 0 : 0 }
+    /"machine": / { text = $0; big = of("peak_Nm"); work = of("energy_J"); lambda = of("lambda"); long = of("duration_s") }
+    NR == 1 { text = $0; small = of("peak_Nm"); less = of("energy_J") }
+    END { exit !((lambda - 10) ^ 2 < 1e-3 && (big / small / 1e4 - 1) ^ 2 < 1e-8 && (work / less / 1e4 - 1) ^ 2 < 1e-8 &&
+        (long / sqrt(10) - 6.8) ^ 2 < 1e-4) }' "$work/machine.txt"
+"$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --machine config/machines/zx200_trench.yaml \
+    >"$work/machine.txt" 2>"$work/err"
+check "and people are told so" grep -q "^  by zx200_trench, 10.00 times the table's bucket: peak .* kN·m" "$work/machine.txt"
 json digloop design "$table"
 json digtable list "$table"
 json digtable check "$table"

@@ -15,9 +15,13 @@ static const struct dig_command commands[] = {
       "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
     { "predict", "TABLE --identified ID --trajectory NAME [OPTION]...",
       "Predicts what an identified gravel resists other digs with.",
-      "At the table's scale, dug deeper or with the bucket turned where the table was. With digs "
-      "measured, how wrong that was, each as it was dug: relative Euclidean norm of the moment, "
+      "At the table's scale, with --machine at that machine's, too: its forces are lambda^3, its "
+      "moments lambda^4 times the table's, lambda being how many times its bucket is as long. Dug "
+      "deeper or with the bucket turned where the table was. With digs measured, how wrong that "
+      "was, each as it was dug: relative Euclidean norm of the moment, "
       "+-0.16 s.",
+      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
+      "        --machine config/machines/zx200_trench.yaml\n"
       "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
       "        --measured actual_1.csv\n"
       "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
@@ -59,7 +63,7 @@ static const struct dig_option options[] = {
     { "machine", DIGLOOP_MACHINE, "MACHINE.yaml", " identify ",
       "the recordings are of this machine" },
     { "machine", DIGLOOP_MACHINE, "MACHINE.yaml", " predict ",
-      "the measured digs are of this machine" },
+      "the measured digs are of this machine; peak and energy by it, too" },
     { "model", DIGLOOP_MODEL, "MODEL.json", " identify predict ",
       "table and machine with the effects that a trace has added" },
     { "moment-alone", DIGLOOP_MOMENT_ALONE, NULL, " identify ", "leave the forces out" },

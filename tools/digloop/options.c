@@ -32,12 +32,11 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                                    DIGLOOP_RECORDINGS_MAX);
     }
     if (strcmp(o->command, "predict") == 0) {
-        return o->recordings == 0 && o->identified != NULL && o->trajectory != NULL &&
-                       (o->machine == NULL || o->measured != NULL)
+        return o->recordings == 0 && o->identified != NULL && o->trajectory != NULL
                    ? DIG_OK
                    : dig_error_set(error, DIG_EINVAL,
                                    "predict: expected TABLE.sqlite --identified ID.json "
-                                   "--trajectory NAME, and --machine with --measured only");
+                                   "--trajectory NAME");
     }
     if (strcmp(o->command, "check") == 0) {
         return o->recordings == 1

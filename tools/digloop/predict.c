@@ -90,9 +90,27 @@ struct prediction {
     struct digloop_prediction_error errors;
 };
 
+// The same dig by a machine: Froude similarity.
+struct on_machine {
+    double lambda, duration_s, peak_Nm, peak_sigma_Nm, energy_J, energy_sigma_J;
+};
+
+static struct on_machine on_machine(const struct prediction *const p, const double lambda)
+{
+    const double lambda4 = lambda * lambda * lambda * lambda;
+    return (struct on_machine){ .lambda = lambda,
+                                .duration_s =
+                                    sqrt(lambda) * dig_trajectory_duration_s(&p->trajectory),
+                                .peak_Nm        = lambda4 * p->whole.peak_Nm,
+                                .peak_sigma_Nm  = lambda4 * p->whole.peak_sigma_Nm,
+                                .energy_J       = lambda4 * p->whole.energy_J,
+                                .energy_sigma_J = lambda4 * p->whole.energy_sigma_J };
+}
+
 // For people: the result where none goes to a program.
 static void print_text(const struct digloop_options *const options,
-                       const struct prediction *const p, const char *const how)
+                       const struct prediction *const p, const char *const how,
+                       const struct digloop_machine *const machine, const double lambda)
 {
     FILE *const to = options->out != NULL ? stderr : stdout;
     (void)fprintf(to,
@@ -100,6 +118,14 @@ static void print_text(const struct digloop_options *const options,
                   "(1 sigma of one dig)\n",
                   p->trajectory.name, how, p->whole.peak_Nm, p->whole.peak_sigma_Nm,
                   p->whole.energy_J, p->whole.energy_sigma_J);
+    if (machine != NULL) {
+        const struct on_machine m = on_machine(p, lambda);
+        (void)fprintf(to,
+                      "  by %s, %.2f times the table's bucket: peak %.4g ± %.2g kN·m, energy %.4g "
+                      "± %.2g kJ, in %.1f s\n",
+                      machine->machine.name, m.lambda, 1e-3 * m.peak_Nm, 1e-3 * m.peak_sigma_Nm,
+                      1e-3 * m.energy_J, 1e-3 * m.energy_sigma_J, m.duration_s);
+    }
     if (options->measured != NULL) {
         (void)fprintf(to,
                       "  error against %s: %.3f (noise floor %.3f), %.0f %% of the moment in "
@@ -110,14 +136,25 @@ static void print_text(const struct digloop_options *const options,
     }
 }
 
-static void print(const struct digloop_options *const options, const struct prediction *const p)
+static void put_on_machine(const struct on_machine *const m, const char *const name)
+{
+    (void)fputs(",\n \"machine\": {\"name\": ", stdout);
+    dig_text_put_json(stdout, name);
+    (void)printf(", \"lambda\": %.6g, \"duration_s\": %.6g, \"peak_Nm\": %.6g, \"peak_sigma_Nm\": "
+                 "%.6g, \"energy_J\": %.6g, \"energy_sigma_J\": %.6g}",
+                 m->lambda, m->duration_s, m->peak_Nm, m->peak_sigma_Nm, m->energy_J,
+                 m->energy_sigma_J);
+}
+
+static void print(const struct digloop_options *const options, const struct prediction *const p,
+                  const struct digloop_machine *const machine, const double lambda)
 {
     const struct dig_peak_energy *const whole = &p->whole;
     const struct dig_curve *const       curve = &p->curve;
     char                                how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
-        print_text(options, p, how);
+        print_text(options, p, how, machine, lambda);
         return;
     }
     (void)fputs("{\"trajectory\": ", stdout);
@@ -131,6 +168,10 @@ static void print(const struct digloop_options *const options, const struct pred
     }
     if (options->measured != NULL) {
         digloop_prediction_error_put(&p->errors);
+    }
+    if (machine != NULL) {
+        const struct on_machine m = on_machine(p, lambda);
+        put_on_machine(&m, machine->machine.name);
     }
     put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
     put_array(stdout, "sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
@@ -205,7 +246,9 @@ enum dig_status digloop_predict(const struct digloop_options *const options,
             digloop_prediction_error_measure(options, set, machine, t, &match, &p.errors, error);
     }
     if (status == DIG_OK) {
-        print(options, &p);
+        const double lambda =
+            machine != NULL ? machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m : 1.0;
+        print(options, &p, machine, lambda);
     }
     return status;
 }
