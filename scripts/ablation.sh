@@ -21,7 +21,7 @@ an effect need not be enough|closed_loop/search/search_which.c|s/dig_search_evid
 any lead names (6: 0)|closed_loop/search/search_work.h|s/TOLD_APART 6.0/TOLD_APART 0.0/|0
 left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed < 0.0/false/|77
 a drift may bend|closed_loop/search/search_which.c|s/most_bent = 2.576/most_bent = 1e9/|156
-no rock elsewhere|closed_loop/search/search_which.c|s/c->s->is_rock = lead/c->s->is_rock = false \&\& lead/|330
+no rock elsewhere|closed_loop/search/search_which.c|s/lead >= DIG_SEARCH_TOLD_APART/false \&\& lead >= DIG_SEARCH_TOLD_APART/|330
 no second effect|closed_loop/search/search_which.c|s/if (find_pair(c, &pair))/if (false \&\& find_pair(c, \&pair))/|90
 sets by evidence alone|closed_loop/search/search_odds.c|s/is_as_likely(c, i))/false)/|14
 no gravel outside the grid|closed_loop/search/search.c|s/search->outside = !search->is_rock/search->outside = false \&\& !search->is_rock/|25
