@@ -92,17 +92,18 @@ static void draw_anew(struct cloud *const c, const double weight[POINTS], uint64
     for (size_t p = 0; p < POINTS; p++) {
         sum += weight[p];
     }
-    const double every = sum / POINTS;
-    double       next  = every * dig_chance_uniform(seed);
-    double       at    = 0.0;
-    size_t       made  = 0;
+    const double first = dig_chance_uniform(seed);
+    double       at    = weight[0]; // of the points up to from
+    size_t       from  = 0;
     memcpy(c->old_x, c->x, sizeof c->old_x);
     memcpy(c->old_misfit, c->misfit, sizeof c->old_misfit);
-    for (size_t p = 0; p < POINTS; p++) {
-        for (at += weight[p]; made < POINTS && (next < at || p == POINTS - 1); next += every) {
-            memcpy(c->x[made], c->old_x[p], sizeof c->x[made]);
-            c->misfit[made++] = c->old_misfit[p];
+    for (size_t made = 0; made < POINTS; made++) {
+        const double next = sum / POINTS * (first + (double)made);
+        while (from + 1 < POINTS && !(next < at)) {
+            at += weight[++from];
         }
+        memcpy(c->x[made], c->old_x[from], sizeof c->x[made]);
+        c->misfit[made] = c->old_misfit[from];
     }
 }
 

@@ -1,5 +1,7 @@
 #include "closed_loop/machine/machine_fit.h"
 
+#include "closed_loop/numeric/dense.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -63,18 +65,8 @@ static double decompose(const size_t n, double h[])
 
 static void substitute(const size_t n, const double l[], double x[])
 {
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < i; k++) {
-            x[i] -= l[i * n + k] * x[k];
-        }
-        x[i] /= l[i * n + i];
-    }
-    for (size_t i = n; i-- > 0;) {
-        for (size_t k = i + 1; k < n; k++) {
-            x[i] -= l[k * n + i] * x[k];
-        }
-        x[i] /= l[i * n + i];
-    }
+    dig_lower_solve(n, l, x);
+    dig_lower_transposed_solve(n, l, x);
 }
 
 // The columns of a set that are solved for; how many.
