@@ -69,5 +69,6 @@ printf '%s\n' "$rules" | while IFS='|' read -r name file change lines; do
         --json "$work/blind.json" >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
     [ "$file" ] || cp "$work/blind.json" "$work/as_is.json"
     printf '%-44s %s %6s\n' "$name" "$(compare "$work/as_is.json" "$work/blind.json")" "$lines"
-    [ ! "$file" ] || mv "$work/kept" "$work/$file"
+    # Newer than what was built without the rule.
+    [ ! "$file" ] || { mv "$work/kept" "$work/$file" && touch "$work/$file"; }
 done
