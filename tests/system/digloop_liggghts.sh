@@ -18,7 +18,8 @@ trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
         done
     } >"$work/$1/campaign.yaml"
     "$BIN/digloop" trace "$table" "$work/$1" --json "$work/$1.json" "${@:2}" 2>"$work/$1.txt" || cat "$work/$1.txt"
-    sed -n "/^Missing\|^  gravel:\|^Nothing/s/^ */found in $1: /p" "$work/$1.txt"
+    sed -n "/^Missing\|^  gravel:\|^Nothing\|90 %:.*to/s/^ */found in $1: /p" "$work/$1.txt"
+    echo "found in $1: density, 90 %: $(number "$1" density_kgpm3 low) to $(number "$1" density_kgpm3 high) kg/m3"
 }
 verdict() { tr -d ' \n' <"$work/$1.json" | sed -nE 's/.*"verdict":\[([^]]*)\].*/\1/p'; }
 number() { # GRAVEL KEY FIELD: a field of the first object of that key
