@@ -154,6 +154,8 @@ enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_
         { "packing.fall_mps", scene->packing.fall_mps, -1e-300, 10.0 },
         { "packing.settle_s", scene->packing.settle_s, 0.0, 60.0 },
         { "packing.relax_s", scene->packing.relax_s, -1e-300, 60.0 },
+        { "material.young_at_kgpm3", scene->material.young_at_kgpm3,
+          scene->material.young_at_kgpm3 > 0.0 ? 99.0 : -1e-300, 20000.0 },
         { "gravity_mps2", scene->gravity_mps2, 0.0, 100.0 },
         { "time_step_s", scene->time_step_s, -1e-300, 1e-2 },
         { "output_s", scene->output_s, 0.0, 0.02 },
@@ -206,6 +208,9 @@ size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t siz
                       scene->gravity_mps2, scene->time_step_s, scene->output_s);
     for (size_t i = 0; i < scene->trajectories; i++) {
         add_trajectory(&all, &scene->trajectory[i]);
+    }
+    if (m->young_at_kgpm3 > 0.0) {
+        dig_canonical_add(&all, "young_at_kgpm3=%.17g\n", m->young_at_kgpm3);
     }
     dig_bed_plan_canonical(scene, &all);
     return all.length;

@@ -55,6 +55,10 @@ struct dig_material {
     double poisson;
     double restitution;
     double characteristic_velocity_mps;
+    // The density that young_Pa belongs to; a gravel of another has it in proportion, so that
+    // curves go with the density (docs/numerics/dem.md, "Density is a scale"). 0: young_Pa holds
+    // for all.
+    double young_at_kgpm3;
 };
 
 /// Which laws hold in the scene.
@@ -168,6 +172,9 @@ double dig_scene_tooth_m(const struct dig_scene *scene);
 
 /// The length after which y repeats, 0 where the box has sides.
 double dig_scene_period_m(const struct dig_scene *scene);
+
+/// Young's modulus of a gravel of this density.
+double dig_scene_young_Pa(const struct dig_scene *scene, double density_kgpm3);
 
 /// The trajectory of that name, or NULL.
 const struct dig_trajectory *dig_scene_find(const struct dig_scene *scene, const char *name);

@@ -12,6 +12,14 @@ double dig_scene_tooth_m(const struct dig_scene *const scene)
     return hypot(scene->bucket.x_m[0], scene->bucket.z_m[0]);
 }
 
+double dig_scene_young_Pa(const struct dig_scene *const scene, const double density_kgpm3)
+{
+    assert(scene != NULL);
+    const struct dig_material *const m = &scene->material;
+    return m->young_at_kgpm3 > 0.0 ? m->young_Pa * (density_kgpm3 / m->young_at_kgpm3)
+                                   : m->young_Pa;
+}
+
 double dig_scene_period_m(const struct dig_scene *const scene)
 {
     assert(scene != NULL);

@@ -14,9 +14,11 @@ struct dig_table_step dig_table_step_of(const struct dig_material *const finest,
                                         const double lightest_kgpm3, const double taken_s)
 {
     assert(finest != NULL);
+    struct dig_scene scene  = { .material = *finest };
+    scene.material.young_Pa = dig_scene_young_Pa(&scene, lightest_kgpm3);
     return (struct dig_table_step){
         .taken_s        = taken_s,
-        .derived_s      = dig_contact_step_s(finest, normal, lightest_kgpm3),
+        .derived_s      = dig_contact_step_s(&scene.material, normal, lightest_kgpm3),
         .lightest_kgpm3 = lightest_kgpm3,
     };
 }

@@ -67,6 +67,7 @@ static const cyaml_schema_field_t material_fields[] = {
     NUMBER(dig_material, poisson),
     NUMBER(dig_material, restitution),
     NUMBER(dig_material, characteristic_velocity_mps),
+    CYAML_FIELD_FLOAT("young_at_kgpm3", OPTIONAL, struct dig_material, young_at_kgpm3),
     SOURCE,
     CYAML_FIELD_END,
 };

@@ -1,5 +1,6 @@
 #include "tables/load.h"
 
+#include "tables/density_scale.h"
 #include "tables/grounds.h"
 #include "tables/load_approaches.h"
 #include "tables/store_private.h"
@@ -130,12 +131,14 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
         return status;
     }
     dig_grounds_pool_spread(&plain);
+    const struct dig_table_step step = dig_grounds_step(&plain, head);
+    status                           = dig_grounds_spread_density(head, path, &plain, error);
     struct dig_curve_set *const made = calloc(1, sizeof *made);
-    if (made == NULL) {
+    if (status == DIG_OK && made == NULL) {
         status = no_memory(path, error);
-    } else {
+    } else if (status == DIG_OK) {
         copy_head(made, head);
-        made->step = dig_grounds_step(&plain, head);
+        made->step = step;
         status     = fill(made, &plain, path, error);
     }
     dig_grounds_finish(&plain);

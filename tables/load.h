@@ -10,14 +10,16 @@
 /// Opens path read-only, checks version and integrity, and builds the curve set of what was dug
 /// without an effect, as the trajectories stand; what was dug deeper or with the bucket turned is
 /// in set->approaches, or NULL there. The curves are smoothed with +-0.16 s of rig time, mapped to
-/// path progress, averaged over packings. Allocates; free with dig_curve_set_destroy().
+/// path progress, averaged over packings. Where density is a scale of the scene and one was dug,
+/// there are three (tables/density_scale.h). Allocates; free with dig_curve_set_destroy().
 /// DIG_ESCHEMA: a version this build does not know, both named. DIG_EINVAL: nothing was dug without
 /// an effect.
 DIG_MUST_CHECK enum dig_status dig_table_load(const char *path, struct dig_curve_set **set,
                                               struct dig_error *error);
 
-/// All a table holds: the curves without an effect and those with one, either of which may have no
-/// entries. effects may be NULL; free it with dig_effect_set_destroy() (tables/load_effects.h).
+/// All a table holds, as it was dug: the curves without an effect and those with one, either of
+/// which may have no entries. effects may be NULL; free it with dig_effect_set_destroy()
+/// (tables/load_effects.h).
 DIG_MUST_CHECK enum dig_status dig_table_list(const char *path, struct dig_curve_set **plain,
                                               struct dig_effect_set **effects,
                                               struct dig_error       *error);

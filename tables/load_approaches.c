@@ -1,5 +1,6 @@
 #include "tables/load_approaches.h"
 
+#include "tables/density_scale.h"
 #include "tables/grounds.h"
 
 #include <assert.h>
@@ -60,6 +61,9 @@ enum dig_status dig_sql_load_approaches(sqlite3 *const db, const char *const pat
     }
     if (status == DIG_OK) {
         dig_grounds_pool_spread_with(&plain, &other);
+        status = dig_grounds_spread_density(head, path, &other, error);
+    }
+    if (status == DIG_OK) {
         struct dig_approach_set *const made = take(&other, head);
         if (made == NULL) {
             status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);

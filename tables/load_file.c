@@ -10,17 +10,19 @@
 #include <assert.h>
 #include <string.h>
 
-enum dig_status dig_table_list(const char *const path, struct dig_curve_set **const plain,
-                               struct dig_effect_set **const effects, struct dig_error *const error)
+// as_dug: a density that stands for all stays one.
+static enum dig_status read_table(const char *const path, const bool as_dug,
+                                  struct dig_curve_set **const  plain,
+                                  struct dig_effect_set **const effects,
+                                  struct dig_error *const       error)
 {
-    assert(path != NULL && plain != NULL);
-
     sqlite3              *db     = NULL;
     struct dig_table_head head   = { .trajectories = 0 };
     enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
     if (status != DIG_OK) {
         return status;
     }
+    head.density_scales           = head.density_scales && !as_dug;
     struct dig_curve_set  *set    = NULL;
     struct dig_effect_set *varied = NULL;
     status                        = dig_sql_load(db, path, &head, &set, error);
@@ -45,13 +47,20 @@ enum dig_status dig_table_list(const char *const path, struct dig_curve_set **co
     return DIG_OK;
 }
 
+enum dig_status dig_table_list(const char *const path, struct dig_curve_set **const plain,
+                               struct dig_effect_set **const effects, struct dig_error *const error)
+{
+    assert(path != NULL && plain != NULL);
+    return read_table(path, true, plain, effects, error);
+}
+
 enum dig_status dig_table_load(const char *const path, struct dig_curve_set **const set,
                                struct dig_error *const error)
 {
     assert(path != NULL && set != NULL);
 
     struct dig_curve_set *made   = NULL;
-    const enum dig_status status = dig_table_list(path, &made, NULL, error);
+    const enum dig_status status = read_table(path, false, &made, NULL, error);
     if (status != DIG_OK || made == NULL) {
         return status;
     }

@@ -31,9 +31,9 @@ struct dig_law_material dig_grain_types_between(const struct dig_scene *const  s
     const size_t                     other    = grain == a ? b : a;
     const struct own                 own      = own_of(scene, gravel, grain);
     struct dig_law_material          material = {
-                 .young_Pa                    = m->young_Pa,
-                 .poisson                     = m->poisson,
-                 .restitution                 = own.restitution,
+                 .young_Pa    = dig_scene_young_Pa(scene, gravel->value[DIG_AXIS_DENSITY_kgpm3]),
+                 .poisson     = m->poisson,
+                 .restitution = own.restitution,
                  .characteristic_velocity_mps = m->characteristic_velocity_mps,
                  .friction                    = own.friction,
                  .rolling                     = own.rolling,
@@ -226,6 +226,7 @@ double dig_grain_types_time_step_s(const struct dig_scene *const       scene,
             dig_grain_types_between(scene, gravel, types->material[k], types->material[k]);
         struct dig_material grain = scene->material;
         grain.diameter_m          = 2.0 * types->type[k].radius_m;
+        grain.young_Pa            = between.young_Pa;
         grain.restitution         = between.restitution;
         least_s                   = fmin(least_s,
                                          dig_contact_step_s(&grain, scene->laws.normal,

@@ -104,15 +104,18 @@ void dig_scene_from_canonical(const char *const canonical, struct dig_scene *con
     read_first(canonical, "material", 5, material);
     read_first(canonical, "gravity_mps2", 1, &scene->gravity_mps2);
     read_first(canonical, "time_step_s", 1, &scene->time_step_s);
-    scene->box = (struct dig_box){ box[0], box[1], box[2], box[3], box[4], box[5] };
-    scene->material =
-        (struct dig_material){ material[0], material[1], material[2], material[3], material[4] };
+    scene->box      = (struct dig_box){ box[0], box[1], box[2], box[3], box[4], box[5] };
+    scene->material = (struct dig_material){ material[0], material[1], material[2],
+                                             material[3], material[4], 0.0 };
 
     // What is not plain stands in the text only where it is so.
     bed->surface =
         read_pairs(canonical, "surface_m", DIG_SURFACE_MAX, bed->surface_x_m, bed->surface_z_m);
     read_profiles(canonical, bed);
-    bed->sizes      = read_sizes(canonical, bed->size);
+    bed->sizes = read_sizes(canonical, bed->size);
+    if (strstr(canonical, "\nyoung_at_kgpm3=") != NULL) {
+        read_first(canonical, "young_at_kgpm3", 1, &scene->material.young_at_kgpm3);
+    }
     bed->periodic_y = strstr(canonical, "\nperiodic_y\n") != NULL;
     scene->laws.normal =
         strstr(canonical, "\nnormal=hertz\n") != NULL ? DIG_NORMAL_HERTZ : DIG_NORMAL_HOOKE;

@@ -240,14 +240,27 @@ static bool trajectories_agree(const struct dig_table_head *const head, const ch
     return strncmp(rest, first, strlen(first)) != 0 && strncmp(rest, "phase=", 6) != 0;
 }
 
+// Two beds are similar where springs go with the density and nothing else has a size of its own.
+static bool density_scales(const struct dig_material *const material, const char *const canonical)
+{
+    static const char *const fixed[] = { "\ncohesion_Jpm3=", "\nadhesion_Jpm3=", "\nother=",
+                                         "\npreload_Pa=", " movable " };
+    bool                     scales  = material->young_at_kgpm3 > 0.0;
+    for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
+        scales = scales && strstr(canonical, fixed[i]) == NULL;
+    }
+    return scales;
+}
+
 static void read_canonical(struct dig_table_head *const head, const char *const canonical)
 {
     struct dig_scene scene = { .trajectories = 0 };
     dig_scene_from_canonical(canonical, &scene);
 
-    head->time_step_s = scene.time_step_s;
-    head->normal      = scene.laws.normal;
-    head->finest      = scene.material;
+    head->time_step_s    = scene.time_step_s;
+    head->normal         = scene.laws.normal;
+    head->finest         = scene.material;
+    head->density_scales = density_scales(&scene.material, canonical);
     for (size_t i = 0; i < scene.bed.sizes; i++) {
         head->finest.diameter_m = fmin(head->finest.diameter_m, scene.bed.size[i].diameter_m);
     }

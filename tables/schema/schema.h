@@ -9,6 +9,7 @@
 #include "core/scene.h"
 
 #include <sqlite3.h>
+#include <stdbool.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
 #define DIG_TABLE_VERSION        4          // PRAGMA user_version; 3 has no seals
@@ -39,7 +40,8 @@ struct dig_table_head {
     double                time_step_s;                    // of the scene
     struct dig_material   finest; // its smallest grains; of several spheres: of their volume
     enum dig_normal_law   normal;
-    int                   version; // of the file
+    bool                  density_scales; // curves of two densities differ by their ratio alone
+    int                   version;        // of the file
 };
 
 /// What a scene's table says of itself.

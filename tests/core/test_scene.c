@@ -103,6 +103,7 @@ static void the_canonical_text_changes_with_every_number(void **state)
         &s.material.restitution,
         &s.gravity_mps2,
         &s.material.characteristic_velocity_mps,
+        &s.material.young_at_kgpm3,
         &s.time_step_s,
         &s.output_s,
         &s.trajectory[0].theta0_rad,

@@ -51,12 +51,22 @@ static void small_and_stiff_grains_bear_less(void **state)
     assert_string_not_equal(text_of(&grain, 2500.0, 62.5e-6), "");
 }
 
+static void springs_that_go_with_the_density_bear_the_same_step(void **state)
+{
+    (void)state;
+    struct dig_material grain = rig;
+    grain.young_at_kgpm3      = 2500.0;
+    assert_string_equal(text_of(&grain, 1500.0, 62.5e-6), "");
+    assert_non_null(strstr(text_of(&grain, 1500.0, 80e-6), "gravel of 1500 kg/m3"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bed_that_was_seen_to_lie_still_is_passed),
         cmocka_unit_test(a_bed_that_was_seen_to_move_is_told_with_its_gravel),
         cmocka_unit_test(small_and_stiff_grains_bear_less),
+        cmocka_unit_test(springs_that_go_with_the_density_bear_the_same_step),
     };
     return cmocka_run_group_tests_name("table_step", tests, NULL, NULL);
 }

@@ -88,6 +88,7 @@ static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
     static const char *const differs[][2] = {
         { "name: tub", "name: tube" },
         { "young_Pa: 5.0e+6", "young_Pa: 5.1e+6" },
+        { "young_Pa: 5.0e+6", "young_Pa: 5.0e+6\n  young_at_kgpm3: 2000" },
         { "x: [0, 1.0]", "x: [0, 1.01]" },
         { "omega_degps: 10", "omega_degps: 10.5" },
     };
@@ -105,6 +106,8 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
     (void)state;
     static const char *const bad[][3] = {
         { "young_Pa: 5.0e+6", "young_Pa: -1", "bad.yaml:22: material.young_Pa: -1" },
+        { "young_Pa: 5.0e+6", "young_Pa: 5.0e+6\n  young_at_kgpm3: 5",
+          "bad.yaml:23: material.young_at_kgpm3: 5, expected > 99" },
         { "y: [-0.3, 0.3]", "y: [0.3, -0.3]", "bad.yaml:12: box_m.y: [0.3, -0.3]" },
         { "y: [-0.3, 0.3]", "y: [0.3]", "bad.yaml:12: box_m.y: 1 values" },
         { "duration_s: 1,", "duration_s: 0,",
