@@ -20,11 +20,13 @@ static struct dig_device *open_card(const struct dig_scene *const scene,
     return card;
 }
 
-static enum dig_status pour(const struct dig_scene *const  scene,
+static enum dig_status pour(const struct dig_stepper *const none,
+                            const struct dig_scene *const   scene,
                             const struct dig_gravel *const gravel, const uint64_t seed,
                             const struct dig_progress *const progress, struct dig_bed *const bed,
                             struct dig_error *const error)
 {
+    (void)none; // a card for every bed, in the process that pours it
     enum dig_status          status = DIG_OK;
     struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {
@@ -36,12 +38,14 @@ static enum dig_status pour(const struct dig_scene *const  scene,
     return status;
 }
 
-static enum dig_status dig(const struct dig_scene *const  scene,
+static enum dig_status dig(const struct dig_stepper *const none,
+                           const struct dig_scene *const   scene,
                            const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                            const struct dig_trajectory *const trajectory, const char *const vtk_dir,
                            const struct dig_progress *const progress,
                            struct dig_recording *const recording, struct dig_error *const error)
 {
+    (void)none; // a card for every bed, in the process that pours it
     enum dig_status          status = DIG_OK;
     struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {

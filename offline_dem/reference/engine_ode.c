@@ -105,12 +105,14 @@ static enum dig_status record(struct run *const d, const double output_s,
     return status;
 }
 
-static enum dig_status dig(const struct dig_scene *const  scene,
+static enum dig_status dig(const struct dig_stepper *const none,
+                           const struct dig_scene *const   scene,
                            const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                            const struct dig_trajectory *const trajectory, const char *const vtk_dir,
                            const struct dig_progress *const progress,
                            struct dig_recording *const recording, struct dig_error *const error)
 {
+    (void)none; // ODE steps the grains
     enum dig_status status = dig_setup_check(scene, gravel, error);
     status                 = status == DIG_OK ? check(scene, vtk_dir, error) : status;
     status                 = status == DIG_OK ? dig_setup_check_phases(trajectory, error) : status;

@@ -16,61 +16,23 @@
 #define WAIT_ms        250
 #define REPORT_EVERY_s 1.0
 
-static enum dig_status pour(const struct dig_scene *const  scene,
-                            const struct dig_gravel *const gravel, const uint64_t seed,
-                            const struct dig_progress *const progress, struct dig_bed *const bed,
-                            struct dig_error *const error)
-{
-    return dig_bed_pour_checked(NULL, scene, gravel, seed, progress, bed, error);
-}
-
-static enum dig_status dig(const struct dig_scene *const  scene,
-                           const struct dig_gravel *const gravel, const struct dig_bed *const bed,
-                           const struct dig_trajectory *const trajectory, const char *const vtk_dir,
-                           const struct dig_progress *const progress,
-                           struct dig_recording *const recording, struct dig_error *const error)
-{
-    return dig_dig_run(NULL, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
-}
-
 struct dig_engine dig_engine_kernel(void)
 {
     return (struct dig_engine){
         .name       = "kernel",
         .version    = DIG_VERSION "+" DIG_NUMERICS,
-        .pour       = pour,
-        .dig        = dig,
+        .pour       = dig_bed_pour_checked,
+        .dig        = dig_dig_run,
         .bed_finish = dig_bed_finish,
         .vary       = dig_variant_make,
     };
 }
 
-static const struct dig_stepper single_precision = { .single_precision = true };
-
-static enum dig_status pour_single(const struct dig_scene *const  scene,
-                                   const struct dig_gravel *const gravel, const uint64_t seed,
-                                   const struct dig_progress *const progress,
-                                   struct dig_bed *const bed, struct dig_error *const error)
-{
-    return dig_bed_pour_checked(&single_precision, scene, gravel, seed, progress, bed, error);
-}
-
-static enum dig_status
-dig_single(const struct dig_scene *const scene, const struct dig_gravel *const gravel,
-           const struct dig_bed *const bed, const struct dig_trajectory *const trajectory,
-           const char *const vtk_dir, const struct dig_progress *const progress,
-           struct dig_recording *const recording, struct dig_error *const error)
-{
-    return dig_dig_run(&single_precision, scene, gravel, bed, trajectory, vtk_dir, progress,
-                       recording, error);
-}
-
-struct dig_engine dig_engine_single(void)
+struct dig_engine dig_engine_single(const size_t threads)
 {
     struct dig_engine engine = dig_engine_kernel();
     engine.name              = "single";
-    engine.pour              = pour_single;
-    engine.dig               = dig_single;
+    engine.stepper           = (struct dig_stepper){ .single_precision = true, .threads = threads };
     return engine;
 }
 

@@ -19,19 +19,22 @@
 
 #include <signal.h>
 
-/// An engine as functions; tests use one that takes no time. version differs between two builds
-/// that may compute differently. vary applies an effect to a scene (offline_dem/dig/variant.h);
-/// NULL: the engine has no effects.
+/// An engine as functions, called with its stepper; tests use one that takes no time. version
+/// differs between two builds that may compute differently. vary applies an effect to a scene
+/// (offline_dem/dig/variant.h); NULL: the engine has no effects.
 struct dig_engine {
-    const char *name;
-    const char *version;
-    enum dig_status (*pour)(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                            uint64_t seed, const struct dig_progress *progress, struct dig_bed *bed,
+    const char        *name;
+    const char        *version;
+    struct dig_stepper stepper;
+    enum dig_status (*pour)(const struct dig_stepper *stepper, const struct dig_scene *scene,
+                            const struct dig_gravel *gravel, uint64_t seed,
+                            const struct dig_progress *progress, struct dig_bed *bed,
                             struct dig_error *error);
-    enum dig_status (*dig)(const struct dig_scene *scene, const struct dig_gravel *gravel,
-                           const struct dig_bed *bed, const struct dig_trajectory *trajectory,
-                           const char *vtk_dir, const struct dig_progress *progress,
-                           struct dig_recording *recording, struct dig_error *error);
+    enum dig_status (*dig)(const struct dig_stepper *stepper, const struct dig_scene *scene,
+                           const struct dig_gravel *gravel, const struct dig_bed *bed,
+                           const struct dig_trajectory *trajectory, const char *vtk_dir,
+                           const struct dig_progress *progress, struct dig_recording *recording,
+                           struct dig_error *error);
     void (*bed_finish)(struct dig_bed *bed);
     enum dig_status (*vary)(const struct dig_scene *scene, enum dig_effect_id effect,
                             double magnitude, struct dig_scene *varied, struct dig_error *error);
@@ -42,8 +45,8 @@ struct dig_engine {
 struct dig_engine dig_engine_kernel(void);
 
 /// The same in single precision, where the law allows (offline_dem/kernel/kernel.h): faster, and
-/// other digs of the same gravel.
-struct dig_engine dig_engine_single(void);
+/// other digs of the same gravel. A large bed is stepped by so many threads, with the same bits.
+struct dig_engine dig_engine_single(size_t threads);
 
 /// Progress of a sweep. digs_under_way counts fractions of running digs.
 struct dig_sweep_state {

@@ -106,8 +106,8 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
                                                    &child->job->approach, &t, &error);
         if (status == DIG_OK) {
             child->current_s = dig_trajectory_duration_s(&t);
-            status = child->engine->dig(child->scene, &child->job->gravel, bed, &t, NULL, progress,
-                                        &recording, &error);
+            status = child->engine->dig(&child->engine->stepper, child->scene, &child->job->gravel,
+                                        bed, &t, NULL, progress, &recording, &error);
         }
         if (status != DIG_OK) {
             send_failure(child, status, &error);
@@ -163,8 +163,8 @@ static void work(struct child *const child)
     child->total_s                   = job_s(child->scene, child->job);
     child->current_s                 = pouring_s(child->scene);
     if (status == DIG_OK) {
-        status = child->engine->pour(child->scene, &child->job->gravel, child->job->seed, &progress,
-                                     &bed, &error);
+        status = child->engine->pour(&child->engine->stepper, child->scene, &child->job->gravel,
+                                     child->job->seed, &progress, &bed, &error);
     }
     if (status != DIG_OK) {
         send_failure(child, status, &error);

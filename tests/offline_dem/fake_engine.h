@@ -62,11 +62,13 @@ static inline bool is_marked_gravel(const struct dig_gravel *const gravel)
     return gravel->value[DIG_AXIS_FRICTION] > .4;
 }
 
-static inline enum dig_status fake_pour(const struct dig_scene *const  scene,
+static inline enum dig_status fake_pour(const struct dig_stepper *const stepper,
+                                        const struct dig_scene *const   scene,
                                         const struct dig_gravel *const gravel, const uint64_t seed,
                                         const struct dig_progress *const progress,
                                         struct dig_bed *const bed, struct dig_error *const error)
 {
+    (void)stepper;
     (void)scene;
     (void)error;
     leave_mark(mischief == REFUSE_TO_START ? '!' : 'p');
@@ -87,11 +89,13 @@ static inline double moment_of(const struct dig_gravel *const gravel, const size
 }
 
 static inline enum dig_status
-fake_dig(const struct dig_scene *const scene, const struct dig_gravel *const gravel,
-         const struct dig_bed *const bed, const struct dig_trajectory *const t,
-         const char *const vtk_dir, const struct dig_progress *const progress,
-         struct dig_recording *const recording, struct dig_error *const error)
+fake_dig(const struct dig_stepper *const stepper, const struct dig_scene *const scene,
+         const struct dig_gravel *const gravel, const struct dig_bed *const bed,
+         const struct dig_trajectory *const t, const char *const vtk_dir,
+         const struct dig_progress *const progress, struct dig_recording *const recording,
+         struct dig_error *const error)
 {
+    (void)stepper;
     (void)scene;
     assert_null(vtk_dir);
     leave_mark('d');
@@ -141,8 +145,12 @@ static inline enum dig_status fake_vary(const struct dig_scene *const scene,
     return DIG_OK;
 }
 
-static const struct dig_engine engine = { "fake",   "3.1",           fake_pour,
-                                          fake_dig, fake_bed_finish, fake_vary };
+static const struct dig_engine engine = { .name       = "fake",
+                                          .version    = "3.1",
+                                          .pour       = fake_pour,
+                                          .dig        = fake_dig,
+                                          .bed_finish = fake_bed_finish,
+                                          .vary       = fake_vary };
 
 // Two frictions by three rolling frictions.
 static inline struct dig_plan plan_of(const size_t packings)

@@ -15,7 +15,7 @@ static struct dig_recording dig_with(const bool ode, const struct dig_scene *con
     const struct dig_trajectory *const t      = &scene->trajectory[0];
     struct dig_recording               r      = { 0 };
     struct dig_error                   error  = { "" };
-    if ((ode ? engine.dig(scene, &gravel, bed, t, NULL, NULL, &r, &error)
+    if ((ode ? engine.dig(&engine.stepper, scene, &gravel, bed, t, NULL, NULL, &r, &error)
              : dig_dig_run(&kernel, scene, &gravel, bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
         fail_msg("%s", error.text);
     }
@@ -27,7 +27,7 @@ static void digs_agree(const struct dig_scene *const scene)
 {
     const struct dig_engine ode = dig_engine_ode();
     struct dig_bed          bed;
-    assert_int_equal(ode.pour(scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
+    assert_int_equal(ode.pour(&ode.stepper, scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
     struct dig_recording ours   = dig_with(false, scene, &bed);
     struct dig_recording theirs = dig_with(true, scene, &bed);
     assert_int_equal(ours.rows, theirs.rows);
@@ -106,7 +106,8 @@ static void refuses(const struct dig_scene *const scene, const char *const vtk_d
     struct dig_recording         r     = { .rows = 77 };
     struct dig_error             error = { "" };
     const struct dig_trajectory *t     = &scene->trajectory[0];
-    assert_int_equal(ode.dig(scene, &gravel, &bed, t, vtk_dir, NULL, &r, &error), DIG_EINVAL);
+    assert_int_equal(ode.dig(&ode.stepper, scene, &gravel, &bed, t, vtk_dir, NULL, &r, &error),
+                     DIG_EINVAL);
     if (strstr(error.text, key) == NULL) {
         fail_msg("%s, expected a word of %s", error.text, key);
     }

@@ -257,15 +257,15 @@ static void the_engine_says_what_is_missing(void **state)
     struct dig_error        error = { "" };
     struct dig_bed          bed;
     assert_int_equal(setenv("DIG_CUDA_LIBRARY", "./no-such-library.so", 1), 0);
-    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
+    assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
     assert_non_null(strstr(error.text, "no-such-library.so"));
     assert_int_equal(setenv("DIG_CUDA_LIBRARY", "libm.so.6", 1), 0);
-    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
+    assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
     assert_non_null(strstr(error.text, "libm.so.6 is not of this build"));
     scene.bed.obstacles = 1;
     scene.bed.obstacle[0] =
         (struct dig_obstacle){ DIG_OBSTACLE_SPHERE, { 0.03, 0.0, 0.01 }, { 0.01 }, true, 2500.0 };
-    assert_int_equal(cuda.pour(&scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
+    assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, "obstacles[0].movable"));
 }
 

@@ -48,7 +48,7 @@ static struct dig_recording pull(const enum engine engine, const struct dig_scen
     struct dig_recording               r       = { 0 };
     struct dig_error                   error   = { "" };
     if ((engine == ODE
-             ? ode.dig(scene, &gravel, &bed, t, NULL, NULL, &r, &error)
+             ? ode.dig(&ode.stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)
              : dig_dig_run(&stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
         fail_msg("%s", error.text);
     }

@@ -25,6 +25,8 @@ for kind in "$ore, layers: [{material: ore, z_m: [0.1, 0.4]}]" "$pear"; do
 done
 digtable dig $scene "${dig[@]}" --seed 3 --young 2e7 -o "$work/e.csv"
 check "stiffer grains give another dig" eval 'is $code 0 && ! cmp -s $work/a.csv $work/e.csv'
+for threads in 1 3; do digtable dig $scene "${dig[@]}" --seed 3 --engine single --threads $threads -o "$work/single_$threads.csv"; done
+check "single precision gives another, the same on any number of threads" eval 'is $code 0 && cmp $work/single_1.csv $work/single_3.csv && ! cmp -s $work/a.csv $work/single_1.csv'
 digtable dig $scene "${dig[@]}" --seed 3 --vtk "$work/pictures" -o "$work/f.csv"
 check "--vtk makes its folder, and pictures change nothing" eval 'is $code 0 && cmp $work/a.csv $work/f.csv && ls $work/pictures | grep -q "\.vt"'
 digtable dig $scene "${dig[@]}" --seed 3 --vtk "$work/no/such" -o "$work/g.csv"

@@ -154,6 +154,9 @@ static const char *take_option(const int option, const char *const value,
     case OPTION_JOBS:
         ok = dig_cli_count(value, 1, 4096, &a->workers);
         return ok ? NULL : "1 to 4096";
+    case OPTION_THREADS:
+        ok = dig_cli_count(value, 1, 256, &a->threads);
+        return ok ? NULL : "1 to 256";
     case OPTION_TRAJECTORY: a->trajectory = value; break;
     case OPTION_FRICTION:
         ok = dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]);
@@ -250,6 +253,12 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
             return dig_cli_bad_usage("%s: one argument too many", argv[optind]);
         }
         a->positional[a->positionals++] = argv[optind];
+    }
+    if (a->threads > 0 && a->engine != DIG_ENGINE_SINGLE) {
+        return dig_cli_bad_usage("--threads: only --engine single has them");
+    }
+    if (a->threads == 0) {
+        a->threads = strcmp(command->name, "dig") == 0 ? all_cores() : 1;
     }
     return EXIT_DONE;
 }

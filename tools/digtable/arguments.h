@@ -28,6 +28,7 @@ struct dig_arguments {
     struct dig_approach    approach;                // plain: not given
     double                 young_Pa;                // NaN: the scene's
     unsigned long          seed, workers, packings; // 0 packings: the grid's
+    unsigned long          threads;                 // of --engine single
     unsigned long          shard, shards;           // from 0; 0 shards: all
     unsigned long          tasks;                   // 0: not given
     const char            *slurm_option[DIG_SLURM_OPTIONS_MAX];

@@ -62,8 +62,9 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
     struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "bed",
                                          a->stop };
     const struct dig_progress  progress = { report_dig, &watch };
+    const struct dig_engine    engine   = dig_cli_engine(a);
     const enum dig_status      status =
-        dig_cli_engine(a).pour(scene, gravel, a->seed, &progress, bed, error);
+        engine.pour(&engine.stepper, scene, gravel, a->seed, &progress, bed, error);
     if (status == DIG_OK && watch.line.tty) {
         dig_progress_end(&watch.line, true);
     }
@@ -78,14 +79,15 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "dig",
                                          a->stop };
     const struct dig_progress  progress  = { report_dig, &watch };
+    const struct dig_engine    engine    = dig_cli_engine(a);
     struct dig_recording       recording = { 0 };
     enum dig_status            status    = DIG_OK;
     if (a->save_bed != NULL) {
         status = dig_cli_bed_write(a->save_bed, bed, error);
     }
     if (status == DIG_OK) {
-        status = dig_cli_engine(a).dig(scene, gravel, bed, trajectory, a->vtk, &progress,
-                                       &recording, error);
+        status = engine.dig(&engine.stepper, scene, gravel, bed, trajectory, a->vtk, &progress,
+                            &recording, error);
     }
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);

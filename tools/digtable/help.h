@@ -23,6 +23,7 @@ enum dig_cli_option {
     OPTION_SAVE_BED,
     OPTION_VTK,
     OPTION_MAP,
+    OPTION_THREADS,
     OPTION_PACKINGS,
     OPTION_TIME_LIMIT,
     OPTION_SHARD,
