@@ -68,6 +68,21 @@ static size_t read_sizes(const char *const canonical, struct dig_size size[const
     return n;
 }
 
+static size_t read_material_pairs(const char *const canonical, struct dig_material_pair pair[const])
+{
+    const char *from = canonical;
+    size_t      n    = 0;
+    for (const char *at; n < DIG_PAIRS_MAX && (at = find_value(&from, "pair")) != NULL; n++) {
+        double of[5];
+        read_numbers(at, 5, of);
+        const bool named = of[0] >= 0.0 && of[0] <= DIG_MATERIAL_WALLS && of[1] >= 0.0 &&
+                           of[1] <= DIG_MATERIAL_WALLS;
+        pair[n] = (struct dig_material_pair){ named ? (size_t)of[0] : 0, named ? (size_t)of[1] : 0,
+                                              of[2], of[3], of[4] };
+    }
+    return n;
+}
+
 // Rows of a profile's number, x and z, under the y of each profile.
 static void read_profiles(const char *const canonical, struct dig_bed_plan *const bed)
 {
@@ -113,6 +128,7 @@ void dig_scene_from_canonical(const char *const canonical, struct dig_scene *con
         read_pairs(canonical, "surface_m", DIG_SURFACE_MAX, bed->surface_x_m, bed->surface_z_m);
     read_profiles(canonical, bed);
     bed->sizes = read_sizes(canonical, bed->size);
+    bed->pairs = read_material_pairs(canonical, bed->pair);
     if (strstr(canonical, "\nyoung_at_kgpm3=") != NULL) {
         read_first(canonical, "young_at_kgpm3", 1, &scene->material.young_at_kgpm3);
     }

@@ -39,7 +39,14 @@ check "generate fills a table" eval 'is $code 0 && grep -q "12 of 12 digs" $work
 digtable check "$work/whole.sqlite" --complete
 check "which is sound and complete" eval 'is $code 0 && grep -q "6 points, 6 entries, 12 runs; 0 holes" $work/out'
 digtable check "$work/whole.sqlite" --json
-check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1, \"approaches\": 0, \"trembles\": false}"'
+check "check --json" eval 'is "$(cat $work/out)" "{\"points\": 6, \"entries\": 6, \"runs\": 12, \"holes\": 0, \"incomplete\": 0, \"effects\": 0, \"builds\": 1, \"approaches\": 0, \"trembles\": false, \"grains_across\": 3.33333, \"density_scales\": false, \"bucket\": null}"'
+sed -e 's/^  young_Pa: .*/&\n  young_at_kgpm3: 2500/' -e '$a bed: {pairs: [{between: [gravel, bucket], friction: 0.4, rolling: 0.3, restitution: 0.2}]}' \
+    $scene >"$work/steel.yaml"
+digtable generate "$work/steel.yaml" $grid -o "$work/steel.sqlite" --time-limit 0
+digtable check "$work/steel.sqlite"
+check "the bucket's own friction is told" grep -q "which is of friction 0.4 and rolling friction 0.3; resistance goes with the density" "$work/out"
+digtable check "$work/steel.sqlite" --json
+check "also to programs" grep -q '"density_scales": true, "bucket": {"friction": 0.4, "rolling": 0.3}}' "$work/out"
 digtable generate $scene $grid -o "$work/whole.sqlite"
 check "a second time there is nothing to do" eval 'is $code 0 && grep -q "12 of 12 digs" $work/err'
 

@@ -17,6 +17,9 @@ static struct dig_scene uneven(void)
     s.bed.surface_x_m[1] = 0.3;
     s.bed.surface_z_m[0] = 0.085;
     s.bed.surface_z_m[1] = 0.08;
+    s.bed.pairs          = 1;
+    s.bed.pair[0]        = (struct dig_material_pair){ 0, DIG_MATERIAL_BUCKET, 0.4, 0.35, 0.1 };
+    s.material.young_at_kgpm3 = 2600.0;
     return s;
 }
 
@@ -58,6 +61,8 @@ static void a_table_tells_the_scene_it_was_made_in_to_the_last_bit(void **state)
         assert_memory_equal(&b.material, &a->material, sizeof b.material);
         assert_close(b.gravity_mps2, a->gravity_mps2, 0.0);
         assert_int_equal(b.laws.normal, a->laws.normal);
+        assert_int_equal(b.bed.pairs, a->bed.pairs);
+        assert_memory_equal(b.bed.pair, a->bed.pair, sizeof b.bed.pair);
         assert_int_equal(b.bed.periodic_y, a->bed.periodic_y);
         assert_int_equal(b.bed.surface, a->bed.surface);
         assert_memory_equal(b.bed.surface_x_m, a->bed.surface_x_m, sizeof b.bed.surface_x_m);

@@ -8,6 +8,7 @@
 #include "tables/listed.h"
 #include "tables/load.h"
 #include "tables/load_effects.h"
+#include "tables/scene.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
 
@@ -53,6 +54,51 @@ int dig_cli_list(const struct dig_arguments *const a)
     return EXIT_DONE;
 }
 
+// The pair of gravel and bucket; NULL: the bucket is as rough as each gravel.
+static const struct dig_material_pair *bucket_pair(const struct dig_scene *const scene)
+{
+    for (size_t i = 0; i < scene->bed.pairs; i++) {
+        const struct dig_material_pair *const p = &scene->bed.pair[i];
+        if ((p->a == 0 && p->b == DIG_MATERIAL_BUCKET) ||
+            (p->b == 0 && p->a == DIG_MATERIAL_BUCKET)) {
+            return p;
+        }
+    }
+    return NULL;
+}
+
+static double grains_across(const struct dig_scene *const scene)
+{
+    return scene->bucket.width_m / scene->material.diameter_m;
+}
+
+// What holds for every dig of the table.
+static void print_scene(const struct dig_scene *const scene)
+{
+    const struct dig_material_pair *const bucket = bucket_pair(scene);
+    (void)printf("  scene %s: %.3g grains across the bucket, which is ", scene->name,
+                 grains_across(scene));
+    if (bucket != NULL) {
+        (void)printf("of friction %.3g and rolling friction %.3g", bucket->friction,
+                     bucket->rolling);
+    } else {
+        (void)printf("as rough as the gravel");
+    }
+    (void)puts(scene->material.young_at_kgpm3 > 0.0 ? "; resistance goes with the density" : "");
+}
+
+static void print_scene_json(const struct dig_scene *const scene)
+{
+    const struct dig_material_pair *const bucket = bucket_pair(scene);
+    (void)printf("\"grains_across\": %.6g, \"density_scales\": %s, \"bucket\": ",
+                 grains_across(scene), scene->material.young_at_kgpm3 > 0.0 ? "true" : "false");
+    if (bucket != NULL) {
+        (void)printf("{\"friction\": %.9g, \"rolling\": %.9g}", bucket->friction, bucket->rolling);
+    } else {
+        (void)printf("null");
+    }
+}
+
 int dig_cli_check(const struct dig_arguments *const a)
 {
     struct dig_error        error  = { "" };
@@ -63,6 +109,10 @@ int dig_cli_check(const struct dig_arguments *const a)
         status = dig_store_check(store, &report, &error);
     }
     dig_store_close(store);
+    struct dig_scene scene;
+    if (status == DIG_OK) {
+        status = dig_table_scene(a->positional[0], &scene, &error);
+    }
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
@@ -71,10 +121,12 @@ int dig_cli_check(const struct dig_arguments *const a)
     if (a->json) {
         (void)printf("{\"points\": %zu, \"entries\": %zu, \"runs\": %zu, \"holes\": %zu, "
                      "\"incomplete\": %zu, \"effects\": %zu, \"builds\": %zu, \"approaches\": %zu, "
-                     "\"trembles\": %s}\n",
+                     "\"trembles\": %s, ",
                      report.points, report.entries, report.runs, report.holes, report.incomplete,
                      report.effects, report.builds, report.approaches,
                      trembles[0] != '\0' ? "true" : "false");
+        print_scene_json(&scene);
+        (void)puts("}");
     } else {
         dig_text_put(stdout, a->positional[0]);
         (void)printf(": sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
@@ -87,6 +139,7 @@ int dig_cli_check(const struct dig_arguments *const a)
             (void)printf("; %zu points at another depth or attack", report.approaches);
         }
         (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
+        print_scene(&scene);
         if (trembles[0] != '\0') {
             (void)printf("  %s\n", trembles);
         }
