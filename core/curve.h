@@ -131,6 +131,7 @@ struct dig_curve_set {
     double                young_Pa;
     double                smooth_half_s; // smoothing already applied to the curves, rig time
     struct dig_table_step step;
+    size_t                copies; // entries that hold the same digs (tables/density_scale.h); 0: 1
     size_t                trajectories;
     struct dig_trajectory trajectory[DIG_TRAJECTORY_MAX];
     size_t                entries;

@@ -47,10 +47,11 @@ static void copy(const struct dig_grounds *const from, const size_t i, const dou
 
 enum dig_status dig_grounds_spread_density(const struct dig_table_head *const head,
                                            const char *const                  path,
-                                           struct dig_grounds *const          grounds,
-                                           struct dig_error *const            error)
+                                           struct dig_grounds *const grounds, size_t *const copies,
+                                           struct dig_error *const error)
 {
-    assert(head != NULL && grounds != NULL);
+    assert(head != NULL && grounds != NULL && copies != NULL);
+    *copies = 1;
     if (!head->density_scales || grounds->grounds == 0 || !is_of_one_density(grounds)) {
         return DIG_OK;
     }
@@ -78,5 +79,6 @@ enum dig_status dig_grounds_spread_density(const struct dig_table_head *const he
     }
     dig_grounds_finish(grounds);
     *grounds = made;
+    *copies  = COPIES;
     return DIG_OK;
 }

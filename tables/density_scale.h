@@ -7,10 +7,11 @@
 
 /// Where curves go with the density (head) and all grounds are of one: the grounds at 0.6, 1
 /// and 1.6 times it, in the same order, forces, moments and masses in proportion. Else nothing
-/// changes. The copies of a ground hold the same packings: they are one sample, not three.
+/// changes. The copies of a ground hold the same packings: they are one sample, not three. *copies:
+/// how many.
 DIG_MUST_CHECK enum dig_status dig_grounds_spread_density(const struct dig_table_head *head,
                                                           const char                  *path,
                                                           struct dig_grounds          *grounds,
-                                                          struct dig_error            *error);
+                                                          size_t *copies, struct dig_error *error);
 
 #endif // DIG_TABLES_DENSITY_SCALE_H

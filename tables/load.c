@@ -131,15 +131,17 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
         return status;
     }
     dig_grounds_pool_spread(&plain);
-    const struct dig_table_step step = dig_grounds_step(&plain, head);
-    status                           = dig_grounds_spread_density(head, path, &plain, error);
+    const struct dig_table_step step   = dig_grounds_step(&plain, head);
+    size_t                      copies = 1;
+    status = dig_grounds_spread_density(head, path, &plain, &copies, error);
     struct dig_curve_set *const made = calloc(1, sizeof *made);
     if (status == DIG_OK && made == NULL) {
         status = no_memory(path, error);
     } else if (status == DIG_OK) {
         copy_head(made, head);
-        made->step = step;
-        status     = fill(made, &plain, path, error);
+        made->step   = step;
+        made->copies = copies;
+        status       = fill(made, &plain, path, error);
     }
     dig_grounds_finish(&plain);
     if (status != DIG_OK) {

@@ -47,8 +47,9 @@ enum dig_status dig_sql_load_approaches(sqlite3 *const db, const char *const pat
                                         struct dig_error *const            error)
 {
     assert(head != NULL && set != NULL);
-    struct dig_grounds plain = { .grounds = 0 };
-    struct dig_grounds other = { .grounds = 0 };
+    struct dig_grounds plain  = { .grounds = 0 };
+    struct dig_grounds other  = { .grounds = 0 };
+    size_t             copies = 1;
     enum dig_status    status =
         dig_grounds_load(db, path, head, DIG_GROUNDS_APPROACHED, &other, error);
     if (status == DIG_OK && other.grounds == 0) {
@@ -61,7 +62,7 @@ enum dig_status dig_sql_load_approaches(sqlite3 *const db, const char *const pat
     }
     if (status == DIG_OK) {
         dig_grounds_pool_spread_with(&plain, &other);
-        status = dig_grounds_spread_density(head, path, &other, error);
+        status = dig_grounds_spread_density(head, path, &other, &copies, error);
     }
     if (status == DIG_OK) {
         struct dig_approach_set *const made = take(&other, head);

@@ -99,6 +99,13 @@ static void amplitude_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS
     dig_features_amplitude(feature, NULL, amplitude);
 }
 
+// Packings of an entry that no other entry holds too.
+static double weight_of(const struct dig_curve_set *const set, const size_t entry, const size_t t)
+{
+    return (double)set->packings[entry * set->trajectories + t] /
+           (set->copies > 1 ? (double)set->copies : 1.0);
+}
+
 // The inverse of X' W X of one trajectory. False when the table has too few entries for it.
 static bool invert(struct dig_response_surface *const surface, const size_t t)
 {
@@ -107,8 +114,8 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
     double normal[DIG_RESPONSE_SURFACE_TERMS * DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
     size_t entries                                                         = 0;
     for (size_t e = 0; e < set->entries; e++) {
-        const int packings = set->packings[e * set->trajectories + t];
-        if (packings <= 0) {
+        const double weight = weight_of(set, e, t);
+        if (!(weight > 0.0)) {
             continue;
         }
         entries++;
@@ -118,7 +125,7 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
         terms_at(surface, place, term);
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < n; j++) {
-                normal[i * n + j] += (double)packings * term[i] * term[j];
+                normal[i * n + j] += weight * term[i] * term[j];
             }
         }
     }
@@ -145,8 +152,8 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
 static void share_of(const struct dig_response_surface *const surface, const size_t t,
                      const size_t entry, double share[DIG_RESPONSE_SURFACE_TERMS])
 {
-    const struct dig_curve_set *const set      = surface->set;
-    const double                      packings = set->packings[entry * set->trajectories + t];
+    const struct dig_curve_set *const set    = surface->set;
+    const double                      weight = weight_of(set, entry, t);
     double                            place[DIG_AXES];
     double                            term[DIG_RESPONSE_SURFACE_TERMS];
     dig_response_surface_place(surface, &set->gravel[entry], place);
@@ -154,7 +161,7 @@ static void share_of(const struct dig_response_surface *const surface, const siz
     for (size_t j = 0; j < surface->terms; j++) {
         share[j] = 0.0;
         for (size_t i = 0; i < surface->terms; i++) {
-            share[j] += packings * surface->inverse[t][j][i] * term[i];
+            share[j] += weight * surface->inverse[t][j][i] * term[i];
         }
     }
 }

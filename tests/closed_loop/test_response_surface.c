@@ -52,6 +52,25 @@ static void a_place_is_a_gravel_and_back(void **state)
     made_table_destroy(set);
 }
 
+// The same digs in three entries are no more digs than in one.
+static void copies_vouch_for_nothing_twice(void **state)
+{
+    (void)state;
+    const struct made_options    options         = { .packings = 6 };
+    struct dig_curve_set        *set             = made_table(&options);
+    struct dig_response_surface *surface         = malloc(sizeof *surface);
+    const double                 place[DIG_AXES] = { 0.3, -0.4, 0.1 };
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    const double thrice = dig_response_surface_noise(surface, MADE_ACTUAL, place);
+    set->copies         = 3;
+    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    const double once = dig_response_surface_noise(surface, MADE_ACTUAL, place);
+    assert_true(once > 2.0 * thrice); // three times, but for the prior of the cubic terms
+    assert_true(once < 3.01 * thrice);
+    free(surface);
+    made_table_destroy(set);
+}
+
 // Features are linear in the curve, so those of the surface are those of its curve.
 static void features_are_those_of_the_curve(void **state)
 {
@@ -138,6 +157,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(between_the_points_it_is_the_truth),
         cmocka_unit_test(a_place_is_a_gravel_and_back),
+        cmocka_unit_test(copies_vouch_for_nothing_twice),
         cmocka_unit_test(features_are_those_of_the_curve),
         cmocka_unit_test(its_noise_is_what_it_takes_over_from_each_entry),
         cmocka_unit_test(too_few_entries_are_refused),

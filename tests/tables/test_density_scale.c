@@ -39,6 +39,7 @@ static void one_density_becomes_three(void **state)
     struct dig_curve_set *const set = fixture_load("scales.sqlite");
     assert_int_equal(set->entries, 6);
     assert_int_equal(set->axis_count[DIG_AXIS_DENSITY_kgpm3], 3);
+    assert_int_equal(set->copies, 3);
     static const double density_kgpm3[] = { 1500.0, 2500.0, 4000.0 };
     static const double my_Nm[]         = { 1.25, 4.0 };
     for (size_t i = 0; i < 6; i++) {
@@ -93,6 +94,7 @@ static void expect_as_dug(const char *const name, const struct dig_scene *const 
     make_table(name, scene);
     struct dig_curve_set *const set = fixture_load(name);
     assert_int_equal(set->entries, 2);
+    assert_int_equal(set->copies, 1);
     dig_curve_set_destroy(set);
 }
 
