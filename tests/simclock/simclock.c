@@ -25,7 +25,6 @@
 
 #define TASKS_MAX 256
 #define NS_PER_S  1000000000LL
-#define SLACK_ns  900000LL // waits that end so close together end together
 #define LOOK_ns   50000L   // of real time, between two looks at who still runs: at first,
 #define SELDOM_ns 2000000L // and at last
 #define FLIGHT_ns NS_PER_S // of real time: bytes a terminal has not given up by then are lost
@@ -280,41 +279,47 @@ static void wake_poller(struct watch *const w, const int i)
     (void)!write(w->pipe_fd[i], "", 1);
 }
 
-// To the next waits that end, or to the end of what is to pass.
+// The wait that ends first, by `end_ns`; of those that end together that of the oldest thread, so
+// that they end in the same order however busy the machine is. -1: none.
+static int next_wait(const struct sim *const sim, const int64_t end_ns)
+{
+    int     next     = -1;
+    int64_t next_ns  = end_ns;
+    int32_t next_tid = 0;
+    for (int i = 0; i < SIM_SLOTS; i++) {
+        const struct sim_slot *const slot = &sim->slot[i];
+        const int64_t                due  = atomic_load(&slot->due_ns);
+        const int32_t                tid  = atomic_load(&slot->tid);
+        if (atomic_load(&slot->state) >= SIM_SLEEPING &&
+            (due < next_ns || (due == next_ns && (next < 0 || tid < next_tid)))) {
+            next     = i;
+            next_ns  = due;
+            next_tid = tid;
+        }
+    }
+    return next;
+}
+
+// To the next wait that ends, or to the end of what is to pass. One at a time: two threads that ran
+// together would meet in another order each time, and a bus be read before or after it was written.
 static void step(struct watch *const w, const int64_t end_ns)
 {
-    struct sim *const sim     = w->sim;
-    int64_t           next_ns = end_ns;
-    for (int i = 0; i < SIM_SLOTS; i++) {
-        const uint32_t state = atomic_load(&sim->slot[i].state);
-        const int64_t  due   = atomic_load(&sim->slot[i].due_ns);
-        if (state >= SIM_SLEEPING && due < next_ns) {
-            next_ns = due;
-        }
-    }
-    int64_t to_ns = next_ns;
-    for (int i = 0; i < SIM_SLOTS; i++) {
-        const uint32_t state = atomic_load(&sim->slot[i].state);
-        const int64_t  due   = atomic_load(&sim->slot[i].due_ns);
-        if (state >= SIM_SLEEPING && due > to_ns && due <= next_ns + SLACK_ns && due <= end_ns) {
-            to_ns = due;
-        }
-    }
+    struct sim *const sim   = w->sim;
+    const int         next  = next_wait(sim, end_ns);
+    const int64_t     to_ns = next >= 0 ? atomic_load(&sim->slot[next].due_ns) : end_ns;
     if (to_ns > atomic_load(&sim->now_ns)) {
         atomic_store(&sim->now_ns, to_ns);
     }
-    const uint32_t turns = atomic_load(&sim->turns);
-    uint32_t       woken = 0;
-    for (int i = 0; i < SIM_SLOTS; i++) {
-        struct sim_slot *const slot  = &sim->slot[i];
-        uint32_t               state = atomic_load(&slot->state);
-        if (state < SIM_SLEEPING || atomic_load(&slot->due_ns) > to_ns ||
-            !atomic_compare_exchange_strong(&slot->state, &state, SIM_RUNNING)) {
-            continue;
-        }
-        woken++;
+    if (next < 0) {
+        return;
+    }
+    const uint32_t         turns = atomic_load(&sim->turns);
+    struct sim_slot *const slot  = &sim->slot[next];
+    uint32_t               state = atomic_load(&slot->state);
+    if (state >= SIM_SLEEPING &&
+        atomic_compare_exchange_strong(&slot->state, &state, SIM_RUNNING)) {
         if (state == SIM_POLLING) {
-            wake_poller(w, i);
+            wake_poller(w, next);
         } else if (syscall(SYS_futex, &slot->state, FUTEX_WAKE, 1, NULL, NULL, 0) == 0) {
             w->listed = false; // not asleep yet, or no more
             if (w->one_cpu) {
@@ -322,7 +327,7 @@ static void step(struct watch *const w, const int64_t end_ns)
             }
         }
     }
-    settle(w, turns, woken);
+    settle(w, turns, 1);
 }
 
 static int fail(const char *const what, const char *const path)
@@ -407,7 +412,8 @@ int main(const int argc, char *argv[])
     const int64_t end_ns = now_ns + (int64_t)(1e9 * strtod(argv[argc - 1], NULL));
     settle(&w, 0, 0);
     int64_t steps = 0;
-    while (atomic_load(&w.sim->now_ns) < end_ns && !(awaits && has_ended(pid))) {
+    while ((atomic_load(&w.sim->now_ns) < end_ns || next_wait(w.sim, end_ns) >= 0) &&
+           !(awaits && has_ended(pid))) {
         const int64_t later_ns = atomic_load(&w.sim->now_ns) + NS_PER_S / 100;
         step(&w, awaits && later_ns < end_ns ? later_ns : end_ns);
         steps++;

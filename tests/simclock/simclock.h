@@ -7,9 +7,10 @@
 //                come to it, and what is waited for beside it (a socket, a signal) ends it as ever.
 //   simclock     is what a test moves the clock with. The clock goes to the next wait that ends,
 //   and only when
-//                every thread of every program sleeps. So no program is ever late, however busy the
-//                machine is, and nobody waits longer than the programs compute. While no simclock
-//                runs, time stands still.
+//                every thread of every program sleeps. Waits end one after the other, those of one
+//                instant in the order in which their threads began. So no program is ever late, and
+//                each run is the same, however busy the machine is; nobody waits longer than the
+//                programs compute. While no simclock runs, time stands still.
 //
 // With DIG_SIMCLOCK_ONE_CPU, for a machine that has one and lets its programs run in real time
 // (SCHED_FIFO), nobody is looked at: simclock has an ordinary priority, and runs when all of them

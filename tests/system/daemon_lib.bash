@@ -20,7 +20,9 @@ fi
 
 . tests/system/simclock.bash
 lcm="udpm://239.255.76.67:$((20000 + $$ % 10000))?ttl=0"
-port=$((30000 + $$ % 10000))
+# Below those that the kernel gives to clients: one of another test may hold such a port, and who asks for one that nobody
+# serves may be given it and reach itself.
+port=$((20000 + $$ % 10000))
 modbus="{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_default.yaml}}"
 sealed_can="{kind: can, can: {interface: vcan0, dbc: $PWD/tests/data/sealed/zx200_sealed.dbc, map: $PWD/tests/data/sealed/signals.yaml}}"
 

@@ -48,6 +48,19 @@ pass 20
 check "a signal ends a wait for it" is "$(cat "$work/signal")" "USR1 3623.000"
 check "and no signal ends none" is "$(cat "$work/none")" "none 3625.000"
 
+mkfifo "$work/order"
+exec 9<>"$work/order"
+for ((i = 0; i < 8; i++)); do
+    start "$work/order" "$user" sleep 1
+    start "$work/order" "$user" signal 1
+    start "$work/order" "$user" poll "$work/pipe" 1
+    pass 2
+done
+echo end >&9
+check "waits that end together end in the order in which their threads began" \
+    is "$(sed '/^end$/q' <&9 | awk '{ print $1 ~ /^[0-9]/ ? "slept" : $1 }' | tr '\n' ' ')" \
+    "$(for ((i = 0; i < 8; i++)); do printf 'slept none silent '; done)end "
+
 run "$work/rig" "$BIN/digrig" serve tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv \
     --machine config/machines/zx200_trench.yaml --modbus-tcp 127.0.0.1:0 --speed 20 --json
 check "a rig beside all this is never late by a millisecond" \
