@@ -1,9 +1,9 @@
 // Moves the simulated clock (simclock.h) of the file that DIG_SIMCLOCK names:
 //   simclock begin               makes the file, at the clock's beginning
-//   simclock joined PID          waits until that program's clock is the simulated one, or it has
-//   ended simclock pass SECONDS        lets so much time pass simclock await PID SECONDS   lets
-//   time pass until the program has ended; 1 if it has not in so many simclock now prints the
-//   clock, in seconds since its beginning
+//   simclock joined PID          waits until that program's clock is the simulated one, or it ended
+//   simclock pass SECONDS        lets so much time pass
+//   simclock await PID SECONDS   lets time pass until the program has ended; exits 1 if late
+//   simclock now                 prints the clock, in seconds since its beginning
 // Exits with 2 for bad usage and 3 when a program computes on and on and no time can pass.
 
 #define _GNU_SOURCE
