@@ -23,7 +23,6 @@ left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed
 a drift may bend|closed_loop/search/search_which.c|s/most_bent = 2.576/most_bent = 1e9/|156
 no rock elsewhere|closed_loop/search/search_which.c|s/lead >= DIG_SEARCH_TOLD_APART/false \&\& lead >= DIG_SEARCH_TOLD_APART/|330
 no second effect|closed_loop/search/search_which.c|s/if (find_pair(c, &pair))/if (false \&\& find_pair(c, \&pair))/|90
-sets by evidence alone|closed_loop/search/search_odds.c|s/is_as_likely(c, i))/false)/|14
 no gravel outside the grid|closed_loop/search/search.c|s/search->outside = !search->is_rock/search->outside = false \&\& !search->is_rock/|25
 what nothing explains is never chance|closed_loop/search/search.c|s/rarer = 0.01/rarer = 1e9/|8
 digs do not widen their scatter|closed_loop/search/search.c|s/statistic->about) < c->false_alarm/statistic->about) < -1.0/|40

@@ -32,7 +32,6 @@ struct dig_search {
     struct dig_fitted rival[DIG_RIVALS_MAX];
     double            log_evidence[DIG_RIVALS_MAX];
     double            rival_fit[DIG_RIVALS_MAX]; // p
-    double            plain_fit;                 // p of plain
     double            inclusion[DIG_RIVALS_MAX];
     double            probability[DIG_HYPOTHESIS_EFFECTS]; // of chosen's effects
 

@@ -26,18 +26,6 @@ static bool is_near_chosen(const struct dig_search_work *const c, const size_t r
            !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
 }
 
-// Where evidence is not decisive: fits at least half as likely, and has less evidence only for the
-// noise that few beds of it bring along.
-static bool is_as_likely(const struct dig_search_work *const c, const size_t rival)
-{
-    const double fit = dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->chosen));
-    return dig_search_evidence(c, &c->s->chosen, 1) < 2.0 * DIG_SEARCH_TOLD_APART &&
-           c->s->plain_fit < DIG_SEARCH_LEAST_FIT &&
-           c->s->rival_fit[rival] >= fmax(0.5 * fit, DIG_SEARCH_LEAST_FIT) &&
-           !is_near_chosen(c, rival) &&
-           !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
-}
-
 // Single effects that the digs cannot tell from the one chosen, in the order of their evidence.
 void dig_search_find_set(struct dig_search_work *const c)
 {
@@ -48,7 +36,7 @@ void dig_search_find_set(struct dig_search_work *const c)
     for (size_t turn = 0; turn < 2; turn++) {
         size_t next = c->s->rivals;
         for (size_t i = 0; i < c->s->rivals; i++) {
-            if ((is_near_chosen(c, i) || is_as_likely(c, i)) && !taken[i] &&
+            if (is_near_chosen(c, i) && !taken[i] &&
                 (next == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[next])) {
                 next = i;
             }
@@ -72,9 +60,7 @@ void dig_search_set_probabilities(struct dig_search_work *const c)
         double with    = exp(0.0);
         double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
         for (size_t i = 0; i < c->s->rivals; i++) {
-            // What fits as well may be what is there, whatever its noise costs.
-            const double ahead  = c->s->log_evidence[i] - evidence;
-            const double weight = exp(temper * (single && is_as_likely(c, i) ? 0.0 : ahead));
+            const double weight = exp(temper * (c->s->log_evidence[i] - evidence));
             const bool   same   = c->single[i].effect[0] == chosen->hypothesis.effect[e];
             with += same && !single ? weight : 0.0;
             without += same ? 0.0 : weight;

@@ -9,9 +9,6 @@
 /// from two.
 #define DIG_SEARCH_TOLD_APART 6.0
 
-/// A fit whose own digs would misfit as much more seldom than this does not fit.
-#define DIG_SEARCH_LEAST_FIT 0.01
-
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
     const struct dig_soil     *soil;
