@@ -91,12 +91,12 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)scripts/setup.sh build test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
-# With ENGINE=cuda on a graphics card.
-ENGINE ?= kernel
-tables: all ## Compute what the tables rig, rig_effects and product lack of their grids (many hours of all cores; ENGINE=cuda)
-	$(Q)for table in rig rig_effects product; do \
+# Each by the engine it was begun with, or all with ENGINE=cuda on a graphics card.
+tables: all ## Compute what the tables product, rig and rig_effects lack of their grids (many hours of all cores; ENGINE=cuda)
+	$(Q)for table in product:single rig:kernel rig_effects:kernel; do \
+	    engine=$${table#*:} table=$${table%:*}; \
 	    $(BUILD)/bin/digtable generate config/scenes/$${table%_effects}.yaml config/grids/$$table.yaml \
-	        -o tables/$$table.sqlite --engine $(ENGINE) || exit 1; \
+	        -o tables/$$table.sqlite --engine $(or $(ENGINE),$$engine) || exit 1; \
 	    $(BUILD)/bin/digtable check tables/$$table.sqlite || exit 1; done
 
 evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS

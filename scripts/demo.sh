@@ -5,8 +5,8 @@
 set -eu
 bin=${BIN:-build/bin} out=${OUT:-build/demo}
 machine=config/machines/zx200_trench.yaml
-reference=tests/data/reference
-gravel=${DIG_DEMO_GRAVEL:-mu0.5_mur0.5_rho2500_seed2} truth=${DIG_DEMO_TRUTH:-.5,.5,2500}
+reference=tests/data/liggghts_product
+gravel=${DIG_DEMO_GRAVEL:-mu0.6_mur0.4_rho2200_bucket0.4_seed1} truth=${DIG_DEMO_TRUTH:-.6,.4,2200}
 simple=$reference/${gravel}__simpleA.csv actual=$reference/${gravel}__actual.csv
 speed=${DIG_DEMO_SPEED:-1}
 
@@ -14,10 +14,10 @@ say() { if [ -t 1 ]; then printf '\n\033[1m%s\033[0m\n' "$*"; else printf '\n%s\
 rm -rf "$out" && mkdir -p "$out"
 out=$(cd "$out" && pwd)
 
-say "1. Table: the rig's table that ships, and one more bed of two gravels, computed now by the DEM"
-cp tables/rig.sqlite "$out/table.sqlite"
+say "1. Table: the one that ships, and one more bed of two gravels, computed now by the DEM"
+cp tables/product.sqlite "$out/table.sqlite"
 chmod u+w "$out/table.sqlite"
-"$bin/digtable" generate config/scenes/rig.yaml config/grids/demo.yaml -o "$out/table.sqlite" --time-limit 60
+"$bin/digtable" generate config/scenes/product.yaml config/grids/demo.yaml -o "$out/table.sqlite" --engine single --time-limit 60
 "$bin/digtable" check "$out/table.sqlite"
 
 say "2. Machine, bus and daemon: a simple dig, then a real dig, in gravel nobody here computed"

@@ -1,13 +1,17 @@
 #!/bin/bash
 # How right a table is on digs of another code: every LIGGGHTS gravel of tests/data/reference, and
-# every plain one of tests/data/liggghts_more, is identified from its simpleA dig, its actual dig is
-# predicted and compared. One line a case; then the
+# every plain one of tests/data/liggghts_more (for the product scene: of tests/data/liggghts_product), is identified from its
+# simpleA dig, its actual dig is predicted and compared. One line a case; then the
 # packings of one gravel pooled, each of their actual digs predicted. All by moment and forces, and again
 # by the moment alone, as where the bucket's cylinder only is measured. Behind the single digs stands how well the
 # bands hold: the share of all their points in the 90 % band, and the digs whose peak and energy lie in theirs.
 #   BIN=build/bin scripts/evaluate.sh [TABLE.sqlite]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=tests/data/reference
+bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite}
+case $("$bin/digtable" list "$table" --json | sed -nE 's/.*"name": "([^"]*)".*/\1/p' | head -n 1) in
+product) data=tests/data/liggghts_product more=/dev/null ;;
+*) data=tests/data/reference more=tests/data/liggghts_more ;;
+esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -45,7 +49,8 @@ for options in "" "--moment-alone"; do
         "identified" "nearest" error floor
     : >"$work/lines"
     : >"$work/bands"
-    for simple in "$data"/*__simpleA.csv tests/data/liggghts_more/mu*__simpleA.csv; do
+    for simple in "$data"/*__simpleA.csv "$more"/mu*__simpleA.csv; do
+        [ -e "$simple" ] || continue
         judge "$(basename "${simple%__simpleA.csv}")" "${simple%__simpleA.csv}"
     done
     sort -k8 -n "$work/lines" | awk '{ e[NR] = $8; f[NR] = $9; s += $8; r += ($8 / $9) ^ 2 } END {
@@ -65,6 +70,7 @@ for options in "" "--moment-alone"; do
                 100 * m / NR, 100 * x / NR, 100 * z / NR, peaks, energies, NR
             printf "peak told / recorded: median %.2f; that of the mean: %.2f\n", median(told), median(mean) }' "$work/bands"
     for second in "$data"/*_seed2__simpleA.csv; do
+        [ -e "$second" ] || continue
         gravel=${second%_seed2__simpleA.csv}
         packings=("$gravel"__simpleA.csv "$gravel"_seed*__simpleA.csv)
         judge "$(basename "$gravel"), ${#packings[@]} digs" "${packings[@]%__simpleA.csv}"

@@ -8,11 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The design of a table without its effects, on other gravels for every seed.
+// The design of a table without its effects, on other gravels for every seed. Of the product's
+// gain, .07, 400 gravels leave .04 open.
 static struct dig_design design_of(const char *const path, const uint64_t seed,
                                    char recommended[DIG_NAME_SIZE], char reference[DIG_NAME_SIZE])
 {
-    const struct dig_design_settings   settings = { .draws = 400, .seed = seed };
+    const struct dig_design_settings   settings = { .draws = 1200, .seed = seed };
     struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
     struct dig_curve_set              *set      = NULL;
     struct dig_scatter                *scatter  = NULL;

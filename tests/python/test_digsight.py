@@ -72,7 +72,7 @@ class Digsight(unittest.TestCase):
             self.same(ours, theirs)
 
     def test_one_curve_is_what_digtable_shows(self) -> None:
-        for table, density_kgpm3 in ((RIG, 2500), (PRODUCT, 1500)):  # the second holds it at other depths, too
+        for table, density_kgpm3 in ((RIG, 2500), (PRODUCT, 2500)):  # the second holds it at other depths, too
             where = {"friction": 0.3, "rolling": 0.3, "density_kgpm3": density_kgpm3, "trajectory": "actual"}
             ours = digsight.open_table(table).curve(**where)
             gravel = ("--friction", ".3", "--rolling", ".3", "--density", str(density_kgpm3))
@@ -121,7 +121,7 @@ class Digsight(unittest.TestCase):
             ("UPDATE entry SET spread = substr(spread, 2)", "spread: 4095 bytes, expected 4096"),
             ("UPDATE entry SET mean = CAST(x'0000c07f' || substr(mean, 5) AS BLOB)", "mean: expected finite"),
             ("UPDATE run SET windows = 1000000000", "expected 16000000000"),
-            ("DELETE FROM run WHERE packing = 0", "run: 0 of an entry with 1 packings"),
+            ("DELETE FROM run WHERE packing = 0", "run: 2 of an entry with 3 packings"),
             ("ALTER TABLE run ADD COLUMN more BLOB AS (zeroblob(900000000))", "a view, trigger, virtual table or column"),
             ("UPDATE trajectory SET name = char(27) || '[2J' || id", r"'\\x1b\[2J0', expected printable text"),
             ("UPDATE ground SET effect = char(8238)", r"'\\u202e', expected printable text"),

@@ -6,18 +6,23 @@ table=tables/rig.sqlite
 digtable check $table
 check "$table is sound" is "$code" 0
 check "and says that its light gravel trembled" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
-"$BIN/digsightd" -c config/digsightd.yaml --check >"$work/out"
+sed "s|: ../tables/product.sqlite|: $PWD/$table|; s|: machines/|: $PWD/config/machines/|; s|: signals/|: $PWD/config/signals/|" config/digsightd.yaml \
+    >"$work/rig.yaml"
+"$BIN/digsightd" -c "$work/rig.yaml" --check >"$work/out"
 check "as digsightd does" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
 digtable check tables/rig_effects.sqlite
 check "tables/rig_effects.sqlite is sound" is "$code" 0
 digtable check tables/product.sqlite
 check "tables/product.sqlite is sound" is "$code" 0
 check "and nothing in it trembled" eval '! grep -q trembles $work/out'
+check "its bucket is of steel" grep -q "of friction 0.4 and rolling friction 0.4; resistance goes with the density" "$work/out"
+"$BIN/digsightd" -c config/digsightd.yaml --check >"$work/out"
+check "it is the table that digsightd begins with" eval 'grep -q "scene product (.*), 60 gravels" $work/out && ! grep -q trembles $work/out'
 cp tables/product.sqlite "$work/begun.sqlite"
 digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/begun.sqlite" --time-limit 0
-check "and its digs are those of the product grid" eval 'is $code 0 && grep -q "144 of 144 digs" $work/err'
+check "and its digs are those of the product grid" eval 'is $code 0 && grep -q "216 of 216 digs" $work/err'
 digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/product.sqlite" --time-limit 0
-check "every dig of the product grid can be begun" eval 'is $code 0 && grep -q "0 of 144 digs" $work/err'
+check "every dig of the product grid can be begun" eval 'is $code 0 && grep -q "0 of 216 digs" $work/err'
 
 # The first run of a build that names its numerics: tables may hold older ones, carried over.
 gravel=$(sqlite3 -separator , $table "SELECT friction, rolling, density_kgpm3 FROM run JOIN ground g ON g.id = ground

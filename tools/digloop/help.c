@@ -8,10 +8,10 @@ static const struct dig_command commands[] = {
       "\"simple\".\n\n"
       "A recording is a force recording, or with --machine a machine recording or an LCM log of "
       "the daemon, which may hold several digs.",
-      "digloop identify tables/rig.sqlite simple1.csv simple2.csv --json >id.json\n"
-      "digloop identify tables/rig.sqlite run.csv \\\n"
+      "digloop identify tables/product.sqlite simple1.csv simple2.csv --json >id.json\n"
+      "digloop identify tables/product.sqlite run.csv \\\n"
       "        --machine config/machines/zx200_trench.yaml\n"
-      "digloop identify tables/rig.sqlite day.lcm --trajectory simpleA \\\n"
+      "digloop identify tables/product.sqlite day.lcm --trajectory simpleA \\\n"
       "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
     { "predict", "TABLE --identified ID --trajectory NAME [OPTION]...",
       "Predicts what an identified gravel resists other digs with.",
@@ -20,12 +20,13 @@ static const struct dig_command commands[] = {
       "deeper or with the bucket turned where the table was. With digs measured, how wrong that "
       "was, each as it was dug: relative Euclidean norm of the moment, "
       "+-0.16 s.",
-      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-      "        --machine config/machines/zx200_trench.yaml\n"
-      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-      "        --measured actual_1.csv\n"
-      "digloop predict tables/rig.sqlite --identified id.json --trajectory actual \\\n"
-      "        --measured day.lcm --machine config/machines/zx200_trench.yaml\n" },
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --machine config/machines/zx200_trench.yaml\n"
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --measured actual_1.csv\n"
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --measured day.lcm \\\n"
+      "        --machine config/machines/zx200_trench.yaml\n" },
     { "trace", "TABLE.sqlite CAMPAIGN/ [OPTION]...", "Traces what the table lacks to an effect.",
       "The residual of a campaign's digs, the effect it traces to, the error on the holdout digs "
       "before and after that effect is added. Effects of the soil are compared with beds that hold "
@@ -52,7 +53,7 @@ static const struct dig_command commands[] = {
       "Tells which simple dig of the table tells most about the gravel.",
       "And which tells effects apart, and whether digs simulated with the table's own scatter bear "
       "that out.",
-      "digloop design tables/rig.sqlite\n" },
+      "digloop design tables/product.sqlite\n" },
 };
 
 static const struct dig_option options[] = {
@@ -93,8 +94,8 @@ const struct dig_program *digloop_program(void)
                          "Finds the gravel of a table that resists like recorded digs, predicts other "
                                 "digs, and traces what a model lacks.",
                          NULL,
-                         "digloop identify tables/rig.sqlite simpleA_1.csv --json >id.json\n"
-                                "digloop predict tables/rig.sqlite --identified id.json --trajectory actual\n" },
+                         "digloop identify tables/product.sqlite simpleA_1.csv --json >id.json\n"
+                                "digloop predict tables/product.sqlite --identified id.json --trajectory actual\n" },
         .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input, or a check that "
                        "finds something wrong\n",
         .commands    = sizeof commands / sizeof commands[0],

@@ -17,7 +17,7 @@ static const struct dig_command commands[] = {
       "Logs in the order in which they were written. One sentence goes to standard output. With "
       "--table and --machine numbers are shown at rig scale, too.",
       "digreport shift --html shift.html --csv shift.csv early.lcm late.lcm\n"
-      "digreport shift --html shift.html --table tables/rig.sqlite \\\n"
+      "digreport shift --html shift.html --table tables/product.sqlite \\\n"
       "          --machine config/machines/zx200_trench.yaml day.lcm\n" },
 };
 
@@ -47,7 +47,7 @@ const struct dig_program *digreport_program(void)
                   "NAME is how the run is called in the report; up to 4 runs. A log must hold one "
                   "simple dig that identified the gravel and one later dig that was predicted.\n\n"
                   "The table of results goes to standard output.",
-                  "digreport --table tables/rig.sqlite --html report.html \\\n"
+                  "digreport --table tables/product.sqlite --html report.html \\\n"
                   "          --machine config/machines/zx200_trench.yaml "
                   "\"SocketCAN=site.lcm\"\n" },
         .exit_status =

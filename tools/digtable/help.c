@@ -26,7 +26,7 @@ static const struct dig_command commands[] = {
       "digtable status my.sqlite\n"
       "digtable status my.sqlite.jobs --json\n" },
     { "list", "TABLE.sqlite [OPTION]...", "Lists the entries and how many packings each has.", NULL,
-      "digtable list tables/rig.sqlite\n" },
+      "digtable list tables/product.sqlite\n" },
     { "show",
       "TABLE.sqlite ENTRY [OPTION]...\n"
       "TABLE.sqlite GRAVEL [OPTION]...",
@@ -34,9 +34,9 @@ static const struct dig_command commands[] = {
       "ENTRY is a number of `digtable list`, GRAVEL is --friction F --rolling R --density KGPM3. "
       "The "
       "curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
-      "digtable show tables/rig.sqlite --friction .5 --rolling .5 --density 2500 \\\n"
-      "         --trajectory actual\n"
-      "digtable show tables/rig.sqlite 0 --channel Fx\n" },
+      "digtable show tables/product.sqlite --friction .5 --rolling .5 \\\n"
+      "         --density 2500 --trajectory actual\n"
+      "digtable show tables/product.sqlite 0 --channel Fx\n" },
     { "import", "CURVES.csv --map MAP.yaml -o TABLE.sqlite",
       "Adds digs that something else measured or computed to a table.",
       "The map says which column holds what.",
@@ -53,7 +53,7 @@ static const struct dig_command commands[] = {
       "digtable export rig.sqlite --runs -o runs.csv\n" },
     { "check", "TABLE.sqlite [OPTION]...",
       "Checks version, integrity, and every curve against the runs it was made of.", NULL,
-      "digtable check tables/rig.sqlite\n"
+      "digtable check tables/product.sqlite\n"
       "digtable check rig.sqlite --complete --json\n" },
 };
 

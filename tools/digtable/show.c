@@ -228,11 +228,17 @@ int dig_cli_show(const struct dig_arguments *const a)
     }
     struct dig_error      error  = { "" };
     struct dig_curve_set *set    = NULL;
-    const enum dig_status status = dig_table_load(a->positional[0], &set, &error);
+    const enum dig_status status = dig_table_list(a->positional[0], &set, NULL, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    const int code = show(a, set);
+    int code = EXIT_BAD_INPUT;
+    if (dig_listed_count(set) > 0) {
+        code = show(a, set);
+    } else {
+        dig_text_print(stderr, "digtable: %s: ground: no rows without an effect, expected some\n",
+                       a->positional[0]);
+    }
     dig_curve_set_destroy(set);
     return code;
 }

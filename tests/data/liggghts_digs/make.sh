@@ -6,7 +6,7 @@
 #   ./make.sh muF_murR_rhoD_bucketB SEED    the same with a bucket of its own friction and rolling friction B
 #   ./make.sh GRAVEL SEED scratch           a small scene, seconds: the phases' means and
 #                                           the spheres of the levelled bed on stdout, as small.csv has them
-# OUT=FOLDER: recordings go there.
+# OUT=FOLDER: recordings go there. SCENE=product: config/scenes/product.yaml in place of the rig's, at two thirds of the time step.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 out=$(cd "${OUT:-$here}" && pwd)
@@ -32,10 +32,14 @@ scale=1 length=.31 half=.06 height=.085 column=.196747 settle=7200 relax=2400 fi
 if [ "$trajectories" = scratch ]; then
     scale=.4 length=.08 half=.0225 height=.03 column=.0694 settle=4800 relax=1600
 fi
+radius=.00375 floor=0 periodic=
+if [ "${SCENE:-rig}" = product ]; then
+    length=.40 column=.229614 settle=8000 radius=.0035 floor=-.025 periodic=yes finer="3 / 2"
+fi
 
 # What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1 unless said.
 friction=.5 rolling=.5 density=2500
-radii=".00375" shares="1" clump= slope_deg=0 rock=
+radii="$radius" shares="1" clump= slope_deg=0 rock=
 bucket= # its friction and rolling friction; none: the grains' own
 normal=hooke roll=epsd2 wall_type=1
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
@@ -107,11 +111,11 @@ laws() {
     cat <<EOF
 atom_style granular
 atom_modify map array
-boundary f f f
+boundary f $([ "$periodic" ] && echo p || echo f) f
 newton off
 communicate single vel yes
 units si
-region reg block -0.01 0.32 -0.07 0.07 -0.01 0.6 units box
+region reg block -0.01 $(if [ "$periodic" ]; then echo 0.41 -$half $half -0.035; else echo 0.32 -0.07 0.07 -0.01; fi) 0.6 units box
 create_box 4 reg
 neighbor 0.0015 bin
 neigh_modify delay 0 every 1 check yes
@@ -124,15 +128,15 @@ fix m6 all property/global coefficientRollingFriction peratomtypepair $(pairs $r
 fix m7 all property/global cohesionEnergyDensity peratomtypepair $(pairs $pull $stick)
 pair_style gran model $law
 pair_coeff * *
-timestep $(awk -v n="$finer" 'BEGIN { print 6.25e-5 / n }')
+timestep $(awk "BEGIN { printf \"%.10g\", 6.25e-5 / ($finer) }")
 fix gravi all gravity 9.81 vector 0 0 -1
 EOF
     wall x1 xplane 0
     wall x2 xplane $length
-    wall y1 yplane -$half
-    wall y2 yplane $half
+    [ "$periodic" ] || wall y1 yplane -$half
+    [ "$periodic" ] || wall y2 yplane $half
     # Walls know grains by the type that is named here; all grains have the same constants.
-    wall z1 zplane 0
+    wall z1 zplane $floor
 }
 
 # Volume poured: 0.694401 times the levelled box, at a volume fraction of 0.3.
@@ -156,7 +160,7 @@ pour() {
     [ -z "$clump" ] || fall="vel constant 0 0 -0.3 orientation random insert_every once overlapcheck yes all_in yes maxattempt 300 region fill ntry_mc 10000 volumefraction_region 0.3"
     cat <<EOF
 fix pdd all particledistribution/discrete 49979687 $type$names
-region fill block 0 $length -$half $half 0 $column units box
+region fill block 0 $length -$half $half $floor $column units box
 fix ins all insert/pack seed $prime distributiontemplate pdd $fall
 fix integr all $([ "$clump" ] && echo multisphere || echo nve/sphere)
 thermo_style custom step atoms ke cpu
@@ -164,7 +168,7 @@ thermo 3200
 thermo_modify lost ignore norm no
 run 1
 unfix ins
-run $((settle * finer))
+run $((settle * $finer))
 EOF
     # A slope turns the surface about the place where the bucket enters.
     type=0
@@ -184,7 +188,7 @@ delete_atoms region hole compress no
 fix rock all mesh/surface file rock.stl type 1
 fix rw all wall/gran model $law mesh n_meshes 1 meshes rock
 EOF
-    echo "run $((relax * finer))"
+    echo "run $((relax * $finer))"
 }
 
 # The trajectories of config/scenes/rig.yaml.
@@ -211,7 +215,7 @@ fix bw all wall/gran model $law mesh $([ "$rock" ] && echo n_meshes 2 meshes buc
 thermo 16000
 run 0
 reset_timestep 0
-fix out all ave/time 1 $((80 * finer)) $((80 * finer)) f_bucket[1] f_bucket[2] f_bucket[3] f_bucket[4] f_bucket[5] f_bucket[6] f_bucket[7] f_bucket[9] file $1.txt
+fix out all ave/time 1 $((80 * $finer)) $((80 * $finer)) f_bucket[1] f_bucket[2] f_bucket[3] f_bucket[4] f_bucket[5] f_bucket[6] f_bucket[7] f_bucket[9] file $1.txt
 EOF
     echo "$phases" | while read -r kind steps a b c; do
         if [ "$kind" = L ]; then
@@ -219,7 +223,7 @@ EOF
         else
             echo "fix mv all move/mesh mesh bucket rotate origin $b 0 $c axis 0 -1 0 period $(awk -v w="$a" 'BEGIN { printf "%.10g", 360 / w }')"
         fi
-        echo "run $((steps * finer))"
+        echo "run $((steps * $finer))"
         echo "unfix mv"
     done
 }
@@ -228,8 +232,8 @@ EOF
 recording() { # TRAJECTORY
     echo "# LIGGGHTS-PUBLIC 3.8, gravel $gravel, seed $seed: tests/data/liggghts_digs/make.sh"
     echo "t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm"
-    awk -v name="$1" -v finer="$finer" '!/^#/ {
-        t = ($1 - (80 * finer - 1) / 2) * 6.25e-5 / finer
+    awk -v name="$1" -v window="$((80 * $finer))" '!/^#/ {
+        t = ($1 - (window - 1) / 2) * .005 / window
         theta = -15
         if (name == "actual") {
             theta = -30 + 17.93 * (t < .8 ? 0 : t < 1.9 ? t - .8 : 1.1) + 20.05 * (t < 4.1 ? 0 : t < 6.1 ? t - 4.1 : 2)
@@ -241,7 +245,7 @@ recording() { # TRAJECTORY
 phase_means() {
     # How many the first line of the last run counts.
     spheres=$(awk '/^ +0 +[0-9]+ / { n = $2 } END { print n }' scratch.log)
-    awk -v g="$gravel" -v s="$seed" -v n_spheres="$spheres" -v finer="$finer" '!/^#/ {
+    awk -v g="$gravel" -v s="$seed" -v n_spheres="$spheres" -v finer="$(($finer))" '!/^#/ {
         p = $1 <= 3200 * finer ? 0 : $1 <= 8000 * finer ? 1 : 2
         n[p]++; my[p] += $6; fx[p] += $2; fz[p] += $4 }
         END { for (p = 0; p < 3; p++) printf "%s,%d,%d,%.6g,%.6g,%.6g,%d\n", g, s, p, my[p] / n[p], fx[p] / n[p], fz[p] / n[p], n_spheres }' scratch.txt

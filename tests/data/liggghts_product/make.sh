@@ -1,0 +1,13 @@
+#!/bin/sh
+# Digs in the product scene with a steel bucket, computed with LIGGGHTS: some twenty minutes of one core a gravel.
+# What is here already is left; -n: only say what is missing.
+#   tests/data/liggghts_product/make.sh [-n]
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+for gravel in mu0.6_mur0.4_rho2200_bucket0.4; do
+    for trajectory in simpleA actual; do
+        [ ! -e "$here/${gravel}_seed1__$trajectory.csv" ] || continue
+        echo "$gravel $trajectory"
+        [ "${1:-}" = -n ] || SCENE=product OUT="$here" "$here/../liggghts_digs/make.sh" "$gravel" 1 "$trajectory"
+    done
+done
