@@ -6,8 +6,8 @@
 # The second takes other digs; WHO says in the legend who dug them.
 set -euo pipefail
 to=${1:?usage: picture.sh OUT.svg [TABLE SIMPLE.csv DIG.csv TRAJECTORY WHO]}
-dig=tests/data/liggghts_more/mu0.4_mur0.6_rho2000_seed1
-bin=${BIN:-build/bin} table=${2:-tables/rig.sqlite} simple=${3:-${dig}__simpleA.csv} actual=${4:-${dig}__actual.csv}
+dig=tests/data/liggghts_product/mu0.6_mur0.4_rho2200_bucket0.4_seed1
+bin=${BIN:-build/bin} table=${2:-tables/product.sqlite} simple=${3:-${dig}__simpleA.csv} actual=${4:-${dig}__actual.csv}
 trajectory=${5:-actual} who=${6:-dug by LIGGGHTS}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
