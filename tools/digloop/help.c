@@ -95,7 +95,8 @@ const struct dig_program *digloop_program(void)
                                 "digs, and traces what a model lacks.",
                          NULL,
                          "digloop identify tables/product.sqlite simpleA_1.csv --json >id.json\n"
-                                "digloop predict tables/product.sqlite --identified id.json --trajectory actual\n" },
+                                "digloop predict tables/product.sqlite --identified id.json --trajectory "
+                                "actual\n" },
         .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input, or a check that "
                        "finds something wrong\n",
         .commands    = sizeof commands / sizeof commands[0],
