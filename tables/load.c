@@ -135,7 +135,7 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
     size_t                      copies = 1;
     status = dig_grounds_spread_density(head, path, &plain, &copies, error);
     struct dig_curve_set *const made = calloc(1, sizeof *made);
-    if (status == DIG_OK && made == NULL) {
+    if (made == NULL) {
         status = no_memory(path, error);
     } else if (status == DIG_OK) {
         copy_head(made, head);

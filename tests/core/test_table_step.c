@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-static const struct dig_material rig = { 0.0075, 5e6, 0.2, 0.2, 2.0 };
+static const struct dig_material rig = { 0.0075, 5e6, 0.2, 0.2, 2.0, 0.0 };
 
 static const char *text_of(const struct dig_material *const grain, const double density_kgpm3,
                            const double step_s)

@@ -19,8 +19,9 @@ static const struct dig_law_material *law_of(const int k)
 static double step_of_s(const struct dig_law_material *const m, const double radius_m,
                         const double density_kgpm3)
 {
-    const struct dig_material material = { 2.0 * radius_m, m->young_Pa, m->poisson, m->restitution,
-                                           m->characteristic_velocity_mps };
+    const struct dig_material material = {
+        2.0 * radius_m, m->young_Pa, m->poisson, m->restitution, m->characteristic_velocity_mps, 0.0
+    };
     return dig_contact_step_s(&material, m->normal_law, density_kgpm3);
 }
 
