@@ -3,7 +3,7 @@
 # each gravel from its simpleA dig by tables/product.sqlite, predicts its actual dig and compares. One line a dig: grains
 # across the bucket, mean moments, the gravel found, error and noise floor (docs/numerics/dem.md, "Fine gravel").
 #   BIN=build/bin OUT=build/fine_study [TABLE=tables/product.sqlite] scripts/fine_study.sh [ACROSS...]
-# ACROSS: 10 14 20 28. What lies in OUT is not dug again, so it may be stopped and started. On two cores the two gravels
+# ACROSS: 10 14 20. What lies in OUT is not dug again, so it may be stopped and started. On two cores the two gravels
 # take 3 and 15 minutes for 10 and 14.
 set -euo pipefail
 bin=${BIN:-build/bin} out=${OUT:-build/fine_study} table=${TABLE:-tables/product.sqlite} scene=config/scenes/product.yaml
