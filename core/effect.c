@@ -34,3 +34,9 @@ bool dig_effect_is_of_machine(const enum dig_effect_id effect)
 {
     return (int)effect < DIG_MACHINE_EFFECTS;
 }
+
+struct dig_gravel dig_effect_layer_gravel(const bool loose)
+{
+    return loose ? (struct dig_gravel){ { 0.3, 0.3, 1500.0 } }
+                 : (struct dig_gravel){ { 0.9, 0.9, 4000.0 } };
+}

@@ -4,6 +4,8 @@
 #ifndef DIG_CORE_EFFECT_H
 #define DIG_CORE_EFFECT_H
 
+#include "core/curve.h"
+
 #include <stdbool.h>
 
 // Id and name, a line each; the names are fixed, people script against them. Those of the machine
@@ -52,5 +54,8 @@ int dig_effect_find(const char *name);
 
 /// True for the effects of the machine.
 bool dig_effect_is_of_machine(enum dig_effect_id effect);
+
+/// The gravel that the layers of tables of effects are of: a hard one, or a loose one.
+struct dig_gravel dig_effect_layer_gravel(bool loose);
 
 #endif // DIG_CORE_EFFECT_H

@@ -176,6 +176,9 @@ double dig_scene_period_m(const struct dig_scene *scene);
 /// Young's modulus of a gravel of this density.
 double dig_scene_young_Pa(const struct dig_scene *scene, double density_kgpm3);
 
+/// Contact constants of gravel and bucket; NULL: the bucket is as rough as each gravel.
+const struct dig_material_pair *dig_scene_bucket_pair(const struct dig_scene *scene);
+
 /// The trajectory of that name, or NULL.
 const struct dig_trajectory *dig_scene_find(const struct dig_scene *scene, const char *name);
 

@@ -20,6 +20,19 @@ double dig_scene_young_Pa(const struct dig_scene *const scene, const double dens
                                    : m->young_Pa;
 }
 
+const struct dig_material_pair *dig_scene_bucket_pair(const struct dig_scene *const scene)
+{
+    assert(scene != NULL);
+    for (size_t i = 0; i < scene->bed.pairs; i++) {
+        const struct dig_material_pair *const p = &scene->bed.pair[i];
+        if ((p->a == 0 && p->b == DIG_MATERIAL_BUCKET) ||
+            (p->b == 0 && p->a == DIG_MATERIAL_BUCKET)) {
+            return p;
+        }
+    }
+    return NULL;
+}
+
 double dig_scene_period_m(const struct dig_scene *const scene)
 {
     assert(scene != NULL);

@@ -17,7 +17,7 @@ rules='
 as it is|||0
 what has no name does not compete|closed_loop/search/search_which.c|s/least_lead = 15.0/least_lead = -1e9/|10
 no lead over what has no name (15: 0)|closed_loop/search/search_which.c|s/least_lead = 15.0/least_lead = 0.0/|4
-an effect need not be enough|closed_loop/search/search_which.c|s/dig_search_evidence(c, &with, effects) - DIG/-1e9 - DIG/|6
+an effect need not be enough|closed_loop/search/search_which.c|s/dig_search_evidence(c, &with, 0) - DIG/-1e9 - DIG/|6
 any lead names (6: 0)|closed_loop/search/search_work.h|s/TOLD_APART 6.0/TOLD_APART 0.0/|0
 left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed < 0.0/false/|77
 a drift may bend|closed_loop/search/search_which.c|s/most_bent = 2.576/most_bent = 1e9/|156

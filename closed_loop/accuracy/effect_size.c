@@ -167,8 +167,9 @@ static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const 
     size_t            n    = 0;
     for (size_t i = 0; i < chosen->hypothesis.effects; i++) {
         if (i != e) {
-            less.hypothesis.effect[n] = chosen->hypothesis.effect[i];
-            less.number[DIG_AXES + n] = chosen->number[DIG_AXES + i];
+            less.hypothesis.effect[n]       = chosen->hypothesis.effect[i];
+            less.number[DIG_AT_U(n)]        = chosen->number[DIG_AT_U(i)];
+            less.number[DIG_AT_CONTRAST(n)] = chosen->number[DIG_AT_CONTRAST(i)];
             n++;
         }
     }

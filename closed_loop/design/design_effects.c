@@ -22,7 +22,7 @@ static void remainder_of(const struct dig_response_surface *const surface,
     double noise = 0.0;
     dig_response_surface_features(surface, t, place, plain, amplitude);
     memcpy(with, plain, sizeof with);
-    dig_soil_add(soil, effect, t, place, magnitude * soil->high[effect], 1.0, plain, amplitude,
+    dig_soil_add(soil, effect, t, place, magnitude * soil->high[effect], 1.0, 1.0, plain, amplitude,
                  with, &noise);
     for (size_t k = 0; k < v->n; k++) {
         d[k] = with[k] - plain[k];

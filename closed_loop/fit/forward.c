@@ -17,6 +17,16 @@ bool dig_hypothesis_differs(const struct dig_hypothesis *const hypothesis)
     return differs;
 }
 
+size_t dig_hypothesis_free(const struct dig_hypothesis *const hypothesis)
+{
+    size_t numbers = 0;
+    for (size_t e = 0; e < hypothesis->effects; e++) {
+        const struct dig_effect *const effect = dig_effect_of(hypothesis->effect[e]);
+        numbers += effect != NULL && effect->contrasted ? 2 : 1;
+    }
+    return numbers;
+}
+
 bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
                              const struct dig_soil *const soil, const enum dig_effect_id effect)
 {
@@ -64,7 +74,8 @@ void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const double share = dig_soil_share(hypothesis->effect[e], dig);
         dig_soil_add(soil, hypothesis->effect[e], (size_t)dig->trajectory, number,
-                     number[DIG_AXES + e], share, plain->feature, plain->amplitude, feature, noise);
+                     number[DIG_AT_U(e)], number[DIG_AT_CONTRAST(e)], share, plain->feature,
+                     plain->amplitude, feature, noise);
     }
 }
 
@@ -88,7 +99,8 @@ void dig_hypothesis_curve(const struct dig_soil *const       soil,
     memcpy(curve, plain, sizeof plain);
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const double share = dig_soil_share(hypothesis->effect[e], dig);
-        dig_soil_add_curve(soil, hypothesis->effect[e], t, number, number[DIG_AXES + e], share,
+        dig_soil_add_curve(soil, hypothesis->effect[e], t, number, number[DIG_AT_U(e)],
+                           number[DIG_AT_CONTRAST(e)], share,
                            (const double(*)[DIG_CURVE_POINTS])plain, curve);
     }
 }

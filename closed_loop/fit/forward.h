@@ -7,7 +7,12 @@
 #include "closed_loop/model/soil.h"
 
 #define DIG_HYPOTHESIS_EFFECTS 3
-#define DIG_HYPOTHESIS_NUMBERS (DIG_AXES + DIG_HYPOTHESIS_EFFECTS)
+#define DIG_HYPOTHESIS_NUMBERS (DIG_AXES + 2 * DIG_HYPOTHESIS_EFFECTS)
+
+/// Where the numbers of a hypothesis' effects stand, behind the gravel's place: u of effect e, and
+/// the contrast, which is 1 for all effects that have none.
+#define DIG_AT_U(e)        (DIG_AXES + 2 * (e))
+#define DIG_AT_CONTRAST(e) (DIG_AXES + 2 * (e) + 1)
 
 struct dig_hypothesis {
     size_t             effects; // 0: nothing but a gravel
@@ -30,12 +35,15 @@ struct dig_plain dig_plain_of(const struct dig_soil *soil, size_t trajectory,
 bool dig_hypothesis_possible(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                              enum dig_effect_id effect);
 
+/// How many numbers of its effects are free.
+size_t dig_hypothesis_free(const struct dig_hypothesis *hypothesis);
+
 /// True when some effect of it differs from dig to dig of a trajectory.
 bool dig_hypothesis_differs(const struct dig_hypothesis *hypothesis);
 
 /// Features of one dig, units of the table: the plain ones with the hypothesis' effects added.
-/// number: the gravel's place, then u of each effect. *noise (NULL: not asked for): the variance of
-/// the templates, in variances of one plain dig.
+/// number: the gravel's place, then u and contrast of each effect. *noise (NULL: not asked for):
+/// the variance of the templates, in variances of one plain dig.
 void dig_forward_add(const struct dig_soil *soil, const struct dig_plain *plain,
                      const struct dig_hypothesis *hypothesis, const double number[],
                      const struct dig_measured *dig, double feature[DIG_FEATURES], double *noise);

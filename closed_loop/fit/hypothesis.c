@@ -2,6 +2,7 @@
 
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/numeric/levenberg.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -28,8 +29,12 @@ void dig_hypothesis_bounds(const struct dig_soil *const       soil,
         high[a]              = is_free ? fmin(reach, hypothesis->outside ? beyond_grid : 1.0) : 0.0;
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
-        low[DIG_AXES + e]  = soil->low[hypothesis->effect[e]];
-        high[DIG_AXES + e] = soil->high[hypothesis->effect[e]];
+        const struct dig_effect *const effect  = dig_effect_of(hypothesis->effect[e]);
+        const bool                     is_free = effect != NULL && effect->contrasted;
+        low[DIG_AT_U(e)]                       = soil->low[hypothesis->effect[e]];
+        high[DIG_AT_U(e)]                      = soil->high[hypothesis->effect[e]];
+        low[DIG_AT_CONTRAST(e)]                = is_free ? effect->parameter[1].low : 1.0;
+        high[DIG_AT_CONTRAST(e)]               = is_free ? effect->parameter[1].high : 1.0;
     }
 }
 

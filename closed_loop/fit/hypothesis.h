@@ -9,7 +9,7 @@
 
 struct dig_fitted {
     struct dig_hypothesis hypothesis;
-    double                number[DIG_HYPOTHESIS_NUMBERS]; // place, then u of each effect
+    double                number[DIG_HYPOTHESIS_NUMBERS]; // place; u and contrast of each effect
     double                low[DIG_HYPOTHESIS_NUMBERS];    // 90 % interval: posterior.h fills it
     double                high[DIG_HYPOTHESIS_NUMBERS];
     double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
@@ -22,7 +22,7 @@ struct dig_fitted {
 /// Where to start a fit from: the numbers given, or those and four corners of the table as well.
 enum dig_fit_care { DIG_FIT_BARE, DIG_FIT_THOROUGH };
 
-/// Fits. start: numbers to start from (place, u). Some hundred microseconds a start.
+/// Fits. start: numbers to start from (place, u, contrast). Some hundred microseconds a start.
 void dig_hypothesis_fit(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
                         const struct dig_hypothesis *hypothesis, const double start[],
                         enum dig_fit_care care, struct dig_fitted *fitted);

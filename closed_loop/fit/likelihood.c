@@ -38,7 +38,7 @@ void dig_likelihood_init(struct dig_likelihood *const          l,
     l->batch      = batch;
     l->soil       = soil;
     l->hypothesis = hypothesis;
-    l->numbers    = DIG_AXES + hypothesis->effects;
+    l->numbers    = DIG_AXES + 2 * hypothesis->effects;
     l->differs    = dig_hypothesis_differs(hypothesis);
     l->steps      = batch->steps != NULL ? batch->steps->steps : 0;
     l->residuals  = l->steps;

@@ -113,7 +113,7 @@ static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id
 
 void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id effect,
                   const size_t trajectory, const double place[DIG_AXES], const double u,
-                  const double share, const double plain[DIG_FEATURES],
+                  const double contrast, const double share, const double plain[DIG_FEATURES],
                   const double amplitude[DIG_FORCE_CHANNELS], double feature[DIG_FEATURES],
                   double *const noise)
 {
@@ -130,6 +130,9 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
         dig_soil_template_at(soil, effect, trajectory, u * share);
     double term[DIG_SOIL_TERMS];
     terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
+    for (size_t i = 0; i < template->terms; i++) {
+        term[i] *= contrast;
+    }
     // Most hats are nothing at any one magnitude.
     size_t some[DIG_SOIL_TERMS];
     size_t n = 0;
@@ -163,7 +166,7 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
 
 void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect_id effect,
                         const size_t trajectory, const double place[DIG_AXES], const double u,
-                        const double share,
+                        const double contrast, const double share,
                         const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
@@ -183,7 +186,7 @@ void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect
                     ? factor_of(soil, effect, u, share, soil->speed[trajectory][k]) * plain[c][k]
                     : 0.0;
             for (size_t i = 0; has_templates(effect) && i < template->terms; i++) {
-                sum += term[i] * template->curve[i][c][k] * amplitude[c];
+                sum += contrast * term[i] * template->curve[i][c][k] * amplitude[c];
             }
             curve[c][k] += sum;
         }

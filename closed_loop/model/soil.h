@@ -76,15 +76,16 @@ bool dig_soil_knows(const struct dig_soil *soil, enum dig_effect_id effect, size
 double dig_soil_share(enum dig_effect_id effect, const struct dig_measured *dig);
 
 /// Adds the effect at u to a plain dig's features (in place) and the variance of what was added, in
-/// units of the variance of one plain dig, to *noise (NULL: not asked for). share as above.
+/// units of the variance of one plain dig, to *noise (NULL: not asked for). contrast: what a
+/// template adds is times that; share as above.
 void dig_soil_add(const struct dig_soil *soil, enum dig_effect_id effect, size_t trajectory,
-                  const double place[DIG_AXES], double u, double share,
+                  const double place[DIG_AXES], double u, double contrast, double share,
                   const double plain[DIG_FEATURES], const double amplitude[DIG_FORCE_CHANNELS],
                   double feature[DIG_FEATURES], double *noise);
 
 /// The same for a whole curve.
 void dig_soil_add_curve(const struct dig_soil *soil, enum dig_effect_id effect, size_t trajectory,
-                        const double place[DIG_AXES], double u, double share,
+                        const double place[DIG_AXES], double u, double contrast, double share,
                         const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 

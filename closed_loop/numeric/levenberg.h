@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-#define DIG_LEVENBERG_UNKNOWNS 8
+#define DIG_LEVENBERG_UNKNOWNS 9
 
 struct dig_levenberg {
     size_t unknowns, residuals;

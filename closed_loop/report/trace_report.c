@@ -48,6 +48,19 @@ static void put_sets(FILE *const to, const struct dig_trace *const trace)
     (void)fputs("],\n", to);
 }
 
+// What an effect means in the ground found; "": its parameters say it.
+static void meaning_of(const struct dig_trace *const trace, const size_t effect, const size_t size,
+                       char text[])
+{
+    const struct dig_effect *const known = dig_effect_of(trace->effect[effect].effect);
+    double                         value[DIG_MODEL_PARAMETERS_MAX];
+    text[0] = '\0';
+    if (known != NULL && known->say != NULL &&
+        dig_effect_values(&trace->effect[effect], value) == DIG_OK) {
+        known->say(value, &trace->ground, size, text);
+    }
+}
+
 static void put_effects(FILE *const to, const struct dig_trace *const trace)
 {
     (void)fputs(" \"effects\": [", to);
@@ -60,6 +73,13 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
         if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
             (void)fputs("\"depends_on\": ", to);
             dig_json_string(to, trace->unlisted->depends_on);
+            (void)fputs(", ", to);
+        }
+        char text[256];
+        meaning_of(trace, e, sizeof text, text);
+        if (text[0] != '\0') {
+            (void)fputs("\"meaning\": ", to);
+            dig_json_string(to, text);
             (void)fputs(", ", to);
         }
         put_parameters(to, effect->parameters, effect->parameter);
@@ -237,16 +257,12 @@ static void put_error_line(FILE *const to, const char *const title,
     }
 }
 
-// What applied effects mean in the gravel found.
 static void put_meanings(FILE *const to, const struct dig_trace *const trace)
 {
-    for (size_t e = 0; e < trace->effects && trace->applied; e++) {
-        const struct dig_effect *const known = dig_effect_of(trace->effect[e].effect);
-        double                         value[DIG_MODEL_PARAMETERS_MAX];
-        char                           text[256];
-        if (known != NULL && known->say != NULL &&
-            dig_effect_values(&trace->effect[e], value) == DIG_OK) {
-            known->say(value, &trace->gravel, sizeof text, text);
+    for (size_t e = 0; e < trace->effects; e++) {
+        char text[256];
+        meaning_of(trace, e, sizeof text, text);
+        if (text[0] != '\0') {
             (void)fprintf(to, "  %s\n", text);
         }
     }

@@ -55,8 +55,8 @@ static void measure(const struct dig_whitened_digs *const batch, const struct di
     double first = INFINITY;
     double last  = -INFINITY;
     memcpy(fresh, fitted->number, sizeof fresh);
-    fresh[DIG_AXES + wear] = 0.0;
-    sizes->digs            = batch->digs;
+    fresh[DIG_AT_U(wear)] = 0.0;
+    sizes->digs           = batch->digs;
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
@@ -73,7 +73,7 @@ static void measure(const struct dig_whitened_digs *const batch, const struct di
             own += model[k] * model[k];
         }
         sizes->factor[i] = both / own;
-        sizes->weight[i] = own / pow(worn(batch, fitted->number[DIG_AXES + wear], dig), 2.0);
+        sizes->weight[i] = own / pow(worn(batch, fitted->number[DIG_AT_U(wear)], dig), 2.0);
         sizes->group[i]  = dig->group;
 
         sizes->shared[dig->group] = fitted->noise[dig->group] / own;

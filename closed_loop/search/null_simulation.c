@@ -27,7 +27,7 @@ static void fit_rival(const struct dig_whitened_digs *const batch,
                       const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
     static const double starts[] = { 0.3, 0.6, -0.5 };
-    const size_t        last     = DIG_AXES + rival->effects - 1;
+    const size_t        last     = DIG_AT_U(rival->effects - 1);
     const size_t      added = rival->effects > base->effects ? sizeof starts / sizeof starts[0] : 1;
     struct dig_fitted best  = { .misfit = INFINITY };
     for (size_t s = 0; s < added; s++) {
@@ -36,7 +36,8 @@ static void fit_rival(const struct dig_whitened_digs *const batch,
         const enum dig_effect_id effect = rival->effect[rival->effects - 1];
         memcpy(at, from->number, sizeof at);
         if (rival->effects > base->effects) {
-            at[last] = starts[s] * (starts[s] > 0.0 ? soil->high[effect] : -soil->low[effect]);
+            at[last + 1] = 1.0;
+            at[last]     = starts[s] * (starts[s] > 0.0 ? soil->high[effect] : -soil->low[effect]);
         }
         if (s > 0 && fabs(at[last]) <= 0.0) {
             continue;

@@ -57,7 +57,7 @@ static void describe(const struct room *const r, const size_t g, struct hump *co
     const size_t                      t    = r->batch->group[g].trajectory;
     double                            most = 0.0;
     memset(hump, 0, sizeof *hump);
-    dig_soil_add_curve(r->soil, DIG_EFFECT_OBSTACLE, t, middle, 1.0, 1.0, none, hump->more);
+    dig_soil_add_curve(r->soil, DIG_EFFECT_OBSTACLE, t, middle, 1.0, 1.0, 1.0, none, hump->more);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double          progress = (double)k / (DIG_CURVE_POINTS - 1);
         const struct dig_pose pose =

@@ -40,7 +40,7 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     c->s->plain = fitted[0];
     for (size_t i = 0; i < c->s->rivals; i++) {
         c->s->rival[i]        = fitted[1 + i];
-        c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 1);
+        c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 0);
     }
     dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
                        &c->s->beyond);

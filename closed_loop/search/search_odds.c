@@ -12,16 +12,15 @@ bool dig_search_is_outside(const struct dig_search_work *const c)
 {
     const struct dig_fitted *const chosen    = &c->s->chosen;
     const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
-    const double                   by_effect = c->s->unlisted
-                                                   ? dig_search_best_evidence(c->s)
-                                                   : dig_search_evidence(c, chosen, chosen->hypothesis.effects);
+    const double                   by_effect =
+        c->s->unlisted ? dig_search_best_evidence(c->s) : dig_search_evidence(c, chosen, 0);
     return by_gravel > 0.0 && by_gravel >= by_effect &&
            by_gravel >= dig_search_evidence(c, &c->s->nameless, 0);
 }
 
 static bool is_near_chosen(const struct dig_search_work *const c, const size_t rival)
 {
-    const double evidence = dig_search_evidence(c, &c->s->chosen, 1);
+    const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
     return c->s->log_evidence[rival] > fmax(evidence - DIG_SEARCH_TOLD_APART, 0.0) &&
            !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
 }
@@ -52,10 +51,10 @@ void dig_search_find_set(struct dig_search_work *const c)
 // The weight of each answer among all that were tried: Bayes, tempered.
 void dig_search_set_probabilities(struct dig_search_work *const c)
 {
-    const struct dig_fitted *const chosen = &c->s->chosen;
-    const double evidence  = dig_search_evidence(c, chosen, chosen->hypothesis.effects);
-    const bool   single    = chosen->hypothesis.effects == 1;
-    const double by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    const struct dig_fitted *const chosen    = &c->s->chosen;
+    const double                   evidence  = dig_search_evidence(c, chosen, 0);
+    const bool                     single    = chosen->hypothesis.effects == 1;
+    const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
     for (size_t e = 0; e < chosen->hypothesis.effects; e++) {
         double with    = exp(0.0);
         double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));

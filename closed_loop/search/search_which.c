@@ -74,10 +74,9 @@ static bool is_believable(const struct dig_search_work *const c, const double ev
 {
     struct dig_fitted with;
     dig_hypothesis_fit_unlisted(c->batch, c->soil, &c->s->chosen, &with);
-    const size_t effects = c->s->chosen.hypothesis.effects;
     return evidence >= DIG_SEARCH_TOLD_APART &&
            evidence >= dig_search_evidence(c, &c->s->nameless, 0) + least_lead &&
-           evidence >= dig_search_evidence(c, &with, effects) - DIG_SEARCH_TOLD_APART;
+           evidence >= dig_search_evidence(c, &with, 0) - DIG_SEARCH_TOLD_APART;
 }
 
 // A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
@@ -102,11 +101,12 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
     for (size_t e = 0; e < pair->hypothesis.effects; e++) {
         if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
             struct dig_fitted again;
-            start[DIG_AXES] = pair->number[DIG_AXES + e];
+            start[DIG_AT_U(0)]        = pair->number[DIG_AT_U(e)];
+            start[DIG_AT_CONTRAST(0)] = pair->number[DIG_AT_CONTRAST(e)];
             dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_BARE, &again);
             if (again.misfit < c->s->rival[best].misfit) {
                 c->s->rival[best]        = again;
-                c->s->log_evidence[best] = dig_search_evidence(c, &again, 1);
+                c->s->log_evidence[best] = dig_search_evidence(c, &again, 0);
             }
         }
     }
@@ -121,7 +121,7 @@ static enum dig_status choose_pair(struct dig_search_work *const c, const size_t
     const double least = log((double)c->s->rivals / c->false_alarm);
     double       gain  = 0.0;
     c->s->chosen       = c->s->rival[best];
-    if (dig_search_evidence(c, pair, 2) <= c->s->log_evidence[best] + least) {
+    if (dig_search_evidence(c, pair, 0) <= c->s->log_evidence[best] + least) {
         return DIG_OK;
     }
     const enum dig_status status =
@@ -181,7 +181,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
         fit_again(c, best, &pair);
         status = choose_pair(c, best, &pair);
     }
-    const double evidence = dig_search_evidence(c, &c->s->chosen, c->s->chosen.hypothesis.effects);
+    const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
     if (status == DIG_OK) {
         status = dig_cross_validation_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen,
                                            &c->s->confirmed);

@@ -11,11 +11,11 @@ static double penalty(const struct dig_search_work *const c, const size_t number
     return 0.5 * (double)numbers * log(observations);
 }
 
-// Of a fit with more numbers than the plain hypothesis has.
 double dig_search_evidence(const struct dig_search_work *const c,
-                           const struct dig_fitted *const fitted, const size_t numbers)
+                           const struct dig_fitted *const fitted, const size_t more)
 {
-    return 0.5 * (c->s->plain.misfit - fitted->misfit) - penalty(c, numbers);
+    return 0.5 * (c->s->plain.misfit - fitted->misfit) -
+           penalty(c, dig_hypothesis_free(&fitted->hypothesis) + more);
 }
 
 double dig_search_left(const struct dig_search_work *const c, const struct dig_fitted *const fitted)

@@ -20,9 +20,10 @@ struct dig_search_work {
     struct dig_search         *s;
 };
 
-/// Log evidence of a fit with so many numbers more than the plain hypothesis, beside that.
+/// Log evidence of a fit beside that of the plain hypothesis. more: numbers that were fitted beside
+/// the gravel's and those of its effects.
 double dig_search_evidence(const struct dig_search_work *c, const struct dig_fitted *fitted,
-                           size_t numbers);
+                           size_t more);
 
 /// What a fit leaves of the digs' means.
 double dig_search_left(const struct dig_search_work *c, const struct dig_fitted *fitted);

@@ -94,9 +94,11 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
         }
         double start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         memcpy(start, plain.number, DIG_AXES * sizeof start[0]);
+        start[DIG_AT_CONTRAST(0)] = 1.0;
         dig_hypothesis_fit(batch, soil, &single, start, DIG_FIT_BARE, &fitted);
-        if (fitted.misfit + log(features) < misfit) {
-            misfit = fitted.misfit + log(features);
+        const double penalty = (double)dig_hypothesis_free(&single) * log(features);
+        if (fitted.misfit + penalty < misfit) {
+            misfit = fitted.misfit + penalty;
             *best  = fitted;
         }
     }

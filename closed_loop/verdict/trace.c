@@ -6,6 +6,7 @@
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/verdict/residuals.h"
 #include "closed_loop/verdict/tell_apart.h"
+#include "closed_loop/verdict/trace_ground.h"
 #include "closed_loop/verdict/trace_parts.h"
 #include "closed_loop/verdict/trace_verdict.h"
 #include "closed_loop/verdict/trace_work.h"
@@ -337,6 +338,10 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     }
     const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
                                    digs, measured,   w->batch,   &w->before, w->search };
+    if (status == DIG_OK) {
+        status = dig_trace_ground(table, w->surface, w->batch, w->search->chosen.number,
+                                  &trace->ground, error);
+    }
     return status == DIG_OK ? report(&t, w, machine, trace) : status;
 }
 

@@ -12,6 +12,7 @@
 #include "core/effect_set.h"
 #include "core/error.h"
 #include "core/model.h"
+#include "estimator/effects/effect.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,10 +56,11 @@ struct dig_trace {
     size_t                   tells;
     struct dig_tell_apart    tell[DIG_TRACE_TELLS_MAX]; // of each set every pair, in its order
 
-    struct dig_gravel      gravel_before, low_before, high_before; // refitted without the effects
-    struct dig_gravel      gravel, low, high;                      // and with them
-    struct dig_error_range before, after;                          // on the holdout digs
-    size_t                 holdouts;
+    struct dig_gravel        gravel_before, low_before, high_before; // refitted without the effects
+    struct dig_gravel        gravel, low, high;                      // and with them
+    struct dig_effect_ground ground;        // what effects are explained in
+    struct dig_error_range   before, after; // on the holdout digs
+    size_t                   holdouts;
 
     size_t                   digs;
     struct dig_trace_curves *curves;      // [digs], in the campaign's order; malloc'ed

@@ -16,7 +16,7 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
                                          const double probability)
 {
     const enum dig_effect_id       id    = fitted->hypothesis.effect[effect];
-    const size_t                   n     = DIG_AXES + effect;
+    const size_t                   n     = DIG_AT_U(effect);
     const struct dig_effect *const known = dig_effect_of(id);
     struct dig_model_effect made = { .effect = id, .probability = probability, .parameters = 1 };
     (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
@@ -30,6 +30,13 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
         along->value = soil->along;
         along->low   = soil->along;
         along->high  = soil->along;
+    }
+    if (known != NULL && known->contrasted) {
+        struct dig_model_parameter *const contrast = &made.parameter[made.parameters++];
+        (void)snprintf(contrast->name, sizeof contrast->name, "%s", known->parameter[1].name);
+        contrast->value = fitted->number[n + 1];
+        contrast->low   = fitted->low[n + 1];
+        contrast->high  = fitted->high[n + 1];
     }
     return made;
 }
@@ -83,7 +90,7 @@ enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
     double count[DIG_TRACE_PHASES] = { 0.0 };
     double without[DIG_HYPOTHESIS_NUMBERS];
     memcpy(without, fitted->number, sizeof without);
-    without[DIG_AXES + effect] = 0.0;
+    without[DIG_AT_U(effect)] = 0.0;
     for (size_t i = 0; i < t->batch->digs; i++) {
         const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
         double                           with[DIG_FEATURES];

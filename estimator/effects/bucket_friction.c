@@ -7,13 +7,14 @@
 #include <stdio.h>
 
 // What a person knows of a bucket is its friction, not what it lacks.
-static void say(const double value[], const struct dig_gravel *const gravel, const size_t size,
-                char text[])
+static void say(const double value[], const struct dig_effect_ground *const ground,
+                const size_t size, char text[])
 {
     const double left = 1.0 - value[0];
     (void)snprintf(text, size,
-                   "bucket: friction %.3g, rolling %.3g, if the table's is as rough as the gravel",
-                   left * gravel->value[DIG_AXIS_FRICTION], left * gravel->value[DIG_AXIS_ROLLING]);
+                   "bucket: friction %.3g, rolling %.3g, where the table's has %.3g, %.3g",
+                   left * ground->bucket_friction, left * ground->bucket_rolling,
+                   ground->bucket_friction, ground->bucket_rolling);
 }
 
 const struct dig_effect dig_effect_bucket_friction = {

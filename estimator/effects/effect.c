@@ -77,6 +77,16 @@ static void add_factor(const struct dig_effect *const    effect,
     }
 }
 
+static void times(const double by, struct dig_template *const sum)
+{
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sum->delta[c][k] *= by;
+            sum->sigma[c][k] *= by;
+        }
+    }
+}
+
 enum dig_status dig_effect_add(const struct dig_effect *const     effect,
                                const struct dig_curve_set *const  plain,
                                const struct dig_effect_set *const effects, const double value[],
@@ -97,6 +107,7 @@ enum dig_status dig_effect_add(const struct dig_effect *const     effect,
         if (status != DIG_OK) {
             return status;
         }
+        times(effect->contrasted ? value[1] : 1.0, &sum);
     }
     if (effect->factor != NULL || effect->reduce != NULL) {
         struct dig_curve      curve;

@@ -41,14 +41,22 @@ struct dig_effect_dig {
     double   pace;  // duration of the table's trajectory / of this dig, at rig scale
 };
 
+/// What is known of the ground and the bucket that an effect was found in.
+struct dig_effect_ground {
+    struct dig_gravel gravel;
+    double            bucket_friction, bucket_rolling; // of the table's bucket in that gravel
+    double            layer[2]; // a hard layer's resistance over the gravel's, and a loose one's
+};
+
 struct dig_effect {
     enum dig_effect_id          id;
     const char                 *summary; // one phrase for people
     size_t                      parameters;
     struct dig_effect_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
-    /// What the values mean in a gravel, in one line without its end, where a person knows the
-    /// thing by another number. NULL: the parameters say it.
-    void (*say)(const double value[], const struct dig_gravel *gravel, size_t size, char text[]);
+    /// What the values mean there, in one line without its end, where a person knows the thing by
+    /// another number. NULL: the parameters say it.
+    void (*say)(const double value[], const struct dig_effect_ground *ground, size_t size,
+                char text[]);
 
     // Of the machine.
 
@@ -69,6 +77,7 @@ struct dig_effect {
     bool   over_density;          // acts by magnitude / density
     bool   mirrored;              // has a meaning on both sides of absent, dug on one or on both
     bool   unlike_sides;          // magnitudes below absent are of another thing than those above
+    bool   contrasted;            // what templates add is multiplied by parameter 1
     double likeness; // 1 sigma of what a template may differ by, as a share of itself; 0: usual
     double reach;    // without templates: the largest parameter 0 that a trace tries
 

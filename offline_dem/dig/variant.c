@@ -97,12 +97,15 @@ static void set_slope(const double magnitude, struct dig_scene *const scene)
 
 static void set_layer(const double magnitude, struct dig_scene *const scene)
 {
-    const struct dig_other_material hard  = { "layer", 0.9, 0.9, 4000.0, 0.0 };
-    const struct dig_other_material loose = { "layer", 0.3, 0.3, 1500.0, 0.0 };
-    scene->bed.materials                  = 1;
-    scene->bed.material[0]                = magnitude < 0.0 ? loose : hard;
-    scene->bed.material[0].restitution    = scene->material.restitution;
-    scene->bed.layers                     = 1;
+    const struct dig_gravel of = dig_effect_layer_gravel(magnitude < 0.0);
+    scene->bed.materials       = 1;
+    scene->bed.material[0] =
+        (struct dig_other_material){ .name          = "layer",
+                                     .friction      = of.value[DIG_AXIS_FRICTION],
+                                     .rolling       = of.value[DIG_AXIS_ROLLING],
+                                     .density_kgpm3 = of.value[DIG_AXIS_DENSITY_kgpm3],
+                                     .restitution   = scene->material.restitution };
+    scene->bed.layers = 1;
     scene->bed.layer[0] =
         (struct dig_layer){ 1, scene->box.z_min_m, scene->box.z_min_m + fabs(magnitude) };
 }

@@ -171,7 +171,8 @@ static enum dig_status read_liggghts(const char *const folder, struct blind_pool
 struct walk {
     struct blind_pool           *pool;
     const struct dig_trajectory *trajectory;
-    const char                  *name; // of the file, without its suffix and what follows a dash
+    const char                  *name; // of the file, up to a dash
+    double                       magnitude;
 };
 
 static enum dig_status take_run(void *const context, const struct dig_run *const run,
@@ -193,7 +194,7 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
     } else if (strncmp(walk->name, "plain", 5) != 0) {
         (void)snprintf(what.effect, sizeof what.effect, "%s", walk->name);
         what.outside   = dig_effect_find(what.effect) < 0;
-        what.magnitude = 1.0;
+        what.magnitude = walk->magnitude;
     }
     struct blind_bed *const bed = bed_of(walk->pool, &what, (unsigned)run->origin.packing);
     if (bed == NULL || bed->dig[path].rows > 0) {
@@ -226,14 +227,16 @@ static enum dig_status read_table(const char *const folder, const char *const fi
     char name[64];
     (void)snprintf(path, sizeof path, "%s/%s", folder, file);
     (void)snprintf(name, sizeof name, "%s", file);
-    name[strcspn(name, ".-")] = '\0';
-    struct dig_store *store   = NULL;
-    enum dig_status   status  = dig_store_open(path, &store, error);
+    const char *const magnitude = strchr(file, '=');
+    name[strcspn(name, ".-")]   = '\0';
+    struct dig_store *store     = NULL;
+    enum dig_status   status    = dig_store_open(path, &store, error);
     if (status != DIG_OK) {
         return status;
     }
     size_t                       count = 0;
-    struct walk                  walk  = { pool, dig_store_trajectories(store, &count), name };
+    struct walk                  walk  = { pool, dig_store_trajectories(store, &count), name,
+                         magnitude != NULL ? strtod(magnitude + 1, NULL) : 1.0 };
     const struct dig_run_visitor by    = { take_run, &walk };
     status                             = dig_store_walk(store, &by, error);
     dig_store_close(store);

@@ -44,7 +44,8 @@ struct blind_pool {
 /// Reads the digs of LIGGGHTS under data/reference, data/liggghts_digs and data/liggghts_more, and
 /// ours in data/blind/*.sqlite, as far as they are there; to judge with, also in data/blind/judge.
 /// A table there whose runs have no effect and whose file is not "plain" holds an effect of its
-/// file's name, up to a dash. Only beds dug along the first two paths are kept.
+/// file's name, up to a dash, of the magnitude behind "=", or 1. Only beds dug along the first two
+/// paths are kept.
 DIG_MUST_CHECK enum dig_status blind_pool_read(const char *data, bool to_judge,
                                                struct blind_pool *pool, struct dig_error *error);
 

@@ -180,8 +180,10 @@ static double size_of(const double layer, const double cohesion)
     chosen.hypothesis =
         (struct dig_hypothesis){ .effects = 2,
                                  .effect  = { DIG_EFFECT_COHESION, DIG_EFFECT_LAYERING } };
-    chosen.number[DIG_AXES]     = cohesion;
-    chosen.number[DIG_AXES + 1] = layer;
+    chosen.number[DIG_AT_U(0)]        = cohesion;
+    chosen.number[DIG_AT_CONTRAST(0)] = 1.0;
+    chosen.number[DIG_AT_U(1)]        = layer;
+    chosen.number[DIG_AT_CONTRAST(1)] = 1.0;
     assert_int_equal(dig_effect_size_of_soil(batch, soil, &chosen, 1, plain.noise, &size), DIG_OK);
     return size;
 }

@@ -150,7 +150,8 @@ static bool is_lower_beside(const struct dig_whitened_digs *const b,
                             const struct dig_fitted *const        f)
 {
     bool lower = false;
-    for (size_t j = 0; j < DIG_AXES + f->hypothesis.effects; j++) {
+    for (size_t i = 0; i < DIG_AXES + f->hypothesis.effects; i++) {
+        const size_t j = i < DIG_AXES ? i : DIG_AT_U(i - DIG_AXES);
         for (double step = -0.02; step <= 0.02; step += 0.04) {
             struct dig_fitted off = *f;
             off.number[j] += step;
@@ -172,9 +173,9 @@ static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
         { .effects = 1, .effect = { DIG_EFFECT_WEAR } },
         { .effects = 2, .effect = { DIG_EFFECT_COHESION, DIG_EFFECT_WEAR } },
     };
-    static const bool               take[DIGS]                    = { true, true, true, true };
-    const struct dig_gravel         gravel                        = { { 0.6, 0.55, 2500 } };
-    const double                    start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 0.05 };
+    static const bool       take[DIGS]                    = { true, true, true, true };
+    const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
+    const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 1.0, 0.05, 1.0 };
     static struct dig_whitened_digs batch;
     double                          place[DIG_AXES];
     dig(&gravel, 1.3, 17);

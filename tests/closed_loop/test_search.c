@@ -123,8 +123,12 @@ static void an_effect_is_named_and_measured(void **state)
                 effect[i] == DIG_EFFECT_COHESION || effect[i] == DIG_EFFECT_ADHESION;
             const double density = found.value[DIG_AXIS_DENSITY_kgpm3];
             const double by      = sticks ? 2500.0 / density : 1.0;
-            assert_close(by * dig_soil_magnitude(soil, effect[i], s.chosen.number[DIG_AXES]), 0.5,
-                         0.15);
+            // What a layer of the made world adds is its top times its contrast.
+            const double contrast = s.chosen.number[DIG_AT_CONTRAST(0)];
+            assert_close(by * contrast *
+                             dig_soil_magnitude(soil, effect[i], s.chosen.number[DIG_AT_U(0)]),
+                         0.5, 0.15);
+            assert_true(effect[i] == DIG_EFFECT_LAYERING || fabs(contrast - 1.0) <= 0.0);
         }
     }
 }
@@ -305,7 +309,7 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     assert_int_equal(s.rival[best].hypothesis.effect[0], slope);
     const double short_of = 30.0; // of the misfit
     s.rival[best].misfit += short_of;
-    s.rival[best].number[DIG_AXES] *= 0.8;
+    s.rival[best].number[DIG_AT_U(0)] *= 0.8;
     s.log_evidence[best] = dig_search_evidence(&c, &s.rival[best], 1);
     assert_int_equal(dig_search_best_rival(&s), best);
     assert_true(s.log_evidence[best] < before - 2.0 * DIG_SEARCH_TOLD_APART);

@@ -26,7 +26,7 @@ static void a_template_gives_back_what_was_put_in(void **state)
         double noise = 0.0;
         plain_at(&gravel, MADE_ACTUAL, place, plain, size);
         memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.5, 1.0, plain, size, with, &noise);
+        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.5, 1.0, 1.0, plain, size, with, &noise);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             size_t from, to;
             dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
@@ -62,7 +62,7 @@ static void terms_that_the_beds_do_not_ask_for_bring_no_noise(void **state)
         double known = 0.0;
         plain_at(&gravel, t, place, plain, size);
         memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, DIG_EFFECT_LAYERING, t, place, 0.5, 1.0, plain, size, with, &noise);
+        dig_soil_add(soil, DIG_EFFECT_LAYERING, t, place, 0.5, 1.0, 1.0, plain, size, with, &noise);
         for (size_t e = 0; e < world.effects->entries; e++) {
             if (world.effects->entry[e].effect == DIG_EFFECT_LAYERING) {
                 known += (double)world.effects->packings[e * world.effects->trajectories + t] *
@@ -71,6 +71,37 @@ static void terms_that_the_beds_do_not_ask_for_bring_no_noise(void **state)
         }
         assert_true(noise > 0.5 * 0.25 / known && noise < 4.0 * 0.25 / known);
     }
+}
+
+// What a layer of another material adds is a multiple, in features and curves alike.
+static void a_contrast_multiplies_what_a_template_adds(void **state)
+{
+    (void)state;
+    const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
+    double                  place[DIG_AXES], plain[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+    double                  bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double                  feature[2][DIG_FEATURES];
+    double                  curve[2][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double                  noise[2] = { 0.0 };
+    plain_at(&gravel, MADE_ACTUAL, place, plain, size);
+    dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
+    for (int i = 0; i < 2; i++) {
+        const double contrast = i == 0 ? 1.0 : 0.4;
+        memcpy(feature[i], plain, sizeof plain);
+        memcpy(curve[i], bare, sizeof bare);
+        dig_soil_add(soil, DIG_EFFECT_LAYERING, MADE_ACTUAL, place, 0.5, contrast, 1.0, plain, size,
+                     feature[i], &noise[i]);
+        dig_soil_add_curve(soil, DIG_EFFECT_LAYERING, MADE_ACTUAL, place, 0.5, contrast, 1.0,
+                           (const double(*)[DIG_CURVE_POINTS])bare, curve[i]);
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        assert_close(feature[1][f] - plain[f], 0.4 * (feature[0][f] - plain[f]), 1e-12);
+    }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close(curve[1][0][k] - bare[0][k], 0.4 * (curve[0][0][k] - bare[0][k]), 1e-12);
+    }
+    assert_true(noise[1] > 0.0);
+    assert_close(noise[1], 0.16 * noise[0], 1e-12);
 }
 
 static void an_effect_that_is_absent_adds_nothing(void **state)
@@ -86,8 +117,8 @@ static void an_effect_that_is_absent_adds_nothing(void **state)
         double noise = 0.0;
         plain_at(&gravel, MADE_SIMPLE_A, place, plain, size);
         memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, (enum dig_effect_id)e, MADE_SIMPLE_A, place, 0.0, 1.0, plain, size, with,
-                     &noise);
+        dig_soil_add(soil, (enum dig_effect_id)e, MADE_SIMPLE_A, place, 0.0, 1.0, 1.0, plain, size,
+                     with, &noise);
         assert_memory_equal(with, plain, sizeof with);
         assert_close(noise, 0.0, 0.0);
         assert_close(dig_soil_magnitude(soil, (enum dig_effect_id)e, 0.0), soil->absent[e], 0.0);
@@ -107,10 +138,10 @@ static void features_are_those_of_the_curve(void **state)
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         plain_at(&gravel, MADE_ACTUAL, place, plain, size);
         memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.1, 2.0, plain, size, with, &noise);
+        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.1, 1.0, 2.0, plain, size, with, &noise);
         dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
         memcpy(curve, bare, sizeof curve);
-        dig_soil_add_curve(soil, effect[e], MADE_ACTUAL, place, 0.1, 2.0,
+        dig_soil_add_curve(soil, effect[e], MADE_ACTUAL, place, 0.1, 1.0, 2.0,
                            (const double(*)[DIG_CURVE_POINTS])bare, curve);
         dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
@@ -131,11 +162,11 @@ static void the_tooths_speed_tells_features_as_it_tells_the_curve(void **state)
     soil->along = 1.0;
     plain_at(&gravel, MADE_ACTUAL, place, plain, size);
     memcpy(with, plain, sizeof with);
-    dig_soil_add(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0, plain, size, with,
-                 &noise);
+    dig_soil_add(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 1.0, 0.0, plain, size,
+                 with, &noise);
     dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
     memcpy(curve, bare, sizeof curve);
-    dig_soil_add_curve(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 0.0,
+    dig_soil_add_curve(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 1.0, 0.0,
                        (const double(*)[DIG_CURVE_POINTS])bare, curve);
     soil->along = 0.0;
     dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
@@ -184,6 +215,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_template_gives_back_what_was_put_in),
         cmocka_unit_test(terms_that_the_beds_do_not_ask_for_bring_no_noise),
+        cmocka_unit_test(a_contrast_multiplies_what_a_template_adds),
         cmocka_unit_test(an_effect_that_is_absent_adds_nothing),
         cmocka_unit_test(features_are_those_of_the_curve),
         cmocka_unit_test(the_tooths_speed_tells_features_as_it_tells_the_curve),

@@ -65,7 +65,7 @@ static double left_of(const size_t entry, const size_t t)
     dig_response_surface_features(surface, t, place, plain, amplitude);
     memcpy(model, plain, sizeof model);
     const double u = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
-    dig_soil_add(soil, of->effect, t, place, u, 1.0, plain, amplitude, model, &noise);
+    dig_soil_add(soil, of->effect, t, place, u, 1.0, 1.0, plain, amplitude, model, &noise);
 
     const double larger = size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm];
     const double factor =
@@ -118,8 +118,8 @@ static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
         double size[DIG_FORCE_CHANNELS];
         double noise = 0.0;
         memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, DIG_EFFECT_LAYERING, actual, place, 0.7 * side, 1.0, plain, amplitude,
-                     with, &noise);
+        dig_soil_add(soil, DIG_EFFECT_LAYERING, actual, place, 0.7 * side, 1.0, 1.0, plain,
+                     amplitude, with, &noise);
         dig_features_amplitude(with, NULL, size);
         assert_true(side * (size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm] - 1.0) > 0.1);
     }
@@ -144,7 +144,7 @@ static void a_smoother_bucket_takes_off_the_moment_down_to_no_friction(void **st
             double with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
             double noise = 0.0;
             memcpy(with, plain, sizeof with);
-            dig_soil_add(soil, effect, t, place, smoothness / soil->scale[effect], 1.0, plain,
+            dig_soil_add(soil, effect, t, place, smoothness / soil->scale[effect], 1.0, 1.0, plain,
                          amplitude, with, &noise);
             dig_features_amplitude(with, NULL, size);
             const double left = size[DIG_CHANNEL_MY_Nm] / amplitude[DIG_CHANNEL_MY_Nm];

@@ -41,7 +41,8 @@ static void candidate(const enum dig_effect_id effect, const double u)
     struct dig_fitted *const f = &search->rival[search->rivals++];
     *f                         = (struct dig_fitted){ .hypothesis = { 1, { effect }, false } };
     dig_response_surface_place(world.surface, &gravel, f->number);
-    f->number[DIG_AXES] = u;
+    f->number[DIG_AT_U(0)]        = u;
+    f->number[DIG_AT_CONTRAST(0)] = 1.0;
 }
 
 // Of these candidates, all of one set; the digs measure the moment and forces, or the first so

@@ -334,30 +334,38 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     drop(e);
 }
 
-// What a person knows of a bucket is its friction, not what it lacks.
-static void a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found(void **state)
+// What a person knows of a bucket is its friction, not what it lacks; of a layer how hard it
+// resists. Whether the prediction was changed or not.
+static void effects_are_told_by_what_people_know_of_them(void **state)
 {
     (void)state;
     struct example *const e    = make();
     const char *const     path = scratch_path("bucket.txt");
     FILE *const           file = fopen(path, "w");
     assert_non_null(file);
-    e->trace.gravel    = (struct dig_gravel){ { 0.6, 0.4, 2500.0 } };
+    e->trace.ground    = (struct dig_effect_ground){ .bucket_friction = 0.6,
+                                                     .bucket_rolling  = 0.4,
+                                                     .layer           = { 4.0, 0.25 } };
     e->trace.effect[0] = (struct dig_model_effect){
         .effect     = DIG_EFFECT_BUCKET_FRICTION,
         .parameters = 1,
         .parameter  = { { "bucket_smoothness", 0.75, 0.6, 0.9 } },
     };
     dig_trace_text(&e->trace, file);
-    // The gravel is then another, refitted without it.
-    e->trace.applied = false;
+    e->trace.applied   = false;
+    e->trace.effect[0] = (struct dig_model_effect){
+        .effect     = DIG_EFFECT_LAYERING,
+        .parameters = 2,
+        .parameter  = { { "layer_m", -0.04, -0.05, -0.03 }, { "contrast", 0.5, 0.25, 0.9 } },
+    };
     dig_trace_text(&e->trace, file);
+    dig_trace_json(&e->trace, file);
     assert_int_equal(fclose(file), 0);
-    size_t            size  = 0;
-    char *const       text  = scratch_read(path, &size);
-    const char *const first = strstr(text, "bucket: friction 0.15, rolling 0.1, if");
-    assert_non_null(first);
-    assert_null(strstr(first + 1, "bucket: friction"));
+    size_t      size = 0;
+    char *const text = scratch_read(path, &size);
+    assert_contains(text, "bucket: friction 0.15, rolling 0.1, where the table's has 0.6, 0.4\n");
+    assert_contains(text, "layer: from 0.04 m above the floor down, resists 0.62 times as hard");
+    assert_contains(text, "\"meaning\": \"layer: from 0.04 m");
     free(text);
     drop(e);
 }
@@ -501,7 +509,7 @@ int main(void)
         cmocka_unit_test(control_characters_stay_inside_a_json_string),
         cmocka_unit_test(a_sentence_says_the_verdict),
         cmocka_unit_test(the_terminal_gets_parameters_sets_errors_and_advice),
-        cmocka_unit_test(a_smoother_bucket_is_told_by_its_friction_in_the_gravel_found),
+        cmocka_unit_test(effects_are_told_by_what_people_know_of_them),
         cmocka_unit_test(what_is_named_and_not_applied_is_told),
         cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
         cmocka_unit_test(no_folder_of_a_file_is_shown),

@@ -304,6 +304,33 @@ static void reduced_forms_grow_as_they_say(void **state)
     free_world(w);
 }
 
+// A layer of another material than the table's adds a multiple of what that adds; a model that says
+// nothing of it means the table's.
+static void a_layers_contrast_multiplies_its_template(void **state)
+{
+    (void)state;
+    struct world *const         w     = make_world();
+    const struct dig_effect_dig dig   = { .trajectory = MADE_SIMPLE_A, .pass = 1, .pace = 1.0 };
+    struct dig_model_effect     found = { .effect     = DIG_EFFECT_LAYERING,
+                                          .parameters = 1,
+                                          .parameter  = { { "layer_m", 5.0, 0, 0 } } };
+    struct dig_template         t[2];
+    w->entry[4].effect = DIG_EFFECT_LAYERING; // adds half of the plain dig's size at 10
+    for (int i = 0; i < 2; i++) {
+        double value[DIG_MODEL_PARAMETERS_MAX];
+        assert_int_equal(dig_effect_values(&found, value), DIG_OK);
+        assert_int_equal(dig_effect_add(dig_effect_of(DIG_EFFECT_LAYERING), w->plain, &w->effects,
+                                        value, &base[1], &dig, &t[i]),
+                         DIG_OK);
+        found.parameters   = 2;
+        found.parameter[1] = (struct dig_model_parameter){ "contrast", 0.4, 0, 0 };
+    }
+    assert_close(t[0].delta[0][100], 0.25 * rms_My(&base[1]), 1e-5);
+    assert_close(t[1].delta[0][100], 0.4 * t[0].delta[0][100], 1e-9);
+    assert_close(t[1].sigma[0][100], 0.4 * t[0].sigma[0][100], 1e-9);
+    free_world(w);
+}
+
 // simpleA drags its tooth at 46.3 mm/s and lifts it at 91.5 mm/s, both far from where they change.
 static void ground_may_feel_the_tooths_own_speed(void **state)
 {
@@ -337,6 +364,7 @@ int main(void)
         cmocka_unit_test(values_go_by_name_and_strangers_are_refused),
         cmocka_unit_test(a_model_changes_the_tables_curves),
         cmocka_unit_test(reduced_forms_grow_as_they_say),
+        cmocka_unit_test(a_layers_contrast_multiplies_its_template),
         cmocka_unit_test(ground_may_feel_the_tooths_own_speed),
     };
     return cmocka_run_group_tests_name("effects", tests, NULL, NULL);

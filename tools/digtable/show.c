@@ -54,19 +54,6 @@ int dig_cli_list(const struct dig_arguments *const a)
     return EXIT_DONE;
 }
 
-// The pair of gravel and bucket; NULL: the bucket is as rough as each gravel.
-static const struct dig_material_pair *bucket_pair(const struct dig_scene *const scene)
-{
-    for (size_t i = 0; i < scene->bed.pairs; i++) {
-        const struct dig_material_pair *const p = &scene->bed.pair[i];
-        if ((p->a == 0 && p->b == DIG_MATERIAL_BUCKET) ||
-            (p->b == 0 && p->a == DIG_MATERIAL_BUCKET)) {
-            return p;
-        }
-    }
-    return NULL;
-}
-
 static double grains_across(const struct dig_scene *const scene)
 {
     return scene->bucket.width_m / scene->material.diameter_m;
@@ -75,7 +62,7 @@ static double grains_across(const struct dig_scene *const scene)
 // What holds for every dig of the table.
 static void print_scene(const struct dig_scene *const scene)
 {
-    const struct dig_material_pair *const bucket = bucket_pair(scene);
+    const struct dig_material_pair *const bucket = dig_scene_bucket_pair(scene);
     (void)printf("  scene %s: %.3g grains across the bucket, which is ", scene->name,
                  grains_across(scene));
     if (bucket != NULL) {
@@ -89,7 +76,7 @@ static void print_scene(const struct dig_scene *const scene)
 
 static void print_scene_json(const struct dig_scene *const scene)
 {
-    const struct dig_material_pair *const bucket = bucket_pair(scene);
+    const struct dig_material_pair *const bucket = dig_scene_bucket_pair(scene);
     (void)printf("\"grains_across\": %.6g, \"density_scales\": %s, \"bucket\": ",
                  grains_across(scene), scene->material.young_at_kgpm3 > 0.0 ? "true" : "false");
     if (bucket != NULL) {

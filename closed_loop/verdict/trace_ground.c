@@ -1,0 +1,65 @@
+#include "closed_loop/verdict/trace_ground.h"
+
+#include "tables/scene.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// How hard one gravel resists over another: My, the geometric mean over the trajectories dug.
+static double ratio_of(const struct dig_response_surface *const surface,
+                       const struct dig_whitened_digs *const batch, const double above[DIG_AXES],
+                       const double below[DIG_AXES])
+{
+    double sum = 0.0;
+    for (size_t g = 0; g < batch->groups; g++) {
+        const size_t t = batch->group[g].trajectory;
+        double       feature[DIG_FEATURES];
+        double       size[DIG_FORCE_CHANNELS];
+        double       other[DIG_FORCE_CHANNELS];
+        dig_response_surface_features(surface, t, above, feature, size);
+        dig_response_surface_features(surface, t, below, feature, other);
+        sum += log(size[DIG_CHANNEL_MY_Nm] / other[DIG_CHANNEL_MY_Nm]);
+    }
+    return exp(sum / (double)batch->groups);
+}
+
+// The friction of the table's bucket, where it has one of its own.
+static enum dig_status take_bucket(const char *const table, struct dig_effect_ground *const ground,
+                                   struct dig_error *const error)
+{
+    struct dig_scene *const scene = malloc(sizeof *scene);
+    if (scene == NULL) {
+        return DIG_ENOMEM;
+    }
+    const enum dig_status status = dig_table_scene(table, scene, error);
+    if (status == DIG_OK) {
+        const struct dig_material_pair *const bucket = dig_scene_bucket_pair(scene);
+        if (bucket != NULL) {
+            ground->bucket_friction = bucket->friction;
+            ground->bucket_rolling  = bucket->rolling;
+        }
+    }
+    free(scene);
+    return status;
+}
+
+enum dig_status dig_trace_ground(const char *const                        table,
+                                 const struct dig_response_surface *const surface,
+                                 const struct dig_whitened_digs *const    batch,
+                                 const double                             place[DIG_AXES],
+                                 struct dig_effect_ground *const          ground,
+                                 struct dig_error *const                  error)
+{
+    assert(surface != NULL && batch != NULL && place != NULL && ground != NULL);
+    ground->gravel          = dig_response_surface_gravel(surface, place);
+    ground->bucket_friction = ground->gravel.value[DIG_AXIS_FRICTION];
+    ground->bucket_rolling  = ground->gravel.value[DIG_AXIS_ROLLING];
+    for (int loose = 0; loose < 2; loose++) {
+        const struct dig_gravel layer = dig_effect_layer_gravel(loose == 1);
+        double                  at[DIG_AXES];
+        dig_response_surface_place(surface, &layer, at);
+        ground->layer[loose] = ratio_of(surface, batch, at, place);
+    }
+    return table != NULL ? take_bucket(table, ground, error) : DIG_OK;
+}
