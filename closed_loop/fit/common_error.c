@@ -66,6 +66,20 @@ static void smooth_part(const struct dig_whitened_digs_group *const group,
     }
 }
 
+static void add_shifts(const struct dig_whitened_digs_group *const group,
+                       const struct dig_common_error *const error, double k[])
+{
+    const size_t n = group->features;
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        const double *const shift = error->shift[a];
+        for (size_t i = 0; i < n; i++) {
+            for (size_t j = 0; j < n; j++) {
+                k[i * n + j] += shift[group->feature[i]] * shift[group->feature[j]];
+            }
+        }
+    }
+}
+
 // Overwrites the lower triangle of k with that of W k W'; whiten[i] adds nothing to y before y[i].
 DIG_VECTORS static void whiten_both(const struct dig_whitened_digs_group *const group, double k[])
 {
@@ -97,6 +111,7 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     double       trace = 0.0;
     double       covariance[DIG_FEATURES * DIG_FEATURES];
     smooth_part(group, error, covariance);
+    add_shifts(group, error, covariance);
     whiten_both(group, covariance);
     for (size_t i = 0; i < n; i++) {
         trace += covariance[i * n + i] / (double)n;
@@ -143,6 +158,12 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
         dig_lower_multiply(DIG_FEATURES, lower, factor);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] += error->size[p][f] * factor[f];
+        }
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        const double by = dig_chance_normal(seed);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            feature[f] += by * error->shift[a][f];
         }
     }
     dig_whitened_digs_whiten(group, feature, y);

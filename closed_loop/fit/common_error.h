@@ -1,12 +1,14 @@
 // What all digs of a trajectory share and no number of digs averages out: one covariance, built in
 // one place. In a batch's units, where one dig scatters by 1 in every direction,
 //
-//   cov(mean of n digs) = (1/n + even) 1 + W (sum over parts of size size' . R) W'
+//   cov(mean of n digs) = (1/n + even) 1 + W (sum over parts of size size' . R + sum of shift
+//   shift') W'
 //
 // even: the surface's and the templates' own variance, beds that repeat. A part is what a model
 // may get wrong by a factor that changes smoothly along the dig: what two DEM codes make of a plain
 // dig, what a template makes of an effect. size: one sigma of it, feature by feature; R: how alike
-// the factor is at two bins and on two channels; W: the whitening.
+// the factor is at two bins and on two channels; W: the whitening. A shift is what a gravel beside
+// this one would dig otherwise, axis by axis: what the surface has at one gravel may be another's.
 
 #ifndef DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 #define DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
@@ -20,12 +22,13 @@
 struct dig_common_error {
     double even;
     double size[DIG_COMMON_ERROR_PARTS][DIG_FEATURES]; // 1 sigma, units of the table
+    double shift[DIG_AXES][DIG_FEATURES];              // the same
     double inverse[DIG_FEATURES * DIG_FEATURES];       // L^-1 of the group's covariance L L'
     double log_det;
     double noise; // variance beyond 1/n, mean over the features
 };
 
-/// Fills inverse, log_det and noise from even and size. Some ten microseconds.
+/// Fills inverse, log_det and noise from even, size and shift. Some ten microseconds.
 void dig_common_error_build(const struct dig_whitened_digs_group *group,
                             struct dig_common_error              *error);
 

@@ -10,11 +10,14 @@
 
 // By how much another DEM code's plain dig differs from ours beyond the scatter of both, and what
 // lies in the ground from a template's: shares of it, 1 sigma.
-static const double of_codes     = 0.015;
+static const double of_codes     = 0.01;
 static const double of_templates = 0.2; // but where the effect says otherwise
 
 // What of that changes from bin to bin, in variances of one dig.
 static const double rough = 0.01;
+
+// How far off, in halves of the grid's width, the surface may have a gravel's dig, 1 sigma.
+static const double of_place = 0.05;
 
 // What has no name changes a plain dig slowly along it and, by this share of that, from bin to bin.
 static const double quick = 0.5;
@@ -229,6 +232,23 @@ static void weigh_steps(struct dig_likelihood *const l)
     l->step_log_det = dig_lower_log_det(l->steps, l->step_lower);
 }
 
+// What gravels beside a place dig otherwise, inwards.
+static void shift_from(const struct dig_likelihood *const l, const size_t trajectory,
+                       const double x[], const double plain[DIG_FEATURES],
+                       double shift[DIG_AXES][DIG_FEATURES])
+{
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        double beside[DIG_AXES];
+        double amplitude[DIG_FORCE_CHANNELS];
+        memcpy(beside, x, sizeof beside);
+        beside[a] += x[a] > 0.0 ? -of_place : of_place;
+        dig_response_surface_features(l->soil->surface, trajectory, beside, shift[a], amplitude);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            shift[a][f] -= plain[f];
+        }
+    }
+}
+
 void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
 {
     if (is_same(l->numbers, l->weighed_at, x)) {
@@ -252,6 +272,7 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
             error->size[1][f] *= unlike;
             error->size[2][f] = quick * unlisted * plain[f];
         }
+        shift_from(l, group->trajectory, x, plain, error->shift);
         dig_common_error_build(group, error);
     }
     weigh_steps(l);

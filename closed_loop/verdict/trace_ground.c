@@ -44,12 +44,10 @@ static enum dig_status take_bucket(const char *const table, struct dig_effect_gr
     return status;
 }
 
-enum dig_status dig_trace_ground(const char *const                        table,
-                                 const struct dig_response_surface *const surface,
-                                 const struct dig_whitened_digs *const    batch,
-                                 const double                             place[DIG_AXES],
-                                 struct dig_effect_ground *const          ground,
-                                 struct dig_error *const                  error)
+enum dig_status
+dig_trace_ground(const char *const table, const struct dig_response_surface *const surface,
+                 const struct dig_whitened_digs *const batch, const double place[DIG_AXES],
+                 struct dig_effect_ground *const ground, struct dig_error *const error)
 {
     assert(surface != NULL && batch != NULL && place != NULL && ground != NULL);
     ground->gravel          = dig_response_surface_gravel(surface, place);

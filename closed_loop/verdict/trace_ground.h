@@ -9,11 +9,9 @@
 
 /// Of a fitted gravel. table: the file that the batch's surface was made of; NULL: its bucket is as
 /// rough as the gravel. Fails as dig_table_scene().
-DIG_MUST_CHECK enum dig_status dig_trace_ground(const char                        *table,
-                                                const struct dig_response_surface *surface,
-                                                const struct dig_whitened_digs    *batch,
-                                                const double              place[DIG_AXES],
-                                                struct dig_effect_ground *ground,
-                                                struct dig_error         *error);
+DIG_MUST_CHECK enum dig_status
+dig_trace_ground(const char *table, const struct dig_response_surface *surface,
+                 const struct dig_whitened_digs *batch, const double place[DIG_AXES],
+                 struct dig_effect_ground *ground, struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_VERDICT_TRACE_GROUND_H

@@ -38,6 +38,7 @@ static struct dig_common_error some_error(const struct dig_whitened_digs_group *
         const double amplitude = group->amplitude[f / DIG_FEATURE_BINS];
         error.size[0][f]       = 0.1 * amplitude * cos(0.3 * (double)f);
         error.size[1][f]       = f % DIG_FEATURE_BINS > 5 ? 0.2 * amplitude : 0.0;
+        error.shift[1][f]      = 0.1 * amplitude * sin(0.5 * (double)f);
     }
     dig_common_error_build(group, &error);
     return error;
@@ -88,6 +89,23 @@ static void a_smooth_factor_is_as_uncertain_as_its_size(void **state)
     assert_true(squares > 100.0 && squares < 4.0 * 100.0);
 }
 
+// A dig off by so many sigmas of a shift, and by nothing else, is as far off as that says.
+static void a_shift_is_as_uncertain_as_it_says(void **state)
+{
+    (void)state;
+    const struct dig_whitened_digs_group *const group = make_group();
+    struct dig_common_error                     error = { .even = 1e-4 };
+    double                                      three[DIG_FEATURES];
+    double                                      y[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        error.shift[2][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS] * cos(0.4 * (double)f);
+        three[f]          = 3.0 * error.shift[2][f];
+    }
+    dig_common_error_build(group, &error);
+    dig_whitened_digs_whiten(group, three, y);
+    assert_close(dig_common_error_squares(group, &error, y), 9.0, 1e-2);
+}
+
 static void without_parts_only_scatter_and_the_even_part_are_left(void **state)
 {
     (void)state;
@@ -106,6 +124,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_drawn_has_the_covariance_that_is_built),
         cmocka_unit_test(a_smooth_factor_is_as_uncertain_as_its_size),
+        cmocka_unit_test(a_shift_is_as_uncertain_as_it_says),
         cmocka_unit_test(without_parts_only_scatter_and_the_even_part_are_left),
     };
     return cmocka_run_group_tests_name("common_error", tests, world_setup, world_teardown);

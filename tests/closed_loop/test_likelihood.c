@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIGS = 4, STEPS = 2, CAMPAIGNS = 150, GRID = 201 };
+enum { DIGS = 4, STEPS = 2, CAMPAIGNS = 300, GRID = 201 };
 
 static const double reach = 7.0; // of the grid, in sigmas
 
@@ -110,14 +110,15 @@ static void the_likelihood_is_the_integral_over_the_steps(void **state)
     assert_true(fabs(z[0]) > 0.05); // or the test would say nothing
 }
 
-// Digs drawn with steps of the prior: what is fitted is off by what the covariance says.
+// Digs drawn with steps of the prior: what is fitted is off by what the covariance says. A step
+// that does what another gravel would do is known less well than that: the gravel is not linear.
 static void fitted_steps_are_as_far_off_as_is_said(void **state)
 {
     (void)state;
     static struct dig_whitened_digs drawn;
-    const struct dig_gravel         gravel = { { 0.6, 0.6, 2500 } };
-    uint64_t                        seed   = 8;
-    double                          sum    = 0.0;
+    const struct dig_gravel         gravel     = { { 0.6, 0.6, 2500 } };
+    uint64_t                        seed       = 8;
+    double                          sum[STEPS] = { 0.0 };
     struct dig_fitted               truth;
     make_digs(&gravel, &seed);
     dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &truth);
@@ -135,13 +136,14 @@ static void fitted_steps_are_as_far_off_as_is_said(void **state)
         dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
         assert_int_equal(dig_posterior_steps(&drawn, soil, &fitted, covariance), DIG_OK);
         for (size_t k = 0; k < STEPS; k++) {
-            sum += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k];
+            sum[k] += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k] / CAMPAIGNS;
         }
     }
-    // Chi-squared over its degrees of freedom, to three sigmas and a tenth for what is not linear.
-    const double n = CAMPAIGNS * STEPS;
-    print_message("squares of the steps' errors over expected: %.2f\n", sum / n);
-    assert_true(fabs(sum / n - 1.0) < 0.1 + 3.0 * sqrt(2.0 / n));
+    // Chi-squared over its degrees of freedom, to three sigmas.
+    const double chance = 3.0 * sqrt(2.0 / CAMPAIGNS);
+    print_message("squares of the steps' errors over expected: %.2f, %.2f\n", sum[0], sum[1]);
+    assert_true(fabs(sum[0] - 1.0) < 0.5 + chance);
+    assert_true(fabs(sum[1] - 1.0) < 0.1 + chance);
 }
 
 // The integral is exact, and the covariance the digs' own, where the table's S is known to be

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIGS = 4, CAMPAIGNS = 100, GRID = 41 };
+enum { DIGS = 4, CAMPAIGNS = 100, GRID = 61 };
 
 static struct dig_measured      measured[DIGS];
 static struct dig_whitened_digs batch;
