@@ -92,8 +92,8 @@ test: ## Set up what is missing, build, and run every test
 	$(Q)$(MAKE) --no-print-directory -j $(JOBS) check
 
 # Each by the engine it was begun with, or all with ENGINE=cuda on a graphics card.
-tables: all ## Compute what the tables product, rig and rig_effects lack of their grids (many hours of all cores; ENGINE=cuda)
-	$(Q)for table in product:single rig:kernel rig_effects:kernel; do \
+tables: all ## Compute what the tables that ship lack of their grids (many hours of all cores; ENGINE=cuda)
+	$(Q)for table in product:single product_effects:single rig:kernel rig_effects:kernel; do \
 	    engine=$${table#*:} table=$${table%:*}; \
 	    $(BUILD)/bin/digtable generate config/scenes/$${table%_effects}.yaml config/grids/$$table.yaml \
 	        -o tables/$$table.sqlite --engine $(or $(ENGINE),$$engine) || exit 1; \

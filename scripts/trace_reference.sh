@@ -8,6 +8,7 @@ bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=${2:-tests/data/referen
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 here=$(realpath "$data")
+scene=$("$bin/digtable" list "$table" --json | sed -nE 's/.*"name": "([^"]*)".*/\1/p' | head -n 1)
 
 whole() { tr -d '\n' <"$work/trace.json"; }
 field() { whole | grep -oE "\"$1\": $2" | head -n 1 | sed -E 's/^"[^"]*": //'; }
@@ -24,7 +25,7 @@ for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_see
         [ ! -e "${simple%simpleA.csv}actual.csv" ] || beds+=("${simple%__simpleA.csv}")
     done
     {
-        echo "scene: rig"
+        echo "scene: $scene"
         echo "recordings:"
         role=identify
         for i in "${!beds[@]}"; do

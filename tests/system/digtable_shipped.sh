@@ -12,6 +12,11 @@ sed "s|: ../tables/product.sqlite|: $PWD/$table|; s|: machines/|: $PWD/config/ma
 check "as digsightd does" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
 digtable check tables/rig_effects.sqlite
 check "tables/rig_effects.sqlite is sound" is "$code" 0
+digtable check tables/product_effects.sqlite --complete
+check "tables/product_effects.sqlite is sound, and the whole grid" is "$code" 0
+cp tables/product_effects.sqlite "$work/effects.sqlite"
+digtable generate config/scenes/product.yaml config/grids/product_effects.yaml -o "$work/effects.sqlite" --time-limit 0
+check "and its digs are those of its grid" eval 'is $code 0 && grep -q "135 of 135 digs" $work/err'
 digtable check tables/product.sqlite
 check "tables/product.sqlite is sound" is "$code" 0
 check "and nothing in it trembled" eval '! grep -q trembles $work/out'

@@ -33,8 +33,8 @@ static const struct dig_command commands[] = {
       "them.\n\n"
       "A file \"-\" is standard output. What people are told goes there without --json and --add, "
       "else to standard error.",
-      "digloop trace tables/rig.sqlite campaign/\n"
-      "digloop trace tables/rig.sqlite campaign/ --html trace.html \\\n"
+      "digloop trace tables/product.sqlite campaign/\n"
+      "digloop trace tables/product.sqlite campaign/ --html trace.html \\\n"
       "        --json trace.json --add model.json\n" },
     { "check", "MACHINE.yaml RECORDING [OPTION]...",
       "Says what a machine file makes of a recording in free air.",
