@@ -30,7 +30,9 @@ evidence is not tempered (.5: 1)|closed_loop/search/search_odds.c|s/temper = 0.5
 size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED 0.5/UNCONFIRMED 1.0/|40
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 repeats count as beds|closed_loop/fit/same_bed.c|s/return beds;/return batch->group[group].digs;/|54
-codes agree (.015: 0)|closed_loop/fit/likelihood.c|s/of_codes *= 0.015/of_codes = 0.0/|2
+codes agree (.01: 0)|closed_loop/fit/likelihood.c|s/of_codes *= 0.01;/of_codes = 0.0;/|2
+the surface is at its place (.05: 0)|closed_loop/fit/likelihood.c|s/of_place = 0.05/of_place = 0.0/|45
+layers have no contrast|estimator/effects/layering.c|s/1.0, 0.25, 2.0/1.0, 1.0, 1.0/|60
 templates are true (.2: 0)|closed_loop/fit/likelihood.c|s/of_templates = 0.2;/of_templates = 0.0;/|20
 a higher floor of scatter (.002: .015)|closed_loop/model/scatter.h|s/SCATTER_FLOOR 0.002/SCATTER_FLOOR 0.015/|0
 no cubic terms|closed_loop/model/response_surface.c|s/? 3 : 2;/? 2 : 2;/|20
