@@ -2,14 +2,14 @@
 # digloop trace on digs of another DEM code, of gravels off the table's grid and with an effect in
 # them, one bed or two: what it is to find there, with its values, and what not.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite}
+table=${TABLE:-tables/rig.sqlite} scene=rig
 data=$PWD/tests/data/liggghts_more
 
 trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
     local role=identify simple
     mkdir -p "$work/$1"
     {
-        echo "scene: rig"
+        echo "scene: $scene"
         echo "recordings:"
         for simple in "$data/${1}"_seed?__simpleA.csv; do
             echo "  - {file: $simple, trajectory: simpleA, role: $role}"
@@ -80,5 +80,17 @@ trace $smooth
 check "a smooth bucket is named" [ "$(verdict $smooth)" = '"bucket_friction"' ]
 check "... and what it has of friction measured to a third" within "$(awk -v m="$(number $smooth bucket_smoothness value)" \
     -v f="$(number $smooth friction value)" 'BEGIN { print (1 - m) * f }')" .1 .2
+
+# In the open, with a bucket of steel: as the table has it, and half as rough.
+table=tables/product.sqlite scene=product data=$PWD/tests/data/liggghts_product
+trace mu0.6_mur0.4_rho2200_bucket0.4
+check "nothing is missing where the bucket is the table's" [ "$(verdict mu0.6_mur0.4_rho2200_bucket0.4)" = '"none"' ]
+data=$data/smooth smooth=mu0.5_mur0.6_rho2600_bucket0.2
+trace $smooth
+check "a bucket smoother than steel is named" [ "$(verdict $smooth)" = '"bucket_friction"' ]
+check "... half of it, within its interval" within .5 "$(number $smooth bucket_smoothness low)" "$(number $smooth bucket_smoothness high)"
+check "... and said as a friction" grep -q "bucket: friction 0.2.*where the table's has 0.4, 0.4" "$work/$smooth.txt"
+check "... in gravel of friction .5, within its interval" within .5 "$(number $smooth friction low)" "$(number $smooth friction high)"
+check "... and of 2600 kg/m3, within its interval" within 2600 "$(number $smooth density_kgpm3 low)" "$(number $smooth density_kgpm3 high)"
 
 finish
