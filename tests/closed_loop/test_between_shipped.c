@@ -70,8 +70,8 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     }
     assert_int_equal(digs, 2);
     dig_response_surface_place(surface, &dug->gravel[entry], place);
-    assert_int_equal(
-        dig_whitened_digs_make(surface, scatter, digs, mean, all, place, batch), DIG_OK);
+    assert_int_equal(dig_whitened_digs_make(surface, scatter, digs, mean, all, place, batch),
+                     DIG_OK);
     for (size_t g = 0; g < batch->groups; g++) {
         batch->group[g].digs = 2;
     }
