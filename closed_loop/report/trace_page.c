@@ -83,6 +83,15 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
                       trace->gravel_before.value[a]);
     }
     (void)fputs("</table>\n", to);
+    for (size_t e = 0; e < trace->effects; e++) {
+        char text[256];
+        dig_trace_meaning(trace, e, sizeof text, text);
+        if (text[0] != '\0') {
+            (void)fputs("<p>", to);
+            dig_html_text(to, text);
+            (void)fputs(".</p>\n", to);
+        }
+    }
 }
 
 static void put_sets(FILE *const to, const struct dig_trace *const trace)

@@ -48,10 +48,10 @@ static void put_sets(FILE *const to, const struct dig_trace *const trace)
     (void)fputs("],\n", to);
 }
 
-// What an effect means in the ground found; "": its parameters say it.
-static void meaning_of(const struct dig_trace *const trace, const size_t effect, const size_t size,
+void dig_trace_meaning(const struct dig_trace *const trace, const size_t effect, const size_t size,
                        char text[])
 {
+    assert(trace != NULL && effect < trace->effects && text != NULL && size > 0);
     const struct dig_effect *const known = dig_effect_of(trace->effect[effect].effect);
     double                         value[DIG_MODEL_PARAMETERS_MAX];
     text[0] = '\0';
@@ -76,7 +76,7 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
             (void)fputs(", ", to);
         }
         char text[256];
-        meaning_of(trace, e, sizeof text, text);
+        dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
             (void)fputs("\"meaning\": ", to);
             dig_json_string(to, text);
@@ -261,7 +261,7 @@ static void put_meanings(FILE *const to, const struct dig_trace *const trace)
 {
     for (size_t e = 0; e < trace->effects; e++) {
         char text[256];
-        meaning_of(trace, e, sizeof text, text);
+        dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
             (void)fprintf(to, "  %s\n", text);
         }

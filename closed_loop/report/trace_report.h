@@ -28,6 +28,10 @@ void dig_trace_json(const struct dig_trace *trace, FILE *to);
 /// The verdict as one sentence of at most size - 1 characters, no line feed at its end.
 void dig_trace_sentence(const struct dig_trace *trace, size_t size, char text[]);
 
+/// What the numbers of one of its effects mean in the ground found, without a line feed; "": they
+/// say it themselves.
+void dig_trace_meaning(const struct dig_trace *trace, size_t effect, size_t size, char text[]);
+
 /// "named, not applied: …" of a trace whose effects are not in its prediction, without a line feed;
 /// "" of another.
 void dig_trace_not_applied(const struct dig_trace *trace, size_t size, char text[]);

@@ -14,10 +14,11 @@ static void say(const double value[], const struct dig_effect_ground *const grou
                 const size_t size, char text[])
 {
     const double table = ground->layer[value[TOP] < 0.0 ? 1 : 0];
-    (void)snprintf(text, size,
-                   "layer: from %.3g m above the floor down, resists %.2g times as hard as the "
-                   "gravel on it",
-                   fabs(value[TOP]), fmax(1.0 + value[CONTRAST] * (table - 1.0), 0.0));
+    (void)snprintf(
+        text, size,
+        "layer: its top %.3g m above the floor (rig scale), resists %.2g times as hard as the "
+        "gravel on it",
+        fabs(value[TOP]), fmax(1.0 + value[CONTRAST] * (table - 1.0), 0.0));
 }
 
 const struct dig_effect dig_effect_layering = {

@@ -334,6 +334,16 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     drop(e);
 }
 
+static enum dig_status write_page(const struct example *const e, const char *const path,
+                                  struct dig_error *const error)
+{
+    FILE *const to = fopen(path, "w");
+    assert_non_null(to);
+    const enum dig_status status = dig_trace_html(&e->trace, &e->subject, to, error);
+    (void)fclose(to);
+    return status;
+}
+
 // What a person knows of a bucket is its friction, not what it lacks; of a layer how hard it
 // resists. Whether the prediction was changed or not.
 static void effects_are_told_by_what_people_know_of_them(void **state)
@@ -364,23 +374,22 @@ static void effects_are_told_by_what_people_know_of_them(void **state)
     size_t      size = 0;
     char *const text = scratch_read(path, &size);
     assert_contains(text, "bucket: friction 0.15, rolling 0.1, where the table's has 0.6, 0.4\n");
-    assert_contains(text, "layer: from 0.04 m above the floor down, resists 0.62 times as hard");
-    assert_contains(text, "\"meaning\": \"layer: from 0.04 m");
+    assert_contains(
+        text, "layer: its top 0.04 m above the floor (rig scale), resists 0.62 times as hard");
+    assert_contains(text, "\"meaning\": \"layer: its top 0.04 m");
     free(text);
+    struct dig_error  error = { "" };
+    const char *const html  = scratch_path("layer.html");
+    e->trace.digs           = 0;
+    assert_int_equal(write_page(e, html, &error), DIG_OK);
+    char *const page = scratch_read(html, &size);
+    assert_contains(page,
+                    "<p>layer: its top 0.04 m above the floor (rig scale), resists 0.62 times");
+    free(page);
     drop(e);
 }
 
 // A change that was not made is told in every form of the report.
-static enum dig_status write_page(const struct example *const e, const char *const path,
-                                  struct dig_error *const error)
-{
-    FILE *const to = fopen(path, "w");
-    assert_non_null(to);
-    const enum dig_status status = dig_trace_html(&e->trace, &e->subject, to, error);
-    (void)fclose(to);
-    return status;
-}
-
 static void what_is_named_and_not_applied_is_told(void **state)
 {
     (void)state;
