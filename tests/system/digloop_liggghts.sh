@@ -83,8 +83,10 @@ check "... and what it has of friction measured to a third" within "$(awk -v m="
 
 # In the open, with a bucket of steel: as the table has it, and half as rough.
 table=tables/product.sqlite scene=product data=$PWD/tests/data/liggghts_product
-trace mu0.6_mur0.4_rho2200_bucket0.4
-check "nothing is missing where the bucket is the table's" [ "$(verdict mu0.6_mur0.4_rho2200_bucket0.4)" = '"none"' ]
+for gravel in mu0.6_mur0.4_rho2200_bucket0.4 mu0.4_mur0.6_rho3000_bucket0.4; do
+    trace $gravel
+    check "nothing is missing in $gravel, dug with the table's bucket" [ "$(verdict $gravel)" = '"none"' ]
+done
 data=$data/smooth smooth=mu0.5_mur0.6_rho2600_bucket0.2
 trace $smooth
 check "a bucket smoother than steel is named" [ "$(verdict $smooth)" = '"bucket_friction"' ]
@@ -92,5 +94,9 @@ check "... half of it, within its interval" within .5 "$(number $smooth bucket_s
 check "... and said as a friction" grep -q "bucket: friction 0.2.*where the table's has 0.4, 0.4" "$work/$smooth.txt"
 check "... in gravel of friction .5, within its interval" within .5 "$(number $smooth friction low)" "$(number $smooth friction high)"
 check "... and of 2600 kg/m3, within its interval" within 2600 "$(number $smooth density_kgpm3 low)" "$(number $smooth density_kgpm3 high)"
+smooth=mu0.6_mur0.4_rho2200_bucket0.2
+trace $smooth
+check "the same bucket is named in another gravel" [ "$(verdict $smooth)" = '"bucket_friction"' ]
+check "... and of 2200 kg/m3, within its interval" within 2200 "$(number $smooth density_kgpm3 low)" "$(number $smooth density_kgpm3 high)"
 
 finish

@@ -4,7 +4,8 @@
 #   tests/data/liggghts_product/make.sh [-n]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-for gravel in mu0.6_mur0.4_rho2200_bucket0.4 smooth/mu0.5_mur0.6_rho2600_bucket0.2; do
+for gravel in mu0.6_mur0.4_rho2200_bucket0.4 mu0.4_mur0.6_rho3000_bucket0.4 \
+    smooth/mu0.5_mur0.6_rho2600_bucket0.2 smooth/mu0.6_mur0.4_rho2200_bucket0.2; do
     for trajectory in simpleA actual; do
         [ ! -e "$here/${gravel}_seed1__$trajectory.csv" ] || continue
         echo "$gravel $trajectory"
