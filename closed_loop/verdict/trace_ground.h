@@ -8,7 +8,7 @@
 #include "estimator/effects/effect.h"
 
 /// Of a fitted gravel. table: the file that the batch's surface was made of; NULL: its bucket is as
-/// rough as the gravel. Fails as dig_table_scene().
+/// rough as the gravel. Opens the table. DIG_ENOMEM; fails as dig_table_scene().
 DIG_MUST_CHECK enum dig_status
 dig_trace_ground(const char *table, const struct dig_response_surface *surface,
                  const struct dig_whitened_digs *batch, const double place[DIG_AXES],
