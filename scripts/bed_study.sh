@@ -85,6 +85,11 @@ across() { # Grains across the bucket; the rig's box with sides that are one.
 
 finest() { study across_20 4 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")"; }
 
+finer() { # Their scatter is small, so few beds do.
+    study across_28 2 simpleA .5 "$(join "$(grain 0.0025)" "$periodic")"
+    study across_40 1 simpleA .5 "$(join "$(grain 0.00175)" "$periodic")"
+}
+
 room() { # Walls or sides that are one so many mm beside the bucket; the floor; the ends.
     study walls_25 12 simpleA .5 "$seven"
     study walls_50 8 simpleA .5 "$(join "$seven" "$(beside 50)")"

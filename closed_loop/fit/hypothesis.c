@@ -48,7 +48,10 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
     dig_likelihood_residual(likelihood, x, r);
     memcpy(f->number, x, l->unknowns * sizeof f->number[0]);
     f->misfit = dig_likelihood_misfit(likelihood, r, &f->squares);
-    memcpy(f->z, r + likelihood->residuals - likelihood->steps, likelihood->steps * sizeof f->z[0]);
+    for (size_t k = 0; k < likelihood->steps; k++) {
+        f->z[k] =
+            likelihood->batch->steps->middle[k] + r[likelihood->residuals - likelihood->steps + k];
+    }
     for (size_t g = 0; g < likelihood->batch->groups; g++) {
         f->noise[g] = likelihood->error[g].noise;
     }

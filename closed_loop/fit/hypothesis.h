@@ -6,6 +6,7 @@
 
 #include "closed_loop/fit/common_error.h"
 #include "closed_loop/fit/forward.h"
+#include "closed_loop/fit/steps.h"
 
 struct dig_fitted {
     struct dig_hypothesis hypothesis;

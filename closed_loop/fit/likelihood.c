@@ -107,12 +107,13 @@ static void model_at(struct dig_likelihood *const l, const double x[])
     }
 }
 
-// Fits z to the whitened residuals of the means, takes off what it explains, and leaves it in z.
+// Fits z to the whitened residuals of the means, takes off what it explains, and leaves in z how
+// far it is from the middle.
 static void take_off_steps(const struct dig_likelihood *const l, double mean[], double z[])
 {
     for (size_t k = 0; k < l->steps; k++) {
         const double *r = mean;
-        z[k]            = 0.0;
+        z[k]            = l->batch->steps->middle[k];
         for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
             for (size_t f = 0; f < l->batch->group[g].features; f++) {
                 z[k] += l->step[k][g][f] * r[f];
@@ -128,6 +129,7 @@ static void take_off_steps(const struct dig_likelihood *const l, double mean[], 
                 r[f] -= z[k] * l->step[k][g][f];
             }
         }
+        z[k] -= l->batch->steps->middle[k];
     }
 }
 
@@ -216,7 +218,7 @@ static void weigh_steps(struct dig_likelihood *const l)
         l->step_lower[k * l->steps + k] = 1.0;
         for (size_t g = 0; g < l->batch->groups; g++) {
             const struct dig_whitened_digs_group *const group = &l->batch->group[g];
-            memcpy(l->step[k][g], steps->of[k][g], sizeof l->step[k][g]);
+            dig_whitened_digs_whiten(group, steps->of[k][group->trajectory], l->step[k][g]);
             (void)dig_common_error_squares(group, &l->error[g], l->step[k][g]);
             for (size_t j = 0; j <= k; j++) {
                 for (size_t f = 0; f < group->features; f++) {

@@ -4,16 +4,17 @@
 //                           + sum over digs |(y - mean y) - (model - mean model)|^2 ]
 //
 // L L' is the covariance of a trajectory's mean: closed_loop/fit/common_error.h. Where the batch
-// has steps, z is fitted along, exactly, and integrated out: mean model grows by D z, and |z|^2 +
-// log det (1 + sum D' C^-1 D) is added. What has no name is an effect whose form is not known: a
-// factor on the plain dig, with a wide prior, that changes along it. It has no numbers to fit; the
-// covariance holds all that it may be.
+// has steps, z is fitted along, exactly, and integrated out: mean model grows by D z, and
+// |z - middle|^2 + log det (1 + sum D' C^-1 D) is added. What has no name is an effect whose form
+// is not known: a factor on the plain dig, with a wide prior, that changes along it. It has no
+// numbers to fit; the covariance holds all that it may be.
 
 #ifndef DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H
 #define DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H
 
 #include "closed_loop/fit/common_error.h"
 #include "closed_loop/fit/forward.h"
+#include "closed_loop/fit/steps.h"
 
 #define DIG_LIKELIHOOD_RESIDUALS                                                                   \
     ((DIG_TRAJECTORY_MAX + DIG_MEASURED_MAX) * DIG_FEATURES + DIG_STEPS_MAX)
@@ -54,15 +55,15 @@ void dig_likelihood_weigh(struct dig_likelihood *l, const double x[]);
 /// Takes the covariance that another likelihood of the batch took.
 void dig_likelihood_weigh_as(struct dig_likelihood *l, const struct dig_likelihood *other);
 
-/// The whitened residuals r of the means, of the digs about them, and z, at x; context: the
-/// likelihood.
+/// The whitened residuals r of the means, of the digs about them, and z - middle, at x; context:
+/// the likelihood.
 void dig_likelihood_residual(void *context, const double x[], double r[]);
 
 /// The misfit of residuals so long; *squares: of it, what is not a logarithm.
 double dig_likelihood_misfit(const struct dig_likelihood *l, const double residual[],
                              double *squares);
 
-/// Squares of the means' misfit at x and of z, by the covariance that was taken.
+/// Squares of the means' misfit at x and of z - middle, by the covariance that was taken.
 double dig_likelihood_means(struct dig_likelihood *l, const double x[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H

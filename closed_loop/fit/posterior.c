@@ -27,12 +27,16 @@ struct cloud {
     double                power;
     double                x[POINTS][NUMBERS];
     double                misfit[POINTS];
+    double                z[POINTS][DIG_STEPS_MAX]; // of the batch's steps, less their middle
     double                lower[NUMBERS * NUMBERS]; // L of the points' covariance = L L'
     double                reach;                    // a step is so many of it
     double                residual[DIG_LIKELIHOOD_RESIDUALS];
     double                old_x[POINTS][NUMBERS];
     double                old_misfit[POINTS];
+    double                old_z[POINTS][DIG_STEPS_MAX];
     double                taken[NUMBERS][TAKEN];
+    double                z_sum[DIG_STEPS_MAX]; // over the points that were counted
+    double                z_squares[DIG_STEPS_MAX * DIG_STEPS_MAX];
 };
 
 static double misfit_at(struct cloud *const c, const double x[])
@@ -42,6 +46,13 @@ static double misfit_at(struct cloud *const c, const double x[])
     return dig_likelihood_misfit(&c->likelihood, c->residual, &squares);
 }
 
+// z as misfit_at() has left it.
+static void keep_z(struct cloud *const c, const size_t point)
+{
+    const struct dig_likelihood *const l = &c->likelihood;
+    memcpy(c->z[point], c->residual + l->residuals - l->steps, l->steps * sizeof c->z[0][0]);
+}
+
 static void spread_out(struct cloud *const c, uint64_t *const seed)
 {
     for (size_t p = 0; p < POINTS; p++) {
@@ -49,6 +60,7 @@ static void spread_out(struct cloud *const c, uint64_t *const seed)
             c->x[p][j] = c->low[j] + (c->high[j] - c->low[j]) * dig_chance_uniform(seed);
         }
         c->misfit[p] = misfit_at(c, c->x[p]);
+        keep_z(c, p);
     }
     c->power = 0.0;
 }
@@ -97,12 +109,14 @@ static void draw_anew(struct cloud *const c, const double weight[POINTS], uint64
     size_t       from  = 0;
     memcpy(c->old_x, c->x, sizeof c->old_x);
     memcpy(c->old_misfit, c->misfit, sizeof c->old_misfit);
+    memcpy(c->old_z, c->z, sizeof c->old_z);
     for (size_t made = 0; made < POINTS; made++) {
         const double next = sum / POINTS * (first + (double)made);
         while (from + 1 < POINTS && !(next < at)) {
             at += weight[++from];
         }
         memcpy(c->x[made], c->old_x[from], sizeof c->x[made]);
+        memcpy(c->z[made], c->old_z[from], sizeof c->z[made]);
         c->misfit[made] = c->old_misfit[from];
     }
 }
@@ -161,10 +175,41 @@ static void sweep(struct cloud *const c, uint64_t *const seed)
         if (dig_chance_uniform(seed) < exp(0.5 * c->power * (c->misfit[p] - there))) {
             memcpy(c->x[p], tried, n * sizeof tried[0]);
             c->misfit[p] = there;
+            keep_z(c, p);
             accepted += 1.0 / POINTS;
         }
     }
     c->reach *= accepted < few_accepted ? 0.7 : (accepted > many_accepted ? 1.4 : 1.0);
+}
+
+// Counts z of all points.
+static void count_z(struct cloud *const c)
+{
+    const size_t steps = c->likelihood.steps;
+    for (size_t p = 0; p < POINTS; p++) {
+        for (size_t k = 0; k < steps; k++) {
+            c->z_sum[k] += c->z[p][k];
+            for (size_t m = 0; m < steps; m++) {
+                c->z_squares[k * steps + m] += c->z[p][k] * c->z[p][m];
+            }
+        }
+    }
+}
+
+// At given numbers z has the covariance M^-1; with the numbers it moves as the points tell.
+static void write_covariance(const struct cloud *const c, double covariance[])
+{
+    const struct dig_likelihood *const l = &c->likelihood;
+    for (size_t k = 0; k < l->steps; k++) {
+        double *const row = covariance + k * l->steps;
+        memset(row, 0, l->steps * sizeof row[0]);
+        row[k] = 1.0;
+        dig_lower_solve(l->steps, l->step_lower, row);
+        dig_lower_transposed_solve(l->steps, l->step_lower, row);
+        for (size_t m = 0; m < l->steps; m++) {
+            row[m] += (c->z_squares[k * l->steps + m] - c->z_sum[k] * c->z_sum[m] / TAKEN) / TAKEN;
+        }
+    }
 }
 
 // From the whole of the bounds to the posterior.
@@ -184,6 +229,7 @@ static void anneal(struct cloud *const c, uint64_t seed)
     }
     for (size_t s = 0; s < COUNTED; s++) {
         sweep(c, &seed);
+        count_z(c);
         for (size_t p = 0; p < POINTS; p++) {
             for (size_t j = 0; j < c->likelihood.numbers; j++) {
                 c->taken[j][s * POINTS + p] = c->x[p][j];
@@ -222,10 +268,10 @@ static void set_interval(struct cloud *const c, const size_t j, struct dig_fitte
 
 enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const batch,
                                         const struct dig_soil *const soil, const uint64_t seed,
-                                        struct dig_fitted *const fitted)
+                                        struct dig_fitted *const fitted, double covariance[])
 {
     assert(batch != NULL && soil != NULL && fitted != NULL);
-    struct cloud *const c = malloc(sizeof *c);
+    struct cloud *const c = calloc(1, sizeof *c);
     if (c == NULL) {
         return DIG_ENOMEM;
     }
@@ -236,6 +282,9 @@ enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const ba
     anneal(c, seed);
     for (size_t j = 0; j < c->likelihood.numbers; j++) {
         set_interval(c, j, fitted);
+    }
+    if (covariance != NULL) {
+        write_covariance(c, covariance);
     }
     free(c);
     return DIG_OK;

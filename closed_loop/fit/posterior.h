@@ -12,17 +12,12 @@
 /// Fills fitted->low and high: the shortest interval that holds 90 % of each number's posterior,
 /// the fitted one in it. By a cloud of points that begins everywhere and follows powers of the
 /// likelihood up to the posterior (sequential Monte Carlo: Del Moral, Doucet & Jasra 2006), by the
-/// covariance at the fit: a single walk stays in one arm of a bent ridge. Some hundredths of a
-/// second. DIG_ENOMEM.
+/// covariance at the fit: a single walk stays in one arm of a bent ridge. Writes the covariance of
+/// z of the batch's steps, [steps * steps], with what the numbers leave open, where covariance is
+/// not NULL. Some hundredths of a second. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *batch,
                                                        const struct dig_soil *soil, uint64_t seed,
-                                                       struct dig_fitted *fitted);
-
-/// The covariance of z of the batch's steps, [steps * steps], about a fit, with what the numbers
-/// leave open. Microseconds. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_posterior_steps(const struct dig_whitened_digs *batch,
-                                                   const struct dig_soil          *soil,
-                                                   const struct dig_fitted        *fitted,
-                                                   double                          covariance[]);
+                                                       struct dig_fitted *fitted,
+                                                       double             covariance[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_POSTERIOR_H

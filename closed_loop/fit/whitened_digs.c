@@ -109,11 +109,7 @@ static void intersect(const struct dig_whitened_digs *const batch, const size_t 
     }
 }
 
-// What effects of the machine add is known to this share of it.
-static const double machine_error = 0.1;
-
-// The variance of the sensors in a bin, where their error does not average down, and of what was
-// taken off for the machine.
+// The variance of the sensors in a bin, where their error does not average down.
 static double sensor_variance(const struct dig_whitened_digs *const batch, const size_t g,
                               const size_t f)
 {
@@ -128,9 +124,8 @@ static double sensor_variance(const struct dig_whitened_digs *const batch, const
         }
         const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
         for (size_t k = from; k < to; k++) {
-            const double sigma   = dig->sigma[f / DIG_FEATURE_BINS][k];
-            const double machine = machine_error * dig->machine[f / DIG_FEATURE_BINS][k];
-            sum += sigma * sigma + machine * machine;
+            const double sigma = dig->sigma[f / DIG_FEATURE_BINS][k];
+            sum += sigma * sigma;
             n += 1.0;
         }
     }

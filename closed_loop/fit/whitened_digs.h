@@ -12,15 +12,7 @@
 #include "closed_loop/model/scatter.h"
 #include "closed_loop/recordings/measured.h"
 
-#define DIG_STEPS_MAX 32
-
-/// What is not of the soil and known but for some numbers z, each of normal distribution about 0
-/// with a variance of 1: a machine as free air leaves it open. A step of z[k] adds of[k] to the
-/// groups' means.
-struct dig_steps {
-    size_t steps;
-    double of[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES]; // whitened
-};
+struct dig_steps; // what is open beside the soil: closed_loop/fit/steps.h
 
 struct dig_whitened_digs_group {
     size_t trajectory;

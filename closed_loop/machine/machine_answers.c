@@ -36,33 +36,45 @@ static size_t write_parameters(const struct dig_machine_search *const s,
     return n;
 }
 
-// One answer: its values as write_parameters() has them, and a square root of the covariance of
-// its parameters.
-static void write_answer(struct dig_machine_search *const s, const size_t effects,
-                         const struct dig_model_effect effect[], const double log_evidence,
+// One answer by the narrow priors or the wide ones: its values, and a square root of the covariance
+// of its parameters. False where the wide ones are the narrow ones.
+static bool write_answer(struct dig_machine_search *const s, const size_t effects,
+                         const struct dig_model_effect effect[], const bool wide,
                          struct dig_machine_answer *const answer)
 {
-    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
+    struct dig_fit_answer narrow = { .at = s->at, .covariance = s->covariance };
+    struct dig_fit_answer solved = narrow;
     size_t                column[DIG_MACHINE_NUMBERS];
     double                scale[DIG_MACHINE_NUMBERS];
     double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
     size_t                n   = 0;
     unsigned              set = 0;
-    *answer = (struct dig_machine_answer){ .effects = effects, .log_evidence = log_evidence };
     for (size_t e = 0; e < effects; e++) {
-        answer->effect[e] = effect[e];
         set |= 1U << (unsigned)effect[e].effect;
     }
     memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
-    dig_fit_solve_wide(&s->fit, set, &solved);
+    dig_fit_solve(&s->fit, set, &narrow);
+    solved = narrow;
+    if (wide) {
+        dig_fit_solve_wide(&s->fit, set, &solved);
+        if (!(solved.width > narrow.width)) {
+            return false;
+        }
+    }
+    *answer = (struct dig_machine_answer){ .effects      = effects,
+                                           .wide         = wide,
+                                           .log_evidence = solved.log_evidence };
     for (size_t e = 0; e < effects; e++) {
+        answer->effect[e] = effect[e];
         for (size_t c = 0; c < s->lines.columns; c++) {
             const struct dig_lines_column *const of = &s->lines.column[c];
             if (of->effect == effect[e].effect && of->segment < 0) {
-                scale[n]         = of->scale;
-                answer->value[n] = dig_effect_of(of->effect)->parameter[of->parameter].absent +
-                                   of->scale * s->at[c];
-                column[n++] = c;
+                const struct dig_effect_parameter *const parameter =
+                    &dig_effect_of(of->effect)->parameter[of->parameter];
+                const double value = parameter->absent + of->scale * s->at[c];
+                scale[n]           = of->scale;
+                answer->value[n]   = fmin(fmax(value, parameter->low), parameter->high);
+                column[n++]        = c;
             }
         }
     }
@@ -73,14 +85,24 @@ static void write_answer(struct dig_machine_search *const s, const size_t effect
         lower[i * n + i] += least_variance; // of one that is not fitted
     }
     if (dig_cholesky(n, lower) != DIG_OK) {
-        return;
+        return true;
     }
-    answer->numbers           = n;
-    answer->log_evidence_wide = solved.log_evidence;
+    answer->numbers = n;
     for (size_t k = 0; k < n; k++) {
         for (size_t i = k; i < n; i++) {
             answer->step[k][i] = scale[i] * lower[i * n + k];
         }
+    }
+    return true;
+}
+
+static void write_both(struct dig_machine_search *const s, const size_t effects,
+                       const struct dig_model_effect     effect[],
+                       struct dig_machine_finding *const finding)
+{
+    for (int wide = 0; wide < 2; wide++) {
+        finding->answers +=
+            write_answer(s, effects, effect, wide > 0, &finding->answer[finding->answers]) ? 1 : 0;
     }
 }
 
@@ -90,8 +112,7 @@ void dig_machine_write_answers(struct dig_machine_search *const  s,
 {
     finding->answers = 0;
     if (finding->effects > 1) {
-        write_answer(s, finding->effects, finding->effect, dig_fit_evidence(&s->fit, s->set),
-                     &finding->answer[finding->answers++]);
+        write_both(s, finding->effects, finding->effect, finding);
     }
     for (size_t i = 0; i < finding->candidates; i++) {
         const struct dig_candidate *const c     = &finding->candidate[i];
@@ -102,7 +123,7 @@ void dig_machine_write_answers(struct dig_machine_search *const  s,
         if (finding->effects == 1 && finding->effect[0].effect == c->effect) {
             alone = finding->effect[0];
         }
-        write_answer(s, 1, &alone, c->log_evidence, &finding->answer[finding->answers++]);
+        write_both(s, 1, &alone, finding);
     }
 }
 

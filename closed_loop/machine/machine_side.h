@@ -25,19 +25,19 @@ dig_machine_side_create(const struct dig_machine *machine, const struct dig_curv
 void dig_machine_side_destroy(struct dig_machine_side *side);
 
 #define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
-#define DIG_MACHINE_ANSWERS (DIG_MACHINE_EFFECTS + 1)
+#define DIG_MACHINE_ANSWERS (2 * (DIG_MACHINE_EFFECTS + 1))
 #define DIG_MACHINE_NUMBERS (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX) // DIG_STEPS_MAX
 
-/// One answer of free air: effects with their values, and what it leaves open of these. With z of
-/// normal distribution the parameters, effect after effect, are value + the sum over k of z[k]
-/// step[k]; this by priors as wide as the parameters' scales, because the narrow one that an effect
-/// is weighed with (machine_fit.h) says nothing of what free air does not tell.
+/// One answer of free air: effects with their values by one prior (machine_fit.h), and what it
+/// leaves open of these. With z of normal distribution the parameters, effect after effect, are
+/// value + the sum over k of z[k] step[k]. The prior that free air likes best is narrow, and says
+/// nothing of what free air does not tell; the wide one leaves that to the digs.
 struct dig_machine_answer {
     size_t                  effects;
     struct dig_model_effect effect[DIG_MACHINE_AT_ONCE];
-    double                  log_evidence;      // of free air, against no effect
-    double                  log_evidence_wide; // the same by the wide priors
-    size_t                  numbers;           // parameters of all its effects; 0: not told
+    bool                    wide;         // by the wide prior, not by the one free air likes best
+    double                  log_evidence; // of free air, against no effect
+    size_t                  numbers;      // parameters of all its effects; 0: not told
     double                  value[DIG_MACHINE_NUMBERS];
     double                  step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
 };
@@ -55,7 +55,7 @@ struct dig_machine_finding {
     struct dig_candidate      candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
     size_t                    sets;
     struct dig_candidate_set  set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
-    size_t                    answers; // each candidate alone; first the set found, if of several
+    size_t                    answers; // the set found, if of several, and each candidate alone
     struct dig_machine_answer answer[DIG_MACHINE_ANSWERS];
     bool        by_digs; // the effects are told by free air and the digs together, not by air alone
     bool        unexplained; // significant, and no effect of the machine explains it

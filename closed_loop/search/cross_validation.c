@@ -29,6 +29,7 @@ static double miss2(const struct dig_whitened_digs *const batch,
     dig_hypothesis_features(soil, &fitted.hypothesis, fitted.number,
                             &batch->measured[left->measured], feature, &ignored);
     dig_whitened_digs_whiten(group, feature, y);
+    dig_steps_add(batch, fitted.z, left->group, y);
     double sum = 0.0;
     for (size_t k = 0; k < group->features; k++) {
         sum += (left->y[k] - y[k]) * (left->y[k] - y[k]);

@@ -137,7 +137,11 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
     double                  common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
     double                  size[DIG_TRAJECTORY_MAX];
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
+    double                  z[DIG_STEPS_MAX] = { 0.0 };
     dig_hypothesis_errors(batch, soil, fitted, error);
+    for (size_t k = 0; batch->steps != NULL && k < batch->steps->steps; k++) {
+        z[k] = batch->steps->middle[k] + dig_chance_normal(seed);
+    }
     for (size_t g = 0; g < batch->groups; g++) {
         double smooth[DIG_FEATURES];
         size[g] = draw_size(batch, g, seed);
@@ -146,6 +150,7 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
         for (size_t k = 0; k < batch->group[g].features; k++) {
             common[g][k] = common[g][k] * size[g] * sqrt(error[g].even) + smooth[k];
         }
+        dig_steps_add(batch, z, g, common[g]);
     }
     for (size_t i = 0; i < batch->digs; i++) {
         const size_t g = batch->dig[i].group;

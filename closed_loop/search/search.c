@@ -15,17 +15,20 @@ static const double rarer = 0.01;
 // Log evidence beyond which digs that differ as an effect says are not put down to scatter.
 static const double lead = 3.0;
 
-static void list_rivals(struct dig_search_work *const c)
+size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
+                         const struct dig_soil *const          soil,
+                         struct dig_hypothesis                 single[DIG_RIVALS_MAX])
 {
-    c->s->rivals = 0;
+    assert(batch != NULL && soil != NULL && single != NULL);
+    size_t rivals = 0;
     for (int e = 0; e < DIG_EFFECTS; e++) {
         const enum dig_effect_id effect = (enum dig_effect_id)e;
         if (!dig_effect_is_of_machine(effect) && effect != DIG_EFFECT_UNLISTED &&
-            c->s->rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(c->batch, c->soil, effect)) {
-            c->single[c->s->rivals++] =
-                (struct dig_hypothesis){ .effects = 1, .effect = { effect } };
+            rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(batch, soil, effect)) {
+            single[rivals++] = (struct dig_hypothesis){ .effects = 1, .effect = { effect } };
         }
     }
+    return rivals;
 }
 
 // Fits everything once, thoroughly, from the middle of the table.
@@ -169,9 +172,9 @@ enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
                                  .draws       = draws,
                                  .seed        = seed,
                                  .s           = search };
-    list_rivals(&c);
-    enum dig_status status = decide_whether(&c);
-    search->chosen         = search->plain;
+    search->rivals           = dig_search_rivals(batch, soil, c.single);
+    enum dig_status status   = decide_whether(&c);
+    search->chosen           = search->plain;
     if (status != DIG_OK || !search->significant) {
         return status;
     }

@@ -40,6 +40,10 @@ struct dig_search {
     struct dig_candidate_set set[DIG_TRACE_SETS_MAX];
 };
 
+/// Lists the single effects of the soil that the digs can tell; how many.
+size_t dig_search_rivals(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+                         struct dig_hypothesis single[DIG_RIVALS_MAX]);
+
 /// Searches. The batch's amplitudes grow by spread when the campaign's digs scatter more than the
 /// table's. Some seconds. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_search_run(struct dig_whitened_digs *batch,

@@ -83,7 +83,9 @@ static bool is_believable(const struct dig_search_work *const c, const double ev
 // campaigns a drift that is one comes out as bent.
 static bool drifts_otherwise(struct dig_search_work *const c)
 {
-    const bool does = fabs(dig_drift_bend(c->batch, c->soil, &c->s->chosen)) > most_bent;
+    struct dig_whitened_digs settled = *c->batch;
+    dig_steps_settle(&settled, c->s->chosen.z);
+    const bool does = fabs(dig_drift_bend(&settled, c->soil, &c->s->chosen)) > most_bent;
     if (does) {
         (void)snprintf(c->s->without_name.depends_on, sizeof c->s->without_name.depends_on,
                        "the order of the digs");
@@ -140,19 +142,26 @@ static void give_up(struct dig_search_work *const c)
 }
 
 // What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
-// explain half of what is left; another depth gives it another shape.
-static enum dig_status look_for_rock(struct dig_search_work *const c)
+// explain half of what is left; another depth gives it another shape. Of the digs as the plain
+// hypothesis has the machine.
+static enum dig_status look_for_rock(struct dig_search_work *const         c,
+                                     const struct dig_whitened_digs *const settled)
 {
     struct dig_rock *const rock   = &c->s->rock;
-    const enum dig_status  status = dig_rock_fit(c->batch, c->soil, &c->s->plain, rock);
+    const enum dig_status  status = dig_rock_fit(settled, c->soil, &c->s->plain, rock);
     if (status != DIG_OK || !rock->known) {
         return status;
     }
-    const double before = dig_search_left(c, &c->s->plain);
-    const double after  = dig_whitened_digs_misfit_of_means(c->batch, rock->squares);
-    rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers);
-    rock->p_fit         = dig_null_simulation_p(
-                &c->plain_null, 0, dig_whitened_digs_misfit_of_means(c->batch, rock->plain.squares));
+    struct dig_fitted plain;
+    memcpy(rock->plain.z, c->s->plain.z, sizeof rock->plain.z);
+    dig_hypothesis_fit(settled, c->soil, &c->s->plain.hypothesis, c->s->plain.number, DIG_FIT_BARE,
+                       &plain);
+    const double before = dig_null_simulation_left(settled, c->soil, &plain);
+    const double after  = dig_whitened_digs_misfit_of_means(settled, rock->squares);
+    rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers) +
+                         0.5 * (plain.misfit - c->s->plain.misfit);
+    rock->p_fit = dig_null_simulation_p(
+        &c->plain_null, 0, dig_whitened_digs_misfit_of_means(settled, rock->plain.squares));
     const double lead =
         rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
     c->s->is_rock =
@@ -165,8 +174,10 @@ static enum dig_status look_for_rock(struct dig_search_work *const c)
 
 enum dig_status dig_search_which(struct dig_search_work *const c)
 {
+    struct dig_whitened_digs settled = *c->batch;
+    dig_steps_settle(&settled, c->s->plain.z);
     enum dig_status status =
-        dig_unlisted_find(c->batch, c->soil, &c->s->plain, &c->s->without_name);
+        dig_unlisted_find(&settled, c->soil, &c->s->plain, &c->s->without_name);
     if (status != DIG_OK) {
         return status;
     }
@@ -189,7 +200,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     if (status == DIG_OK &&
         (c->s->confirmed < 0.0 || !is_believable(c, evidence) || drifts_otherwise(c))) {
         give_up(c);
-        status = look_for_rock(c);
+        status = look_for_rock(c, &settled);
     }
     return status;
 }

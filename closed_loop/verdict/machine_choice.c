@@ -9,7 +9,6 @@
 // (Ville).
 
 #include "closed_loop/accuracy/effect_size.h"
-#include "closed_loop/fit/posterior.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/machine_steps.h"
@@ -32,7 +31,8 @@ static const double temper = 0.5;
 
 struct choice {
     struct dig_machine_answer best;
-    size_t                    from; // which of free air's
+    size_t                    from;             // which of free air's
+    double                    z[DIG_STEPS_MAX]; // of its steps
     double                    evidence;
     double                    soil0;                   // of the digs as they were measured
     double                    of[DIG_MACHINE_ANSWERS]; // evidence of each
@@ -41,18 +41,15 @@ struct choice {
 struct scratch {
     struct dig_whitened_digs batch;
     struct dig_steps         steps;
-    double                   covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
 };
 
 // The raw batch with what measured[].machine adds taken off: in the same units, so that the digs'
 // evidence of one answer compares with that of another.
 static void take_off_batch(const struct dig_whitened_digs *const raw,
                            const struct dig_measured             measured[],
-                           const struct dig_steps *const         steps,
                            struct dig_whitened_digs *const       batch)
 {
-    *batch       = *raw;
-    batch->steps = steps;
+    *batch = *raw;
     for (size_t i = 0; i < raw->digs; i++) {
         double feature[DIG_FEATURES];
         double added[DIG_FEATURES];
@@ -71,35 +68,29 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted                  plain;
-    struct dig_fitted                  fitted;
-    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
+    struct dig_hypothesis              single[DIG_RIVALS_MAX];
+    struct dig_fitted                  fitted[DIG_RIVALS_MAX + 1];
+    struct dig_fitted                  unnamed;
+    struct dig_statistic               statistic;
+    const size_t                       rivals = dig_search_rivals(batch, soil, single);
+    dig_null_simulation_fit(batch, soil, &none, rivals, single, middle, DIG_FIT_THOROUGH, fitted,
+                            &statistic);
     double features = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
         features += (double)batch->group[g].features;
     }
-    *best         = plain;
-    double misfit = plain.misfit;
-    dig_hypothesis_fit_unlisted(batch, soil, &plain, &fitted);
-    if (fitted.misfit + 2.0 * unnamed_cost < misfit) {
-        misfit = fitted.misfit + 2.0 * unnamed_cost;
-        *best  = fitted;
+    *best         = fitted[0];
+    double misfit = fitted[0].misfit;
+    dig_hypothesis_fit_unlisted(batch, soil, &fitted[0], &unnamed);
+    if (unnamed.misfit + 2.0 * unnamed_cost < misfit) {
+        misfit = unnamed.misfit + 2.0 * unnamed_cost;
+        *best  = unnamed;
     }
-    for (int e = 0; e < DIG_EFFECTS; e++) {
-        const enum dig_effect_id    effect = (enum dig_effect_id)e;
-        const struct dig_hypothesis single = { .effects = 1, .effect = { effect } };
-        if (dig_effect_is_of_machine(effect) || effect == DIG_EFFECT_UNLISTED ||
-            !dig_hypothesis_possible(batch, soil, effect)) {
-            continue;
-        }
-        double start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-        memcpy(start, plain.number, DIG_AXES * sizeof start[0]);
-        start[DIG_AT_CONTRAST(0)] = 1.0;
-        dig_hypothesis_fit(batch, soil, &single, start, DIG_FIT_BARE, &fitted);
-        const double penalty = (double)dig_hypothesis_free(&single) * log(features);
-        if (fitted.misfit + penalty < misfit) {
-            misfit = fitted.misfit + penalty;
-            *best  = fitted;
+    for (size_t i = 0; i < rivals; i++) {
+        const double penalty = (double)dig_hypothesis_free(&single[i]) * log(features);
+        if (fitted[1 + i].misfit + penalty < misfit) {
+            misfit = fitted[1 + i].misfit + penalty;
+            *best  = fitted[1 + i];
         }
     }
     return -0.5 * misfit;
@@ -113,63 +104,54 @@ static bool is_no_answer(const enum dig_status status)
 }
 
 static void keep_best(const struct dig_machine_answer *const answer, const size_t from,
-                      const double evidence, struct choice *const choice)
+                      const double evidence, const double z[], struct choice *const choice)
 {
-    choice->of[from] = fmax(choice->of[from], evidence);
+    choice->of[from] = evidence;
     if (evidence > choice->evidence) {
         choice->evidence = evidence;
         choice->best     = *answer;
         choice->from     = from;
+        memcpy(choice->z, z, sizeof choice->z);
     }
 }
 
-// An answer with what free air leaves open of it, fitted to the digs.
-static enum dig_status weigh_open(struct dig_machine_side *const machine, const size_t from,
-                                  const size_t digs, struct dig_measured measured[],
-                                  const struct dig_trace_work *const w,
-                                  struct scratch *const scratch, struct choice *const choice)
-{
-    struct dig_machine_answer answer = w->air->answer[from];
-    struct dig_fitted         soil;
-    enum dig_status           status =
-        dig_machine_steps_make(machine, &answer, digs, measured, w->batch, &scratch->steps);
-    if (status != DIG_OK) {
-        return status;
-    }
-    take_off_batch(w->batch, measured, &scratch->steps, &scratch->batch);
-    const double evidence =
-        answer.log_evidence_wide + soil_evidence(&scratch->batch, w->soil, &soil) - choice->soil0;
-    status = dig_posterior_steps(&scratch->batch, w->soil, &soil, scratch->covariance);
-    if (status == DIG_OK) {
-        dig_machine_steps_values(soil.z, scratch->covariance, &answer);
-        keep_best(&answer, from, evidence, choice);
-    }
-    return status;
-}
-
-// One answer with free air's values, and with what the digs make of them.
+// One answer: with free air's own values, or with what the digs make of what it leaves open.
 static enum dig_status weigh(struct dig_machine_side *const machine, const size_t from,
                              const size_t digs, struct dig_measured measured[],
                              const struct dig_trace_work *const w, struct choice *const choice)
 {
-    const struct dig_machine_answer *const answer  = &w->air->answer[from];
-    struct scratch *const                  scratch = malloc(sizeof *scratch);
-    struct dig_fitted                      soil;
+    static const double       none[DIG_STEPS_MAX] = { 0.0 };
+    struct dig_machine_answer answer              = w->air->answer[from];
+    struct scratch *const     scratch             = malloc(sizeof *scratch);
+    struct dig_fitted         soil;
     if (scratch == NULL) {
         return DIG_ENOMEM;
     }
-    enum dig_status status = dig_machine_side_apply(machine, answer->effects, answer->effect,
-                                                    DIG_APPLY_TO_ALL, measured);
+    const enum dig_status status =
+        answer.wide
+            ? dig_machine_steps_make(machine, &answer, digs, measured, w->batch, &scratch->steps)
+            : dig_machine_side_apply(machine, answer.effects, answer.effect, DIG_APPLY_TO_ALL,
+                                     measured);
     if (status == DIG_OK) {
-        take_off_batch(w->batch, measured, NULL, &scratch->batch);
-        keep_best(answer, from,
-                  answer->log_evidence + soil_evidence(&scratch->batch, w->soil, &soil) -
-                      choice->soil0,
-                  choice);
-        status = weigh_open(machine, from, digs, measured, w, scratch, choice);
+        take_off_batch(w->batch, measured, &scratch->batch);
+        scratch->batch.steps = answer.wide ? &scratch->steps : NULL;
+        const double evidence =
+            answer.log_evidence + soil_evidence(&scratch->batch, w->soil, &soil) - choice->soil0;
+        const double *const z = answer.wide ? soil.z : none;
+        dig_machine_steps_values(z, NULL, &answer);
+        keep_best(&answer, from, evidence, z, choice);
     }
     free(scratch);
     return is_no_answer(status) ? DIG_OK : status;
+}
+
+static bool is_of(const struct dig_candidate_set *const set, const enum dig_effect_id effect)
+{
+    bool is = false;
+    for (size_t e = 0; e < set->effects; e++) {
+        is = is || set->effect[e] == effect;
+    }
+    return is;
 }
 
 // Single effects that free air and the digs cannot tell from the one chosen.
@@ -179,8 +161,8 @@ static void write_set(const struct choice *const choice, struct dig_machine_find
     set->effects                        = 1;
     set->effect[0]                      = choice->best.effect[0].effect;
     for (size_t i = 0; i < air->answers; i++) {
-        if (i != choice->from && air->answer[i].effects == 1 &&
-            choice->of[i] > choice->evidence - tie) {
+        if (air->answer[i].effects == 1 && choice->of[i] > choice->evidence - tie &&
+            !is_of(set, air->answer[i].effect[0].effect)) {
             set->effect[set->effects++] = air->answer[i].effect[0].effect;
         }
     }
@@ -207,11 +189,25 @@ static double lead_of(const struct choice *const              choice,
     return lead;
 }
 
+// Whether free air alone tells what was chosen, by any prior.
+static bool told_by_air(const struct choice *const              choice,
+                        const struct dig_machine_finding *const air, const double least)
+{
+    bool told = false;
+    for (size_t i = 0; i < air->answers; i++) {
+        const struct dig_machine_answer *const answer = &air->answer[i];
+        told = told || (answer->effects == choice->best.effects &&
+                        answer->effect[0].effect == choice->best.effect[0].effect &&
+                        answer->log_evidence >= least);
+    }
+    return told;
+}
+
 static void write_choice(const struct choice *const choice, const double least,
                          struct dig_machine_finding *const air)
 {
     const struct dig_machine_answer *const best = &choice->best;
-    air->by_digs = !(air->answer[choice->from].log_evidence >= least);
+    air->by_digs                                = !told_by_air(choice, air, least);
     // How often free air's own choice came out of digs drawn anew; else the odds of the lead.
     const double inclusion = air->effects == 1 && best->effects == 1 && !air->by_digs
                                  ? air->effect[0].probability
@@ -228,7 +224,19 @@ static void write_choice(const struct choice *const choice, const double least,
     air->effects     = best->effects;
     air->significant = true;
     air->p_complete =
-        fmin(air->p_complete, (double)air->answers * exp(-fmax(choice->evidence, 0.0)));
+        fmin(air->p_complete, (double)air->candidates * exp(-fmax(choice->evidence, 0.0)));
+}
+
+// What is open of the choice, about the values it was given.
+static void leave_open(const struct choice *const choice, struct dig_trace_open *const open)
+{
+    size_t n     = 0;
+    open->answer = choice->best;
+    for (size_t e = 0; e < choice->best.effects; e++) {
+        for (size_t p = 0; p < choice->best.effect[e].parameters; p++) {
+            open->answer.value[n++] = choice->best.effect[e].parameter[p].value;
+        }
+    }
 }
 
 // Nothing has a name; significant: whether anything is there all the same.
@@ -269,6 +277,7 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
     }
     if (choice->evidence >= fmax(least, unnamed)) {
         write_choice(choice, least, air);
+        leave_open(choice, w->open);
     } else {
         write_none(unnamed >= least, air);
     }
@@ -316,17 +325,52 @@ enum dig_status dig_trace_machine(struct dig_machine_side *const         machine
     if (status == DIG_OK && w->air->answers > 0) {
         status = choose(machine, settings, digs, measured, w, choice);
     }
-    if (status == DIG_OK) {
+    struct dig_trace_open *const open = w->open;
+    if (status == DIG_OK && open->answer.numbers > 0) {
+        status =
+            dig_machine_steps_make(machine, &open->answer, digs, measured, w->batch, &open->steps);
+    } else if (status == DIG_OK) {
         status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, DIG_APPLY_TO_ALL,
                                         measured);
     }
     if (is_no_answer(status)) { // a holdout is not told with what the digs made of it
         write_none(true, w->air);
-        status = dig_machine_side_apply(machine, 0, NULL, DIG_APPLY_TO_ALL, measured);
+        open->answer.numbers = 0;
+        status               = dig_machine_side_apply(machine, 0, NULL, DIG_APPLY_TO_ALL, measured);
     }
     if (status == DIG_OK) {
         status = dig_trace_batch(w, digs, measured, plain, error);
     }
+    if (status == DIG_OK && open->answer.numbers > 0) {
+        for (size_t k = 0; k < open->steps.steps; k++) {
+            open->steps.middle[k] = -choice->z[k];
+        }
+        w->batch->steps = &open->steps;
+    }
     free(choice);
     return status == DIG_OK ? weigh_in_soil(machine, digs, measured, w, plain) : status;
+}
+
+enum dig_status dig_trace_settle_machine(const struct dig_machine_side *const machine,
+                                         const double covariance[], struct dig_measured measured[],
+                                         struct dig_trace_work *const w)
+{
+    assert(measured != NULL && w != NULL);
+    struct dig_machine_answer answer = w->open->answer;
+    if (w->batch->steps == NULL) {
+        return DIG_OK;
+    }
+    dig_machine_steps_values(w->search->chosen.z, covariance, &answer);
+    const enum dig_status status =
+        dig_machine_side_apply(machine, answer.effects, answer.effect, DIG_APPLY_TO_ALL, measured);
+    if (is_no_answer(status)) { // a holdout is told with the values that were chosen alone
+        memset(w->search->chosen.z, 0, sizeof w->search->chosen.z);
+        return dig_machine_side_apply(machine, w->air->effects, w->air->effect, DIG_APPLY_TO_ALL,
+                                      measured);
+    }
+    for (size_t e = 0; e < answer.effects; e++) {
+        memcpy(w->air->effect[e].parameter, answer.effect[e].parameter,
+               sizeof answer.effect[e].parameter);
+    }
+    return status;
 }

@@ -35,17 +35,15 @@ void dig_machine_steps_values(const double z[], const double covariance[],
 }
 
 static void means_added(const struct dig_whitened_digs *const batch,
-                        const struct dig_measured measured[], double y[][DIG_FEATURES])
+                        const struct dig_measured measured[], double added[][DIG_FEATURES])
 {
-    memset(y, 0, batch->groups * sizeof y[0]);
+    memset(added, 0, DIG_TRAJECTORY_MAX * sizeof added[0]);
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
         double                                      feature[DIG_FEATURES];
-        double                                      one[DIG_FEATURES];
         dig_features_of(measured[batch->dig[i].measured].machine, feature);
-        dig_whitened_digs_whiten(group, feature, one);
-        for (size_t f = 0; f < group->features; f++) {
-            y[batch->dig[i].group][f] += one[f] / (double)group->digs;
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            added[group->trajectory][f] += feature[f] / (double)group->digs;
         }
     }
 }
@@ -55,14 +53,14 @@ static enum dig_status added_at(struct dig_machine_side *const         machine,
                                 const struct dig_machine_answer *const answer, const double z[],
                                 const enum dig_apply apply, struct dig_measured measured[],
                                 const struct dig_whitened_digs *const batch,
-                                double                                y[][DIG_FEATURES])
+                                double                                added[][DIG_FEATURES])
 {
     struct dig_machine_answer there = *answer;
     dig_machine_steps_values(z, NULL, &there);
     const enum dig_status status =
         dig_machine_side_apply(machine, there.effects, there.effect, apply, measured);
     if (status == DIG_OK) {
-        means_added(batch, measured, y);
+        means_added(batch, measured, added);
     }
     return status == DIG_EINVAL ? DIG_ENOMATCH : status;
 }
@@ -81,9 +79,9 @@ static enum dig_status find_steps(struct dig_machine_side *const         machine
         double z[DIG_MACHINE_NUMBERS] = { 0.0 };
         z[k]                          = 1.0;
         status = added_at(machine, answer, z, DIG_APPLY_ROUGHLY, other, batch, steps->of[k]);
-        for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {
+        for (size_t t = 0; t < DIG_TRAJECTORY_MAX && status == DIG_OK; t++) {
             for (size_t f = 0; f < DIG_FEATURES; f++) {
-                steps->of[k][g][f] -= middle[g][f];
+                steps->of[k][t][f] -= middle[t][f];
             }
         }
         status = status == DIG_ENOMATCH ? DIG_OK : status;

@@ -10,12 +10,12 @@
 #ifndef DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 #define DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 
-#include "closed_loop/fit/hypothesis.h"
+#include "closed_loop/fit/steps.h"
 #include "closed_loop/machine/machine_side.h"
 
-/// Leaves in measured[].machine what the answer's middle adds to every dig, and in *steps what its
-/// steps add to the means of the batch's groups. DIG_ENOMATCH: a dig is not told with the effects.
-/// DIG_ENOMEM. Some milliseconds a parameter.
+/// Leaves in measured[].machine what the answer's values add to every dig, and in *steps what its
+/// steps from there add to the mean dig of each of the batch's trajectories. DIG_ENOMATCH: a dig is
+/// not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
 DIG_MUST_CHECK enum dig_status dig_machine_steps_make(struct dig_machine_side         *machine,
                                                       const struct dig_machine_answer *answer,
                                                       size_t digs, struct dig_measured measured[],

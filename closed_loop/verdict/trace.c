@@ -46,6 +46,7 @@ static void finish(struct dig_trace_work *const w)
     free(w->batch);
     free(w->search);
     free(w->air);
+    free(w->open);
 }
 
 static enum dig_status out_of_memory(struct dig_error *const error)
@@ -61,7 +62,9 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
     w->batch   = calloc(1, sizeof *w->batch);
     w->search  = calloc(1, sizeof *w->search);
     w->air     = calloc(1, sizeof *w->air);
-    if (w->surface == NULL || w->batch == NULL || w->search == NULL || w->air == NULL) {
+    w->open    = calloc(1, sizeof *w->open);
+    if (w->surface == NULL || w->batch == NULL || w->search == NULL || w->air == NULL ||
+        w->open == NULL) {
         return out_of_memory(error);
     }
     if (dig_response_surface_fit(set, w->surface) != DIG_OK) {
@@ -275,15 +278,17 @@ static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id
     return is;
 }
 
-// How well what was found is known, and what cannot be told from it. Of what has lost, nothing is
-// said.
-static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed)
+// How well what was found is known (covariance: of what is open of the machine), and what cannot be
+// told from it. Of what has lost, nothing is said.
+static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed,
+                                      double covariance[])
 {
-    struct dig_search *const s      = w->search;
-    enum dig_status          status = dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen);
+    struct dig_search *const s = w->search;
+    enum dig_status          status =
+        dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen, covariance);
     for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
         if (is_in_set(s, s->rival[i].hypothesis.effect[0])) {
-            status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i]);
+            status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i], NULL);
             continue;
         }
         for (size_t j = 0; j < DIG_HYPOTHESIS_NUMBERS; j++) {
@@ -309,8 +314,9 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
         status = dig_trace_batch(w, digs, measured, &w->before, error);
     }
     if (status == DIG_OK) {
-        status = dig_posterior_intervals(w->batch, w->soil, settings->seed, &w->before);
+        status = dig_posterior_intervals(w->batch, w->soil, settings->seed, &w->before, NULL);
     }
+    double            covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
     struct dig_fitted plain = w->before;
     if (status == DIG_OK && machine != NULL) {
         choose_rate(w);
@@ -324,13 +330,19 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     }
     if (status == DIG_OK) {
         dig_trace_doubt_soil(w->air, w->search);
+        status = find_intervals(w, settings->seed, covariance);
+    }
+    if (status == DIG_OK) {
+        status = dig_trace_settle_machine(machine, covariance, measured, w);
+    }
+    if (status == DIG_OK) {
         status = weigh_soil(w);
     }
     if (status == DIG_OK) {
         status = dig_trace_confirm_without_air(w);
     }
     if (status == DIG_OK) {
-        status = find_intervals(w, settings->seed);
+        dig_steps_settle(w->batch, w->search->chosen.z);
     }
     // Nothing was found that is corrected: nothing changes.
     if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {

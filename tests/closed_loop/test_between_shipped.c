@@ -100,7 +100,7 @@ static void intervals_hold_between_the_grids_points(void **state)
             log_likelihood -= 0.5 * likelihood.error[g].log_det;
         }
         dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             held += fitted.low[a] <= place[a] && place[a] <= fitted.high[a] ? 1 : 0;
         }

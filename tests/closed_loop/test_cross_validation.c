@@ -122,6 +122,34 @@ static void a_dig_left_out_leaves_the_others_as_they_are(void **state)
     expect_the_others(0); // of the first trajectory: the second becomes the first
 }
 
+// What is open beside the soil is fitted to the others and told of the dig left out, so that the
+// gain is that of digs without it.
+static void what_is_open_is_told_of_the_dig_left_out(void **state)
+{
+    (void)state;
+    static struct dig_steps steps;
+    const double            off[] = { -3.0 };
+    dig_with(0.8, 3);
+    const double gain = gain_of(DIG_EFFECT_LAYERING);
+    steps             = (struct dig_steps){ .steps = 1 };
+    for (size_t g = 0; g < batch.groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch.group[g];
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            steps.of[0][group->trajectory][f] =
+                (f % 2 == 0 ? 0.1 : -0.1) * group->amplitude[f / DIG_FEATURE_BINS];
+        }
+    }
+    batch.steps = &steps;
+    dig_steps_settle(&batch, off);
+    steps.middle[0]     = 2.5;
+    const double closed = gain_of(DIG_EFFECT_LAYERING);
+    batch.steps         = &steps;
+    const double open   = gain_of(DIG_EFFECT_LAYERING);
+    print_message("gain %.1f, open %.1f, closed %.1f\n", gain, open, closed);
+    assert_true(fabs(closed / gain - 1.0) > 0.3);
+    assert_true(fabs(open / gain - 1.0) < 0.1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -129,6 +157,7 @@ int main(void)
         cmocka_unit_test(what_is_not_there_predicts_nothing),
         cmocka_unit_test(what_cannot_be_fitted_to_the_others_counts_nothing),
         cmocka_unit_test(a_dig_left_out_leaves_the_others_as_they_are),
+        cmocka_unit_test(what_is_open_is_told_of_the_dig_left_out),
     };
     return cmocka_run_group_tests_name("confirm", tests, world_setup, world_teardown);
 }

@@ -38,16 +38,14 @@ static void make_digs(const struct dig_gravel *const gravel, uint64_t *const see
         DIG_OK);
     steps = (struct dig_steps){ .steps = STEPS };
     for (size_t g = 0; g < batch.groups; g++) {
-        double changed[DIG_AXES] = { place[0] + 0.4, place[1], place[2] };
-        double here[DIG_FEATURES];
-        double there[DIG_FEATURES];
-        dig_whitened_digs_whiten(
-            &batch.group[g], dig_plain_of(soil, batch.group[g].trajectory, place).feature, here);
-        dig_whitened_digs_whiten(
-            &batch.group[g], dig_plain_of(soil, batch.group[g].trajectory, changed).feature, there);
-        for (size_t f = 0; f < batch.group[g].features; f++) {
-            steps.of[0][g][f] = there[f] - here[f];
-            steps.of[1][g][f] = 2.0 * model_uniform(seed) - 0.5;
+        const double           changed[DIG_AXES] = { place[0] + 0.4, place[1], place[2] };
+        const size_t           t                 = batch.group[g].trajectory;
+        const struct dig_plain here              = dig_plain_of(soil, t, place);
+        const struct dig_plain there             = dig_plain_of(soil, t, changed);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            steps.of[0][t][f] = there.feature[f] - here.feature[f];
+            steps.of[1][t][f] =
+                0.1 * here.amplitude[f / DIG_FEATURE_BINS] * (2.0 * model_uniform(seed) - 0.5);
         }
     }
 }
@@ -56,9 +54,12 @@ static void make_digs(const struct dig_gravel *const gravel, uint64_t *const see
 static void shift(struct dig_whitened_digs *const digs, const double z[STEPS])
 {
     for (size_t i = 0; i < digs->digs; i++) {
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            for (size_t k = 0; k < STEPS; k++) {
-                digs->dig[i].y[f] -= z[k] * steps.of[k][digs->dig[i].group][f];
+        const struct dig_whitened_digs_group *const group = &digs->group[digs->dig[i].group];
+        for (size_t k = 0; k < STEPS; k++) {
+            double y[DIG_FEATURES];
+            dig_whitened_digs_whiten(group, steps.of[k][group->trajectory], y);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                digs->dig[i].y[f] -= z[k] * y[f];
             }
         }
     }
@@ -108,10 +109,19 @@ static void the_likelihood_is_the_integral_over_the_steps(void **state)
     assert_close(z[0], mean[0] / sum, 1e-6);
     assert_close(z[1], mean[1] / sum, 1e-6);
     assert_true(fabs(z[0]) > 0.05); // or the test would say nothing
+    // The same about another middle, from which so much is taken off.
+    steps.middle[0] = -0.7;
+    steps.middle[1] = 0.4;
+    shifted         = batch;
+    shift(&shifted, (double[STEPS]){ 0.7, -0.4 });
+    double off[STEPS];
+    assert_close(misfit_of(&shifted, x, off), with, 1e-6);
+    assert_close(off[0], z[0], 1e-6); // from the middle
+    assert_close(off[1], z[1], 1e-6);
 }
 
-// Digs drawn with steps of the prior: what is fitted is off by what the covariance says. A step
-// that does what another gravel would do is known less well than that: the gravel is not linear.
+// Digs drawn with steps of the prior: what is fitted is off by what the covariance says. One of
+// them does what another gravel would do.
 static void fitted_steps_are_as_far_off_as_is_said(void **state)
 {
     (void)state;
@@ -134,15 +144,29 @@ static void fitted_steps_are_as_far_off_as_is_said(void **state)
         shift(&drawn, z);
         drawn.steps = &steps;
         dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_steps(&drawn, soil, &fitted, covariance), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted, covariance),
+                         DIG_OK);
         for (size_t k = 0; k < STEPS; k++) {
             sum[k] += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k] / CAMPAIGNS;
         }
     }
+    // A simulation draws the steps, too, about their middle.
+    double left[2] = { 0.0, 0.0 };
+    batch.steps    = &steps;
+    for (int c = 0; c < CAMPAIGNS; c++) {
+        struct dig_fitted fitted;
+        steps.middle[1] = c % 2 == 0 ? 0.0 : 5.0;
+        drawn           = batch;
+        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
+        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        left[c % 2] += fitted.squares / (0.5 * CAMPAIGNS);
+    }
+    print_message("squares left about a middle of 0 and of 5: %.1f, %.1f\n", left[0], left[1]);
+    assert_true(fabs(left[0] - left[1]) < 4.0);
     // Chi-squared over its degrees of freedom, to three sigmas.
     const double chance = 3.0 * sqrt(2.0 / CAMPAIGNS);
     print_message("squares of the steps' errors over expected: %.2f, %.2f\n", sum[0], sum[1]);
-    assert_true(fabs(sum[0] - 1.0) < 0.5 + chance);
+    assert_true(fabs(sum[0] - 1.0) < 0.1 + chance);
     assert_true(fabs(sum[1] - 1.0) < 0.1 + chance);
 }
 

@@ -156,7 +156,7 @@ static void intervals_of_the_gravel_hold(void **state)
         double            place[DIG_AXES];
         make_batch(&ground[i], place, &batch);
         dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             // An interval may not hold everything either.
             held += place[a] >= fitted.low[a] - 1e-9 && place[a] <= fitted.high[a] + 1e-9 &&

@@ -53,7 +53,7 @@ static void nine_intervals_of_ten_hold_the_truth(void **state)
         drawn = batch;
         dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
         dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             const double at = truth.number[a];
             assert_true(fitted.low[a] <= fitted.number[a] && fitted.number[a] <= fitted.high[a]);
@@ -88,7 +88,7 @@ static void an_interval_holds_nine_tenths_of_the_posterior(void **state)
     double                       all                     = 0.0;
     for (size_t s = 0; s < SEEDS; s++) {
         fitted[s] = found;
-        assert_int_equal(dig_posterior_intervals(&batch, soil, s, &fitted[s]), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&batch, soil, s, &fitted[s], NULL), DIG_OK);
     }
     dig_likelihood_init(&l, &batch, soil, &plain);
     dig_likelihood_weigh(&l, found.number);

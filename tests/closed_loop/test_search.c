@@ -318,6 +318,64 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     assert_int_equal(s.chosen.hypothesis.effects, 1);
 }
 
+// Something beside the soil that adds to every dig as a change of attitude might: half of it known
+// to be there, half open.
+static struct dig_steps open_beside(const struct dig_gravel *const gravel)
+{
+    struct dig_steps steps = { .steps = 1 };
+    double           place[DIG_AXES];
+    dig_response_surface_place(world.surface, gravel, place);
+    for (size_t g = 0; g < batch.groups; g++) {
+        const size_t           t     = batch.group[g].trajectory;
+        const struct dig_plain plain = dig_plain_of(soil, t, place);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            const double along = (double)(f % DIG_FEATURE_BINS) / (DIG_FEATURE_BINS - 1.0);
+            steps.of[0][t][f] =
+                0.3 * plain.amplitude[f / DIG_FEATURE_BINS] * sin(3.0 * along + (double)(f / 10));
+        }
+    }
+    return steps;
+}
+
+// What is open of a machine is fitted with every hypothesis, so that it is neither an effect of the
+// soil nor hides one.
+static void what_is_open_of_the_machine_is_no_effect_of_the_soil(void **state)
+{
+    (void)state;
+    static const enum dig_effect_id slope = DIG_EFFECT_GROUND_SLOPE;
+    static struct dig_search        found;
+    const struct dig_gravel         gravel    = { { 0.6, 0.55, 2500 } };
+    int                             alarms[2] = { 0, 0 };
+    for (uint64_t c = 0; c < 6; c++) {
+        uint64_t     seed      = 40 + c;
+        const double magnitude = 0.6;
+        const double off[]     = { c % 2 == 0 ? 1.0 : -1.0 };
+        for (size_t effects = 0; effects < 2; effects++) {
+            dig(&gravel, effects, &slope, &magnitude, &seed);
+            put_in_batch(&gravel, DIGS);
+            struct dig_steps steps = open_beside(&gravel);
+            batch.steps            = &steps;
+            dig_steps_settle(&batch, off);
+            struct dig_whitened_digs closed = batch;
+            steps.middle[0]                 = 0.3; // what free air says: of a variance of 1
+            batch.steps                     = &steps;
+            assert_int_equal(dig_search_run(&batch, soil, 0.01, DRAWS, seed, &found), DIG_OK);
+            if (effects == 1) {
+                assert_true(found.significant && !found.unlisted);
+                assert_int_equal(found.chosen.hypothesis.effect[0], slope);
+                assert_true(fabs(found.chosen.z[0] + off[0]) < 0.5);
+                continue;
+            }
+            alarms[0] += found.significant ? 1 : 0;
+            assert_true(found.significant || fabs(found.chosen.z[0] + off[0]) < 0.5);
+            assert_int_equal(dig_search_run(&closed, soil, 0.01, DRAWS, seed, &found), DIG_OK);
+            alarms[1] += found.significant ? 1 : 0;
+        }
+    }
+    assert_int_equal(alarms[0], 0);
+    assert_int_equal(alarms[1], 6); // or the test would say nothing
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -332,6 +390,7 @@ int main(void)
         cmocka_unit_test(a_drift_that_bends_is_no_wear),
         cmocka_unit_test(a_trend_must_foretell_the_digs_left_out),
         cmocka_unit_test(a_pair_does_not_lead_for_having_been_fitted_better),
+        cmocka_unit_test(what_is_open_of_the_machine_is_no_effect_of_the_soil),
     };
     return cmocka_run_group_tests_name("search", tests, world_setup, world_teardown);
 }

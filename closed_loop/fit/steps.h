@@ -1,0 +1,26 @@
+// What is not of the soil and known but for some numbers: a machine as free air leaves it open.
+//
+//   y(dig) = soil(dig) + sum over k of z[k] of[k](trajectory),    z ~ N(middle, 1)
+
+#ifndef DIG_CLOSED_LOOP_FIT_STEPS_H
+#define DIG_CLOSED_LOOP_FIT_STEPS_H
+
+#include "closed_loop/fit/whitened_digs.h"
+
+#define DIG_STEPS_MAX 32
+
+struct dig_steps {
+    size_t steps;
+    double middle[DIG_STEPS_MAX];
+    double of[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES]; // units of the table
+};
+
+/// Adds what z makes of the batch's steps to y of a group, in the batch's units. Without steps
+/// nothing.
+void dig_steps_add(const struct dig_whitened_digs *batch, const double z[], size_t group,
+                   double y[DIG_FEATURES]);
+
+/// Takes what z makes of the batch's steps off its digs, which have none then.
+void dig_steps_settle(struct dig_whitened_digs *batch, const double z[]);
+
+#endif // DIG_CLOSED_LOOP_FIT_STEPS_H
