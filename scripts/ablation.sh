@@ -31,9 +31,12 @@ size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 repeats count as beds|closed_loop/fit/same_bed.c|s/return beds;/return batch->group[group].digs;/|54
 codes agree (.01: 0)|closed_loop/fit/likelihood.c|s/of_codes *= 0.01;/of_codes = 0.0;/|2
-the surface is at its place (.05: 0)|closed_loop/fit/likelihood.c|s/of_place = 0.05/of_place = 0.0/|45
+the surface is at its place (.05: 0)|closed_loop/fit/shifts.c|s/of_place  *= 0.05/of_place = 0.0/|45
+effects are of their gravel (.3: 0)|closed_loop/fit/shifts.c|s/of_effect_place = 0.3/of_effect_place = 0.0/|10
+magnitudes are what they say (.1: 0)|closed_loop/fit/shifts.c|s/of_magnitude = 0.1/of_magnitude = 0.0/|10
+nothing is off in all trajectories alike (.15, .1: 0)|closed_loop/fit/shifts.c|s/common_place  *= 0.15/common_place = 0.0/; s/common_magnitude = 0.1/common_magnitude = 0.0/|55
 layers have no contrast|estimator/effects/layering.c|s/1.0, 0.25, 2.0/1.0, 1.0, 1.0/|60
-templates are true (.2: 0)|closed_loop/fit/likelihood.c|s/of_templates = 0.2;/of_templates = 0.0;/|20
+templates have the right form (.1: 0)|closed_loop/fit/likelihood.c|s/of_templates = 0.1;/of_templates = 0.0;/|20
 a higher floor of scatter (.002: .015)|closed_loop/model/scatter.h|s/SCATTER_FLOOR 0.002/SCATTER_FLOOR 0.015/|0
 no cubic terms|closed_loop/model/response_surface.c|s/? 3 : 2;/? 2 : 2;/|20
 a strange machine leaves the soil its name|closed_loop/verdict/trace_verdict.c|s/if (air->unexplained/if (false \&\& air->unexplained/|12

@@ -70,8 +70,8 @@ static void add_shifts(const struct dig_whitened_digs_group *const group,
                        const struct dig_common_error *const error, double k[])
 {
     const size_t n = group->features;
-    for (size_t a = 0; a < DIG_AXES; a++) {
-        const double *const shift = error->shift[a];
+    for (size_t s = 0; s < error->shift.shifts; s++) {
+        const double *const shift = error->shift.of[s];
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < n; j++) {
                 k[i * n + j] += shift[group->feature[i]] * shift[group->feature[j]];
@@ -160,10 +160,10 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
             feature[f] += error->size[p][f] * factor[f];
         }
     }
-    for (size_t a = 0; a < DIG_AXES; a++) {
+    for (size_t s = 0; s < error->shift.shifts; s++) {
         const double by = dig_chance_normal(seed);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            feature[f] += by * error->shift[a][f];
+            feature[f] += by * error->shift.of[s][f];
         }
     }
     dig_whitened_digs_whiten(group, feature, y);

@@ -7,25 +7,25 @@
 // even: the surface's and the templates' own variance, beds that repeat. A part is what a model
 // may get wrong by a factor that changes smoothly along the dig: what two DEM codes make of a plain
 // dig, what a template makes of an effect. size: one sigma of it, feature by feature; R: how alike
-// the factor is at two bins and on two channels; W: the whitening. A shift is what a gravel beside
-// this one would dig otherwise, axis by axis: what the surface has at one gravel may be another's.
+// the factor is at two bins and on two channels; W: the whitening. A shift is what the table may
+// have at another place: closed_loop/fit/shifts.h.
 
 #ifndef DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 #define DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/shifts.h"
 
 #include <stdint.h>
 
 #define DIG_COMMON_ERROR_PARTS 3 // two that change slowly along the dig, one from bin to bin
 
 struct dig_common_error {
-    double even;
-    double size[DIG_COMMON_ERROR_PARTS][DIG_FEATURES]; // 1 sigma, units of the table
-    double shift[DIG_AXES][DIG_FEATURES];              // the same
-    double inverse[DIG_FEATURES * DIG_FEATURES];       // L^-1 of the group's covariance L L'
-    double log_det;
-    double noise; // variance beyond 1/n, mean over the features
+    double            even;
+    double            size[DIG_COMMON_ERROR_PARTS][DIG_FEATURES]; // 1 sigma, units of the table
+    struct dig_shifts shift;
+    double            inverse[DIG_FEATURES * DIG_FEATURES]; // L^-1 of the group's covariance L L'
+    double            log_det;
+    double            noise; // variance beyond 1/n, mean over the features
 };
 
 /// Fills inverse, log_det and noise from even, size and shift. Some ten microseconds.

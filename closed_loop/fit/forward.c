@@ -79,6 +79,32 @@ void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *
     }
 }
 
+double dig_forward_added(const struct dig_whitened_digs *const batch, const size_t group,
+                         const struct dig_soil *const soil, const struct dig_plain *const plain,
+                         const struct dig_hypothesis *const hypothesis, const double number[],
+                         double added[DIG_FEATURES])
+{
+    const struct dig_measured *const first    = dig_whitened_digs_first(batch, group);
+    const bool                       differs  = dig_hypothesis_differs(hypothesis);
+    double                           variance = 0.0;
+    memset(added, 0, DIG_FEATURES * sizeof added[0]);
+    for (size_t i = 0; hypothesis->effects > 0 && i < batch->digs; i++) {
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        const double share = differs ? 1.0 / (double)batch->group[group].digs : 1.0;
+        double       with[DIG_FEATURES];
+        double       of_one;
+        if (batch->dig[i].group != group || (!differs && dig != first)) {
+            continue;
+        }
+        dig_forward_add(soil, plain, hypothesis, number, dig, with, &of_one);
+        variance += share * of_one;
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            added[f] += share * (with[f] - plain->feature[f]);
+        }
+    }
+    return variance;
+}
+
 void dig_hypothesis_features(const struct dig_soil *const       soil,
                              const struct dig_hypothesis *const hypothesis, const double number[],
                              const struct dig_measured *const dig, double feature[DIG_FEATURES],

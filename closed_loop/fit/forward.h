@@ -48,7 +48,14 @@ void dig_forward_add(const struct dig_soil *soil, const struct dig_plain *plain,
                      const struct dig_hypothesis *hypothesis, const double number[],
                      const struct dig_measured *dig, double feature[DIG_FEATURES], double *noise);
 
-/// The same from the gravel on.
+/// What the effects add to the mean dig of a group of the batch, units of the table; returns the
+/// variance of their templates, in variances of one plain dig.
+double dig_forward_added(const struct dig_whitened_digs *batch, size_t group,
+                         const struct dig_soil *soil, const struct dig_plain *plain,
+                         const struct dig_hypothesis *hypothesis, const double number[],
+                         double added[DIG_FEATURES]);
+
+/// The same as dig_forward_add() from the gravel on.
 void dig_hypothesis_features(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
                              const double number[], const struct dig_measured *dig,
                              double feature[DIG_FEATURES], double *noise);

@@ -11,13 +11,10 @@
 // By how much another DEM code's plain dig differs from ours beyond the scatter of both, and what
 // lies in the ground from a template's: shares of it, 1 sigma.
 static const double of_codes     = 0.01;
-static const double of_templates = 0.2; // but where the effect says otherwise
+static const double of_templates = 0.1; // but where the effect says otherwise
 
 // What of that changes from bin to bin, in variances of one dig.
 static const double rough = 0.01;
-
-// How far off, in halves of the grid's width, the surface may have a gravel's dig, 1 sigma.
-static const double of_place = 0.05;
 
 // What has no name changes a plain dig slowly along it and, by this share of that, from bin to bin.
 static const double quick = 0.5;
@@ -184,32 +181,6 @@ static double likeness_of(const struct dig_hypothesis *const hypothesis)
     return most;
 }
 
-// What the effects add to a group's mean dig, and the variance of their templates.
-static double effects_of(struct dig_likelihood *const l, const size_t g, const double x[],
-                         double added[DIG_FEATURES])
-{
-    const struct dig_whitened_digs_group *const group    = &l->batch->group[g];
-    const struct dig_plain *const               plain    = plain_at(l, g, x);
-    const struct dig_measured *const            first    = dig_whitened_digs_first(l->batch, g);
-    double                                      variance = 0.0;
-    memset(added, 0, DIG_FEATURES * sizeof added[0]);
-    for (size_t i = 0; l->hypothesis->effects > 0 && i < l->batch->digs; i++) {
-        const struct dig_measured *const dig   = &l->batch->measured[l->batch->dig[i].measured];
-        const double                     share = l->differs ? 1.0 / (double)group->digs : 1.0;
-        double                           with[DIG_FEATURES];
-        double                           of_one;
-        if (l->batch->dig[i].group != g || (!l->differs && dig != first)) {
-            continue;
-        }
-        dig_forward_add(l->soil, plain, l->hypothesis, x, dig, with, &of_one);
-        variance += share * of_one;
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            added[f] += share * (with[f] - plain->feature[f]);
-        }
-    }
-    return variance;
-}
-
 static void weigh_steps(struct dig_likelihood *const l)
 {
     const struct dig_steps *const steps = l->batch->steps;
@@ -234,23 +205,6 @@ static void weigh_steps(struct dig_likelihood *const l)
     l->step_log_det = dig_lower_log_det(l->steps, l->step_lower);
 }
 
-// What gravels beside a place dig otherwise, inwards.
-static void shift_from(const struct dig_likelihood *const l, const size_t trajectory,
-                       const double x[], const double plain[DIG_FEATURES],
-                       double shift[DIG_AXES][DIG_FEATURES])
-{
-    for (size_t a = 0; a < DIG_AXES; a++) {
-        double beside[DIG_AXES];
-        double amplitude[DIG_FORCE_CHANNELS];
-        memcpy(beside, x, sizeof beside);
-        beside[a] += x[a] > 0.0 ? -of_place : of_place;
-        dig_response_surface_features(l->soil->surface, trajectory, beside, shift[a], amplitude);
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            shift[a][f] -= plain[f];
-        }
-    }
-}
-
 void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
 {
     if (is_same(l->numbers, l->weighed_at, x)) {
@@ -263,18 +217,20 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         const struct dig_whitened_digs_group *const group = &l->batch->group[g];
         struct dig_common_error *const              error = &l->error[g];
         double                                      factor;
-        const double                                size2     = size2_of_plain(l, g, x, &factor);
-        const double                                templates = effects_of(l, g, x, error->size[1]);
+        const double                                size2 = size2_of_plain(l, g, x, &factor);
+        const struct dig_plain *const               at    = plain_at(l, g, x);
+        double                                      added[DIG_FEATURES];
+        const double                                templates =
+            dig_forward_added(l->batch, g, l->soil, at, l->hypothesis, x, added);
         error->even =
             rough + group->repeats + size2 * templates +
             size2 * factor * dig_response_surface_noise(l->soil->surface, group->trajectory, x);
-        const double *const plain = plain_at(l, g, x)->feature;
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            error->size[0][f] = hypot(of_codes, unlisted) * plain[f];
-            error->size[1][f] *= unlike;
-            error->size[2][f] = quick * unlisted * plain[f];
+            error->size[0][f] = hypot(of_codes, unlisted) * at->feature[f];
+            error->size[1][f] = unlike * added[f];
+            error->size[2][f] = quick * unlisted * at->feature[f];
         }
-        shift_from(l, group->trajectory, x, plain, error->shift);
+        dig_shifts_fill(l->batch, g, l->soil, l->hypothesis, x, at, added, &error->shift);
         dig_common_error_build(group, error);
     }
     weigh_steps(l);

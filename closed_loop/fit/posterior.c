@@ -30,6 +30,7 @@ struct cloud {
     double                z[POINTS][DIG_STEPS_MAX]; // of the batch's steps, less their middle
     double                lower[NUMBERS * NUMBERS]; // L of the points' covariance = L L'
     double                reach;                    // a step is so many of it
+    double                common[NUMBERS]; // 1 sigma of what no fit shows: dig_shifts_common()
     double                residual[DIG_LIKELIHOOD_RESIDUALS];
     double                old_x[POINTS][NUMBERS];
     double                old_misfit[POINTS];
@@ -232,7 +233,9 @@ static void anneal(struct cloud *const c, uint64_t seed)
         count_z(c);
         for (size_t p = 0; p < POINTS; p++) {
             for (size_t j = 0; j < c->likelihood.numbers; j++) {
-                c->taken[j][s * POINTS + p] = c->x[p][j];
+                const double off =
+                    c->common[j] > 0.0 ? c->common[j] * dig_chance_normal(&seed) : 0.0;
+                c->taken[j][s * POINTS + p] = reflect(c->x[p][j] + off, c->low[j], c->high[j]);
             }
         }
     }
@@ -278,6 +281,7 @@ enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const ba
     dig_likelihood_init(&c->likelihood, batch, soil, &fitted->hypothesis);
     dig_likelihood_weigh(&c->likelihood, fitted->number);
     dig_hypothesis_bounds(soil, &fitted->hypothesis, c->low, c->high);
+    dig_shifts_common(batch, soil, &fitted->hypothesis, fitted->number, c->common);
     c->reach = 2.4 / sqrt((double)c->likelihood.numbers);
     anneal(c, seed);
     for (size_t j = 0; j < c->likelihood.numbers; j++) {

@@ -33,12 +33,12 @@ static const struct dig_whitened_digs_group *make_group(void)
 // A factor that changes along the dig and from channel to channel.
 static struct dig_common_error some_error(const struct dig_whitened_digs_group *const group)
 {
-    struct dig_common_error error = { .even = 0.05 };
+    struct dig_common_error error = { .even = 0.05, .shift = { .shifts = 2 } };
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         const double amplitude = group->amplitude[f / DIG_FEATURE_BINS];
         error.size[0][f]       = 0.1 * amplitude * cos(0.3 * (double)f);
         error.size[1][f]       = f % DIG_FEATURE_BINS > 5 ? 0.2 * amplitude : 0.0;
-        error.shift[1][f]      = 0.1 * amplitude * sin(0.5 * (double)f);
+        error.shift.of[1][f]   = 0.1 * amplitude * sin(0.5 * (double)f);
     }
     dig_common_error_build(group, &error);
     return error;
@@ -94,12 +94,12 @@ static void a_shift_is_as_uncertain_as_it_says(void **state)
 {
     (void)state;
     const struct dig_whitened_digs_group *const group = make_group();
-    struct dig_common_error                     error = { .even = 1e-4 };
+    struct dig_common_error                     error = { .even = 1e-4, .shift = { .shifts = 3 } };
     double                                      three[DIG_FEATURES];
     double                                      y[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        error.shift[2][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS] * cos(0.4 * (double)f);
-        three[f]          = 3.0 * error.shift[2][f];
+        error.shift.of[2][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS] * cos(0.4 * (double)f);
+        three[f]             = 3.0 * error.shift.of[2][f];
     }
     dig_common_error_build(group, &error);
     dig_whitened_digs_whiten(group, three, y);

@@ -1,0 +1,181 @@
+// What the table of effects that ships is uncertain by, judged by beds with an effect at gravels
+// and magnitudes that it does not hold: our DEM's, of tests/data/blind/effects.sqlite, to develop
+// with.
+
+#include "closed_loop/fit/likelihood.h"
+#include "closed_loop/fit/posterior.h"
+#include "closed_loop/search/null_simulation.h"
+#include "tables/load.h"
+#include "tables/load_effects.h"
+#include "tests/testlib.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TABLE "tables/rig.sqlite"
+
+enum { BEDS = 2 };
+
+static struct dig_curve_set        *set;
+static struct dig_effect_set       *dug;
+static struct dig_response_surface *surface;
+static struct dig_scatter          *scatter;
+static struct dig_soil             *soil;
+
+static int setup(void **state)
+{
+    (void)state;
+    struct dig_effect_set *effects = NULL;
+    surface                        = calloc(1, sizeof *surface);
+    const bool made =
+        surface != NULL && dig_table_load(TABLE, &set, NULL) == DIG_OK &&
+        dig_effects_load("tables/rig_effects.sqlite", set, &effects, NULL) == DIG_OK &&
+        dig_effects_load("tests/data/blind/effects.sqlite", set, &dug, NULL) == DIG_OK &&
+        dig_response_surface_fit(set, surface) == DIG_OK &&
+        dig_scatter_measure(TABLE, surface, &scatter, NULL) == DIG_OK &&
+        dig_soil_create(surface, effects, scatter, &soil) == DIG_OK;
+    dig_effect_set_destroy(effects);
+    return made ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    free(soil);
+    dig_scatter_destroy(scatter);
+    free(surface);
+    dig_effect_set_destroy(dug);
+    dig_curve_set_destroy(set);
+    return 0;
+}
+
+// What holds of every dig alike: not what passes over the ground change.
+static bool is_judged(const enum dig_effect_id effect)
+{
+    return effect != DIG_EFFECT_COMPACTION;
+}
+
+// The mean of an entry's beds along each trajectory, as so many digs of it.
+static void make_batch(const size_t entry, double place[DIG_AXES],
+                       struct dig_whitened_digs *const batch)
+{
+    static struct dig_measured dig[DIG_TRAJECTORY_MAX * BEDS];
+    bool                       all[DIG_TRAJECTORY_MAX * BEDS];
+    size_t                     digs = 0;
+    for (size_t t = 0; t < dug->trajectories; t++) {
+        const size_t at = entry * dug->trajectories + t;
+        for (int bed = 0; bed < dug->packings[at]; bed++) {
+            struct dig_measured *const m = &dig[digs];
+            all[digs++]                  = true;
+            *m                           = (struct dig_measured){
+                                          .trajectory = (int)t, .pass = 1, .pace = 1.0, .last = 1.0
+            };
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                m->measured[c] = true;
+                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                    m->value[c][k] = (double)dug->curve[at].mean[c][k];
+                }
+            }
+        }
+    }
+    dig_response_surface_place(surface, &dug->entry[entry].gravel, place);
+    assert_int_equal(dig_whitened_digs_make(surface, scatter, digs, dig, all, place, batch),
+                     DIG_OK);
+    for (size_t g = 0; g < batch->groups; g++) {
+        batch->group[g].repeats = 0.0; // they are alike for being means
+    }
+}
+
+static double u_of(const struct dig_effect_entry *const e)
+{
+    return (e->magnitude - soil->absent[e->effect]) / soil->scale[e->effect];
+}
+
+static void what_the_digs_leave_of_an_effect_is_as_large_as_expected(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs batch;
+    static struct dig_likelihood    likelihood;
+    double                          squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
+    double                          all = 0.0, features = 0.0, misfit = 0.0;
+    for (size_t i = 0; i < dug->entries; i++) {
+        const struct dig_effect_entry *const e          = &dug->entry[i];
+        const struct dig_hypothesis          hypothesis = { .effects = 1,
+                                                            .effect  = { e->effect } };
+        double                               x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        if (!is_judged(e->effect)) {
+            continue;
+        }
+        make_batch(i, x, &batch);
+        x[DIG_AT_U(0)]        = u_of(e);
+        x[DIG_AT_CONTRAST(0)] = 1.0;
+        dig_likelihood_init(&likelihood, &batch, soil, &hypothesis);
+        dig_likelihood_weigh(&likelihood, x);
+        const double means = dig_likelihood_means(&likelihood, x);
+        misfit += means;
+        squares[e->effect] += means;
+        all += means;
+        for (size_t g = 0; g < batch.groups; g++) {
+            misfit += likelihood.error[g].log_det;
+            of[e->effect] += (double)batch.group[g].features;
+            features += (double)batch.group[g].features;
+        }
+    }
+    for (int e = 0; e < DIG_EFFECTS; e++) {
+        if (of[e] > 0.0) {
+            print_message("%s %.2f of %.0f, ", dig_effect_name((enum dig_effect_id)e),
+                          squares[e] / of[e], of[e]);
+        }
+    }
+    print_message("all %.2f; log likelihood %.1f\n", all / features, -0.5 * misfit);
+    assert_true(all / features > 0.5 && all / features < 1.2);
+}
+
+static void intervals_beside_an_effect_hold(void **state)
+{
+    (void)state;
+    static struct dig_whitened_digs batch;
+    const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const struct dig_hypothesis     plain                          = { .effects = 0 };
+    size_t                          held[2] = { 0, 0 }, all[2] = { 0, 0 };
+    for (size_t i = 0; i < dug->entries; i++) {
+        const struct dig_effect_entry *const e      = &dug->entry[i];
+        const struct dig_hypothesis          single = { .effects = 1, .effect = { e->effect } };
+        struct dig_fitted                    fitted[2];
+        struct dig_statistic                 statistic;
+        double                               truth[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        if (!is_judged(e->effect)) {
+            continue;
+        }
+        make_batch(i, truth, &batch);
+        truth[DIG_AT_U(0)] = u_of(e);
+        dig_null_simulation_fit(&batch, soil, &plain, 1, &single, middle, DIG_FIT_THOROUGH, fitted,
+                                &statistic);
+        if (statistic.gain < 12.0) {
+            continue; // not found
+        }
+        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted[1], NULL), DIG_OK);
+        for (size_t n = 0; n <= DIG_AT_U(0); n++) {
+            const bool is_u = n == DIG_AT_U(0);
+            const bool in   = truth[n] >= fitted[1].low[n] - 1e-9 && truth[n] <= fitted[1].high[n] + 1e-9;
+            held[is_u] += in ? 1 : 0;
+            all[is_u]++;
+        }
+    }
+    print_message("90 %% intervals of the gravel hold %zu times of %zu, of the magnitude %zu of "
+                  "%zu\n",
+                  held[0], all[0], held[1], all[1]);
+    assert_true((double)held[0] >= 0.75 * (double)all[0]);
+    assert_true((double)held[1] >= 0.7 * (double)all[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_the_digs_leave_of_an_effect_is_as_large_as_expected),
+        cmocka_unit_test(intervals_beside_an_effect_hold),
+    };
+    return cmocka_run_group_tests_name("effect_noise_shipped", tests, setup, teardown);
+}

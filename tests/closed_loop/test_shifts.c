@@ -1,0 +1,103 @@
+#include "closed_loop/fit/shifts.h"
+
+#include "tests/closed_loop/world_fixture.h"
+
+#include <string.h>
+
+enum { DIGS = 2 };
+
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+
+// A dig of either trajectory.
+static void make_batch(double place[DIG_AXES])
+{
+    const bool take[DIGS] = { true, true };
+    uint64_t   seed       = 3;
+    for (size_t i = 0; i < DIGS; i++) {
+        measured[i] =
+            made_dig(&gravel, i == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+    }
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
+        DIG_OK);
+}
+
+static void fill(const struct dig_hypothesis *const hypothesis, const double number[],
+                 struct dig_shifts *const shifts)
+{
+    const struct dig_plain plain = dig_plain_of(soil, batch.group[0].trajectory, number);
+    double                 added[DIG_FEATURES];
+    (void)dig_forward_added(&batch, 0, soil, &plain, hypothesis, number, added);
+    dig_shifts_fill(&batch, 0, soil, hypothesis, number, &plain, added, shifts);
+}
+
+// How large a shift is beside a dig, rms over the amplitude.
+static double size_of(const double shift[DIG_FEATURES])
+{
+    const struct dig_whitened_digs_group *const group = &batch.group[0];
+    double                                      sum   = 0.0;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        sum += pow(shift[f] / group->amplitude[f / DIG_FEATURE_BINS], 2.0) / DIG_FEATURES;
+    }
+    return sqrt(sum);
+}
+
+static void a_plain_gravel_is_off_along_its_axes_alone(void **state)
+{
+    (void)state;
+    const struct dig_hypothesis plain                          = { .effects = 0 };
+    double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    double                      sigma[DIG_HYPOTHESIS_NUMBERS];
+    struct dig_shifts           shifts;
+    make_batch(number);
+    fill(&plain, number, &shifts);
+    assert_int_equal(shifts.shifts, DIG_AXES);
+    dig_shifts_common(&batch, soil, &plain, number, sigma);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        assert_true(size_of(shifts.of[a]) > 0.0);
+        assert_true(fabs(sigma[a]) <= 0.0);
+    }
+}
+
+static void an_effect_is_off_by_what_it_adds(void **state)
+{
+    (void)state;
+    const struct dig_hypothesis slope = { .effects = 1, .effect = { DIG_EFFECT_GROUND_SLOPE } };
+    double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    double                      size[2], of_u[2], sigma[2][DIG_HYPOTHESIS_NUMBERS];
+    make_batch(number);
+    number[DIG_AT_CONTRAST(0)] = 1.0;
+    for (int i = 0; i < 2; i++) {
+        struct dig_shifts shifts;
+        number[DIG_AT_U(0)] = i == 0 ? 0.3 : 0.6;
+        fill(&slope, number, &shifts);
+        assert_int_equal(shifts.shifts, 2 * DIG_AXES + 1);
+        size[i] = size_of(shifts.of[DIG_AXES]);
+        of_u[i] = size_of(shifts.of[2 * DIG_AXES]);
+        dig_shifts_common(&batch, soil, &slope, number, sigma[i]);
+    }
+    // Twice as much ground that slopes is as off twice, nearly: by the gravel, and by the angle.
+    assert_close(size[1] / size[0], 2.0, 0.6);
+    assert_close(of_u[1] / of_u[0], 2.0, 0.6);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        assert_close(sigma[1][a] / sigma[0][a], 2.0, 0.6);
+    }
+    assert_close(sigma[1][DIG_AT_U(0)], 2.0 * sigma[0][DIG_AT_U(0)], 1e-12);
+    // An effect of a formula, not of beds, is what it says.
+    const struct dig_hypothesis wear = { .effects = 1, .effect = { DIG_EFFECT_WEAR } };
+    struct dig_shifts           shifts;
+    fill(&wear, number, &shifts);
+    assert_int_equal(shifts.shifts, DIG_AXES);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plain_gravel_is_off_along_its_axes_alone),
+        cmocka_unit_test(an_effect_is_off_by_what_it_adds),
+    };
+    return cmocka_run_group_tests_name("shifts", tests, world_setup, world_teardown);
+}
