@@ -21,6 +21,7 @@ digtable check tables/product.sqlite
 check "tables/product.sqlite is sound" is "$code" 0
 check "and nothing in it trembled" eval '! grep -q trembles $work/out'
 check "its bucket is of steel" grep -q "of friction 0.4 and rolling friction 0.4; resistance goes with the density" "$work/out"
+check "what finer gravel is taken for is said" grep -q "finer gravel resists less" "$work/out"
 "$BIN/digsightd" -c config/digsightd.yaml --check >"$work/out"
 check "it is the table that digsightd begins with" eval 'grep -q "scene product (.*), 60 gravels" $work/out && ! grep -q trembles $work/out'
 cp tables/product.sqlite "$work/begun.sqlite"

@@ -127,6 +127,8 @@ int dig_cli_check(const struct dig_arguments *const a)
         }
         (void)puts(report.builds > 1 ? "; made by builds that may compute differently" : "");
         print_scene(&scene);
+        (void)puts("  finer gravel resists less: what is found of it is an equivalent "
+                   "(docs/tables.md, \"Fine gravel\")");
         if (trembles[0] != '\0') {
             (void)printf("  %s\n", trembles);
         }
