@@ -54,7 +54,7 @@ static struct dig_plain beside(const struct dig_soil *const soil, const size_t t
 }
 
 void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t group,
-                     const struct dig_soil *const soil,
+                     const struct dig_soil *const       soil,
                      const struct dig_hypothesis *const hypothesis, const double number[],
                      const struct dig_plain *const plain, const double added[DIG_FEATURES],
                      struct dig_shifts *const shifts)
@@ -92,9 +92,8 @@ static double size_of_effects(const struct dig_whitened_digs *const batch,
     double more = 0.0;
     double all  = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_plain plain =
-            dig_plain_of(soil, batch->group[g].trajectory, number);
-        double added[DIG_FEATURES];
+        const struct dig_plain plain = dig_plain_of(soil, batch->group[g].trajectory, number);
+        double                 added[DIG_FEATURES];
         (void)dig_forward_added(batch, g, soil, &plain, hypothesis, number, added);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             const double amplitude = plain.amplitude[f / DIG_FEATURE_BINS];
@@ -106,7 +105,7 @@ static double size_of_effects(const struct dig_whitened_digs *const batch,
 }
 
 void dig_shifts_common(const struct dig_whitened_digs *const batch,
-                       const struct dig_soil *const soil,
+                       const struct dig_soil *const          soil,
                        const struct dig_hypothesis *const hypothesis, const double number[],
                        double sigma[DIG_HYPOTHESIS_NUMBERS])
 {

@@ -69,9 +69,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
         for (int bed = 0; bed < dug->packings[at]; bed++) {
             struct dig_measured *const m = &dig[digs];
             all[digs++]                  = true;
-            *m                           = (struct dig_measured){
-                                          .trajectory = (int)t, .pass = 1, .pace = 1.0, .last = 1.0
-            };
+            *m = (struct dig_measured){ .trajectory = (int)t, .pass = 1, .pace = 1.0, .last = 1.0 };
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 m->measured[c] = true;
                 for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -102,8 +100,7 @@ static void what_the_digs_leave_of_an_effect_is_as_large_as_expected(void **stat
     double                          all = 0.0, features = 0.0, misfit = 0.0;
     for (size_t i = 0; i < dug->entries; i++) {
         const struct dig_effect_entry *const e          = &dug->entry[i];
-        const struct dig_hypothesis          hypothesis = { .effects = 1,
-                                                            .effect  = { e->effect } };
+        const struct dig_hypothesis          hypothesis = { .effects = 1, .effect = { e->effect } };
         double                               x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         if (!is_judged(e->effect)) {
             continue;
@@ -159,7 +156,8 @@ static void intervals_beside_an_effect_hold(void **state)
         assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted[1], NULL), DIG_OK);
         for (size_t n = 0; n <= DIG_AT_U(0); n++) {
             const bool is_u = n == DIG_AT_U(0);
-            const bool in   = truth[n] >= fitted[1].low[n] - 1e-9 && truth[n] <= fitted[1].high[n] + 1e-9;
+            const bool in =
+                truth[n] >= fitted[1].low[n] - 1e-9 && truth[n] <= fitted[1].high[n] + 1e-9;
             held[is_u] += in ? 1 : 0;
             all[is_u]++;
         }

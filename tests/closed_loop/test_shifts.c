@@ -16,8 +16,7 @@ static void make_batch(double place[DIG_AXES])
     const bool take[DIGS] = { true, true };
     uint64_t   seed       = 3;
     for (size_t i = 0; i < DIGS; i++) {
-        measured[i] =
-            made_dig(&gravel, i == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
+        measured[i] = made_dig(&gravel, i == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
