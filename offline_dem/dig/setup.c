@@ -125,6 +125,9 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     return DIG_OK;
 }
 
+// Fewer grains are one slab (dig_grains_set_slabs()), which one thread steps while the others wait.
+static const size_t least_to_share = 32768;
+
 enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
                                   struct dig_world *const world, struct dig_error *const error)
 {
@@ -132,7 +135,7 @@ enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
     enum dig_status status = DIG_OK;
     if (stepper->device != NULL) {
         status = dig_offload(world, stepper->device);
-    } else if (stepper->threads > 1) {
+    } else if (stepper->threads > 1 && world->grains.n >= least_to_share) {
         status = dig_crew_create(stepper->threads, &world->crew);
     }
     return status == DIG_OK ? status : dig_setup_explain(status, error);

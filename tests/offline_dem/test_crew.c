@@ -1,6 +1,7 @@
 // Threads that share a step: every member works once a call, and a large bed moves bit for bit
 // alike on any number of them.
 
+#include "offline_dem/dig/setup.h"
 #include "offline_dem/law/random.h"
 #include "offline_dem/world/crew.h"
 #include "tests/dem_fixture.h"
@@ -119,12 +120,28 @@ static void slabs_lose_no_contact(void **state)
     dig_world_finish(&whole);
 }
 
+// A bed of one slab would have the others wait for it, turning in place.
+static void a_small_bed_is_not_shared(void **state)
+{
+    (void)state;
+    const struct dig_stepper stepper = { .single_precision = true, .threads = 2 };
+    struct dig_world         world   = { .crew = NULL };
+    world.grains.n                   = 15000;
+    assert_int_equal(dig_setup_stepper(&stepper, &world, NULL), DIG_OK);
+    assert_null(world.crew);
+    world.grains.n = 40000;
+    assert_int_equal(dig_setup_stepper(&stepper, &world, NULL), DIG_OK);
+    assert_non_null(world.crew);
+    dig_crew_destroy(world.crew);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_member_works_once_a_call),
         cmocka_unit_test(a_large_bed_moves_alike_on_any_number_of_threads),
         cmocka_unit_test(slabs_lose_no_contact),
+        cmocka_unit_test(a_small_bed_is_not_shared),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
