@@ -43,12 +43,12 @@ static void put(const double there[DIG_FEATURES], const double here[DIG_FEATURES
     shifts->shifts++;
 }
 
-// Another gravel, towards the middle of the table.
+// Another gravel, towards the middle of the table; so many numbers are copied.
 static struct dig_plain beside(const struct dig_soil *const soil, const size_t trajectory,
-                               const double number[], const size_t axis, const double by,
-                               double moved[DIG_HYPOTHESIS_NUMBERS])
+                               const size_t numbers, const double number[], const size_t axis,
+                               const double by, double moved[DIG_HYPOTHESIS_NUMBERS])
 {
-    memcpy(moved, number, DIG_HYPOTHESIS_NUMBERS * sizeof moved[0]);
+    memcpy(moved, number, numbers * sizeof moved[0]);
     moved[axis] += number[axis] > 0.0 ? -by : by;
     return dig_plain_of(soil, trajectory, moved);
 }
@@ -61,22 +61,24 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
 {
     assert(batch != NULL && soil != NULL && hypothesis != NULL && shifts != NULL);
     const size_t trajectory = batch->group[group].trajectory;
+    const size_t numbers    = DIG_AT_U(hypothesis->effects); // that the hypothesis has
     const bool   templated  = any_templated(hypothesis);
     double       moved[DIG_HYPOTHESIS_NUMBERS];
     double       there[DIG_FEATURES];
     shifts->shifts = 0;
     for (size_t a = 0; a < DIG_AXES; a++) {
-        const struct dig_plain near = beside(soil, trajectory, number, a, of_place, moved);
+        const struct dig_plain near = beside(soil, trajectory, numbers, number, a, of_place, moved);
         put(near.feature, plain->feature, shifts);
     }
     for (size_t a = 0; templated && a < DIG_AXES; a++) {
-        const struct dig_plain far = beside(soil, trajectory, number, a, of_effect_place, moved);
+        const struct dig_plain far =
+            beside(soil, trajectory, numbers, number, a, of_effect_place, moved);
         (void)dig_forward_added(batch, group, soil, &far, hypothesis, moved, there);
         put(there, added, shifts);
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         if (is_templated(hypothesis->effect[e])) {
-            memcpy(moved, number, sizeof moved);
+            memcpy(moved, number, numbers * sizeof moved[0]);
             moved[DIG_AT_U(e)] *= 1.0 + of_magnitude;
             (void)dig_forward_added(batch, group, soil, plain, hypothesis, moved, there);
             put(there, added, shifts);
