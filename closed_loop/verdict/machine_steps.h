@@ -3,7 +3,7 @@
 //
 //   y(dig) = soil(dig) + middle(dig) + sum over k of z[k] D[k](dig),    z ~ N(0, 1)
 //
-// middle is what free air's values by wide priors add to a dig, D what a step from there adds
+// middle is what an answer's values add to a dig, D what a step from there adds
 // (closed_loop/machine/machine_side.h). Gravel, effects of the soil and z are then one fit:
 // closed_loop/fit/likelihood.h.
 
