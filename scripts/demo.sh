@@ -17,7 +17,7 @@ out=$(cd "$out" && pwd)
 say "1. Table: the one that ships, and one more bed of two gravels, computed now by the DEM"
 cp tables/product.sqlite "$out/table.sqlite"
 chmod u+w "$out/table.sqlite"
-"$bin/digtable" generate config/scenes/product.yaml config/grids/demo.yaml -o "$out/table.sqlite" --engine single --time-limit 60
+"$bin/digtable" generate config/scenes/product.yaml config/grids/demo.yaml -o "$out/table.sqlite" --time-limit 60
 "$bin/digtable" check "$out/table.sqlite"
 
 say "2. Machine, bus and daemon: a simple dig, then a real dig, in gravel nobody here computed"

@@ -15,7 +15,7 @@ for ((seed = 201; seed < 201 + beds; seed++)); do
         for trajectory in simpleA actual; do
             dig=$out/$trajectory.$density.$seed.csv
             [ -e "$dig" ] || "$bin/digtable" dig -q "$out/scene.yaml" --trajectory $trajectory --friction .5 --rolling .5 \
-                --density $density --seed "$seed" --engine single --threads "${THREADS:-1}" -o "$dig"
+                --density $density --seed "$seed" --threads "${THREADS:-1}" -o "$dig"
         done
     done
 done

@@ -23,7 +23,7 @@ for gravel in ".6 .4" ".4 .6"; do
             sed "s/^  diameter_m: .*/  diameter_m: $diameter/" "$scene" >"$out/across$n.yaml"
             for trajectory in simpleA actual; do
                 [ -e "$name.$trajectory.csv" ] || "$bin/digtable" dig "$out/across$n.yaml" --trajectory $trajectory \
-                    --friction "$friction" --rolling "$rolling" --density 2500 --seed 101 --engine single \
+                    --friction "$friction" --rolling "$rolling" --density 2500 --seed 101 \
                     -o "$name.$trajectory.csv" 2>"$name.log" || { cat "$name.log" >&2; exit 1; }
                 [ ! -s "$name.log" ] || grep -oE '[0-9]+ grains' "$name.log" | cut -d ' ' -f 1 >"$name.grains"
             done

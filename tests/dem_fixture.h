@@ -149,10 +149,4 @@ static inline struct dig_motion *dem_grain(const struct dig_world *const world, 
     return NULL;
 }
 
-/// Less work where the tests run slowly: under sanitizers and valgrind.
-static inline bool dem_is_quick(void)
-{
-    return getenv("DIG_TEST_QUICK") != NULL;
-}
-
 #endif // DIG_TESTS_DEM_FIXTURE_H

@@ -9,7 +9,7 @@
 
 #define NS_PER_S 1000000000LL
 #define BURST    6        // records, two messages each
-#define TURN_ns  500000LL // between two turns, at most
+#define AFTER_ns 250000LL // a turn comes so long after a tick began, or a quarter of a tick
 
 // Joins LCM; on failure logs why and tries again later.
 static bool join(struct dig_publisher *const p, const int64_t now_ns)
@@ -232,12 +232,23 @@ static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
     }
 }
 
+// Until the next tick has had time to put what it has, by the beat of the last one that was seen.
+static void wait_for_tick(const struct dig_publisher *const p)
+{
+    const int64_t         tick_ns  = (int64_t)(p->config->tick_s * 1e9);
+    const int64_t         after_ns = tick_ns / 4 < AFTER_ns ? tick_ns / 4 : AFTER_ns;
+    const int64_t         seen_ns  = p->health.tick_status.time_ns + after_ns;
+    const int64_t         now_ns   = dig_input_now_ns();
+    const int64_t         due_ns   = now_ns + tick_ns - (now_ns - seen_ns) % tick_ns;
+    const struct timespec due      = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
+                                       .tv_nsec = (long)(due_ns % NS_PER_S) };
+    (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL);
+}
+
 void dig_publisher_run(struct dig_publisher *const p)
 {
     assert(p != NULL && p->console.say != NULL);
-    const int64_t         tick_ns  = (int64_t)(p->config->tick_s * 1e9);
-    const struct timespec pause    = { .tv_nsec = (long)(tick_ns < TURN_ns ? tick_ns : TURN_ns) };
-    bool                  stopping = false;
+    bool stopping = false;
     while (!stopping) {
         // Read first: the last round then finds everything put before *stop.
         stopping             = atomic_load(p->stop);
@@ -251,7 +262,7 @@ void dig_publisher_run(struct dig_publisher *const p)
         feed_watchdog(p, now_ns);
         dig_publisher_show(p, now_ns);
         if (!stopping) {
-            (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, NULL);
+            wait_for_tick(p);
         }
     }
     dig_output_destroy(p->output);

@@ -132,12 +132,12 @@ done | awk -v cores="$cores" -v n="$grains" '
     END { printf "dem_threads %.2f ratio %d grains on %d cores: %.2f s, on one %.2f s\n",
         alone / shared, n, cores, shared, alone }'
 
-# One whole dig of the rig scene, by the engine of new tables: from the same bed, poured before the clock starts
-dig="$build/bin/digtable dig $root/config/scenes/rig.yaml --trajectory actual --friction .5 --rolling .5 --density 2500 --engine single"
+# One whole dig of the rig scene: from the same bed, poured before the clock starts
+dig="$build/bin/digtable dig $root/config/scenes/rig.yaml --trajectory actual --friction .5 --rolling .5 --density 2500"
 if [ -n "${BENCH_QUICK:-}" ]; then
     sed 's/duration_s: 0.8/duration_s: 0.125/; /name: rotation1/,$d' <(sed '/- name: simpleA/,/- name: actual/{/- name: actual/!d}' \
         "$root/config/scenes/rig.yaml") >"$work/rig.yaml"
-    dig="$build/bin/digtable dig $work/rig.yaml --trajectory actual --friction .5 --rolling .5 --density 2500 --engine single"
+    dig="$build/bin/digtable dig $work/rig.yaml --trajectory actual --friction .5 --rolling .5 --density 2500"
 fi
 $dig --save-bed "$work/rig.csv" -o "$work/first.csv" 2>/dev/null
 # shellcheck disable=SC2086 # a command with its options

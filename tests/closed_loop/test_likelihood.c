@@ -11,13 +11,18 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIGS = 4, STEPS = 2, CAMPAIGNS = 300, GRID = 201 };
+enum { DIGS = 4, STEPS = 2, GRID = 141 };
 
 static const double reach = 7.0; // of the grid, in sigmas
 
 static struct dig_measured      measured[DIGS];
 static struct dig_whitened_digs batch;
 static struct dig_steps         steps;
+
+static int campaigns(void)
+{
+    return test_is_quick() ? 20 : 300;
+}
 
 static const struct dig_hypothesis plain                         = { .effects = 0 };
 static const double                start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -132,7 +137,7 @@ static void fitted_steps_are_as_far_off_as_is_said(void **state)
     struct dig_fitted               truth;
     make_digs(&gravel, &seed);
     dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &truth);
-    for (int c = 0; c < CAMPAIGNS; c++) {
+    for (int c = 0; c < campaigns(); c++) {
         double            z[STEPS];
         double            covariance[STEPS * STEPS];
         struct dig_fitted fitted;
@@ -147,24 +152,24 @@ static void fitted_steps_are_as_far_off_as_is_said(void **state)
         assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted, covariance),
                          DIG_OK);
         for (size_t k = 0; k < STEPS; k++) {
-            sum[k] += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k] / CAMPAIGNS;
+            sum[k] += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k] / campaigns();
         }
     }
     // A simulation draws the steps, too, about their middle.
     double left[2] = { 0.0, 0.0 };
     batch.steps    = &steps;
-    for (int c = 0; c < CAMPAIGNS; c++) {
+    for (int c = 0; c < campaigns(); c++) {
         struct dig_fitted fitted;
         steps.middle[1] = c % 2 == 0 ? 0.0 : 5.0;
         drawn           = batch;
         dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
         dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
-        left[c % 2] += fitted.squares / (0.5 * CAMPAIGNS);
+        left[c % 2] += fitted.squares / (0.5 * campaigns());
     }
     print_message("squares left about a middle of 0 and of 5: %.1f, %.1f\n", left[0], left[1]);
     assert_true(fabs(left[0] - left[1]) < 4.0);
     // Chi-squared over its degrees of freedom, to three sigmas.
-    const double chance = 3.0 * sqrt(2.0 / CAMPAIGNS);
+    const double chance = 3.0 * sqrt(2.0 / campaigns());
     print_message("squares of the steps' errors over expected: %.2f, %.2f\n", sum[0], sum[1]);
     assert_true(fabs(sum[0] - 1.0) < 0.1 + chance);
     assert_true(fabs(sum[1] - 1.0) < 0.1 + chance);

@@ -6,7 +6,7 @@
 // Under a sanitizer one seed tells as much as several.
 static uint64_t most(const uint64_t quick, const uint64_t all)
 {
-    return getenv("DIG_TEST_QUICK") != NULL ? quick : all;
+    return test_is_quick() ? quick : all;
 }
 
 static void a_machine_as_its_file_says_raises_no_alarm(void **state)

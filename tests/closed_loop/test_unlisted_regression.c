@@ -193,7 +193,7 @@ static void what_comes_where_the_bucket_is_jerked_is_said_to(void **state)
 static void plain_digs_depend_on_nothing_more_often_than_before(void **state)
 {
     (void)state;
-    const int                  draws    = getenv("DIG_TEST_QUICK") != NULL ? 60 : 600;
+    const int                  draws    = test_is_quick() ? 60 : 600;
     static const struct differ differ[] = { { false, false, false },
                                             { true, false, false },
                                             { false, true, false },

@@ -152,7 +152,7 @@ static void whatever_comes_in_only_numbers_go_out(void **state)
     for (int s = 0; s < DIG_SIGNALS; s++) {
         sample.valid[s] = true;
     }
-    const int samples = getenv("DIG_TEST_QUICK") != NULL ? 20000 : 200000;
+    const int samples = test_is_quick() ? 20000 : 200000;
     for (int i = 0; i < samples; i++) {
         sample.time_ns += model_uniform(&seed) < 0.001 ? 60000000000 : 5000000;
         for (int s = 0; s < DIG_SIGNALS_NEEDED; s++) {

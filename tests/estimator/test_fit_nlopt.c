@@ -158,7 +158,7 @@ static void ninety_per_cent_of_gravels_lie_in_their_interval(void **state)
 {
     (void)state;
     struct dig_curve_set *const set          = made_table(&plain);
-    const int                   trials       = getenv("DIG_TEST_QUICK") != NULL ? 40 : 200;
+    const int                   trials       = test_is_quick() ? 40 : 200;
     uint64_t                    seed         = 99;
     int                         in[DIG_AXES] = { 0 };
     for (int trial = 0; trial < trials; trial++) {
@@ -188,7 +188,7 @@ static void of_part_of_a_path_less_is_told_and_as_rightly(void **state)
     (void)state;
     const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
     struct dig_curve_set *const set = made_table(&one);
-    const int                   trials   = getenv("DIG_TEST_QUICK") != NULL ? 60 : 200;
+    const int                   trials   = test_is_quick() ? 60 : 200;
     static const double         until[]  = { 1.0, 0.6, 0.3 };
     uint64_t                    seed     = 7;
     int                         in[3][2] = { { 0 } };

@@ -127,7 +127,7 @@ static void misses_are_as_large_as_digs_make_them(void **state)
 static void the_interval_holds_the_gravel(void **state)
 {
     (void)state;
-    const int                   trials       = getenv("DIG_TEST_QUICK") != NULL ? 60 : 200;
+    const int                   trials       = test_is_quick() ? 60 : 200;
     uint64_t                    seed         = 11;
     struct dig_curve_set *const set          = taught(DIG_GAUSSIAN_FREEDOM, true, &seed);
     int                         in[DIG_AXES] = { 0 };

@@ -135,7 +135,7 @@ static void more_digs_tell_more_and_never_too_much(void **state)
     static const size_t digs[] = { 1, 2, 4, 8 };
     enum { STEPS = sizeof digs / sizeof digs[0] };
     struct dig_curve_set *const set             = made_table(&flat);
-    const int                   trials          = getenv("DIG_TEST_QUICK") != NULL ? 60 : 300;
+    const int                   trials          = test_is_quick() ? 60 : 300;
     uint64_t                    seed            = 2026;
     int                         in[STEPS][2]    = { { 0 } };
     double                      width[STEPS][2] = { { 0 } };

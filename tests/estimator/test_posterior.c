@@ -100,7 +100,7 @@ static void forces_tell_more_and_never_too_much(void **state)
     enum { STEPS = 3 };
     static const size_t         digs[STEPS]     = { 1, 1, 4 };
     struct dig_curve_set *const set             = table_with_forces();
-    const int                   trials          = getenv("DIG_TEST_QUICK") != NULL ? 60 : 150;
+    const int                   trials          = test_is_quick() ? 60 : 150;
     uint64_t                    seed            = 31;
     int                         in[STEPS][2]    = { { 0 } };
     double                      width[STEPS][2] = { { 0.0 } };

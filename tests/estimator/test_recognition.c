@@ -113,7 +113,7 @@ static int dig_all(void **state)
         return -1;
     }
     const bool   all  = getenv("DIG_TEST_ALL") != NULL;
-    const size_t step = all ? 1 : getenv("DIG_TEST_QUICK") != NULL ? 7 : 2;
+    const size_t step = all ? 1 : test_is_quick() ? 7 : 2;
     for (size_t i = 0; i < digs.count; i += step) {
         for (size_t way = 0; way < WAYS; way++) {
             if (all || way == i / step % WAYS) {

@@ -100,7 +100,7 @@ static void a_slot_gives_the_latest_once(void **state)
 
 static uint64_t rounds(void)
 {
-    return getenv("DIG_TEST_QUICK") != NULL ? 50000 : 400000;
+    return test_is_quick() ? 50000 : 400000;
 }
 
 static void *push_all(void *const context)

@@ -208,7 +208,7 @@ static void a_column_slumps_as_far_as_in_liggghts(void **state)
 {
     (void)state;
     struct heap ours = { 0 }, theirs = { 0 };
-    const int   seeds = dem_is_quick() ? 1 : 3;
+    const int   seeds = test_is_quick() ? 1 : 3;
     for (int seed = 1; seed <= seeds; seed++) {
         slump(seed, &ours, &theirs);
     }

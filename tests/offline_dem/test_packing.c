@@ -108,7 +108,7 @@ static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
         early_J += dig_grains_kinetic_J(&world.grains);
         weight_N -= world.on_walls.f_N[2] / 2000.0;
     }
-    dem_run(&world, dem_is_quick() ? 2000 : 16000);
+    dem_run(&world, test_is_quick() ? 2000 : 16000);
     for (int k = 0; k < 2000; k++) {
         dem_run(&world, 1);
         late_J += dig_grains_kinetic_J(&world.grains);

@@ -107,7 +107,7 @@ static void slump_angles_are_those_of_liggghts_within_three_degrees(void **state
     const double rolling[] = { 0.0, 0.3, 0.9 };
     const int    seeds     = getenv("DIG_TEST_LONG") != NULL ? SEEDS : 1;
     double       before    = 0.0;
-    for (size_t r = dem_is_quick() ? 2 : 0; r < 3; r++) {
+    for (size_t r = test_is_quick() ? 2 : 0; r < 3; r++) {
         double ours = 0.0, theirs = 0.0;
         for (int seed = 1; seed <= seeds; seed++) {
             const double our   = our_angle(rolling[r], seed);

@@ -49,7 +49,7 @@ static void the_closest_point_is_the_closest_of_all(void **state)
     const struct dig_tool tool   = dig_tool_make(&rig_bucket);
     struct dig_random     random = { .state = 1 };
     assert_int_equal(tool.plates, 6);
-    for (int k = 0; k < (dem_is_quick() ? 20 : 120); k++) {
+    for (int k = 0; k < (test_is_quick() ? 20 : 120); k++) {
         const double p[3] = { dig_random_between(&random, -0.07, 0.02),
                               dig_random_between(&random, -0.05, 0.05),
                               dig_random_between(&random, -0.11, 0.02) };

@@ -194,10 +194,10 @@ static int poll_until(struct pollfd fds[], const nfds_t count, const int64_t due
 
 int clock_gettime(const clockid_t clock, struct timespec *const t)
 {
-    if (sim == NULL || (clock != CLOCK_MONOTONIC && clock != CLOCK_BOOTTIME)) {
+    if (sim == NULL || clock == CLOCK_PROCESS_CPUTIME_ID) {
         return (int)syscall(SYS_clock_gettime, clock, t);
     }
-    const int64_t ns = now_ns();
+    const int64_t ns = now_ns() + (clock == CLOCK_REALTIME ? sim->utc_ns : 0);
     *t = (struct timespec){ .tv_sec = (time_t)(ns / NS_PER_S), .tv_nsec = (long)(ns % NS_PER_S) };
     return 0;
 }

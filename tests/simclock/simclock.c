@@ -15,6 +15,7 @@
 #include <linux/futex.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,7 @@ struct watch {
     size_t      tasks;
     uint32_t    threads; // of sim->threads, when the tasks were listed
     bool        listed;
+    bool        settled; // all slept when they were last looked at, and `runs` is of then
     bool        one_cpu;
     int         pipe_fd[SIM_SLOTS];
 };
@@ -63,8 +65,9 @@ static void forget(struct watch *const w)
             (void)close(w->task[i].runs_fd);
         }
     }
-    w->tasks  = 0;
-    w->listed = false;
+    w->tasks   = 0;
+    w->listed  = false;
+    w->settled = false;
 }
 
 static int slot_of(const struct sim *const sim, const int tid)
@@ -225,6 +228,19 @@ static bool all_sleep(struct watch *const w)
     return w->threads == atomic_load(&w->sim->threads);
 }
 
+// True when nobody has run since all slept but the one that was woken, which sleeps again: whom it
+// had woken in turn would not sleep, or have run.
+static bool none_was_woken(struct watch *const w)
+{
+    bool still = w->settled && w->listed && w->threads == atomic_load(&w->sim->threads);
+    for (size_t i = 0; still && i < w->tasks; i++) {
+        const struct task *const t    = &w->task[i];
+        bool                     gone = false;
+        still = t->runs == -2 ? sleeps_by_clock(w, t) : look(t, &gone) == t->runs;
+    }
+    return still;
+}
+
 // Until that many waits have begun, or a moment of real time has passed.
 static void wait_for_turns(struct watch *const w, const uint32_t wanted, const long moment_ns)
 {
@@ -246,12 +262,18 @@ static void settle(struct watch *const w, const uint32_t turns, const uint32_t w
     const int64_t began_ns = real_ns();
     // Those that were woken come back to sleep, most of the time.
     wait_for_turns(w, turns + woken, SELDOM_ns);
+    if (woken == 1 && atomic_load(&w->sim->turns) == turns + 1 && none_was_woken(w) &&
+        atomic_load(&w->sim->flying_bytes) == 0) {
+        return;
+    }
+    w->settled = false;
     for (long moment_ns = LOOK_ns;; moment_ns = moment_ns < SELDOM_ns ? 2 * moment_ns : SELDOM_ns) {
         if (!w->listed || w->threads != atomic_load(&w->sim->threads)) {
             list_tasks(w);
         }
         const uint32_t looked = atomic_load(&w->sim->turns);
         if (all_sleep(w)) {
+            w->settled           = true;
             const int64_t flying = atomic_load(&w->sim->flying_bytes);
             if (flying == 0) {
                 return;
@@ -342,8 +364,13 @@ static int begin(const char *const path)
     if (fd < 0 || ftruncate(fd, sizeof(struct sim)) != 0) {
         return fail("cannot make", path);
     }
-    const int64_t at_ns = SIM_BEGINS_ns;
-    const bool    wrote = pwrite(fd, &at_ns, sizeof at_ns, 0) == (ssize_t)sizeof at_ns;
+    struct timespec utc;
+    (void)clock_gettime(CLOCK_REALTIME, &utc);
+    const int64_t at_ns  = SIM_BEGINS_ns;
+    const int64_t utc_ns = (int64_t)utc.tv_sec * NS_PER_S + utc.tv_nsec - at_ns;
+    const bool    wrote =
+        pwrite(fd, &at_ns, sizeof at_ns, offsetof(struct sim, now_ns)) == (ssize_t)sizeof at_ns &&
+        pwrite(fd, &utc_ns, sizeof utc_ns, offsetof(struct sim, utc_ns)) == (ssize_t)sizeof utc_ns;
     (void)close(fd);
     return wrote ? 0 : fail("cannot write", path);
 }

@@ -1,16 +1,16 @@
 // Simulated time for programs under test, shared between them through one file in memory.
 //
-//   preload.so   is loaded before libc into each program (LD_PRELOAD) and answers what asks for the
-//   monotonic
+//   preload.so   is loaded before libc into each program (LD_PRELOAD) and answers what asks for a
 //                clock or waits on it: clock_gettime, clock_nanosleep, nanosleep, usleep, poll,
-//                select, sigtimedwait. A wait is written into a slot; it ends when the clock has
-//                come to it, and what is waited for beside it (a socket, a signal) ends it as ever.
+//                select, sigtimedwait. All clocks but the processor time of a process are this one:
+//                to compute takes no time. A wait is written into a slot; it ends when the clock
+//                has come to it, and what is waited for beside it (a socket, a signal) ends it as
+//                ever.
 //   simclock     is what a test moves the clock with. The clock goes to the next wait that ends,
-//   and only when
-//                every thread of every program sleeps. Waits end one after the other, those of one
-//                instant in the order in which their threads began. So no program is ever late, and
-//                each run is the same, however busy the machine is; nobody waits longer than the
-//                programs compute. While no simclock runs, time stands still.
+//                and only when every thread of every program sleeps. Waits end one after the other,
+//                those of one instant in the order in which their threads began. So no program is
+//                ever late, and each run is the same, however busy the machine is; nobody waits
+//                longer than the programs compute. While no simclock runs, time stands still.
 //
 // With DIG_SIMCLOCK_ONE_CPU, for a machine that has one and lets its programs run in real time
 // (SCHED_FIFO), nobody is looked at: simclock has an ordinary priority, and runs when all of them
@@ -47,6 +47,7 @@ struct sim_slot {
 
 struct sim {
     _Atomic int64_t  now_ns;
+    int64_t          utc_ns;       // what the calendar's clock is ahead of it
     _Atomic uint32_t turns;        // grows with each wait that begins
     _Atomic uint32_t wanted;       // simclock sleeps on `turns` until it is this
     _Atomic uint32_t threads;      // grows with each program and thread that begins

@@ -218,11 +218,13 @@ int main(const int argc, char *argv[])
     if (status == DIG_OK) {
         status = dig_store_create(path, &scene, &store, &error);
     }
+    status = status == DIG_OK ? dig_store_begin(store, &error) : status;
     if (status == DIG_OK) {
         status = ways    ? fill_ways(store, &scene, &error)
                  : other ? fill_other(store, &scene, &error)
                          : fill(store, &scene, &error);
     }
+    status = status == DIG_OK ? dig_store_commit(store, &error) : status;
     dig_store_close(store);
     if (status == DIG_OK && !other) {
         status = write_digs(&scene, argv[2], ways, &error);

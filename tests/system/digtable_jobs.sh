@@ -55,7 +55,7 @@ check "and another grid" eval 'is $code 2 && grep -q "planned with another scene
 submit --packings 1
 check "and another number of packings" eval 'is $code 2 && grep -q "planned with another scene or grid" $work/err'
 submit --engine ode
-check "and another engine" eval 'is $code 2 && grep -q "planned with the engine kernel, not ode" $work/err'
+check "and another engine" eval 'is $code 2 && grep -q "planned with the engine single, not ode" $work/err'
 sed -i.kept 's/^version: .*/version: "0.0.1"/' "$jobs/plan.yaml"
 submit
 check "and another version" eval 'is $code 2 && grep -q "planned with version 0.0.1" $work/err'

@@ -36,7 +36,7 @@ gravel=$(sqlite3 -separator , $table "SELECT friction, rolling, density_kgpm3 FR
 IFS=, read -r friction rolling density <<<"$gravel"
 printf 'points:\n  - {friction: %s, rolling: %s, density_kgpm3: %s, packings: 1}\ntrajectories: [simpleA]\n' \
     "$friction" "$rolling" "$density" >"$work/one.yaml"
-digtable generate config/scenes/rig.yaml "$work/one.yaml" -o "$work/one.sqlite"
+digtable generate config/scenes/rig.yaml "$work/one.yaml" -o "$work/one.sqlite" --engine kernel
 check "a bed and a dig of $gravel are computed again" is "$code" 0
 run() { # TABLE: all but the engine's version and what another build may know besides
     "$BIN/digtable" export "$1" --runs | awk -F, -v OFS=, -v f="$friction" -v r="$rolling" -v d="${density%.0}" \

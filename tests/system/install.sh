@@ -71,7 +71,7 @@ if [ -e /usr/share/bash-completion/bash_completion ]; then
     check "commands are completed" completes "digtable s" "show seal submit status"
     check "so are a command's options" completes "digloop identify --m" "--machine --model --moment-alone"
     check "not those of another" eval '! completes "digtable list --" --seed'
-    check "words that an option takes" completes "digtable dig --engine " "kernel ode cuda"
+    check "words that an option takes" completes "digtable dig --engine " "single kernel ode cuda"
     check "a table's trajectories" completes "digloop predict tables/rig.sqlite --trajectory s" "simpleA simpleB"
     check "no word of the line runs" eval '! completes "digtable list -//;e>$work/OWNED;# " x && [ ! -e "$work/OWNED" ]'
     check "files of the right kind" completes "digsightd -c config/digsightd_" "config/digsightd_can.yaml config/digsightd_rtu.yaml"

@@ -84,7 +84,7 @@ static void a_flipped_bit_is_found_or_changes_nothing(void **state)
     char *const whole   = scratch_read(scratch_path("good.sqlite"), &size);
     size_t      refused = 0, as_before = 0;
     uint64_t    random = 88172645463325252U;
-    const int   flips  = getenv("DIG_TEST_QUICK") != NULL ? 200 : 600;
+    const int   flips  = test_is_quick() ? 200 : 600;
     for (int i = 0; i < flips; i++) {
         random ^= random << 13;
         random ^= random >> 7;

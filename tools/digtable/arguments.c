@@ -108,8 +108,8 @@ static const char *take_approach(const int option, const char *const value,
 static bool take_engine(const char *const value, enum dig_engine_choice *const engine)
 {
     static const char *const names[] = {
-        [DIG_ENGINE_KERNEL] = "kernel",
         [DIG_ENGINE_SINGLE] = "single",
+        [DIG_ENGINE_KERNEL] = "kernel",
         [DIG_ENGINE_ODE]    = "ode",
         [DIG_ENGINE_CUDA]   = "cuda",
     };
@@ -176,7 +176,7 @@ static const char *take_option(const int option, const char *const value,
         ok = dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed);
         return ok ? NULL : "a whole number below 2^63";
     case OPTION_ENGINE:
-        return take_engine(value, &a->engine) ? NULL : "kernel, single, ode or cuda";
+        return take_engine(value, &a->engine) ? NULL : "single, kernel, ode or cuda";
     case OPTION_BED: a->bed = value; break;
     case OPTION_SAVE_BED: a->save_bed = value; break;
     case OPTION_VTK: a->vtk = value; break;

@@ -16,8 +16,8 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 #define DIG_POSITIONALS_MAX   1024 // tables to merge
 #define DIG_SLURM_OPTIONS_MAX 32   // words for sbatch
 
-/// Engines of --engine.
-enum dig_engine_choice { DIG_ENGINE_KERNEL, DIG_ENGINE_SINGLE, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
+/// Engines of --engine; the first is the default.
+enum dig_engine_choice { DIG_ENGINE_SINGLE, DIG_ENGINE_KERNEL, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
 
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {

@@ -69,8 +69,8 @@ static const struct dig_option options[] = {
       "the bucket turned about its tooth, positive curls (default 0)" },
     { "young", OPTION_YOUNG, "PA", " dig ", "Young's modulus instead of the scene's" },
     { "seed", OPTION_SEED, "N", " dig ", "of the bed (default 1)" },
-    { "engine", OPTION_ENGINE, "kernel|single|ode|cuda", " dig generate submit ",
-      "kernel (default); single, faster for plain gravel, in single precision; ode, the slow "
+    { "engine", OPTION_ENGINE, "single|kernel|ode|cuda", " dig generate submit ",
+      "single (default): plain gravel in single precision; kernel, in double; ode, the slow "
       "reference; cuda, on a graphics card, with the library of `make cuda`" },
     { "bed", OPTION_BED, "BED.csv", " dig ", "dig this bed instead of pouring one" },
     { "save-bed", OPTION_SAVE_BED, "BED.csv", " dig ", "write the bed before it is dug" },
