@@ -93,13 +93,13 @@ test: ## Set up what is missing, build, and run every test
 
 # Each by the engine it was begun with, or all with ENGINE=cuda on a graphics card.
 tables: all ## Compute what the tables that ship lack of their grids (many hours of all cores; ENGINE=cuda)
-	$(Q)for table in product:single product_effects:single rig:kernel rig_effects:kernel; do \
-	    engine=$${table#*:} table=$${table%:*}; \
-	    $(BUILD)/bin/digtable generate config/scenes/$${table%_effects}.yaml config/grids/$$table.yaml \
+	$(Q)for table in product:single product_effects:single reference_rig:kernel reference_rig_effects:kernel; do \
+	    engine=$${table#*:} table=$${table%:*}; scene=$${table#reference_}; scene=$${scene%_effects}; \
+	    $(BUILD)/bin/digtable generate config/scenes/$$scene.yaml config/grids/$$table.yaml \
 	        -o tables/$$table.sqlite --engine $(or $(ENGINE),$$engine) || exit 1; \
 	    $(BUILD)/bin/digtable check tables/$$table.sqlite || exit 1; done
 
-evaluate: all ## How right tables/rig.sqlite is on digs of LIGGGHTS
+evaluate: all ## How right tables/reference_rig.sqlite is on digs of LIGGGHTS
 	$(Q)BIN=$(BUILD)/bin scripts/evaluate.sh
 	$(Q)BIN=$(BUILD)/bin scripts/offgrid.sh
 
@@ -313,7 +313,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(libs)
 # Another machine, other formulas: what digloop trace is judged by. BLIND_N campaigns without an
 # effect and, in proportion, those with one; BLIND_ARGS: see tests/blind/README.md.
 BLIND_N     ?= 1000
-BLIND_TABLE ?= tables/rig.sqlite
+BLIND_TABLE ?= tables/reference_rig.sqlite
 blind_objs  := $(call objs,$(filter-out $(test_src),$(wildcard tests/blind/*.c)))
 bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig ## How often digloop trace is right, on campaigns it never saw
 	$(Q)mkdir -p $(BUILD)/blind

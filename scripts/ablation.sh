@@ -8,7 +8,7 @@ n=${1:?N}
 shift
 only=" $* "
 jobs=${JOBS:-$(nproc)}
-table=$PWD/tables/rig.sqlite
+table=$PWD/tables/reference_rig.sqlite
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

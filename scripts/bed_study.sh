@@ -100,9 +100,9 @@ room() { # Walls or sides that are one so many mm beside the bucket; the floor; 
     study longest_actual 3 actual .5 "$(join "$seven" "$periodic" "$(ends -0.04 0.47)")"
 }
 
-shipped() { # The rig's own digs, nine grains and walls, as tables/rig.sqlite holds them: nothing is dug.
+shipped() { # The rig's own digs, nine grains and walls, as tables/reference_rig.sqlite holds them: nothing is dug.
     local trajectory
-    "$bin/digtable" export tables/rig.sqlite --runs -o "$out/rig.csv"
+    "$bin/digtable" export tables/reference_rig.sqlite --runs -o "$out/rig.csv"
     for trajectory in simpleA actual; do
         rm -f "$out/shipped_$trajectory".*
         awk -F, -v trajectory=$trajectory -v to="$out/shipped_$trajectory." '

@@ -59,9 +59,9 @@ check "they are installed, and what they need" \
     inside sh -c 'apt-get update && apt-get install -y --no-install-recommends /debs/*.deb'
 check "the daemon waits to be enabled" eval '[ -e "$root/lib/systemd/system/digsightd.service" ] &&
     [ ! -e "$root/etc/systemd/system/multi-user.target.wants/digsightd.service" ]'
-check "a user shows a shipped table" user "digtable show /usr/share/digsight/tables/rig.sqlite 0 --trajectory actual"
+check "a user shows a shipped table" user "digtable show /usr/share/digsight/tables/reference_rig.sqlite 0 --trajectory actual"
 check "identifies the gravel of a recording" \
-    eval 'user "digloop identify /usr/share/digsight/tables/rig.sqlite simpleA.csv --json" && grep -q "\"friction\"" "$work/out"'
+    eval 'user "digloop identify /usr/share/digsight/tables/reference_rig.sqlite simpleA.csv --json" && grep -q "\"friction\"" "$work/out"'
 check "simulates a machine" \
     user "digrig record simpleA.csv --machine /usr/share/digsight/config/machines/zx200_trench.yaml -o run.csv && [ -s run.csv ]"
 check "digs" user "digtable dig scene.yaml --trajectory scrape --friction .5 --rolling .2 --density 2500 -o dig.csv --quiet && [ -s dig.csv ]"

@@ -1,12 +1,12 @@
 #!/bin/bash
-# Which entries of tables/rig.sqlite change, and by how much, with another stiffness or time step (docs/numerics/dem.md,
+# Which entries of tables/reference_rig.sqlite change, and by how much, with another stiffness or time step (docs/numerics/dem.md,
 # "Stiff" and "A step that heats")? Digs the same gravels anew and compares them, a line an entry. What lies in OUT is
 # not dug again.
 #   BIN=build/bin OUT=build/entry_study [ENGINE=kernel] [JOBS=1] scripts/entry_study.sh [stiff] [step]
 #   stiff   the paper's 1.5e8 Pa for 5e6, seven gravels, three beds: five minutes of an H100 (ENGINE=cuda JOBS=15), eight hours of a core
 #   step    the derived time step for the reference's, the three light gravels, five beds: one minute, or an hour and a half
 set -euo pipefail
-bin=${BIN:-build/bin} out=${OUT:-build/entry_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} table=tables/rig.sqlite
+bin=${BIN:-build/bin} out=${OUT:-build/entry_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} table=tables/reference_rig.sqlite
 mkdir -p "$out"
 
 grid() { # PACKINGS DENSITY:FRICTION:ROLLING...

@@ -7,7 +7,7 @@
 # bands hold: the share of all their points in the 90 % band, and the digs whose peak and energy lie in theirs.
 #   BIN=build/bin scripts/evaluate.sh [TABLE.sqlite]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite}
+bin=${BIN:-build/bin} table=${1:-tables/reference_rig.sqlite}
 case $("$bin/digtable" list "$table" --json | sed -nE 's/.*"name": "([^"]*)".*/\1/p' | head -n 1) in
 product) data=tests/data/liggghts_product more=/dev/null ;;
 *) data=tests/data/reference more=tests/data/liggghts_more ;;

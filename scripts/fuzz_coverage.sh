@@ -35,7 +35,7 @@ seed() { # TARGET, into the folder it stands in
     config_yaml)
         prefixed c "$tree"/config/digsightd*.yaml "$formats/digsightd.yaml"
         prefixed s "$formats"/scene*.yaml "$tree/config/scenes/rig.yaml"
-        prefixed g "$formats"/grid*.yaml "$tree/config/grids/rig.yaml"
+        prefixed g "$formats"/grid*.yaml "$tree/config/grids/reference_rig.yaml"
         prefixed m "$formats"/machine*.yaml "$tree/config/machines/zx200.yaml"
         prefixed r "$tree"/config/signals/modbus*.yaml
         prefixed a "$tree/config/signals/zx200_can.yaml"

@@ -5,7 +5,7 @@
 # have as a prediction. Last line: the medians, and whether the error's is at most 1.25 of the one or 1.1 of the other.
 #   BIN=build/bin scripts/offgrid.sh [TABLE.sqlite]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=tests/data/liggghts_more
+bin=${BIN:-build/bin} table=${1:-tables/reference_rig.sqlite} data=tests/data/liggghts_more
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -4,7 +4,7 @@
 #   BIN=build/bin PAPER=build/tests/paper/paper scripts/paper.sh [TABLE.sqlite [EFFECTS.sqlite]]
 set -euo pipefail
 bin=${BIN:-build/bin} paper=${PAPER:-build/tests/paper/paper} out=${OUT:-build/paper} plots=${PLOTS:-docs/paper}
-table=${1:-tables/rig.sqlite} effects=${2:-tables/rig_effects.sqlite}
+table=${1:-tables/reference_rig.sqlite} effects=${2:-tables/reference_rig_effects.sqlite}
 [ -e "$effects" ] || effects=-
 rm -rf "$out"
 mkdir -p "$out" "$plots"

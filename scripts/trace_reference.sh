@@ -4,7 +4,7 @@
 # 90 %. The right verdict of plain gravel, and so of tests/data/reference, is none.
 #   BIN=build/bin scripts/trace_reference.sh [TABLE.sqlite [FOLDER]]
 set -eu
-bin=${BIN:-build/bin} table=${1:-tables/rig.sqlite} data=${2:-tests/data/reference}
+bin=${BIN:-build/bin} table=${1:-tables/reference_rig.sqlite} data=${2:-tests/data/reference}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 here=$(realpath "$data")

@@ -21,8 +21,8 @@
 #define DIG_ENTRY_SCATTER_WIDE  (2 * DIG_ENTRY_SCATTER_REACH + 1)
 #define DIG_ENTRY_SCATTER_KNOTS (DIG_CURVE_POINTS + DIG_ENTRY_SCATTER_WIDE)
 
-/// l sqrt(2 pi), in bucket lengths: measured over three trajectories of tables/rig.sqlite; each
-/// channel of each agrees within 0.13.
+/// l sqrt(2 pi), in bucket lengths: measured over three trajectories of
+/// tables/reference_rig.sqlite; each channel of each agrees within 0.13.
 #define DIG_ENTRY_SCATTER_WIDTH 0.21
 
 /// Share of a dig's error that is constant along it: the table's packings are correlated by 0.03 to

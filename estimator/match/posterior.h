@@ -37,7 +37,7 @@
 #define DIG_POSTERIOR_CORRELATION 0.25
 
 /// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
-/// each of three gravels and three trajectories (tables/rig.sqlite;
+/// each of three gravels and three trajectories (tables/reference_rig.sqlite;
 /// tests/estimator/test_force_correlation.c).
 #define DIG_POSTERIOR_MY_FX (-0.93)
 #define DIG_POSTERIOR_MY_FZ 0.63
@@ -49,7 +49,7 @@
 
 /// Excess of digs with forces over the most probable gravel beyond which the gravel is outside the
 /// table. Of 255 digs along simpleA, left out of their own gravel's entry, none exceeds it
-/// (tables/rig.sqlite; tests/bench/outside.c).
+/// (tables/reference_rig.sqlite; tests/bench/outside.c).
 #define DIG_POSTERIOR_OUTSIDE 3.0
 
 /// Excess of the digs' distance from a gravel over what their errors make it, in standard

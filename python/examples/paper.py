@@ -97,7 +97,7 @@ def put(title: str, frame: pd.DataFrame, out: Path) -> str:
     return f'<img src="{path.name}.png" alt="{title}" style="max-width: 100%">'
 
 
-def main(out: str, path: str = "tables/rig.sqlite") -> None:
+def main(out: str, path: str = "tables/reference_rig.sqlite") -> None:
     if matplotlib is not None:
         matplotlib.use("Agg")
     Path(out).mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The matcher on 10^5 curves of 3 channels x 256 points, grown from tables/rig.sqlite: the nearest entry by
+# The matcher on 10^5 curves of 3 channels x 256 points, grown from tables/reference_rig.sqlite: the nearest entry by
 # a summary of the table beside a look at all entries, and the refinement, against 10 and 50 ms. Processor
 # time of one thread. Lines `name ratio unit detail`; BENCH_QUICK=1: 10 digs instead of 40. 0.9 GB of memory.
 #   BUILD=build tests/bench/match.sh
@@ -9,7 +9,7 @@ digs=40
 [ -z "${BENCH_QUICK-}" ] || digs=10
 make --no-print-directory -s BUILD="$BUILD" "$BUILD/tests/bench/match" >&2
 
-"$BUILD/tests/bench/match" tables/rig.sqlite 47 "$digs" | awk '
+"$BUILD/tests/bench/match" tables/reference_rig.sqlite 47 "$digs" | awk '
     $1 == "off" {
         off = $2
         printf "match-nearest %.0f x-a-look-at-all median %s ms, a look at all %s; the same entry and distance in %d of %d digs, %d curves\n",

@@ -1,7 +1,7 @@
 // What `digtable merge` costs by the number of shards: 10, 100, … MOST made tables of DIGS digs
-// each (1), as long as a mean dig of tables/rig.sqlite, merged by the product's own code. A line
-// each: seconds, milliseconds a shard, the most memory so far, the merged table's size, and how
-// long it takes to open it. Processor time: a busy machine disturbs it less.
+// each (1), as long as a mean dig of tables/reference_rig.sqlite, merged by the product's own code.
+// A line each: seconds, milliseconds a shard, the most memory so far, the merged table's size, and
+// how long it takes to open it. Processor time: a busy machine disturbs it less.
 //
 //   merge SCENE.yaml MOST [DIGS [FOLDER]]      FOLDER: 42 kB a shard and 40 kB a dig (/dev/shm)
 

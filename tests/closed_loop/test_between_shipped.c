@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/rig.sqlite"
+#define TABLE "tables/reference_rig.sqlite"
 #define DUG   "tests/data/between/rig.sqlite"
 
 static struct dig_curve_set        *set, *dug;

@@ -104,7 +104,7 @@ static void the_90_percent_band_holds_85_to_95_on_digs_of_another_code(void **st
     struct dig_curve_set    *set              = NULL;
     struct dig_coverage      coverage[WIDTHS] = { { .points = { 0 } } };
     size_t                   digs             = 0;
-    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
+    assert_int_equal(dig_table_load("tables/reference_rig.sqlite", &set, NULL), DIG_OK);
     for (size_t f = 0; f < 2; f++) {
         glob_t found;
         assert_int_equal(glob(files[f], 0, NULL, &found), 0);

@@ -56,7 +56,7 @@ static void the_rigs_simple_a_tells_most_already(void **state)
     (void)state;
     char                    best[DIG_NAME_SIZE];
     char                    reference[DIG_NAME_SIZE];
-    const struct dig_design d = design_of("tables/rig.sqlite", 1, best, reference);
+    const struct dig_design d = design_of("tables/reference_rig.sqlite", 1, best, reference);
     assert_string_equal(best, "simpleA");
     assert_string_equal(reference, "simpleA");
     assert_false(d.confirmed);

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/rig.sqlite"
+#define TABLE "tables/reference_rig.sqlite"
 
 enum { BEDS = 2 };
 
@@ -31,7 +31,7 @@ static int setup(void **state)
     surface                        = calloc(1, sizeof *surface);
     const bool made =
         surface != NULL && dig_table_load(TABLE, &set, NULL) == DIG_OK &&
-        dig_effects_load("tables/rig_effects.sqlite", set, &effects, NULL) == DIG_OK &&
+        dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, NULL) == DIG_OK &&
         dig_effects_load("tests/data/blind/effects.sqlite", set, &dug, NULL) == DIG_OK &&
         dig_response_surface_fit(set, surface) == DIG_OK &&
         dig_scatter_measure(TABLE, surface, &scatter, NULL) == DIG_OK &&

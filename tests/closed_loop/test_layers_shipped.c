@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/rig.sqlite"
+#define TABLE "tables/reference_rig.sqlite"
 
 // From tests/blind/pool/make.sh: what lies in the gravel, and how high.
 struct layer {
@@ -40,7 +40,7 @@ static int setup(void **state)
     (void)state;
     surface = calloc(1, sizeof *surface);
     return surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
-           dig_effects_load("tables/rig_effects.sqlite", set, &effects, NULL) != DIG_OK ||
+           dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, NULL) != DIG_OK ||
            dig_response_surface_fit(set, surface) != DIG_OK;
 }
 

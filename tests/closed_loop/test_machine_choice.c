@@ -5,7 +5,7 @@
 #include "tables/load.h"
 #include "tests/closed_loop/machine_campaign.h"
 
-static const char *const table = "tables/rig.sqlite";
+static const char *const table = "tables/reference_rig.sqlite";
 
 static void *load(void)
 {

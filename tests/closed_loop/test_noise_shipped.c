@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/rig.sqlite"
+#define TABLE "tables/reference_rig.sqlite"
 
 enum { GRAVELS_MAX = 32, DIGS_MAX = 12 };
 

@@ -18,11 +18,11 @@ static struct dig_soil             *soil;
 static int load(void **state)
 {
     (void)state;
-    const char *const table = "tables/rig.sqlite";
+    const char *const table = "tables/reference_rig.sqlite";
     struct dig_error  error = { "" };
     surface                 = calloc(1, sizeof *surface);
     if (surface == NULL || dig_table_load(table, &set, &error) != DIG_OK ||
-        dig_effects_load("tables/rig_effects.sqlite", set, &effects, &error) != DIG_OK ||
+        dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, &error) != DIG_OK ||
         dig_response_surface_fit(set, surface) != DIG_OK ||
         dig_scatter_measure(table, surface, &scatter, &error) != DIG_OK ||
         dig_soil_create(surface, effects, scatter, &soil) != DIG_OK) {

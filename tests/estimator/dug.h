@@ -1,6 +1,7 @@
 // Digs as people dig them, driven through an estimator: at any pace, with pauses, hesitations and
-// unsteady hands, in part, given up. The soil resists as it did in digs of tables/rig.sqlite, grain
-// by grain; what the bucket did at each sample is known, and counted against what was told.
+// unsteady hands, in part, given up. The soil resists as it did in digs of
+// tables/reference_rig.sqlite, grain by grain; what the bucket did at each sample is known, and
+// counted against what was told.
 
 #ifndef DIG_TESTS_DUG_H
 #define DIG_TESTS_DUG_H

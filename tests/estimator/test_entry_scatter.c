@@ -56,7 +56,7 @@ static void packings_of_the_table_are_correlated_along_the_path_as_told(void **s
     (void)state;
     struct table_runs *const t = calloc(1, sizeof *t);
     assert_non_null(t);
-    assert_int_equal(table_runs_read("tables/rig.sqlite", NULL, t, NULL), DIG_OK);
+    assert_int_equal(table_runs_read("tables/reference_rig.sqlite", NULL, t, NULL), DIG_OK);
     for (size_t j = 0; j < t->set->trajectories; j++) {
         const double point_L = whole_L(&t->set->trajectory[j]) / (DIG_CURVE_POINTS - 1);
         for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {

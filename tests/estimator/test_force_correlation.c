@@ -73,7 +73,7 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
 static void errors_of_moment_and_forces_go_together_as_packings_show(void **state)
 {
     (void)state;
-    static const char     table[] = "tables/rig.sqlite";
+    static const char     table[] = "tables/reference_rig.sqlite";
     struct dig_store     *store   = NULL;
     struct dig_curve_set *set     = NULL;
     struct beds *const    b       = calloc(1, sizeof *b);

@@ -91,7 +91,7 @@ static void packings_left_out_peak_and_take_what_is_told(void **state)
     (void)state;
     struct table_runs *const t = calloc(1, sizeof *t);
     assert_non_null(t);
-    assert_int_equal(table_runs_read("tables/rig.sqlite", NULL, t, NULL), DIG_OK);
+    assert_int_equal(table_runs_read("tables/reference_rig.sqlite", NULL, t, NULL), DIG_OK);
     for (size_t j = 0; j < t->set->trajectories; j++) {
         struct dig_channels weight;
         dig_peak_energy_weights(&t->set->trajectory[j], t->set->tooth_m, &weight);

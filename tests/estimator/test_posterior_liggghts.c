@@ -35,7 +35,7 @@ static void a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts(void **sta
     static const char *const gravels[] = { "mu0.5_mur0.0", "mu0.3_mur0.3", "mu0.5_mur0.5",
                                            "mu0.9_mur0.9" };
     struct dig_curve_set    *set       = NULL;
-    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
+    assert_int_equal(dig_table_load("tables/reference_rig.sqlite", &set, NULL), DIG_OK);
     for (size_t g = 0; g < sizeof gravels / sizeof gravels[0]; g++) {
         char path[128];
         (void)snprintf(path, sizeof path, "tests/data/reference/%s_rho2500__simpleA.csv",
@@ -82,7 +82,7 @@ static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
 {
     (void)state;
     struct dig_curve_set *set = NULL;
-    assert_int_equal(dig_table_load("tables/rig.sqlite", &set, NULL), DIG_OK);
+    assert_int_equal(dig_table_load("tables/reference_rig.sqlite", &set, NULL), DIG_OK);
     static const struct {
         double both;
         int    packings;

@@ -1,6 +1,6 @@
 // Tests for what the estimator recognises of a dig: what the bucket does (estimator/track/motion.c,
 // phase.c), which trajectory it digs, how far it gets and how it ends (track.c, window.c, ending.c,
-// followed.c). Digs of tables/rig.sqlite, each in another bed, dug in eleven ways.
+// followed.c). Digs of tables/reference_rig.sqlite, each in another bed, dug in eleven ways.
 //
 // A third of the digs is dug in one way each; DIG_TEST_ALL=1: all in all ways, some minutes.
 // DIG_TEST_BED=1: in each gravel's second bed, with which nothing was chosen.
@@ -102,7 +102,7 @@ static int dig_all(void **state)
 {
     static struct digs digs;
     struct dig_store  *store = NULL;
-    if (dig_store_open("tables/rig.sqlite", &store, NULL) != DIG_OK) {
+    if (dig_store_open("tables/reference_rig.sqlite", &store, NULL) != DIG_OK) {
         return -1;
     }
     digs.bed = getenv("DIG_TEST_BED") != NULL ? 1 : 0;

@@ -11,8 +11,8 @@ static const char *const example_path = "tests/data/formats/model.json";
 static struct dig_model example(void)
 {
     struct dig_model m = {
-        .table         = "tables/rig.sqlite",
-        .effects_table = "tables/rig_effects.sqlite",
+        .table         = "tables/reference_rig.sqlite",
+        .effects_table = "tables/reference_rig_effects.sqlite",
         .gravel        = { { 0.52, 0.41, 2500.0 } },
         .low           = { { 0.45, 0.3, 2300.0 } },
         .high          = { { 0.6, 0.5, 2700.0 } },

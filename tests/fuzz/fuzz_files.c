@@ -187,7 +187,7 @@ static struct {
     long   taken, refused;
 } target[] = {
     { "scene", "config/scenes/rig.yaml", read_scene, NULL, 0, 0, 0 },
-    { "grid", "config/grids/rig.yaml", read_grid, NULL, 0, 0, 0 },
+    { "grid", "config/grids/reference_rig.yaml", read_grid, NULL, 0, 0, 0 },
     { "job plan", "tests/data/formats/plan.yaml", read_job_plan, NULL, 0, 0, 0 },
     { "machine", "config/machines/zx200.yaml", read_machine, NULL, 0, 0, 0 },
     { "rig machine", "config/machines/rig_sensor.yaml", read_machine, NULL, 0, 0, 0 },

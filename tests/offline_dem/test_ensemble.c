@@ -2,7 +2,8 @@
 // of LIGGGHTS. A single dig is chaotic, so means are compared with their standard errors.
 //
 //                 ours                                  LIGGGHTS'
-//   on the grid   tables/rig.sqlite                     tests/data/reference, but for .5/.0, whose
+//   on the grid   tables/reference_rig.sqlite                     tests/data/reference, but for
+//   .5/.0, whose
 //                                                       rolling friction lies outside the grid
 //   off the grid  tests/data/liggghts_more/ours         tests/data/liggghts_more
 //   with an       the same                              the same, and tests/data/liggghts_digs
@@ -44,7 +45,7 @@ struct pair {
     double      magnitude;
 };
 
-#define RIG  "tables/rig.sqlite"
+#define RIG  "tables/reference_rig.sqlite"
 #define MORE "tests/data/liggghts_more/"
 #define OURS "tests/data/liggghts_more/ours/"
 #define DIGS "tests/data/liggghts_digs/"

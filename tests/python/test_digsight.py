@@ -17,7 +17,7 @@ import digsight
 import numpy as np
 import pandas as pd
 
-RIG, EFFECTS, PRODUCT = (f"tables/{name}.sqlite" for name in ("rig", "rig_effects", "product"))
+RIG, EFFECTS, PRODUCT = (f"tables/{name}.sqlite" for name in ("reference_rig", "reference_rig_effects", "product"))
 OURS = {"My_Nm": "moment_Nm", "My_sd_Nm": "moment_sd_Nm"}
 OURS |= {"Fx_N": "fx_N", "Fx_sd_N": "fx_sd_N", "Fz_N": "fz_N", "Fz_sd_N": "fz_sd_N"}
 PLAIN = {"effect": "", "depth": 1, "attack_deg": 0}

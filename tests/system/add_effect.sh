@@ -2,7 +2,7 @@
 # CONTRIBUTING.md's example of an effect, added as it stands there to a copy of the sources: what is tested of every effect
 # holds for it, and digloop names it in a campaign that has it. Without it digloop has another answer.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite}
+table=${TABLE:-tables/reference_rig.sqlite}
 built=$(dirname "$BIN")
 copy=$work/copy
 

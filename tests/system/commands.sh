@@ -48,7 +48,7 @@ for program in $programs; do
     done
 done
 
-table=tables/rig.sqlite machine=config/machines/zx200_trench.yaml
+table=tables/reference_rig.sqlite machine=config/machines/zx200_trench.yaml
 dig=tests/data/reference/mu0.5_mur0.5_rho2500
 mkdir "$work/campaign"
 printf 'scene: rig\nrecordings:\n' >"$work/campaign/campaign.yaml"

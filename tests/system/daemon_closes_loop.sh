@@ -4,7 +4,7 @@
 # was there. Once with a machine that is not as its file says, once in ground that is not as the table's.
 . tests/system/daemon_lib.bash
 
-table=$PWD/tables/rig.sqlite
+table=$PWD/tables/reference_rig.sqlite
 speed=4
 
 campaign() { # NAME MACHINE DIG…: machine recordings of these digs; those along simpleA identify, the others are fitted to

@@ -1,7 +1,7 @@
 #!/bin/bash
 # digloop and digreport as a user meets them: LIGGGHTS digs against the table that ships, and bad input.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite}
+table=${TABLE:-tables/reference_rig.sqlite}
 reference=tests/data/reference/mu0.5_mur0.5_rho2500
 
 # Exit status 2, a message that holds every word, and no output file.

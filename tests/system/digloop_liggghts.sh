@@ -2,7 +2,7 @@
 # digloop trace on digs of another DEM code, of gravels off the table's grid and with an effect in
 # them, one bed or two: what it is to find there, with its values, and what not.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite} scene=rig
+table=${TABLE:-tables/reference_rig.sqlite} scene=rig
 data=$PWD/tests/data/liggghts_more
 
 trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt

@@ -1,7 +1,7 @@
 #!/bin/bash
 # digloop trace of machine recordings: LIGGGHTS digs on the rig's machine, whose bucket is heavier than its file says.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite}
+table=${TABLE:-tables/reference_rig.sqlite}
 machine=$PWD/config/machines/zx200_trench.yaml
 digs=tests/data/reference/mu0.5_mur0.5_rho2500
 

@@ -1,7 +1,7 @@
 #!/bin/bash
 # digloop trace as a user meets it: LIGGGHTS digs in plain gravel, and campaigns that cannot be traced.
 . tests/system/check.bash
-table=${TABLE:-tables/rig.sqlite}
+table=${TABLE:-tables/reference_rig.sqlite}
 is_json=$BIN/../tests/system/is_json
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
 

@@ -2,7 +2,7 @@
 # The table that ships is what this program computes: one run of it again, in a new table, bit by bit.
 . tests/system/digtable_lib.bash
 
-table=tables/rig.sqlite
+table=tables/reference_rig.sqlite
 digtable check $table
 check "$table is sound" is "$code" 0
 check "and says that its light gravel trembled" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
@@ -10,8 +10,8 @@ sed "s|: ../tables/product.sqlite|: $PWD/$table|; s|: machines/|: $PWD/config/ma
     >"$work/rig.yaml"
 "$BIN/digsightd" -c "$work/rig.yaml" --check >"$work/out"
 check "as digsightd does" grep -q "gravel of 1500 kg/m3 trembles" "$work/out"
-digtable check tables/rig_effects.sqlite
-check "tables/rig_effects.sqlite is sound" is "$code" 0
+digtable check tables/reference_rig_effects.sqlite
+check "tables/reference_rig_effects.sqlite is sound" is "$code" 0
 digtable check tables/product_effects.sqlite --complete
 check "tables/product_effects.sqlite is sound, and the whole grid" is "$code" 0
 cp tables/product_effects.sqlite "$work/effects.sqlite"

@@ -13,7 +13,7 @@ bad=$'a\e]0;owned\a`touch OWNED`$(touch OWNED);<blink>\xe2\x80\xae'
 printable='a`touch OWNED`$(touch OWNED); <blink>"'"'"
 mkdir "$work/in" && cd "$work/in" || exit 1
 cp "$formats/table.sqlite" "$bad.sqlite"
-cp "$OLDPWD/tables/rig.sqlite" "rig$bad.sqlite"
+cp "$OLDPWD/tables/reference_rig.sqlite" "rig$bad.sqlite"
 cp "$formats/scene.yaml" "scene$bad.yaml"
 cp "$formats/grid.yaml" "grid$bad.yaml"
 cp "$formats/daemon.lcm" "$bad.lcm"

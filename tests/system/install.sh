@@ -46,10 +46,10 @@ for config in "$put"/etc/digsight/digsightd.yaml "$put"/share/digsight/config/di
 done
 check "so is a program that reads what it said" eval '"$put/bin/digsightd" -c config/digsightd.yaml --check --json |
     tee "$work/err" | tr -d "\n" | grep -qE "\"machine\": \{\"name\": \"zx200_trench\".*\"not_measured\": \[\]\}$"'
-check "a table that was put there is shown" eval '"$put/bin/digtable" show "$put/share/digsight/tables/rig.sqlite" 0 --json >"$work/out"'
+check "a table that was put there is shown" eval '"$put/bin/digtable" show "$put/share/digsight/tables/reference_rig.sqlite" 0 --json >"$work/out"'
 if /usr/bin/python3 -c 'import pandas' 2>/dev/null; then
     check "Python reads it" eval 'PYTHONPATH=$put/share/digsight/python /usr/bin/python3 -B -c "import digsight, sys
-print(digsight.open_table(sys.argv[1]))" "$put/share/digsight/tables/rig.sqlite" >"$work/out" 2>"$work/err"'
+print(digsight.open_table(sys.argv[1]))" "$put/share/digsight/tables/reference_rig.sqlite" >"$work/out" 2>"$work/err"'
 fi
 check "the unit starts the program and the configuration that were put there" \
     grep -qx "ExecStart=$prefix/bin/digsightd -c $prefix/etc/digsight/digsightd.yaml" "$put/lib/systemd/system/digsightd.service"
@@ -72,7 +72,7 @@ if [ -e /usr/share/bash-completion/bash_completion ]; then
     check "so are a command's options" completes "digloop identify --m" "--machine --model --moment-alone"
     check "not those of another" eval '! completes "digtable list --" --seed'
     check "words that an option takes" completes "digtable dig --engine " "single kernel ode cuda"
-    check "a table's trajectories" completes "digloop predict tables/rig.sqlite --trajectory s" "simpleA simpleB"
+    check "a table's trajectories" completes "digloop predict tables/reference_rig.sqlite --trajectory s" "simpleA simpleB"
     check "no word of the line runs" eval '! completes "digtable list -//;e>$work/OWNED;# " x && [ ! -e "$work/OWNED" ]'
     check "files of the right kind" completes "digsightd -c config/digsightd_" "config/digsightd_can.yaml config/digsightd_rtu.yaml"
 else

@@ -40,7 +40,7 @@ refused "identify's recording" digloop identify $table FILE
 refused "identify's machine" digloop identify $table $recording --machine FILE
 refused "identify's model" digloop identify $table $recording --model FILE
 refused "predict's identity" digloop predict $table --identified FILE --trajectory actual
-refused "predict's recording" digloop predict tables/rig.sqlite --identified tests/data/formats/identity.json --trajectory actual --measured FILE
+refused "predict's recording" digloop predict tables/reference_rig.sqlite --identified tests/data/formats/identity.json --trajectory actual --measured FILE
 refused "trace's table" digloop trace FILE tests/data/formats/campaign
 refused "trace's effects" digloop trace $table tests/data/formats/campaign --effects FILE
 refused "design's table" digloop design FILE

@@ -24,7 +24,7 @@ recordings:
   - {file: a2.csv, trajectory: simpleA, role: fit}
   - {file: r.csv, trajectory: actual, role: holdout}
 YAML
-trace() { "$BIN/digloop" trace tables/rig.sqlite "$work/campaign" --add "$work/model.json"; }
+trace() { "$BIN/digloop" trace tables/reference_rig.sqlite "$work/campaign" --add "$work/model.json"; }
 trace_us=$(microseconds_of trace)
 [ -s "$work/model.json" ] || fault "no model: $(trace 2>&1 | tail -n 2)"
 sed '/digloop trace/d; /written/d' "$work/model.json" >"$work/model.whole"

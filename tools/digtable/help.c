@@ -4,14 +4,14 @@ static const struct dig_command commands[] = {
     { "dig", "SCENE.yaml --trajectory NAME GRAVEL -o CSV [OPTION]...",
       "Computes one dig; the curve is a force recording.",
       "GRAVEL is --friction F --rolling R --density KGPM3.",
-      "digtable dig config/scenes/rig.yaml --trajectory simpleA --friction .5 \\\n"
+      "digtable dig config/scenes/product.yaml --trajectory simpleA --friction .5 \\\n"
       "         --rolling .5 --density 2500 -o dig.csv\n" },
     { "generate", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
       "Computes every dig of a grid, on all cores.",
       "What the table holds already is not computed again, and Ctrl-C keeps all that is finished.",
-      "digtable generate config/scenes/rig.yaml config/grids/rig.yaml \\\n"
-      "         -o rig.sqlite --time-limit 3600\n"
-      "digtable generate config/scenes/rig.yaml config/grids/rig.yaml \\\n"
+      "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
+      "         -o my.sqlite --time-limit 3600\n"
+      "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
       "         -o part3.sqlite --shard 3/16\n" },
     { "submit", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
       "Computes a table in shards: here, or with --slurm as a job array.",
@@ -44,17 +44,17 @@ static const struct dig_command commands[] = {
     { "merge", "OUT.sqlite IN...", "Puts the runs of all tables, each once, into a new one.",
       "IN is a table, or a folder of them. The bytes of the new table do not depend on their "
       "order.",
-      "digtable merge rig.sqlite part*.sqlite\n"
-      "digtable merge rig.sqlite rig.sqlite.jobs/shards\n" },
+      "digtable merge my.sqlite part*.sqlite\n"
+      "digtable merge my.sqlite my.sqlite.jobs/shards\n" },
     { "seal", "TABLE.sqlite", "Seals a table of an older version.",
       "The table is checked, and shows a flipped bit from then on whenever it is read.",
       "digtable seal old.sqlite\n" },
     { "export", "TABLE.sqlite [OPTION]...", "Writes all curves of a table as CSV.", NULL,
-      "digtable export rig.sqlite --runs -o runs.csv\n" },
+      "digtable export my.sqlite --runs -o runs.csv\n" },
     { "check", "TABLE.sqlite [OPTION]...",
       "Checks version, integrity, and every curve against the runs it was made of.", NULL,
       "digtable check tables/product.sqlite\n"
-      "digtable check rig.sqlite --complete --json\n" },
+      "digtable check my.sqlite --complete --json\n" },
 };
 
 static const struct dig_option options[] = {
@@ -110,7 +110,8 @@ const struct dig_program *dig_cli_program(void)
     static const struct dig_program program = {
         .self        = { "digtable", "COMMAND ARGUMENT... [OPTION]...\nCOMMAND --help",
                          "Computes how gravel resists bucket digs, and keeps the curves in a table.", NULL,
-                         "digtable generate config/scenes/rig.yaml config/grids/rig.yaml -o my.sqlite\n"
+                         "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
+                                "         -o my.sqlite\n"
                                 "digtable show my.sqlite --friction .5 --rolling .5 --density 2500\n" },
         .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input\n",
         .commands    = sizeof commands / sizeof commands[0],
