@@ -24,6 +24,7 @@ for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_see
     for simple in "$here/$gravel"{,_seed*}__simpleA.csv; do
         [ ! -e "${simple%simpleA.csv}actual.csv" ] || beds+=("${simple%__simpleA.csv}")
     done
+    [ "${#beds[@]}" -gt 0 ] || continue
     {
         echo "scene: $scene"
         echo "recordings:"

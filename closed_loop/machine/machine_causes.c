@@ -46,16 +46,15 @@ enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
 enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
 
 struct work {
-    struct dig_air       *air;
-    struct dig_lines      lines;
-    struct dig_fit        fit;
-    double               *base;  // [columns] width of each column's tolerance, in scales
-    double               *gross; // [columns] and of a cause
-    double               *width; // [columns] of the fit at hand
-    double               *at, *sigma, *covariance, *step;
-    bool                  asked[DIG_CAUSES];
-    double                least; // log evidence that a cause must bring
-    struct dig_correction none;
+    struct dig_air  *air;
+    struct dig_lines lines;
+    struct dig_fit   fit;
+    double          *base;  // [columns] width of each column's tolerance, in scales
+    double          *gross; // [columns] and of a cause
+    double          *width; // [columns] of the fit at hand
+    double          *at, *covariance, *step;
+    bool             asked[DIG_CAUSES];
+    double           least; // log evidence that a cause must bring
 };
 
 static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
@@ -408,7 +407,6 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
         value_of(w, named | one, k, &cause[k]);
         cause[k].tolerance = tolerance_of(w, k);
         cause[k].named     = (named & one) != 0;
-        cause[k].log_gain  = evidence(w, named | one) - evidence(w, named & ~one);
         cause[k].or_cause  = cause[k].named ? tied(w, named, k) : -1;
     }
     for (unsigned k = 0; k < DIG_CAUSES; k++) {
@@ -462,7 +460,7 @@ static enum dig_status work_make(struct dig_air *const air, struct work *const w
     }
     if (status == DIG_OK) {
         const size_t n = w->lines.columns;
-        w->base        = calloc(6 * n, sizeof(double));
+        w->base        = calloc(5 * n, sizeof(double));
         w->covariance  = calloc(n * n, sizeof(double));
         status         = w->base != NULL && w->covariance != NULL ? DIG_OK : DIG_ENOMEM;
         if (status == DIG_OK) {
@@ -470,7 +468,6 @@ static enum dig_status work_make(struct dig_air *const air, struct work *const w
             w->width = w->base + 2 * n;
             w->at    = w->base + 3 * n;
             w->step  = w->base + 4 * n;
-            w->sigma = w->base + 5 * n;
         }
     }
     return status;

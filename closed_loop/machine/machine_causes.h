@@ -33,7 +33,6 @@ enum dig_cause_kind {
 struct dig_cause {
     double value, sigma; // with a wide prior, beside the causes named
     double tolerance;    // 1 sigma of what it may be without being wrong
-    double log_gain;     // of the evidence when it joins those named; named: what it brought
     bool   named;
     int    or_cause; // another that would do in its place; -1: none
 };

@@ -50,18 +50,6 @@ struct dig_reading dig_reading_plain(void)
     return plain;
 }
 
-bool dig_reading_is_plain(const struct dig_reading *const reading)
-{
-    assert(reading != NULL);
-    bool plain = !reading->degrees;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        plain = plain && !reading->turned[j] && !(fabs(reading->zero_rad[j]) > 0.0) &&
-                reading->drive[j] == (enum dig_joint)j && !reading->swapped[j] &&
-                !(fabs(reading->factor[j] - 1.0) > 0.0);
-    }
-    return plain;
-}
-
 static double angle_rad(const struct dig_reading *const reading, const int joint, const double read)
 {
     const double rad = reading->degrees ? DIG_RAD_PER_DEG * read : read;
@@ -104,7 +92,6 @@ struct search {
     struct dig_air_point     *at;               // angles in radians
     struct dig_reading        best;
     double                    cost;
-    double                    plain_cost;
     // The least cost with each answer.
     double turned[DIG_JOINTS][2];
     double drive[DIG_JOINTS][DIG_JOINTS];
@@ -268,9 +255,6 @@ static void keep(struct search *const s, const struct dig_reading *const reading
         keep_least(&s->drive[j][reading->drive[j]], cost);
         keep_least(&s->swapped[j][reading->swapped[j] ? 1 : 0], cost);
         keep_least(&s->factor[j][factor[j]], cost);
-    }
-    if (dig_reading_is_plain(reading)) {
-        keep_least(&s->plain_cost, cost);
     }
     if (cost < s->cost) {
         s->cost = cost;
@@ -438,8 +422,7 @@ static size_t factor_of(const double factor)
 
 static void write_finding(const struct search *const s, struct dig_reading_finding *const finding)
 {
-    *finding = (struct dig_reading_finding){ .best         = s->best,
-                                             .plain_sigmas = worse(s->cost, s->plain_cost) };
+    *finding = (struct dig_reading_finding){ .best = s->best };
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_reading *const best = &s->best;
 
@@ -459,8 +442,7 @@ static void write_finding(const struct search *const s, struct dig_reading_findi
 
 static void forget(struct search *const s)
 {
-    s->cost       = INFINITY;
-    s->plain_cost = INFINITY;
+    s->cost = INFINITY;
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (size_t a = 0; a < 2; a++) {
             s->turned[j][a] = s->swapped[j][a] = INFINITY;

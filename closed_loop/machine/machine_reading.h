@@ -35,8 +35,6 @@ struct dig_reading {
 /// As the columns say.
 struct dig_reading dig_reading_plain(void);
 
-bool dig_reading_is_plain(const struct dig_reading *reading);
-
 /// True where angles are so large that they can only be degrees.
 bool dig_reading_in_degrees(const struct dig_machine_dig *dig);
 
@@ -48,7 +46,6 @@ void dig_reading_apply(const struct dig_reading *reading, struct dig_machine_rec
 /// where it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
 struct dig_reading_finding {
     struct dig_reading best;
-    double             plain_sigmas; // how much worse everything as the columns say is
     double             turned_sigmas[DIG_JOINTS];
     double             drive_sigmas[DIG_JOINTS];
     double             swapped_sigmas[DIG_JOINTS];

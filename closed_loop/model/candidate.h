@@ -29,7 +29,6 @@ struct dig_candidate {
     size_t             parameters;
     struct dig_model_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
     enum dig_part              seen_in;
-    struct dig_gravel          gravel; // refitted with it
 };
 
 /// Effects that these digs cannot tell apart.

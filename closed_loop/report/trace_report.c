@@ -212,7 +212,7 @@ void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, 
     for (size_t e = 0; e < trace->effects; e++) {
         const struct dig_model_effect *const effect = &trace->effect[e];
         if (e > 0) {
-            add(text, size, "%s", e + 1 == trace->effects ? " and " : ", ");
+            add(text, size, "%s", e + 1 == trace->effects ? "; and " : "; ");
         }
         if (effect->effect == DIG_EFFECT_UNLISTED) {
             add(text, size, "an effect that has no name here");
@@ -225,6 +225,9 @@ void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, 
         add(text, size, " (probability %.2f, seen in %s)", effect->probability,
             trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
                                                  : dig_part_name(trace->seen_in[e]));
+        if (effect->effect != DIG_EFFECT_UNLISTED) {
+            add(text, size, ": %s", dig_effect_of(effect->effect)->summary);
+        }
     }
     add(text, size, ".");
 }

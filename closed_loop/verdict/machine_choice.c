@@ -31,7 +31,6 @@ static const double temper = 0.5;
 
 struct choice {
     struct dig_machine_answer best;
-    size_t                    from;             // which of free air's
     double                    z[DIG_STEPS_MAX]; // of its steps
     double                    evidence;
     double                    soil0;                   // of the digs as they were measured
@@ -110,7 +109,6 @@ static void keep_best(const struct dig_machine_answer *const answer, const size_
     if (evidence > choice->evidence) {
         choice->evidence = evidence;
         choice->best     = *answer;
-        choice->from     = from;
         memcpy(choice->z, z, sizeof choice->z);
     }
 }

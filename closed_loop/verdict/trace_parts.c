@@ -240,9 +240,7 @@ static void list_rock(const struct dig_tracing *const t, struct dig_trace *const
                                                                  .inclusion    = (double)NAN,
                                                                  .error        = (double)NAN,
                                                                  .parameters   = made.parameters,
-                                                                 .seen_in      = DIG_PART_SOIL,
-                                                                 .gravel =
-                                                                     dig_response_surface_gravel(t->surface, rock->plain.number) };
+                                                                 .seen_in      = DIG_PART_SOIL };
     memcpy(c->parameter, made.parameter, sizeof c->parameter);
 }
 
@@ -271,8 +269,7 @@ void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_tra
                                                                       .inclusion    = s->inclusion[next],
                                                                       .error        = fit_error(t, f),
                                                                       .parameters   = made.parameters,
-                                                                      .seen_in      = dig_trace_seen_in(t, f, 0),
-                                                                      .gravel = dig_response_surface_gravel(t->surface, f->number) };
+                                                                      .seen_in      = dig_trace_seen_in(t, f, 0) };
         memcpy(c->parameter, made.parameter, sizeof c->parameter);
     }
 }

@@ -77,7 +77,6 @@ static enum dig_status read_message(const struct cursor *const cursor, const cha
         .extended = (id & EXTENDED_FLAG) != 0,
         .bytes    = bytes,
         .first    = dbc->signals,
-        .line     = cursor->line,
     };
     memcpy(dbc->message[dbc->messages - 1].name, name, sizeof name);
     return DIG_OK;
@@ -132,7 +131,7 @@ static enum dig_status read_signal(const struct cursor *const cursor, const char
     static const char grammar[] =
         "SG_ NAME [MUX] : START|BITS@ORDER SIGN (FACTOR,OFFSET) [MIN|MAX] \"UNIT\"";
 
-    struct dig_dbc_signal signal = { .line = cursor->line };
+    struct dig_dbc_signal signal = { 0 };
     char                  mux[8] = "";
     char                  order  = 0;
     char                  sign   = 0;

@@ -27,7 +27,6 @@ struct dig_dbc_signal {
     bool     intel, is_signed, multiplexed, is_float;
     double   factor, offset;
     char     unit[16];
-    int      line;
 };
 
 struct dig_dbc_message {
@@ -37,7 +36,6 @@ struct dig_dbc_message {
     unsigned bytes;
     size_t   first, signals; // in dig_dbc.signal
     double   cycle_s;        // 0: not given
-    int      line;
 };
 
 struct dig_dbc {

@@ -237,11 +237,11 @@ static void wait_for_tick(const struct dig_publisher *const p)
 {
     const int64_t         tick_ns  = (int64_t)(p->config->tick_s * 1e9);
     const int64_t         after_ns = tick_ns / 4 < AFTER_ns ? tick_ns / 4 : AFTER_ns;
-    const int64_t         seen_ns  = p->health.tick_status.time_ns + after_ns;
-    const int64_t         now_ns   = dig_input_now_ns();
-    const int64_t         due_ns   = now_ns + tick_ns - (now_ns - seen_ns) % tick_ns;
-    const struct timespec due      = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
-                                       .tv_nsec = (long)(due_ns % NS_PER_S) };
+    const int64_t         next_ns  = p->health.tick_status.time_ns + after_ns;
+    const int64_t         late_ns  = dig_input_now_ns() - next_ns;
+    const int64_t         due_ns = next_ns + (late_ns < 0 ? 0 : (late_ns / tick_ns + 1) * tick_ns);
+    const struct timespec due    = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
+                                     .tv_nsec = (long)(due_ns % NS_PER_S) };
     (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL);
 }
 

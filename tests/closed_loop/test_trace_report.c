@@ -284,9 +284,11 @@ static void a_sentence_says_the_verdict(void **state)
     char                  text[1024];
     struct example *const e = make();
     dig_trace_sentence(&e->trace, sizeof text, text);
-    assert_string_equal(text, "Missing: cylinder_friction (probability 0.98, seen in air) and an "
-                              "effect that has no name here, which depends on speed and depth "
-                              "(probability 0.75, seen in soil).");
+    assert_string_equal(text,
+                        "Missing: cylinder_friction (probability 0.98, seen in air): friction of "
+                        "the cylinders' seals, against the rod's motion; and an effect that has no "
+                        "name here, which depends on speed and depth (probability 0.75, seen in "
+                        "soil).");
     e->trace.effects = 0;
     dig_trace_sentence(&e->trace, sizeof text, text);
     assert_contains(text, "none of the effects known");

@@ -123,7 +123,6 @@ static void take_estimate(void *const context, const int64_t time_us,
         .sigma_Nm     = hypot(said->sigma_moment_Nm, said->geometry_sigma_moment_Nm),
         .phase        = said->phase,
         .motion       = said->motion,
-        .dig_count    = said->dig_count,
         .progress = said->progress >= 0.0 && said->progress <= 1.0 ? said->progress : (double)NAN,
     };
     take_name(e.trajectory, said->trajectory);

@@ -21,7 +21,6 @@ struct digwatch_estimate {
     int64_t time_ns;
     double  moment_Nm, sigma_Nm; // of noise and of the machine file's tolerances together
     int     phase, motion;
-    int32_t dig_count;
     char    trajectory[DIG_NAME_SIZE];        // "" while it is not known
     double  progress;                         // NaN while it is not known
     double  predicted_Nm, predicted_sigma_Nm; // here; NaN: no prediction
