@@ -12,7 +12,7 @@
 
 // Instants that are looked at; poses that count as seen each for itself lie so far apart, and no
 // more than so many of them count: what a file has wrong by some per cent it has in all of them.
-enum { INSTANTS = 240, MOST_POSES = 100, CHAMBERS = DIG_JOINTS * DIG_CHAMBERS };
+enum { INSTANTS = 240, MOST_POSES = 100 };
 static const double pose_rad = 0.1;
 
 // What may be left of a load without anything being mixed up.
