@@ -44,6 +44,19 @@ static void note_step(const char *const table, const struct dig_curve_set *const
     }
 }
 
+// Of two frictions the table knows no bend between them, which a trace may take for an effect.
+static void note_few_frictions(const char *const table, const struct dig_curve_set *const set)
+{
+    if (set->axis_count[DIG_AXIS_FRICTION] == 2) {
+        (void)fputs("digloop: ", stderr);
+        dig_text_put(stderr, table);
+        (void)fputs(
+            ": gravel between its two frictions is guessed, and may be taken for an effect; "
+            "three or more are needed (docs/tables.md, \"How many digs\")\n",
+            stderr);
+    }
+}
+
 // The one command that goes by no table.
 static enum dig_status check(const struct digloop_options *const options, bool *const wrong,
                              struct dig_error *const error)
@@ -66,6 +79,9 @@ int main(const int argc, char *argv[])
                                           : digloop_input(dig_table_load(options.table, &set, &error));
     if (status == DIG_OK && !checks) {
         note_step(options.table, set);
+        if (strcmp(options.command, "trace") == 0) {
+            note_few_frictions(options.table, set);
+        }
         status = run(&options, set, &error);
     }
     dig_curve_set_destroy(set);

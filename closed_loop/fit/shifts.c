@@ -6,9 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-// How far off, in halves of the grid's width, the surface may have a gravel's dig, and the table of
-// effects, which holds few gravels, what an effect adds to it.
+// How far off, in halves of the grid's width, the surface of a table with so many values of an axis
+// may have a gravel's dig, and the table of effects, which holds few gravels, what an effect adds
+// to it.
 static const double of_place        = 0.05;
+static const double of_values       = 4.0;
 static const double of_effect_place = 0.3;
 
 // How far off the table of effects may have a magnitude, as a share of it.
@@ -43,6 +45,15 @@ static void put(const double there[DIG_FEATURES], const double here[DIG_FEATURES
     shifts->shifts++;
 }
 
+// Of a table with fewer values: what lies between two is guessed worse by the square of how far
+// apart they are. Density is a scale, of which two values tell as much.
+static double place_of(const struct dig_curve_set *const set, const size_t axis)
+{
+    const double values = (double)set->axis_count[axis];
+    const bool   fewer  = axis != DIG_AXIS_DENSITY_kgpm3 && values > 1.0 && values < of_values;
+    return fewer ? of_place * pow((of_values - 1.0) / (values - 1.0), 2.0) : of_place;
+}
+
 // Another gravel, towards the middle of the table; so many numbers are copied.
 static struct dig_plain beside(const struct dig_soil *const soil, const size_t trajectory,
                                const size_t numbers, const double number[], const size_t axis,
@@ -67,7 +78,8 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
     double       there[DIG_FEATURES];
     shifts->shifts = 0;
     for (size_t a = 0; a < DIG_AXES; a++) {
-        const struct dig_plain near = beside(soil, trajectory, numbers, number, a, of_place, moved);
+        const struct dig_plain near =
+            beside(soil, trajectory, numbers, number, a, place_of(soil->surface->set, a), moved);
         put(near.feature, plain->feature, shifts);
     }
     for (size_t a = 0; templated && a < DIG_AXES; a++) {

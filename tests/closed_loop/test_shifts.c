@@ -61,6 +61,31 @@ static void a_plain_gravel_is_off_along_its_axes_alone(void **state)
     }
 }
 
+// Of half the steps between two values, by the square of that.
+static void a_table_of_fewer_values_is_off_by_more(void **state)
+{
+    (void)state;
+    const struct dig_hypothesis       plain                          = { .effects = 0 };
+    double                            number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const struct dig_curve_set *const many                           = world.surface->set;
+    struct dig_curve_set              few                            = *many;
+    struct dig_shifts                 shifts[2];
+    make_batch(number);
+    few.axis_count[DIG_AXIS_FRICTION]      = 3;
+    few.axis_count[DIG_AXIS_DENSITY_kgpm3] = 2;
+    fill(&plain, number, &shifts[0]);
+    world.surface->set = &few;
+    fill(&plain, number, &shifts[1]);
+    world.surface->set = many;
+    double more[DIG_AXES];
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        more[a] = size_of(shifts[1].of[a]) / size_of(shifts[0].of[a]);
+    }
+    assert_close(more[DIG_AXIS_FRICTION], 2.25, 0.3);
+    assert_close(more[DIG_AXIS_ROLLING], 1.0, 1e-12);
+    assert_close(more[DIG_AXIS_DENSITY_kgpm3], 1.0, 1e-12);
+}
+
 static void an_effect_is_off_by_what_it_adds(void **state)
 {
     (void)state;
@@ -96,6 +121,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plain_gravel_is_off_along_its_axes_alone),
+        cmocka_unit_test(a_table_of_fewer_values_is_off_by_more),
         cmocka_unit_test(an_effect_is_off_by_what_it_adds),
     };
     return cmocka_run_group_tests_name("shifts", tests, world_setup, world_teardown);

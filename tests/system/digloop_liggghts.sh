@@ -31,6 +31,26 @@ for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
     check "$gravel: nothing is missing" [ "$(verdict "$gravel")" = '"none"' ]
 done
 
+# A table of fewer gravels knows less well what lies between them.
+if /usr/bin/python3 -c 'import sqlite3' 2>/dev/null; then
+    /usr/bin/python3 scripts/thinner_table.py "$table" "$work/thin.sqlite" 10 .3,.5,.9 .3,.9 >/dev/null
+    held=0
+    for gravel in mu0.4_mur0.4_rho2000 mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
+        table=$work/thin.sqlite trace "$gravel" --effects "${table%.sqlite}_effects.sqlite"
+        check "$gravel by a third of the gravels: nothing is missing" [ "$(verdict "$gravel")" = '"none"' ]
+        IFS=_ read -r friction rolling density <<<"${gravel//[a-z]/}"
+        for truth in "$friction friction" "$rolling rolling" "$density density_kgpm3"; do
+            ! within "${truth% *}" "$(number "$gravel" "${truth#* }" low)" "$(number "$gravel" "${truth#* }" high)" || held=$((held + 1))
+        done
+    done
+    check "... and its intervals hold: $held of 9" [ "$held" -ge 8 ]
+    /usr/bin/python3 scripts/thinner_table.py "$table" "$work/two.sqlite" 10 .3,.9 >/dev/null
+    table=$work/two.sqlite trace mu0.4_mur0.4_rho2000
+    check "two frictions are said to be too few" grep -q "its two frictions" "$work/mu0.4_mur0.4_rho2000.txt"
+else
+    skip_check "tables of fewer gravels" "no Python here"
+fi
+
 # The table of effects is a copy, for the command that the report prints is run below.
 cp "${table%.sqlite}_effects.sqlite" "$work/effects.sqlite"
 trace slope_up --effects "$work/effects.sqlite"
