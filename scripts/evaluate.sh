@@ -72,7 +72,8 @@ for options in "" "--moment-alone"; do
     for second in "$data"/*_seed2__simpleA.csv; do
         [ -e "$second" ] || continue
         gravel=${second%_seed2__simpleA.csv}
-        packings=("$gravel"__simpleA.csv "$gravel"_seed*__simpleA.csv)
+        packings=("$gravel"_seed*__simpleA.csv)
+        [ ! -e "$gravel"__simpleA.csv ] || packings=("$gravel"__simpleA.csv "${packings[@]}")
         judge "$(basename "$gravel"), ${#packings[@]} digs" "${packings[@]%__simpleA.csv}"
     done
 done
