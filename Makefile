@@ -211,8 +211,9 @@ $(BUILD)/tests/simclock/preload.so: $(BUILD)/tests/simclock/preload.o
 	$(call say,LD,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -shared $^ -o $@ -ldl
 
+# One more at a time than there are cores: some wait for a program that waits.
 check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make test` does once all is installed)
-	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh -j $(JOBS) $(system_tests) $(test_bins)
+	$(Q)BIN=$(BUILD)/bin scripts/run_tests.sh -j $$(($(JOBS) + 1)) $(system_tests) $(test_bins)
 
 check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
