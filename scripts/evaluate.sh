@@ -14,6 +14,7 @@ product) data=tests/data/liggghts_product more=/dev/null ;;
 esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+exec 2> >(awk '!said[$0]++' >&2) # what every dig's program says of the table, once
 
 field() { # KEY AXIS: a number of one of the identity's gravels
     sed -nE "s/.*\"$1\": \{.*\"$2\": ([0-9.e+-]+).*/\1/p" "$work/id.json"
