@@ -52,26 +52,17 @@ static const cyaml_schema_field_t fields[] = {
 
 static const cyaml_schema_value_t schema = FILE_OF(campaign_text, fields);
 
-// Puts the folder before a relative path. False when the result is too long, or the name is none.
-static bool resolve(const char *const folder, const char *const name, char path[DIG_CAMPAIGN_PATH])
+// Puts the campaign's folder before a relative path. False when the result is too long, or the name
+// is none.
+static bool resolve(const char *const yaml, const char *const name, char path[DIG_CAMPAIGN_PATH])
 {
-    if (name[0] == '\0') {
-        path[0] = '\0';
-        return true;
-    }
-    if (!dig_path_ok(name)) {
-        return false;
-    }
-    const bool absolute = name[0] == '/';
-    const int  length   = snprintf(path, DIG_CAMPAIGN_PATH, "%s%s%s", absolute ? "" : folder,
-                                absolute ? "" : "/", name);
-    return length > 0 && length < DIG_CAMPAIGN_PATH;
+    return dig_path_ok(name) && dig_path_beside(yaml, name, DIG_CAMPAIGN_PATH, path);
 }
 
 static enum dig_status refuse_path(const char *const yaml, const char *const key,
                                    const char *const name, struct dig_error *const error)
 {
-    return dig_yaml_refuse(yaml, key, error, "\"%s\", expected " DIG_PATH_RULE " and shorter",
+    return dig_yaml_refuse(yaml, error, "%s: \"%s\", expected " DIG_PATH_RULE " and shorter", key,
                            name);
 }
 
@@ -82,25 +73,25 @@ static enum dig_status check_recording(const char *const yaml, const char *const
                                        struct dig_error *const error)
 {
     if (!dig_path_stays(name)) {
-        return dig_yaml_refuse(yaml, key, error,
-                               "\"%s\" leaves the campaign's folder, expected a file in it, or an "
-                               "absolute path",
-                               name);
+        return dig_yaml_refuse(
+            yaml, error,
+            "%s: \"%s\" leaves the campaign's folder, expected a file in it, or an absolute path",
+            key, name);
     }
     struct stat found;
     return stat(path, &found) != 0 || S_ISREG(found.st_mode)
                ? DIG_OK
-               : dig_yaml_refuse(yaml, key, error, "\"%s\" is no regular file, expected one", name);
+               : dig_yaml_refuse(yaml, error, "%s: \"%s\" is no regular file, expected one", key,
+                                 name);
 }
 
-static enum dig_status convert(const char *const yaml, const char *const folder,
-                               const struct campaign_text *const text,
+static enum dig_status convert(const char *const yaml, const struct campaign_text *const text,
                                struct dig_campaign *const campaign, struct dig_error *const error)
 {
-    if (!resolve(folder, text->scene, campaign->scene)) {
+    if (!resolve(yaml, text->scene, campaign->scene)) {
         return refuse_path(yaml, "scene", text->scene, error);
     }
-    if (!resolve(folder, text->machine, campaign->machine)) {
+    if (text->machine[0] != '\0' && !resolve(yaml, text->machine, campaign->machine)) {
         return refuse_path(yaml, "machine", text->machine, error);
     }
     campaign->recordings = text->recordings_count;
@@ -109,7 +100,7 @@ static enum dig_status convert(const char *const yaml, const char *const folder,
         struct dig_campaign_recording *const to   = &campaign->recording[i];
         char                                 key[64];
         (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
-        if (!resolve(folder, from->file, to->file)) {
+        if (!resolve(yaml, from->file, to->file)) {
             return refuse_path(yaml, key, from->file, error);
         }
         const enum dig_status status = check_recording(yaml, key, from->file, to->file, error);
@@ -117,8 +108,8 @@ static enum dig_status convert(const char *const yaml, const char *const folder,
             return status;
         }
         if (!dig_name_ok(from->trajectory)) {
-            (void)snprintf(key, sizeof key, "recordings[%zu].trajectory", i);
-            return dig_yaml_refuse(yaml, key, error, "\"%s\", expected " DIG_NAME_RULE,
+            return dig_yaml_refuse(yaml, error,
+                                   "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i,
                                    from->trajectory);
         }
         memcpy(to->trajectory, from->trajectory, sizeof to->trajectory);
@@ -139,8 +130,9 @@ enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign 
 {
     assert(folder != NULL && campaign != NULL);
 
-    char yaml[DIG_CAMPAIGN_PATH];
-    if (!resolve(folder, "campaign.yaml", yaml)) {
+    char      yaml[DIG_CAMPAIGN_PATH];
+    const int length = snprintf(yaml, sizeof yaml, "%s/campaign.yaml", folder);
+    if (length < 0 || (size_t)length >= sizeof yaml) {
         return dig_error_set(error, DIG_EINVAL, "expected a shorter path than %s", folder);
     }
 
@@ -155,7 +147,7 @@ enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign 
         dig_yaml_free(&schema, data);
         return dig_error_set(error, DIG_ENOMEM, "%s", yaml);
     }
-    status = convert(yaml, folder, data, loaded, error);
+    status = convert(yaml, data, loaded, error);
     if (status == DIG_OK) {
         *campaign = *loaded;
     }

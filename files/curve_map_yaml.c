@@ -6,7 +6,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define NAME_MAX_LENGTH 39 // of an engine and its version, as a table keeps them
@@ -59,15 +58,15 @@ static enum dig_status check_field(const char *const path, const enum dig_map_fi
                                    const struct dig_map_column *const c,
                                    struct dig_error *const            error)
 {
-    char       key[64];
     const bool named = c->column[0] != '\0';
     const bool fixed = c->value[0] != '\0';
-    (void)snprintf(key, sizeof key, "columns.%s", dig_map_name(field));
     if ((named && fixed) || (field < DIG_MAP_NEEDED && !named && !fixed)) {
-        return dig_yaml_refuse(path, key, error, "expected either a column or a value");
+        return dig_yaml_refuse(path, error, "columns.%s: expected either a column or a value",
+                               dig_map_name(field));
     }
     if (!isfinite(c->factor)) {
-        return dig_yaml_refuse(path, key, error, "factor %g, expected a finite one", c->factor);
+        return dig_yaml_refuse(path, error, "columns.%s: factor %g, expected a finite one",
+                               dig_map_name(field), c->factor);
     }
     return DIG_OK;
 }
@@ -76,14 +75,14 @@ static enum dig_status check(const char *const path, const struct dig_curve_map 
                              struct dig_error *const error)
 {
     if (strlen(map->engine) > NAME_MAX_LENGTH || strlen(map->version) > NAME_MAX_LENGTH) {
-        return dig_yaml_refuse(path, strlen(map->engine) > NAME_MAX_LENGTH ? "engine" : "version",
-                               error, "expected at most %d characters", NAME_MAX_LENGTH);
+        return dig_yaml_refuse(path, error, "%s: expected at most %d characters",
+                               strlen(map->engine) > NAME_MAX_LENGTH ? "engine" : "version",
+                               NAME_MAX_LENGTH);
     }
     if (!dig_label_ok(map->engine) || !dig_label_ok(map->version)) {
         const bool engine = !dig_label_ok(map->engine);
-        return dig_yaml_refuse(path, engine ? "engine" : "version", error,
-                               "\"%s\", expected " DIG_LABEL_RULE,
-                               engine ? map->engine : map->version);
+        return dig_yaml_refuse(path, error, "%s: \"%s\", expected " DIG_LABEL_RULE,
+                               engine ? "engine" : "version", engine ? map->engine : map->version);
     }
     enum dig_status status = DIG_OK;
     for (int f = 0; status == DIG_OK && f < DIG_MAP_FIELDS; f++) {
@@ -111,7 +110,7 @@ enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map 
                                       sizeof loaded.scene, loaded.scene);
     dig_yaml_free(&schema, data);
     status = fits ? check(path, &loaded, error)
-                  : dig_yaml_refuse(path, "scene", error, "expected a shorter path");
+                  : dig_yaml_refuse(path, error, "scene: expected a shorter path");
     if (status == DIG_OK) {
         *map = loaded;
     }

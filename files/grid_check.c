@@ -21,20 +21,18 @@ static const struct {
     [DIG_AXIS_DENSITY_kgpm3] = { 100.0, 20000.0 },
 };
 
-static enum dig_status check_axis(const char *const path, const enum dig_axis axis,
-                                  const struct dig_grid *const grid, struct dig_error *const error)
+enum dig_status dig_grid_check_values(const char *const path, const char *const list,
+                                      const size_t count, const double value[], const double least,
+                                      const double most, struct dig_error *const error)
 {
-    const double *const value = grid->value[axis];
-    for (size_t i = 0; i < grid->count[axis]; i++) {
-        char key[64];
-        (void)snprintf(key, sizeof key, "%s[%zu]", dig_axis_name(axis), i);
-        if (!(value[i] >= domain[axis].least && value[i] <= domain[axis].most)) {
-            return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", value[i],
-                                   domain[axis].least, domain[axis].most);
+    for (size_t i = 0; i < count; i++) {
+        if (!(value[i] >= least && value[i] <= most)) {
+            return dig_yaml_refuse(path, error, "%s[%zu]: %g, expected %g to %g", list, i, value[i],
+                                   least, most);
         }
         if (i > 0 && !(value[i] > value[i - 1])) {
-            return dig_yaml_refuse(path, key, error, "%g after %g, expected ascending values",
-                                   value[i], value[i - 1]);
+            return dig_yaml_refuse(path, error, "%s[%zu]: %g after %g, expected ascending values",
+                                   list, i, value[i], value[i - 1]);
         }
     }
     return DIG_OK;
@@ -50,12 +48,12 @@ static enum dig_status check_present(const char *const path, const struct dig_gr
     }
     for (int a = 0; a < DIG_AXES; a++) {
         if (grid->count[a] == 0 && (axes > 0 || grid->points == 0)) {
-            return dig_yaml_refuse(path, dig_axis_name((enum dig_axis)a), error,
-                                   "missing, expected a list");
+            return dig_yaml_refuse(path, error, "%s: missing, expected a list",
+                                   dig_axis_name((enum dig_axis)a));
         }
     }
     if (axes > 0 && grid->packings == 0) {
-        return dig_yaml_refuse(path, "packings", error, "%s, expected %s",
+        return dig_yaml_refuse(path, error, "packings: %s, expected %s",
                                dig_yaml_line(path, "packings") > 0 ? "0" : "missing",
                                dig_yaml_line(path, "packings") > 0 ? "1 to 1000"
                                                                    : "a whole number");
@@ -68,45 +66,42 @@ enum dig_status dig_grid_check_packings(const char *const path, const char *cons
 {
     return packings >= 1 && packings <= PACKINGS_MAX
                ? DIG_OK
-               : dig_yaml_refuse(path, key, error, "%zu, expected 1 to %d", packings, PACKINGS_MAX);
+               : dig_yaml_refuse(path, error, "%s: %zu, expected 1 to %d", key, packings,
+                                 PACKINGS_MAX);
 }
 
 static enum dig_status check_point(const char *const path, const struct dig_grid *const grid,
                                    const size_t i, struct dig_error *const error)
 {
-    char key[64];
     for (int a = 0; a < DIG_AXES; a++) {
         const double value = grid->point[i].gravel.value[a];
-        (void)snprintf(key, sizeof key, "points[%zu].%s", i, dig_axis_name((enum dig_axis)a));
         if (!(value >= domain[a].least && value <= domain[a].most)) {
-            return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", value,
-                                   domain[a].least, domain[a].most);
+            return dig_yaml_refuse(path, error, "points[%zu].%s: %g, expected %g to %g", i,
+                                   dig_axis_name((enum dig_axis)a), value, domain[a].least,
+                                   domain[a].most);
         }
     }
     for (size_t k = 0; k < i; k++) {
         if (dig_gravel_is_same(&grid->point[i].gravel, &grid->point[k].gravel) &&
             dig_approach_is_same(&grid->point[i].approach, &grid->point[k].approach)) {
-            (void)snprintf(key, sizeof key, "points[%zu]", i);
-            return dig_yaml_refuse(path, key, error, "the gravel of points[%zu], expected another",
-                                   k);
+            return dig_yaml_refuse(
+                path, error, "points[%zu]: the gravel of points[%zu], expected another", i, k);
         }
     }
     if (grid->point[i].states && grid->effects > 0) {
-        (void)snprintf(key, sizeof key, "points[%zu]", i);
-        return dig_yaml_refuse(path, key, error,
-                               "depth or attack_deg, expected neither beside effects");
+        return dig_yaml_refuse(
+            path, error, "points[%zu]: depth or attack_deg, expected neither beside effects", i);
     }
     const double depth = grid->point[i].approach.depth;
     if (!(depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST)) {
-        (void)snprintf(key, sizeof key, "points[%zu].depth", i);
-        return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", depth,
+        return dig_yaml_refuse(path, error, "points[%zu].depth: %g, expected %g to %g", i, depth,
                                DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST);
     }
     if (!(fabs(grid->point[i].approach.attack_rad) <= ATTACK_MOST_rad)) {
-        (void)snprintf(key, sizeof key, "points[%zu].attack_deg", i);
-        return dig_yaml_refuse(path, key, error, "%g, expected -45 to 45",
+        return dig_yaml_refuse(path, error, "points[%zu].attack_deg: %g, expected -45 to 45", i,
                                grid->point[i].approach.attack_rad / DIG_RAD_PER_DEG);
     }
+    char key[64];
     (void)snprintf(key, sizeof key, "points[%zu].packings", i);
     return dig_grid_check_packings(path, key, grid->point[i].packings, error);
 }
@@ -114,21 +109,20 @@ static enum dig_status check_point(const char *const path, const struct dig_grid
 static enum dig_status check_effect(const char *const path, const struct dig_grid *const grid,
                                     const size_t i, struct dig_error *const error)
 {
-    char                                key[64];
     const struct dig_grid_effect *const e = &grid->effect[i];
     for (size_t k = 0; k < i; k++) {
         if (grid->effect[k].effect == e->effect) {
-            (void)snprintf(key, sizeof key, "effects[%zu].name", i);
-            return dig_yaml_refuse(path, key, error, "\"%s\" again, expected a new effect",
+            return dig_yaml_refuse(path, error,
+                                   "effects[%zu].name: \"%s\" again, expected a new effect", i,
                                    dig_effect_name(e->effect));
         }
     }
     for (size_t m = 0; m < e->magnitudes; m++) {
         for (size_t k = 0; k < m; k++) {
             if (!(e->magnitude[k] < e->magnitude[m]) && !(e->magnitude[k] > e->magnitude[m])) {
-                (void)snprintf(key, sizeof key, "effects[%zu].magnitudes[%zu]", i, m);
-                return dig_yaml_refuse(path, key, error, "%g again, expected another",
-                                       e->magnitude[m]);
+                return dig_yaml_refuse(path, error,
+                                       "effects[%zu].magnitudes[%zu]: %g again, expected another",
+                                       i, m, e->magnitude[m]);
             }
         }
     }
@@ -141,9 +135,8 @@ static enum dig_status check_trajectories(const char *const path, const struct d
     for (size_t i = 0; i < grid->trajectories; i++) {
         for (size_t j = 0; j < i; j++) {
             if (strcmp(grid->trajectory[i], grid->trajectory[j]) == 0) {
-                char key[64];
-                (void)snprintf(key, sizeof key, "trajectories[%zu]", i);
-                return dig_yaml_refuse(path, key, error, "\"%s\" again, expected a new name",
+                return dig_yaml_refuse(path, error,
+                                       "trajectories[%zu]: \"%s\" again, expected a new name", i,
                                        grid->trajectory[i]);
             }
         }
@@ -157,7 +150,8 @@ enum dig_status dig_grid_check(const char *const path, const struct dig_grid *co
     assert(path != NULL && grid != NULL);
     enum dig_status status = check_present(path, grid, error);
     for (int a = 0; status == DIG_OK && a < DIG_AXES; a++) {
-        status = check_axis(path, (enum dig_axis)a, grid, error);
+        status = dig_grid_check_values(path, dig_axis_name((enum dig_axis)a), grid->count[a],
+                                       grid->value[a], domain[a].least, domain[a].most, error);
     }
     if (status == DIG_OK && grid->count[0] > 0) {
         status = dig_grid_check_packings(path, "packings", grid->packings, error);

@@ -10,7 +10,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 enum design { DESIGN_CROSS, DESIGN_PRODUCT };
@@ -89,14 +88,13 @@ static enum dig_status convert_effects(const char *const path, const struct grid
         const int                       found = dig_effect_find(from->name);
         if (found < 0 || found == DIG_EFFECT_UNLISTED ||
             dig_effect_is_of_machine((enum dig_effect_id)found)) {
-            char key[64];
-            (void)snprintf(key, sizeof key, "effects[%zu].name", i);
             char             best[DIG_GUESS_SIZE];
             struct dig_guess guess = dig_guess(from->name);
             for (int e = DIG_EFFECT_COHESION; e < DIG_EFFECT_UNLISTED; e++) {
                 dig_guess_try(&guess, dig_effect_name((enum dig_effect_id)e));
             }
-            return dig_yaml_refuse(path, key, error, "\"%s\", expected an effect of the soil%s",
+            return dig_yaml_refuse(path, error,
+                                   "effects[%zu].name: \"%s\", expected an effect of the soil%s", i,
                                    from->name, dig_guess_text(&guess, "", best));
         }
         grid->effect[i]        = from->effect;
@@ -111,25 +109,18 @@ static enum dig_status check_list(const char *const path, const char *const list
                                   const double least, const double most,
                                   struct dig_error *const error)
 {
+    const enum dig_status status =
+        dig_grid_check_values(path, list, count, value, least, most, error);
     bool has_plain = count == 0;
     for (size_t i = 0; i < count; i++) {
-        char key[64];
-        (void)snprintf(key, sizeof key, "%s[%zu]", list, i);
-        if (!(value[i] >= least && value[i] <= most)) {
-            return dig_yaml_refuse(path, key, error, "%g, expected %g to %g", value[i], least,
-                                   most);
-        }
-        if (i > 0 && !(value[i] > value[i - 1])) {
-            return dig_yaml_refuse(path, key, error, "%g after %g, expected ascending values",
-                                   value[i], value[i - 1]);
-        }
         has_plain = has_plain || !(value[i] < plain || value[i] > plain);
     }
-    return has_plain ? DIG_OK
-                     : dig_yaml_refuse(path, list, error,
-                                       "without %g, expected it among the values: the digs as the "
-                                       "scene has them",
-                                       plain);
+    return status != DIG_OK || has_plain
+               ? status
+               : dig_yaml_refuse(
+                     path, error,
+                     "%s: without %g, expected it among the values: the digs as the scene has them",
+                     list, plain);
 }
 
 static enum dig_status check_approaches(const char *const path, const struct grid_text *const text,
@@ -143,14 +134,15 @@ static enum dig_status check_approaches(const char *const path, const struct gri
     }
     const bool lists = text->depths + text->attacks > 0;
     if (status == DIG_OK && lists && text->grid.effects > 0) {
-        return dig_yaml_refuse(path, text->depths > 0 ? "depth" : "attack_deg", error,
-                               "beside effects, expected either");
+        return dig_yaml_refuse(path, error, "%s: beside effects, expected either",
+                               text->depths > 0 ? "depth" : "attack_deg");
     }
     if (status == DIG_OK && dig_yaml_line(path, "varied_packings") > 0) {
         return lists ? dig_grid_check_packings(path, "varied_packings", text->grid.varied_packings,
                                                error)
-                     : dig_yaml_refuse(path, "varied_packings", error,
-                                       "without depth or attack_deg, expected one of them");
+                     : dig_yaml_refuse(
+                           path, error,
+                           "varied_packings: without depth or attack_deg, expected one of them");
     }
     return status;
 }
@@ -237,10 +229,9 @@ enum dig_status dig_grid_trajectories(const char *const path, const struct dig_g
     for (size_t i = 0; i < n; i++) {
         const struct dig_trajectory *const t = dig_scene_find(scene, grid->trajectory[i]);
         if (t == NULL) {
-            char key[64];
             char names[DIG_TRAJECTORY_MAX * (DIG_NAME_SIZE + 2)];
-            (void)snprintf(key, sizeof key, "trajectories[%zu]", i);
-            return dig_yaml_refuse(path, key, error, "\"%s\", expected one of the scene's: %s",
+            return dig_yaml_refuse(path, error,
+                                   "trajectories[%zu]: \"%s\", expected one of the scene's: %s", i,
                                    grid->trajectory[i], names_of(scene, sizeof names, names));
         }
         found[i] = (size_t)(t - scene->trajectory);

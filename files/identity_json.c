@@ -141,9 +141,10 @@ static enum dig_status take_approach(const char *const path, const char *const k
     approach->attack_rad *= DIG_RAD_PER_DEG;
     return is_approach(approach) && (approach->depth > 0.0 || fabs(attack_deg) <= 0.0)
                ? DIG_OK
-               : dig_yaml_refuse(path, key, error,
-                                 "expected a depth of 0.2 to 3 with an attack of at most 45 deg "
-                                 "either way");
+               : dig_yaml_refuse(
+                     path, error,
+                     "%s: expected a depth of 0.2 to 3 with an attack of at most 45 deg either way",
+                     key);
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
@@ -171,35 +172,34 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     }
     if (status == DIG_OK && read.weighted &&
         !(is_gravel(&read.weighted_nearest) && read.weighted_distance >= 0.0)) {
-        status = dig_yaml_refuse(path, "weighted_nearest", error,
-                                 "no gravel, expected friction and rolling >= 0, density > 0, with "
-                                 "a weighted_distance >= 0");
+        status = dig_yaml_refuse(path, error,
+                                 "weighted_nearest: no gravel, expected friction and rolling >= 0, "
+                                 "density > 0, with a weighted_distance >= 0");
     }
     for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
         if (!is_gravel(&read.sample[i])) {
-            status = dig_yaml_refuse(path, "samples", error,
-                                     "the %zu-th is no gravel, expected friction and rolling >= 0, "
-                                     "density > 0",
-                                     i + 1);
+            status = dig_yaml_refuse(
+                path, error,
+                "samples: the %zu-th is no gravel, expected friction and rolling >= 0, density > 0",
+                i + 1);
         }
     }
     if (status == DIG_OK && !dig_name_ok(read.trajectory)) {
-        status = dig_yaml_refuse(path, "trajectory", error, "\"%s\", expected " DIG_NAME_RULE,
+        status = dig_yaml_refuse(path, error, "trajectory: \"%s\", expected " DIG_NAME_RULE,
                                  read.trajectory);
     }
     for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
         take_dig(&text->recorded[i], &read.recording[i]);
         if (!is_dig(&read.recording[i])) {
-            status = dig_yaml_refuse(
-                path, "recorded", error,
-                "the %zu-th is no dig, expected a name, 0 <= first < last <= 1, finite "
-                "moments and forces, sigmas >= 0",
-                i + 1);
+            status = dig_yaml_refuse(path, error,
+                                     "recorded: the %zu-th is no dig, expected a name, 0 <= first "
+                                     "< last <= 1, finite moments and forces, sigmas >= 0",
+                                     i + 1);
         }
     }
     if (status == DIG_OK && !is_gravel(&read.gravel)) {
-        status = dig_yaml_refuse(path, "gravel", error,
-                                 "is no gravel, expected friction and rolling >= 0, density > 0");
+        status = dig_yaml_refuse(
+            path, error, "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
     }
     if (status == DIG_OK) {
         *identity = read;

@@ -40,18 +40,18 @@ static enum dig_status check(const char *const path, const struct plan_text *con
 {
     // It stands in command lines and is what a queue is asked for.
     if (!dig_name_ok(text->job)) {
-        return dig_yaml_refuse(path, "job", error, "\"%s\", expected " DIG_NAME_RULE, text->job);
+        return dig_yaml_refuse(path, error, "job: \"%s\", expected " DIG_NAME_RULE, text->job);
     }
     if (text->tasks < 1 || text->tasks > DIG_JOB_TASKS_MAX) {
-        return dig_yaml_refuse(path, "tasks", error, "%u, expected 1 to %d", text->tasks,
+        return dig_yaml_refuse(path, error, "tasks: %u, expected 1 to %d", text->tasks,
                                DIG_JOB_TASKS_MAX);
     }
     if (text->beds < text->tasks || text->beds > BEDS_MAX) {
-        return dig_yaml_refuse(path, "beds", error, "%u, expected %u (the tasks) to %d", text->beds,
+        return dig_yaml_refuse(path, error, "beds: %u, expected %u (the tasks) to %d", text->beds,
                                text->tasks, BEDS_MAX);
     }
     if (text->trajectories < 1 || text->trajectories > DIG_TRAJECTORY_MAX) {
-        return dig_yaml_refuse(path, "trajectories", error, "%u, expected 1 to %d",
+        return dig_yaml_refuse(path, error, "trajectories: %u, expected 1 to %d",
                                text->trajectories, DIG_TRAJECTORY_MAX);
     }
     return DIG_OK;

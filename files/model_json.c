@@ -110,26 +110,27 @@ static enum dig_status take_effect(const char *const path, const struct effect_t
 {
     const int id = dig_effect_find(text->name);
     if (id < 0) {
-        return dig_yaml_refuse(path, "effects.name", error,
-                               "\"%s\", expected the name of an effect of the catalogue",
-                               text->name);
+        return dig_yaml_refuse(
+            path, error, "effects.name: \"%s\", expected the name of an effect of the catalogue",
+            text->name);
     }
     *out        = text->effect;
     out->effect = (enum dig_effect_id)id;
     if (!(out->probability >= 0.0 && out->probability <= 1.0)) {
-        return dig_yaml_refuse(path, "effects.probability", error, "%g, expected 0 to 1",
+        return dig_yaml_refuse(path, error, "effects.probability: %g, expected 0 to 1",
                                out->probability);
     }
     for (size_t p = 0; p < out->parameters; p++) {
         const struct dig_model_parameter *const from = &out->parameter[p];
         if (!dig_name_ok(from->name)) {
-            return dig_yaml_refuse(path, "effects.parameters", error,
-                                   "\"%s\" of %s, expected " DIG_NAME_RULE, from->name, text->name);
+            return dig_yaml_refuse(path, error,
+                                   "effects.parameters: \"%s\" of %s, expected " DIG_NAME_RULE,
+                                   from->name, text->name);
         }
         if (!(isfinite(from->value) && isfinite(from->low) && isfinite(from->high))) {
-            return dig_yaml_refuse(path, "effects.parameters", error,
-                                   "%s of %s is not finite, expected three numbers", from->name,
-                                   text->name);
+            return dig_yaml_refuse(
+                path, error, "effects.parameters: %s of %s is not finite, expected three numbers",
+                from->name, text->name);
         }
     }
     return DIG_OK;
@@ -163,10 +164,11 @@ static enum dig_status take_unlisted(const char *const path, const struct unlist
         }
         if (from->trajectory >= DIG_TRAJECTORY_MAX || channel < 0 || !finite) {
             free(made);
-            return dig_yaml_refuse(path, "unlisted.curves", error,
-                                   "curve %zu: trajectory %u, channel \"%s\"; expected an index "
-                                   "below %d, My_Nm, Fx_N or Fz_N, and finite shares",
-                                   i + 1, from->trajectory, from->channel, DIG_TRAJECTORY_MAX);
+            return dig_yaml_refuse(
+                path, error,
+                "unlisted.curves: curve %zu: trajectory %u, channel \"%s\"; expected an index "
+                "below %d, My_Nm, Fx_N or Fz_N, and finite shares",
+                i + 1, from->trajectory, from->channel, DIG_TRAJECTORY_MAX);
         }
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             made->share[from->trajectory][channel][k] = (float)from->share[k];
@@ -180,7 +182,7 @@ static enum dig_status take(const char *const path, const struct model_text *con
                             struct dig_model *const model, struct dig_error *const error)
 {
     if (text->version != 1) {
-        return dig_yaml_refuse(path, "version", error, "%u, expected 1", text->version);
+        return dig_yaml_refuse(path, error, "version: %u, expected 1", text->version);
     }
     struct dig_model m = text->model;
     m.noise_floor      = number_of(text->noise_floor);
@@ -188,7 +190,7 @@ static enum dig_status take(const char *const path, const struct model_text *con
     m.error_after      = number_of(text->error_after);
     for (int a = 0; a < DIG_AXES; a++) {
         if (!(isfinite(m.gravel.value[a]) && m.gravel.value[a] >= 0.0)) {
-            return dig_yaml_refuse(path, "gravel", error, "is no gravel, expected numbers >= 0");
+            return dig_yaml_refuse(path, error, "gravel: is no gravel, expected numbers >= 0");
         }
     }
     enum dig_status status = DIG_OK;

@@ -116,18 +116,15 @@ int dig_yaml_line(const char *const path, const char *const key)
     return found ? line : 0;
 }
 
-enum dig_status dig_yaml_refuse(const char *const path, const char *const key,
-                                struct dig_error *const error, const char *const format, ...)
+enum dig_status dig_yaml_refuse(const char *const path, struct dig_error *const error,
+                                const char *const format, ...)
 {
-    assert(path != NULL && key != NULL);
-    char    why[320];
-    va_list args;
+    struct dig_error what;
+    va_list          args;
     va_start(args, format);
-    (void)vsnprintf(why, sizeof why, format, args);
+    (void)vsnprintf(what.text, sizeof what.text, format, args);
     va_end(args);
-    int       found = 0;
-    const int line  = nearest_line(path, key, &found);
-    return dig_error_set(error, DIG_EINVAL, "%s:%d: %s: %s", path, line > 0 ? line : 1, key, why);
+    return dig_yaml_refuse_checked(path, DIG_EINVAL, &what, error);
 }
 
 enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_status status,
@@ -137,9 +134,7 @@ enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_s
     assert(path != NULL && found != NULL);
     const struct dig_error what = *found;
     char                   key[128];
-    const size_t           length = strcspn(what.text, ": ");
-    (void)snprintf(key, sizeof key, "%.*s", (int)(length < sizeof key ? length : sizeof key - 1),
-                   what.text);
+    (void)snprintf(key, sizeof key, "%.*s", (int)strcspn(what.text, ": "), what.text);
     int       at   = 0;
     const int line = nearest_line(path, key, &at);
     return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, what.text);

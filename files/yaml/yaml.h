@@ -19,14 +19,13 @@ void dig_yaml_free(const cyaml_schema_value_t *schema, cyaml_data_t *data);
 /// stands, or 0 when it is not there: so that a check made after loading can name the line too.
 int dig_yaml_line(const char *path, const char *key);
 
-/// Refuses a loaded value: fills *error with "FILE:LINE: KEY: …" and returns DIG_EINVAL.
-__attribute__((format(printf, 4, 5))) enum dig_status dig_yaml_refuse(const char       *path,
-                                                                      const char       *key,
-                                                                      struct dig_error *error,
-                                                                      const char *format, ...);
+/// Refuses a loaded value. What is formatted begins with its dotted key ("parts[3].weight_kg: %g,
+/// expected …"); *error becomes "FILE:LINE: " and that. Returns DIG_EINVAL.
+__attribute__((format(printf, 3, 4))) enum dig_status
+dig_yaml_refuse(const char *path, struct dig_error *error, const char *format, ...);
 
-/// Passes on what a check in core/ found: *found begins with the dotted key ("box_m.y: …"); *error
-/// becomes "FILE:LINE: " and that. Returns status. found and error may be the same struct.
+/// Passes on what a check in core/ found, likewise. Returns status. found and error may be the same
+/// struct.
 enum dig_status dig_yaml_refuse_checked(const char *path, enum dig_status status,
                                         const struct dig_error *found, struct dig_error *error);
 

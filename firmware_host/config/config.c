@@ -25,7 +25,7 @@ static enum dig_status take_estimator(const struct dig_config_work *const    wor
     const char           *reason = NULL;
     const enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
     if (status == DIG_OK && dig_estimator_settings_check(to, &reason) != DIG_OK) {
-        return dig_yaml_refuse(work->path, "estimator", work->error, "%s", reason);
+        return dig_yaml_refuse(work->path, work->error, "estimator: %s", reason);
     }
     return status;
 }
@@ -125,8 +125,9 @@ static enum dig_status take_top(const struct dig_config_work *const work,
     };
     enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
     if (status == DIG_OK && text->time_scale != NULL && text->input.kind == DIG_INPUT_REPLAY) {
-        status = dig_yaml_refuse(work->path, "time_scale", work->error,
-                                 "given with a replay, expected input.replay.speed alone");
+        status =
+            dig_yaml_refuse(work->path, work->error,
+                            "time_scale: given with a replay, expected input.replay.speed alone");
     }
     if (status == DIG_OK && text->scene != NULL) {
         status =

@@ -19,7 +19,7 @@ enum dig_status dig_config_take_numbers(const struct dig_config_work *const work
             continue;
         }
         if (!(*n->from >= n->least && *n->from <= n->most)) {
-            return dig_yaml_refuse(work->path, n->key, work->error, "%g, expected %g … %g",
+            return dig_yaml_refuse(work->path, work->error, "%s: %g, expected %g … %g", n->key,
                                    *n->from, n->least, n->most);
         }
         *n->to = *n->from;
@@ -36,7 +36,7 @@ enum dig_status dig_config_take_wholes(const struct dig_config_work *const work,
             continue;
         }
         if (*n->from < n->least || *n->from > n->most) {
-            return dig_yaml_refuse(work->path, n->key, work->error, "%d, expected %d … %d",
+            return dig_yaml_refuse(work->path, work->error, "%s: %d, expected %d … %d", n->key,
                                    *n->from, n->least, n->most);
         }
         *n->to = *n->from;
@@ -50,8 +50,8 @@ enum dig_status dig_config_take_text(const struct dig_config_work *const work,
 {
     const int length = snprintf(to, size, "%s", from);
     if (length < 0 || (size_t)length >= size) {
-        return dig_yaml_refuse(work->path, key, work->error, "%d characters, expected at most %zu",
-                               length, size - 1);
+        return dig_yaml_refuse(work->path, work->error, "%s: %d characters, expected at most %zu",
+                               key, length, size - 1);
     }
     return DIG_OK;
 }
@@ -62,7 +62,7 @@ enum dig_status dig_config_take_path(const struct dig_config_work *const work,
 {
     return dig_path_beside(work->path, from, sizeof to->text, to->text)
                ? DIG_OK
-               : dig_yaml_refuse(work->path, key, work->error, "too long a path");
+               : dig_yaml_refuse(work->path, work->error, "%s: too long a path", key);
 }
 
 // "127.0.0.1:1502" or "[::1]:1502"
@@ -76,8 +76,8 @@ static enum dig_status take_address(const struct dig_config_work *const work,
     const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
     if (length == 0 || length >= sizeof address->host || end == colon + 1 || *end != '\0' ||
         port < 1 || port > 65535) {
-        return dig_yaml_refuse(work->path, "input.modbus.address", work->error,
-                               "\"%.60s\", expected HOST:PORT", text);
+        return dig_yaml_refuse(work->path, work->error,
+                               "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
     }
     const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
     memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
@@ -97,9 +97,11 @@ static enum dig_status take_parity(const struct dig_config_work *const work, con
             return DIG_OK;
         }
     }
-    return text == NULL ? DIG_OK
-                        : dig_yaml_refuse(work->path, "input.modbus.parity", work->error,
-                                          "\"%.20s\", expected none, even or odd", text);
+    return text == NULL
+               ? DIG_OK
+               : dig_yaml_refuse(work->path, work->error,
+                                 "input.modbus.parity: \"%.20s\", expected none, even or odd",
+                                 text);
 }
 
 static enum dig_status take_server(const struct dig_config_work *const work,
@@ -109,7 +111,7 @@ static enum dig_status take_server(const struct dig_config_work *const work,
     const bool                       tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
     const char *const                key     = tcp ? "input.modbus.address" : "input.modbus.device";
     if ((tcp ? text->address : text->device) == NULL) {
-        return dig_yaml_refuse(work->path, key, work->error, "missing, expected %s",
+        return dig_yaml_refuse(work->path, work->error, "%s: missing, expected %s", key,
                                tcp ? "HOST:PORT" : "a serial device");
     }
     return tcp ? take_address(work, text->address, address)
@@ -177,7 +179,7 @@ static enum dig_status take_replay(const struct dig_config_work *const work,
 static enum dig_status refuse_absent(const struct dig_config_work *const work,
                                      const char *const                   key)
 {
-    return dig_yaml_refuse(work->path, key, work->error, "missing, expected the settings of %s",
+    return dig_yaml_refuse(work->path, work->error, "%s: missing, expected the settings of %s", key,
                            dig_input_kind_name(work->config->kind));
 }
 

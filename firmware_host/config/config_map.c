@@ -16,13 +16,14 @@ static enum dig_status find_register(const struct dig_config_map_work *const wor
                                      const char *const at, const unsigned *const reg,
                                      struct dig_map_entry *const entry)
 {
-    const struct dig_config_map_key key = dig_config_map_key_of(at, "register");
     if (reg == NULL) {
-        return dig_yaml_refuse(work->path, key.text, work->error,
-                               "missing, expected the register's address, counted from 0");
+        return dig_yaml_refuse(
+            work->path, work->error,
+            "%s.register: missing, expected the register's address, counted from 0", at);
     }
     if (*reg > 0xFFFF || *reg + dig_register_words(entry->type) > 0x10000) {
-        return dig_yaml_refuse(work->path, key.text, work->error, "%u, expected 0 … 65535", *reg);
+        return dig_yaml_refuse(work->path, work->error, "%s.register: %u, expected 0 … 65535", at,
+                               *reg);
     }
     entry->reg = *reg;
     return DIG_OK;
@@ -31,38 +32,35 @@ static enum dig_status find_register(const struct dig_config_map_work *const wor
 static enum dig_status read_signal(const struct dig_config_map_work *const work, const size_t index,
                                    const struct dig_signal_text *const text)
 {
-    struct dig_config_map_key at;
-    (void)snprintf(at.text, sizeof at.text, "signals[%zu]", index);
-    const struct dig_config_map_key name_key = dig_config_map_key_of(at.text, "name");
-    const int                       signal   = dig_signal_find(text->name);
+    char at[32];
+    (void)snprintf(at, sizeof at, "signals[%zu]", index);
+    const int signal = dig_signal_find(text->name);
     if (signal < 0) {
         char             best[DIG_GUESS_SIZE];
         struct dig_guess guess = dig_guess(text->name);
         for (int s = 0; s < DIG_SIGNALS; s++) {
             dig_guess_try(&guess, dig_signal_name((enum dig_signal)s));
         }
-        return dig_yaml_refuse(work->path, name_key.text, work->error,
-                               "\"%s\", expected a column of a machine recording (boom_rad, …)%s",
-                               text->name, dig_guess_text(&guess, "", best));
+        return dig_yaml_refuse(
+            work->path, work->error,
+            "%s.name: \"%s\", expected a column of a machine recording (boom_rad, …)%s", at,
+            text->name, dig_guess_text(&guess, "", best));
     }
     if (work->map->entry[signal].used) {
-        return dig_yaml_refuse(work->path, name_key.text, work->error,
-                               "\"%s\" again, expected every signal once", text->name);
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.name: \"%s\" again, expected every signal once", at, text->name);
     }
     if (text->sign != 0 && text->sign != 1 && text->sign != -1) {
-        const struct dig_config_map_key key = dig_config_map_key_of(at.text, "sign");
-        return dig_yaml_refuse(work->path, key.text, work->error, "%d, expected 1 or -1",
+        return dig_yaml_refuse(work->path, work->error, "%s.sign: %d, expected 1 or -1", at,
                                text->sign);
     }
     if (!(text->min < text->max)) {
-        const struct dig_config_map_key key = dig_config_map_key_of(at.text, "max");
-        return dig_yaml_refuse(work->path, key.text, work->error, "%g, expected more than min %g",
+        return dig_yaml_refuse(work->path, work->error, "%s.max: %g, expected more than min %g", at,
                                text->max, text->min);
     }
     if (!(text->max_rate >= 0.0)) {
-        const struct dig_config_map_key key = dig_config_map_key_of(at.text, "max_rate");
-        return dig_yaml_refuse(work->path, key.text, work->error, "%g, expected 0 (any) or more",
-                               text->max_rate);
+        return dig_yaml_refuse(work->path, work->error, "%s.max_rate: %g, expected 0 (any) or more",
+                               at, text->max_rate);
     }
     const bool           scale_given = fabs(text->scale) > 0.0;
     struct dig_map_entry entry       = {
@@ -81,12 +79,12 @@ static enum dig_status read_signal(const struct dig_config_map_work *const work,
     }
     enum dig_status status;
     if (work->map->kind == DIG_MAP_CAN) {
-        status = dig_config_map_find_can(work, at.text, text->message, text->signal, &entry);
+        status = dig_config_map_find_can(work, at, text->message, text->signal, &entry);
         if (status == DIG_OK) {
-            status = dig_config_map_check_unit(work, at.text, (size_t)signal, &entry, scale_given);
+            status = dig_config_map_check_unit(work, at, (size_t)signal, &entry, scale_given);
         }
     } else {
-        status = find_register(work, at.text, text->reg, &entry);
+        status = find_register(work, at, text->reg, &entry);
     }
     if (status == DIG_OK) {
         work->map->entry[signal] = entry;
@@ -103,8 +101,8 @@ static enum dig_status read_alive(const struct dig_config_map_work *const work,
                  ? dig_config_map_find_can(work, "alive", text->message, text->signal, &entry)
                  : find_register(work, "alive", text->reg, &entry);
     if (status == DIG_OK && !(text->frozen_ms >= 0.0 && text->frozen_ms <= 60e3)) {
-        status = dig_yaml_refuse(work->path, "alive.frozen_ms", work->error,
-                                 "%g, expected 0 … 60000", text->frozen_ms);
+        status = dig_yaml_refuse(work->path, work->error, "alive.frozen_ms: %g, expected 0 … 60000",
+                                 text->frozen_ms);
     }
     if (status == DIG_OK) {
         work->map->has_alive = true;
@@ -119,29 +117,30 @@ static enum dig_status check_map(const struct dig_config_map_work *const work,
                                  const struct dig_map_text *const        text)
 {
     if (text->kind == DIG_MAP_CAN && work->dbc == NULL) {
-        return dig_yaml_refuse(work->path, "kind", work->error,
-                               "can, expected modbus for this input");
+        return dig_yaml_refuse(work->path, work->error,
+                               "kind: can, expected modbus for this input");
     }
     if (text->function != 0 && text->function != 3 && text->function != 4) {
-        return dig_yaml_refuse(work->path, "function", work->error,
-                               "%u, expected 4 (input registers) or 3 (holding registers)",
-                               text->function);
+        return dig_yaml_refuse(
+            work->path, work->error,
+            "function: %u, expected 4 (input registers) or 3 (holding registers)", text->function);
     }
     if (!(text->coherent_ms >= 0.0 && text->coherent_ms <= 1000.0)) {
-        return dig_yaml_refuse(work->path, "coherent_ms", work->error, "%g, expected 0 … 1000",
+        return dig_yaml_refuse(work->path, work->error, "coherent_ms: %g, expected 0 … 1000",
                                text->coherent_ms);
     }
     if (text->stuck_ms != NULL && !(*text->stuck_ms >= 0.0 && *text->stuck_ms <= 60e3)) {
-        return dig_yaml_refuse(work->path, "stuck_ms", work->error, "%g, expected 0 … 60000",
+        return dig_yaml_refuse(work->path, work->error, "stuck_ms: %g, expected 0 … 60000",
                                *text->stuck_ms);
     }
     if (text->kind == DIG_MAP_CAN && text->blocks_count > 0) {
-        return dig_yaml_refuse(work->path, "blocks", work->error,
-                               "given for can, expected with kind: modbus only");
+        return dig_yaml_refuse(work->path, work->error,
+                               "blocks: given for can, expected with kind: modbus only");
     }
     if (text->kind != DIG_MAP_CAN && (text->messages_count > 0 || text->j1939)) {
-        return dig_yaml_refuse(work->path, text->j1939 ? "j1939" : "messages", work->error,
-                               "given for modbus, expected with kind: can only");
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s: given for modbus, expected with kind: can only",
+                               text->j1939 ? "j1939" : "messages");
     }
     return DIG_OK;
 }
@@ -162,10 +161,9 @@ static enum dig_status read_block(const struct dig_config_map_work *const work, 
     };
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
         if (!(ranges[i].value >= ranges[i].low && ranges[i].value <= ranges[i].high)) {
-            struct dig_config_map_key at;
-            (void)snprintf(at.text, sizeof at.text, "blocks[%zu].%s", index, ranges[i].key);
-            return dig_yaml_refuse(work->path, at.text, work->error, "%g, expected %g … %g",
-                                   ranges[i].value, ranges[i].low, ranges[i].high);
+            return dig_yaml_refuse(work->path, work->error, "blocks[%zu].%s: %g, expected %g … %g",
+                                   index, ranges[i].key, ranges[i].value, ranges[i].low,
+                                   ranges[i].high);
         }
     }
     *group = (struct dig_map_group){
@@ -194,16 +192,16 @@ static enum dig_status read_blocks(const struct dig_config_map_work *const work,
     }
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         if (!dig_register_assign(map, &map->entry[dig_signal_find(text->signals[i].name)])) {
-            struct dig_config_map_key at;
-            (void)snprintf(at.text, sizeof at.text, "signals[%u].register", i);
             status =
-                dig_yaml_refuse(work->path, at.text, work->error,
-                                "%u, expected it within one of the blocks", *text->signals[i].reg);
+                dig_yaml_refuse(work->path, work->error,
+                                "signals[%u].register: %u, expected it within one of the blocks", i,
+                                *text->signals[i].reg);
         }
     }
     if (status == DIG_OK && map->has_alive && !dig_register_assign(map, &map->alive)) {
-        status = dig_yaml_refuse(work->path, "alive.register", work->error,
-                                 "%u, expected it within one of the blocks", map->alive.reg);
+        status = dig_yaml_refuse(work->path, work->error,
+                                 "alive.register: %u, expected it within one of the blocks",
+                                 map->alive.reg);
     }
     return status;
 }
@@ -218,7 +216,7 @@ static enum dig_status check_signals(const struct dig_config_map_work *const wor
     for (int i = 0; i < DIG_SIGNALS; i++) {
         const enum dig_signal signal = (enum dig_signal)i;
         if (!entry[i].used && dig_signal_gives_moment(sensing, signal)) {
-            return dig_yaml_refuse(work->path, "signals", work->error, "no entry %s, expected %s",
+            return dig_yaml_refuse(work->path, work->error, "signals: no entry %s, expected %s",
                                    dig_signal_name(signal),
                                    sensor ? "the pin's place, the bucket's angle and all that the "
                                             "force sensor reads"
@@ -227,17 +225,18 @@ static enum dig_status check_signals(const struct dig_config_map_work *const wor
         }
         if (entry[i].used && !dig_signal_is_optional(signal) &&
             !dig_signal_is_needed(sensing, signal)) {
-            return dig_yaml_refuse(work->path, "signals", work->error,
-                                   "entry %s, expected signals of cylinders or of a force sensor, "
-                                   "not of both",
+            return dig_yaml_refuse(work->path, work->error,
+                                   "signals: entry %s, expected signals of cylinders or of a force "
+                                   "sensor, not of both",
                                    dig_signal_name(signal));
         }
     }
     for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i < DIG_SIGNALS_NEEDED; i += 2) {
         if (entry[i].used != entry[i + 1].used) {
-            return dig_yaml_refuse(work->path, "signals", work->error,
-                                   "no entry %s, expected both pressures of a cylinder or none",
-                                   dig_signal_name((enum dig_signal)(entry[i].used ? i + 1 : i)));
+            return dig_yaml_refuse(
+                work->path, work->error,
+                "signals: no entry %s, expected both pressures of a cylinder or none",
+                dig_signal_name((enum dig_signal)(entry[i].used ? i + 1 : i)));
         }
     }
     return DIG_OK;

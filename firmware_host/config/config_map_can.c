@@ -11,14 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-struct dig_config_map_key dig_config_map_key_of(const char *const parent, const char *const name)
-{
-    assert(parent != NULL && name != NULL);
-    struct dig_config_map_key key;
-    (void)snprintf(key.text, sizeof key.text, "%.40s.%.40s", parent, name);
-    return key;
-}
-
 // A DBC unit: its quantity and its SI value.
 struct unit {
     const char *name;
@@ -73,19 +65,17 @@ enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *cons
             continue;
         }
         if (unit->kind != kind_of(signal)) {
-            const struct dig_config_map_key key = dig_config_map_key_of(at, "signal");
-            return dig_yaml_refuse(work->path, key.text, work->error,
-                                   "%s is in %s, expected a signal that can be %s", entry->can.name,
-                                   unit->name, dig_signal_name((enum dig_signal)signal));
+            return dig_yaml_refuse(
+                work->path, work->error, "%s.signal: %s is in %s, expected a signal that can be %s",
+                at, entry->can.name, unit->name, dig_signal_name((enum dig_signal)signal));
         }
         if (!scale_given) {
             entry->scale = unit->scale;
         }
         if (!(fabs(entry->scale - unit->scale) <= most_calibration * unit->scale)) {
-            const struct dig_config_map_key key = dig_config_map_key_of(at, "scale");
-            return dig_yaml_refuse(work->path, key.text, work->error,
-                                   "%g, expected %g (the DBC gives %s in %s)", entry->scale,
-                                   unit->scale, entry->can.name, unit->name);
+            return dig_yaml_refuse(work->path, work->error,
+                                   "%s.scale: %g, expected %g (the DBC gives %s in %s)", at,
+                                   entry->scale, unit->scale, entry->can.name, unit->name);
         }
     }
     return DIG_OK;
@@ -102,9 +92,8 @@ static enum dig_status group_of(const struct dig_config_map_work *const work, co
         return DIG_OK;
     }
     if (map->groups == DIG_GROUPS_MAX) {
-        const struct dig_config_map_key key = dig_config_map_key_of(at, "message");
-        return dig_yaml_refuse(work->path, key.text, work->error, "expected at most %d messages",
-                               DIG_GROUPS_MAX);
+        return dig_yaml_refuse(work->path, work->error, "%s.message: expected at most %d messages",
+                               at, DIG_GROUPS_MAX);
     }
     struct dig_map_group *const added = &map->group[map->groups];
     *added                            = (struct dig_map_group){ .id       = message->id,
@@ -121,29 +110,28 @@ enum dig_status dig_config_map_find_can(const struct dig_config_map_work *const 
                                         const char *const           signal_name,
                                         struct dig_map_entry *const entry)
 {
-    const struct dig_config_map_key message_key = dig_config_map_key_of(at, "message");
-    const struct dig_config_map_key signal_key  = dig_config_map_key_of(at, "signal");
     if (message_name == NULL || signal_name == NULL) {
-        const struct dig_config_map_key *const key =
-            message_name == NULL ? &message_key : &signal_key;
-        return dig_yaml_refuse(work->path, key->text, work->error,
-                               "missing, expected a name of the DBC");
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.%s: missing, expected a name of the DBC", at,
+                               message_name == NULL ? "message" : "signal");
     }
     const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, message_name);
     if (message == NULL) {
-        return dig_yaml_refuse(work->path, message_key.text, work->error,
-                               "\"%s\", expected a message of the DBC", message_name);
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.message: \"%s\", expected a message of the DBC", at,
+                               message_name);
     }
     const struct dig_dbc_signal *const signal =
         dig_dbc_find_signal(work->dbc, message, signal_name);
     if (signal == NULL) {
-        return dig_yaml_refuse(work->path, signal_key.text, work->error,
-                               "\"%s\", expected a signal of %s", signal_name, message_name);
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.signal: \"%s\", expected a signal of %s", at, signal_name,
+                               message_name);
     }
     if (signal->multiplexed || signal->is_float) {
-        return dig_yaml_refuse(work->path, signal_key.text, work->error,
-                               "\"%s\" is %s, expected a plain integer signal", signal_name,
-                               signal->multiplexed ? "multiplexed" : "floating-point");
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.signal: \"%s\" is %s, expected a plain integer signal", at,
+                               signal_name, signal->multiplexed ? "multiplexed" : "floating-point");
     }
     entry->can = *signal;
     return group_of(work, at, message, &entry->group);
@@ -155,15 +143,15 @@ static enum dig_status find_frame_signal(const struct dig_config_map_work *const
                                          const char *const message, const char *const signal,
                                          struct dig_dbc_signal *const found)
 {
-    struct dig_map_entry            entry = { .used = true };
-    const struct dig_config_map_key key   = dig_config_map_key_of(at, key_name);
+    struct dig_map_entry  entry  = { .used = true };
     const enum dig_status status = dig_config_map_find_can(work, at, message, signal, &entry);
     if (status != DIG_OK) {
         return status;
     }
     if (entry.can.bits > 32) {
-        return dig_yaml_refuse(work->path, key.text, work->error,
-                               "\"%s\" has %u bits, expected at most 32", signal, entry.can.bits);
+        return dig_yaml_refuse(work->path, work->error,
+                               "%s.%s: \"%s\" has %u bits, expected at most 32", at, key_name,
+                               signal, entry.can.bits);
     }
     *found = entry.can;
     return DIG_OK;
@@ -174,9 +162,8 @@ static enum dig_status read_checksum(const struct dig_config_map_work *const wor
                                      const struct dig_message_text *const    text,
                                      struct dig_map_group *const             group)
 {
-    const struct dig_config_map_key key    = dig_config_map_key_of(at, "checksum");
-    const enum dig_status           status = find_frame_signal(work, at, "checksum", text->message,
-                                                               text->checksum->signal, &group->checksum_at);
+    const enum dig_status status = find_frame_signal(work, at, "checksum", text->message,
+                                                     text->checksum->signal, &group->checksum_at);
     if (status != DIG_OK) {
         return status;
     }
@@ -185,9 +172,9 @@ static enum dig_status read_checksum(const struct dig_config_map_work *const wor
     const unsigned from = group->checksum_at.start_bit % 8;
     if (tsc1 ? bits > 4 || text->counter == NULL
              : bits != 8 || from != (group->checksum_at.intel ? 0U : 7U)) {
-        return dig_yaml_refuse(work->path, key.text, work->error,
-                               tsc1 ? "expected up to 4 bits, and a counter beside it"
-                                    : "expected a signal of one whole byte");
+        return dig_yaml_refuse(work->path, work->error, "%s.checksum: expected %s", at,
+                               tsc1 ? "up to 4 bits, and a counter beside it"
+                                    : "a signal of one whole byte");
     }
     group->checksum = text->checksum->kind;
     return DIG_OK;
@@ -197,26 +184,24 @@ enum dig_status dig_config_map_read_message(const struct dig_config_map_work *co
                                             const size_t                            index,
                                             const struct dig_message_text *const    text)
 {
-    struct dig_config_map_key at;
-    (void)snprintf(at.text, sizeof at.text, "messages[%zu]", index);
-    const struct dig_config_map_key     key     = dig_config_map_key_of(at.text, "message");
+    char at[32];
+    (void)snprintf(at, sizeof at, "messages[%zu]", index);
     const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, text->message);
     const int                           known =
         message != NULL ? dig_signal_map_group(work->map, message->id, message->extended) : -1;
     if (known < 0) {
-        return dig_yaml_refuse(work->path, key.text, work->error,
-                               "\"%s\", expected a message that carries one of the signals",
-                               text->message);
+        return dig_yaml_refuse(
+            work->path, work->error,
+            "%s.message: \"%s\", expected a message that carries one of the signals", at,
+            text->message);
     }
     struct dig_map_group *const group = &work->map->group[known];
     if (!(text->delay_ms >= 0.0 && text->delay_ms <= 1000.0)) {
-        const struct dig_config_map_key delay = dig_config_map_key_of(at.text, "delay_ms");
-        return dig_yaml_refuse(work->path, delay.text, work->error, "%g, expected 0 … 1000",
+        return dig_yaml_refuse(work->path, work->error, "%s.delay_ms: %g, expected 0 … 1000", at,
                                text->delay_ms);
     }
     if (!(text->cycle_ms >= 0.0 && text->cycle_ms <= 60e3)) {
-        const struct dig_config_map_key cycle = dig_config_map_key_of(at.text, "cycle_ms");
-        return dig_yaml_refuse(work->path, cycle.text, work->error, "%g, expected 0 … 60000",
+        return dig_yaml_refuse(work->path, work->error, "%s.cycle_ms: %g, expected 0 … 60000", at,
                                text->cycle_ms);
     }
     group->frame.delay_s = text->delay_ms * 1e-3;
@@ -224,12 +209,12 @@ enum dig_status dig_config_map_read_message(const struct dig_config_map_work *co
 
     enum dig_status status = DIG_OK;
     if (text->counter != NULL) {
-        status = find_frame_signal(work, at.text, "counter", text->message, text->counter,
-                                   &group->counter);
+        status =
+            find_frame_signal(work, at, "counter", text->message, text->counter, &group->counter);
         group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32
                                        ? 1U << group->counter.bits
                                        : UINT32_MAX;
     }
-    return status == DIG_OK && text->checksum != NULL ? read_checksum(work, at.text, text, group)
+    return status == DIG_OK && text->checksum != NULL ? read_checksum(work, at, text, group)
                                                       : status;
 }

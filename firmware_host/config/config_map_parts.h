@@ -15,15 +15,8 @@ struct dig_config_map_work {
     struct dig_error      *error;
 };
 
-/// A key as errors name it: "signals[3].unit".
-struct dig_config_map_key {
-    char text[96];
-};
-
-struct dig_config_map_key dig_config_map_key_of(const char *parent, const char *name);
-
 /// Finds message and signal of an entry in the DBC, and adds its group when it is new. at: the
-/// entry's key. DIG_EINVAL: one is missing, or the signal is not a plain integer.
+/// entry's key, "signals[3]". DIG_EINVAL: one is missing, or the signal is not a plain integer.
 DIG_MUST_CHECK enum dig_status dig_config_map_find_can(const struct dig_config_map_work *work,
                                                        const char *at, const char *message_name,
                                                        const char           *signal_name,

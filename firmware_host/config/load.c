@@ -22,18 +22,18 @@ static enum dig_status check_scene(const char *const path, const struct dig_conf
     const char *const want = config->scene;
     if (want[0] != '\0' && strcmp(want, set->scene_name) != 0 &&
         strcmp(want, set->scene_hash) != 0) {
-        return dig_yaml_refuse(path, "scene", error,
-                               "\"%s\", but %s is of scene \"%s\" (%s); expected the same", want,
-                               config->table.text, set->scene_name, set->scene_hash);
+        return dig_yaml_refuse(path, error,
+                               "scene: \"%s\", but %s is of scene \"%s\" (%s); expected the same",
+                               want, config->table.text, set->scene_name, set->scene_hash);
     }
     const double machine =
         machine_read->bucket_width_m / machine_read->link[DIG_JOINT_BUCKET].length_m;
     const double scene = set->bucket_width_m / set->tooth_m;
     if (!(fabs(machine / scene - 1.0) <= DIG_SHAPE_TOLERANCE)) {
         return dig_yaml_refuse(
-            path, "table", error,
-            "scene \"%s\" has a bucket %.3f times as wide as long, machine \"%s\" "
-            "one %.3f times; expected the same shape within %.0f %%",
+            path, error,
+            "table: scene \"%s\" has a bucket %.3f times as wide as long, machine \"%s\" one %.3f "
+            "times; expected the same shape within %.0f %%",
             set->scene_name, scene, machine_read->name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
     }
     for (size_t i = 0; i < config->identify_trajectories; i++) {
@@ -42,9 +42,9 @@ static enum dig_status check_scene(const char *const path, const struct dig_conf
             found |= strcmp(config->identify_trajectory[i], set->trajectory[t].name) == 0;
         }
         if (!found) {
-            return dig_yaml_refuse(path, "identify.trajectories", error,
-                                   "\"%s\", expected a trajectory of the table",
-                                   config->identify_trajectory[i]);
+            return dig_yaml_refuse(
+                path, error, "identify.trajectories: \"%s\", expected a trajectory of the table",
+                config->identify_trajectory[i]);
         }
     }
     return DIG_OK;
@@ -59,9 +59,8 @@ static enum dig_status load_map(struct dig_loaded *const l, struct dig_error *co
         status = dig_signal_map_read(l->config.map.text, can ? &dbc : NULL, &l->map, error);
     }
     if (status == DIG_OK && can != (l->map.kind == DIG_MAP_CAN)) {
-        status =
-            dig_yaml_refuse(l->config.map.text, "kind", error, "%s, expected %s for this input",
-                            can ? "modbus" : "can", can ? "can" : "modbus");
+        status = dig_yaml_refuse(l->config.map.text, error, "kind: %s, expected %s for this input",
+                                 can ? "modbus" : "can", can ? "can" : "modbus");
     }
     dig_dbc_finish(&dbc);
     return status;
@@ -93,10 +92,10 @@ static enum dig_status check_sensing(const char *const path, const struct dig_lo
     if (senses == l->machine.sensor.fitted) {
         return DIG_OK;
     }
-    return dig_yaml_refuse(path, "machine", error,
-                           "%s has %s, but the input brings %s; expected the same", l->machine.name,
-                           senses ? "cylinders" : "a force sensor that carries its bucket",
-                           senses ? "signals of a force sensor" : "none of its signals");
+    return dig_yaml_refuse(
+        path, error, "machine: %s has %s, but the input brings %s; expected the same",
+        l->machine.name, senses ? "cylinders" : "a force sensor that carries its bucket",
+        senses ? "signals of a force sensor" : "none of its signals");
 }
 
 enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,

@@ -86,9 +86,9 @@ static enum dig_status change_curves(const char *const model_path, const char *c
     }
     if (status == DIG_OK && dig_effects_apply(plain, effects, model, set) != DIG_OK) {
         status =
-            dig_yaml_refuse(model_path, "effects", error,
-                            "an effect of the soil that no table at hand tells, or a parameter "
-                            "it does not have; expected those of the table of effects");
+            dig_yaml_refuse(model_path, error,
+                            "effects: an effect of the soil that no table at hand tells, or a "
+                            "parameter it does not have; expected those of the table of effects");
     }
     if (status == DIG_OK) {
         // The covariance is of plain digs; the templates' error is in the curves' sd.
@@ -110,14 +110,14 @@ static enum dig_status check(const char *const path, const char *const table_pat
                              struct dig_correction *const correction, struct dig_error *const error)
 {
     if (strcmp(model->scene_hash, set->scene_hash) != 0) {
-        return dig_yaml_refuse(path, "scene_hash", error, "%.12s…, but %s is of scene %.12s…",
+        return dig_yaml_refuse(path, error, "scene_hash: %.12s…, but %s is of scene %.12s…",
                                model->scene_hash, table_path, set->scene_hash);
     }
     if (dig_effects_correction(model, correction) != DIG_OK ||
         (machine != NULL && dig_correction_check(machine, correction) != DIG_OK)) {
-        return dig_yaml_refuse(path, "effects", error,
-                               "the machine %s cannot be so, expected parameters of the catalogue "
-                               "with which its linkages still close",
+        return dig_yaml_refuse(path, error,
+                               "effects: the machine %s cannot be so, expected parameters of the "
+                               "catalogue with which its linkages still close",
                                machine != NULL ? machine->name : "of the model");
     }
     return DIG_OK;

@@ -209,10 +209,10 @@ static void a_refusal_after_loading_names_the_nearest_line(void **state)
     (void)state;
     const char *const path  = scratch_write("good.yaml", GOOD);
     struct dig_error  error = { "" };
-    assert_int_equal(dig_yaml_refuse(path, "parts[1].weight_kg", &error, "%d, expected 4", 3),
+    assert_int_equal(dig_yaml_refuse(path, &error, "parts[1].weight_kg: %d, expected 4", 3),
                      DIG_EINVAL);
     assert_contains(error.text, "good.yaml:12: parts[1].weight_kg: 3, expected 4");
-    assert_int_equal(dig_yaml_refuse(path, "parts[1].name", &error, "expected one"), DIG_EINVAL);
+    assert_int_equal(dig_yaml_refuse(path, &error, "parts[1].name: expected one"), DIG_EINVAL);
     assert_contains(error.text, "good.yaml:12: parts[1].name: expected one");
 
     const struct dig_error found = { "inner.weight_kg: 1, expected > 1" };
