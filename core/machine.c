@@ -30,211 +30,173 @@ double dig_cylinder_rod_m2(const struct dig_cylinder *const cylinder)
     return dig_cylinder_head_m2(cylinder) - 0.25 * DIG_PI * cylinder->rod_m * cylinder->rod_m;
 }
 
-static enum dig_status refuse(struct dig_error *const error, const char *const group,
-                              const char *const member, const char *const key, const double found,
-                              const char *const expected)
+// A value of the file, and whether it can be.
+struct value {
+    const char *key; // in its group
+    double      found;
+    bool        can_be;
+    const char *expected;
+};
+
+#define COUNT(values) (sizeof(values) / sizeof(values)[0])
+
+static bool is_positive(const double value)
 {
-    const char *const dot = member[0] == '\0' ? "" : ".";
-    return dig_error_set(error, DIG_EINVAL, "%s%s%s.%s: %g, expected %s", group, dot, member, key,
-                         found, expected);
+    return value > 0.0 && isfinite(value);
+}
+
+static bool is_not_negative(const double value)
+{
+    return value >= 0.0 && isfinite(value);
+}
+
+// Refuses the first that cannot be. member: of the group; "": the group itself.
+static enum dig_status check_values(const char *const group, const char *const member,
+                                    const size_t count, const struct value value[],
+                                    struct dig_error *const error)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!value[i].can_be) {
+            return dig_error_set(error, DIG_EINVAL, "%s%s%s.%s: %g, expected %s", group,
+                                 member[0] == '\0' ? "" : ".", member, value[i].key, value[i].found,
+                                 value[i].expected);
+        }
+    }
+    return DIG_OK;
 }
 
 static enum dig_status check_link(const struct dig_link *const link, const char *const name,
                                   struct dig_error *const error)
 {
-    const struct {
-        const char *key;
-        double      value;
-    } positive[] = {
-        { "length_m", link->length_m },
-        { "mass_kg", link->mass_kg },
-        { "inertia_kgm2", link->inertia_kgm2 },
+    const double       most     = 2.0 * DIG_PI;
+    const struct value values[] = {
+        { "length_m", link->length_m, is_positive(link->length_m), "a number > 0" },
+        { "mass_kg", link->mass_kg, is_positive(link->mass_kg), "a number > 0" },
+        { "inertia_kgm2", link->inertia_kgm2, is_positive(link->inertia_kgm2), "a number > 0" },
+        { "com_m", NAN, dig_vec2_is_finite(link->com_m), "two finite numbers" },
+        { "min_deg", link->min_rad / DIG_RAD_PER_DEG, fabs(link->min_rad) <= most,
+          "an angle within +-360" },
+        { "max_deg", link->max_rad / DIG_RAD_PER_DEG,
+          link->max_rad > link->min_rad && link->max_rad <= most,
+          "an angle greater than min_deg, at most 360" },
     };
-    for (size_t i = 0; i < sizeof positive / sizeof positive[0]; i++) {
-        if (!(isfinite(positive[i].value) && positive[i].value > 0.0)) {
-            return refuse(error, name, "", positive[i].key, positive[i].value, "a number > 0");
-        }
-    }
-    if (!dig_vec2_is_finite(link->com_m)) {
-        return refuse(error, name, "", "com_m", NAN, "two finite numbers");
-    }
-    if (!(isfinite(link->min_rad) && fabs(link->min_rad) <= 2.0 * DIG_PI)) {
-        return refuse(error, name, "", "min_deg", link->min_rad / DIG_RAD_PER_DEG,
-                      "an angle within +-360");
-    }
-    if (!(link->max_rad > link->min_rad && link->max_rad <= 2.0 * DIG_PI)) {
-        return refuse(error, name, "", "max_deg", link->max_rad / DIG_RAD_PER_DEG,
-                      "an angle greater than min_deg, at most 360");
-    }
-    return DIG_OK;
+    return check_values(name, "", COUNT(values), values, error);
 }
 
-static enum dig_status check_cylinder(const struct dig_cylinder *const cylinder,
+static enum dig_status check_cylinder(const struct dig_cylinder *const c,
                                       const enum dig_joint joint, struct dig_error *const error)
 {
-    const char *const group = "cylinders";
-    const char *const name  = dig_joint_name(joint);
-    if (!(cylinder->count >= 1.0 && cylinder->count <= 4.0)) {
-        return refuse(error, group, name, "count", cylinder->count, "1 to 4");
-    }
-    if (!(cylinder->bore_m > 0.0 && cylinder->bore_m < 1.0)) {
-        return refuse(error, group, name, "bore_m", cylinder->bore_m, "metres, > 0 and < 1");
-    }
-    if (!(cylinder->rod_m > 0.0 && cylinder->rod_m < cylinder->bore_m)) {
-        return refuse(error, group, name, "rod_m", cylinder->rod_m, "> 0 and less than bore_m");
-    }
-    if (!(cylinder->relief_Pa > 1e5 && cylinder->relief_Pa < 1e8)) {
-        return refuse(error, group, name, "relief_Pa", cylinder->relief_Pa, "pascals, 1e5 to 1e8");
-    }
-    if (!(cylinder->back_Pa >= 0.0 && cylinder->back_Pa < cylinder->relief_Pa)) {
-        return refuse(error, group, name, "back_Pa", cylinder->back_Pa,
-                      ">= 0 and less than relief_Pa");
-    }
-    if (!(cylinder->min_length_m > 0.0 && isfinite(cylinder->min_length_m))) {
-        return refuse(error, group, name, "min_length_m", cylinder->min_length_m, "a number > 0");
-    }
-    if (!(cylinder->max_length_m > cylinder->min_length_m && isfinite(cylinder->max_length_m))) {
-        return refuse(error, group, name, "max_length_m", cylinder->max_length_m,
-                      "greater than min_length_m");
-    }
-    if (!dig_vec2_is_finite(cylinder->base_m)) {
-        return refuse(error, group, name, "base_m", NAN, "two finite numbers");
-    }
-    if (joint != DIG_JOINT_BUCKET && !dig_vec2_is_finite(cylinder->eye_m)) {
-        return refuse(error, group, name, "eye_m", NAN, "two finite numbers");
-    }
-    if (!(cylinder->pressure_sigma_Pa >= 0.0 && isfinite(cylinder->pressure_sigma_Pa))) {
-        return refuse(error, group, name, "pressure_sigma_Pa", cylinder->pressure_sigma_Pa, ">= 0");
-    }
-    return DIG_OK;
+    const bool         has_eye  = joint != DIG_JOINT_BUCKET;
+    const struct value values[] = {
+        { "count", c->count, c->count >= 1.0 && c->count <= 4.0, "1 to 4" },
+        { "bore_m", c->bore_m, c->bore_m > 0.0 && c->bore_m < 1.0, "metres, > 0 and < 1" },
+        { "rod_m", c->rod_m, c->rod_m > 0.0 && c->rod_m < c->bore_m, "> 0 and less than bore_m" },
+        { "relief_Pa", c->relief_Pa, c->relief_Pa > 1e5 && c->relief_Pa < 1e8,
+          "pascals, 1e5 to 1e8" },
+        { "back_Pa", c->back_Pa, c->back_Pa >= 0.0 && c->back_Pa < c->relief_Pa,
+          ">= 0 and less than relief_Pa" },
+        { "min_length_m", c->min_length_m, is_positive(c->min_length_m), "a number > 0" },
+        { "max_length_m", c->max_length_m,
+          c->max_length_m > c->min_length_m && isfinite(c->max_length_m),
+          "greater than min_length_m" },
+        { "base_m", NAN, dig_vec2_is_finite(c->base_m), "two finite numbers" },
+        { "eye_m", NAN, !has_eye || dig_vec2_is_finite(c->eye_m), "two finite numbers" },
+        { "pressure_sigma_Pa", c->pressure_sigma_Pa, is_not_negative(c->pressure_sigma_Pa),
+          ">= 0" },
+    };
+    return check_values("cylinders", dig_joint_name(joint), COUNT(values), values, error);
 }
 
 static enum dig_status check_four_bar(const struct dig_four_bar *const bar,
                                       struct dig_error *const          error)
 {
-    if (!(bar->rocker_m > 0.0 && isfinite(bar->rocker_m))) {
-        return refuse(error, "four_bar", "", "rocker_m", bar->rocker_m, "a number > 0");
-    }
-    if (!(bar->link_m > 0.0 && isfinite(bar->link_m))) {
-        return refuse(error, "four_bar", "", "link_m", bar->link_m, "a number > 0");
-    }
-    if (!dig_vec2_is_finite(bar->rocker_pin_m)) {
-        return refuse(error, "four_bar", "", "rocker_pin_m", NAN, "two finite numbers");
-    }
-    if (!(dig_vec2_is_finite(bar->ear_m) && dig_vec2_norm(bar->ear_m) > 0.0)) {
-        return refuse(error, "four_bar", "", "ear_m", NAN, "two finite numbers, not both 0");
-    }
-    return DIG_OK;
+    const struct value values[] = {
+        { "rocker_m", bar->rocker_m, is_positive(bar->rocker_m), "a number > 0" },
+        { "link_m", bar->link_m, is_positive(bar->link_m), "a number > 0" },
+        { "rocker_pin_m", NAN, dig_vec2_is_finite(bar->rocker_pin_m), "two finite numbers" },
+        { "ear_m", NAN, dig_vec2_is_finite(bar->ear_m) && dig_vec2_norm(bar->ear_m) > 0.0,
+          "two finite numbers, not both 0" },
+    };
+    return check_values("four_bar", "", COUNT(values), values, error);
+}
+
+static bool is_below(const double value, const double limit)
+{
+    return value >= 0.0 && value < limit;
 }
 
 static enum dig_status check_sensor(const struct dig_machine *const machine,
                                     struct dig_error *const         error)
 {
     static const double                  farthest = 10.0; // bucket lengths: beyond, a slip of units
-    const char *const                    group    = "force_sensor";
-    const struct dig_force_sensor *const sensor   = &machine->sensor;
-    const double                         place_m  = dig_vec2_norm(sensor->place_m);
-    if (!(place_m <= farthest * machine->link[DIG_JOINT_BUCKET].length_m)) {
-        return refuse(error, group, "", "place_m", place_m, "at most ten bucket lengths away");
-    }
-    if (!(fabs(sensor->turn_rad) <= 2.0 * DIG_PI)) {
-        return refuse(error, group, "", "turn_deg", sensor->turn_rad / DIG_RAD_PER_DEG,
-                      "an angle within +-360");
-    }
-    const struct {
-        const char *key;
-        double      limit, step, sigma;
-    } ranges[] = {
-        { "limit_N", sensor->limit_N, sensor->step_N, sensor->sigma_N },
-        { "limit_Nm", sensor->limit_Nm, sensor->step_Nm, sensor->sigma_Nm },
+    const struct dig_force_sensor *const s        = &machine->sensor;
+    const double                         place_m  = dig_vec2_norm(s->place_m);
+    const double                         bucket_m = machine->link[DIG_JOINT_BUCKET].length_m;
+    const char *const                    smaller  = ">= 0 and less than the limit";
+    const struct value                   values[] = {
+                          { "place_m", place_m, place_m <= farthest * bucket_m, "at most ten bucket lengths away" },
+                          { "turn_deg", s->turn_rad / DIG_RAD_PER_DEG, fabs(s->turn_rad) <= 2.0 * DIG_PI,
+                            "an angle within +-360" },
+                          { "limit_N", s->limit_N, is_positive(s->limit_N), "a number > 0" },
+                          { "step_N", s->step_N, is_below(s->step_N, s->limit_N), smaller },
+                          { "sigma_N", s->sigma_N, is_below(s->sigma_N, s->limit_N), smaller },
+                          { "limit_Nm", s->limit_Nm, is_positive(s->limit_Nm), "a number > 0" },
+                          { "step_Nm", s->step_Nm, is_below(s->step_Nm, s->limit_Nm), smaller },
+                          { "sigma_Nm", s->sigma_Nm, is_below(s->sigma_Nm, s->limit_Nm), smaller },
+                          { "path_sigma_m", s->path_sigma_m, is_not_negative(s->path_sigma_m), ">= 0" },
     };
-    static const char *const step_key[]  = { "step_N", "step_Nm" };
-    static const char *const sigma_key[] = { "sigma_N", "sigma_Nm" };
-    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
-        if (!(ranges[i].limit > 0.0 && isfinite(ranges[i].limit))) {
-            return refuse(error, group, "", ranges[i].key, ranges[i].limit, "a number > 0");
-        }
-        if (!(ranges[i].step >= 0.0 && ranges[i].step < ranges[i].limit)) {
-            return refuse(error, group, "", step_key[i], ranges[i].step,
-                          ">= 0 and less than the limit");
-        }
-        if (!(ranges[i].sigma >= 0.0 && ranges[i].sigma < ranges[i].limit)) {
-            return refuse(error, group, "", sigma_key[i], ranges[i].sigma,
-                          ">= 0 and less than the limit");
-        }
-    }
-    if (!(sensor->path_sigma_m >= 0.0 && isfinite(sensor->path_sigma_m))) {
-        return refuse(error, group, "", "path_sigma_m", sensor->path_sigma_m, ">= 0");
-    }
-    return DIG_OK;
+    return check_values("force_sensor", "", COUNT(values), values, error);
 }
 
 // What keeps a machine with cylinders on the ground.
-static enum dig_status check_ground(const struct dig_machine *const machine,
+static enum dig_status check_ground(const struct dig_machine *const m,
                                     struct dig_error *const         error)
 {
-    if (!(machine->weight_N > 0.0 && isfinite(machine->weight_N))) {
-        return refuse(error, "ground", "", "weight_N", machine->weight_N, "a number > 0");
-    }
-    if (!(machine->tip_front_X_m > machine->tip_rear_X_m && isfinite(machine->tip_front_X_m))) {
-        return refuse(error, "ground", "", "tip_front_X_m", machine->tip_front_X_m,
-                      "greater than tip_rear_X_m");
-    }
-    if (!(machine->weight_X_m > machine->tip_rear_X_m &&
-          machine->weight_X_m < machine->tip_front_X_m)) {
-        return refuse(error, "ground", "", "weight_X_m", machine->weight_X_m,
-                      "between tip_rear_X_m and tip_front_X_m");
-    }
-    if (!isfinite(machine->boom_foot_Z_m)) {
-        return refuse(error, "ground", "", "boom_foot_Z_m", machine->boom_foot_Z_m,
-                      "a finite number");
-    }
-    return DIG_OK;
+    const struct value values[] = {
+        { "weight_N", m->weight_N, is_positive(m->weight_N), "a number > 0" },
+        { "tip_front_X_m", m->tip_front_X_m,
+          m->tip_front_X_m > m->tip_rear_X_m && isfinite(m->tip_front_X_m),
+          "greater than tip_rear_X_m" },
+        { "weight_X_m", m->weight_X_m,
+          m->weight_X_m > m->tip_rear_X_m && m->weight_X_m < m->tip_front_X_m,
+          "between tip_rear_X_m and tip_front_X_m" },
+        { "boom_foot_Z_m", m->boom_foot_Z_m, isfinite(m->boom_foot_Z_m), "a finite number" },
+    };
+    return check_values("ground", "", COUNT(values), values, error);
 }
 
 static enum dig_status check_tolerance(const struct dig_machine *const machine,
                                        struct dig_error *const         error)
 {
-    static const double               most      = 0.5; // beyond it the file says nothing
-    const struct dig_tolerance *const tolerance = &machine->tolerance;
-    const double                      bucket_m  = machine->link[DIG_JOINT_BUCKET].length_m;
-    if (!(tolerance->pin_m >= 0.0 && tolerance->pin_m < most * bucket_m)) {
-        return refuse(error, "tolerance", "", "pin_m", tolerance->pin_m,
-                      ">= 0 and less than half the bucket's length");
-    }
-    if (!(tolerance->mass_share >= 0.0 && tolerance->mass_share < most)) {
-        return refuse(error, "tolerance", "", "mass_share", tolerance->mass_share,
-                      ">= 0 and less than 0.5");
-    }
-    if (!(tolerance->com_share >= 0.0 && tolerance->com_share < most)) {
-        return refuse(error, "tolerance", "", "com_share", tolerance->com_share,
-                      ">= 0 and less than 0.5");
-    }
-    return DIG_OK;
+    static const double               most     = 0.5; // beyond it the file says nothing
+    const struct dig_tolerance *const t        = &machine->tolerance;
+    const double                      bucket_m = machine->link[DIG_JOINT_BUCKET].length_m;
+    const struct value                values[] = {
+                       { "pin_m", t->pin_m, is_below(t->pin_m, most * bucket_m),
+                         ">= 0 and less than half the bucket's length" },
+                       { "mass_share", t->mass_share, is_below(t->mass_share, most), ">= 0 and less than 0.5" },
+                       { "com_share", t->com_share, is_below(t->com_share, most), ">= 0 and less than 0.5" },
+    };
+    return check_values("tolerance", "", COUNT(values), values, error);
 }
 
 // Sensors of a machine of either kind, its tolerances and the bucket's width.
-static enum dig_status check_rest(const struct dig_machine *const machine,
-                                  struct dig_error *const         error)
+static enum dig_status check_rest(const struct dig_machine *const m, struct dig_error *const error)
 {
-    const struct {
-        const char *key;
-        double      value;
-    } sensors[] = {
-        { "pressure_step_Pa", machine->pressure_step_Pa },
-        { "angle_step_rad", machine->angle_step_rad },
-        { "angle_sigma_rad", machine->angle_sigma_rad },
+    const struct value values[] = {
+        { "pressure_step_Pa", m->pressure_step_Pa, is_not_negative(m->pressure_step_Pa), ">= 0" },
+        { "angle_step_rad", m->angle_step_rad, is_not_negative(m->angle_step_rad), ">= 0" },
+        { "angle_sigma_rad", m->angle_sigma_rad, is_not_negative(m->angle_sigma_rad), ">= 0" },
     };
-    for (size_t i = 0; i < sizeof sensors / sizeof sensors[0]; i++) {
-        if (!(sensors[i].value >= 0.0 && isfinite(sensors[i].value))) {
-            return refuse(error, "sensors", "", sensors[i].key, sensors[i].value, ">= 0");
-        }
+    const enum dig_status status = check_values("sensors", "", COUNT(values), values, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (!(machine->bucket_width_m > 0.0 && isfinite(machine->bucket_width_m))) {
+    if (!is_positive(m->bucket_width_m)) {
         return dig_error_set(error, DIG_EINVAL, "bucket_width_m: %g, expected a number > 0",
-                             machine->bucket_width_m);
+                             m->bucket_width_m);
     }
-    return check_tolerance(machine, error);
+    return check_tolerance(m, error);
 }
 
 enum dig_status dig_machine_check(const struct dig_machine *const machine,
