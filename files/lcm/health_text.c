@@ -3,104 +3,73 @@
 #include <assert.h>
 #include <string.h>
 
-enum {
-    BUS_OFFS,
-    TIMEOUTS,
-    CHECKSUM,
-    MALFORMED,
-    ERROR_FRAMES,
-    MISSED,
-    REPEATED,
-    FROZEN,
-    STUCK,
-    NOT_AVAILABLE,
-    OUT_OF_RANGE,
-    JUMP,
-    NAN_VALUES,
-    WITHOUT_FORCE,
-    RECONNECTS,
-    LOST,
-    UNSENT,
-    RELOADS_REFUSED,
-    OVERRUNS,
+// A counter of the message, and what it says.
+struct counter {
+    struct dig_health_text text;
+    size_t                 at; // its place in the message
 };
 
-_Static_assert(OVERRUNS + 1 == DIG_HEALTH_COUNTERS, "each counter has its text");
+// Compiles for a field of 64 bits alone.
+#define COUNTER(field, what, todo)                                                                 \
+    {                                                                                              \
+        { #field, what, todo }, _Generic(((digsight_health_t *)NULL)->field, int64_t               \
+                                         : offsetof(digsight_health_t, field))                     \
+    }
+
+static const struct counter counters[] = {
+    COUNTER(bus_offs, "the CAN controller went off the bus",
+            "check bit rate and wiring; `ip link set can0 type can restart-ms 100` brings it back"),
+    COUNTER(timeouts, "Modbus requests had no answer",
+            "check the device's power, address and unit number; poll less often"),
+    COUNTER(dropped_checksum, "frames had a wrong checksum",
+            "the bus is disturbed, or the signal map names the wrong checksum"),
+    COUNTER(dropped_malformed, "frames or answers were damaged",
+            "check wiring and termination, and that DBC or register map fit the machine"),
+    COUNTER(error_frames, "the CAN controller sees errors",
+            "check bit rate, termination (60 ohm between the wires) and plugs"),
+    COUNTER(missed, "frames that were due did not come",
+            "check plugs and the load of the bus; the map's cycle_ms may be wrong"),
+    COUNTER(dropped_repeated, "frames came twice or out of order",
+            "look for a gateway or a second sender on the bus"),
+    COUNTER(dropped_frozen, "the alive counter stands still",
+            "the sender hangs: restart its controller"),
+    COUNTER(dropped_stuck, "angles or pressures stand still while others move",
+            "check the supply and the plug of those sensors"),
+    COUNTER(dropped_not_available, "sensors say that they have no value",
+            "check the sensor and its plug"),
+    COUNTER(dropped_out_of_range, "values lie beyond the signal map's limits",
+            "check the sensor, and sign, scale and offset in the map"),
+    COUNTER(dropped_jump, "values change faster than the machine can",
+            "look for a loose contact of that sensor; the map's max_rate may be low"),
+    COUNTER(dropped_nan, "values are no numbers", "the sender fails: restart its controller"),
+    COUNTER(without_force, "pressures of boom or arm do not come",
+            "check their message or block; the moment is known, the force is not"),
+    COUNTER(reconnects, "the source was lost and opened again",
+            "check the cable and the power of the interface"),
+    COUNTER(lost, "the computer did not keep up: readings were lost",
+            "stop other programs; publish less (publish.estimate_every)"),
+    COUNTER(unsent, "LCM could not send messages",
+            "the network or its route is gone: `ip route add 239.255.76.67 dev lo`"),
+    COUNTER(reloads_refused, "a new table or model was refused",
+            "the log of digsightd says why; the old one stays in use"),
+    COUNTER(overruns, "the real-time loop came late",
+            "stop other programs; grant real-time priority (the systemd unit does)"),
+};
+
+_Static_assert(sizeof counters / sizeof counters[0] == DIG_HEALTH_COUNTERS, "all have their text");
 
 const struct dig_health_text *dig_health_counter_text(const size_t i)
 {
-    static const struct dig_health_text text[DIG_HEALTH_COUNTERS] = {
-        [BUS_OFFS]        = { "bus_offs", "the CAN controller went off the bus",
-                              "check bit rate and wiring; `ip link set can0 type can restart-ms 100` "
-                                     "brings "
-                                     "it back" },
-        [TIMEOUTS]        = { "timeouts", "Modbus requests had no answer",
-                              "check the device's power, address and unit number; poll less often" },
-        [CHECKSUM]        = { "dropped_checksum", "frames had a wrong checksum",
-                              "the bus is disturbed, or the signal map names the wrong checksum" },
-        [MALFORMED]       = { "dropped_malformed", "frames or answers were damaged",
-                              "check wiring and termination, and that DBC or register map fit the "
-                                    "machine" },
-        [ERROR_FRAMES]    = { "error_frames", "the CAN controller sees errors",
-                              "check bit rate, termination (60 ohm between the wires) and plugs" },
-        [MISSED]          = { "missed", "frames that were due did not come",
-                              "check plugs and the load of the bus; the map's cycle_ms may be wrong" },
-        [REPEATED]        = { "dropped_repeated", "frames came twice or out of order",
-                              "look for a gateway or a second sender on the bus" },
-        [FROZEN]          = { "dropped_frozen", "the alive counter stands still",
-                              "the sender hangs: restart its controller" },
-        [STUCK]           = { "dropped_stuck", "angles or pressures stand still while others move",
-                              "check the supply and the plug of those sensors" },
-        [NOT_AVAILABLE]   = { "dropped_not_available", "sensors say that they have no value",
-                              "check the sensor and its plug" },
-        [OUT_OF_RANGE]    = { "dropped_out_of_range", "values lie beyond the signal map's limits",
-                              "check the sensor, and sign, scale and offset in the map" },
-        [JUMP]            = { "dropped_jump", "values change faster than the machine can",
-                              "look for a loose contact of that sensor; the map's max_rate may be low" },
-        [NAN_VALUES]      = { "dropped_nan", "values are no numbers",
-                              "the sender fails: restart its controller" },
-        [WITHOUT_FORCE]   = { "without_force", "pressures of boom or arm do not come",
-                              "check their message or block; the moment is known, the force is not" },
-        [RECONNECTS]      = { "reconnects", "the source was lost and opened again",
-                              "check the cable and the power of the interface" },
-        [LOST]            = { "lost", "the computer did not keep up: readings were lost",
-                              "stop other programs; publish less (publish.estimate_every)" },
-        [UNSENT]          = { "unsent", "LCM could not send messages",
-                              "the network or its route is gone: `ip route add 239.255.76.67 dev lo`" },
-        [RELOADS_REFUSED] = { "reloads_refused", "a new table or model was refused",
-                              "the log of digsightd says why; the old one stays in use" },
-        [OVERRUNS]        = { "overruns", "the real-time loop came late",
-                              "stop other programs; grant real-time priority (the systemd unit does)" },
-    };
     assert(i < DIG_HEALTH_COUNTERS);
-    return &text[i];
+    return &counters[i].text;
 }
 
 void dig_health_counts(const digsight_health_t *const h, int64_t count[DIG_HEALTH_COUNTERS])
 {
     assert(h != NULL && count != NULL);
-    const int64_t counts[DIG_HEALTH_COUNTERS] = {
-        [BUS_OFFS]        = h->bus_offs,
-        [TIMEOUTS]        = h->timeouts,
-        [CHECKSUM]        = h->dropped_checksum,
-        [MALFORMED]       = h->dropped_malformed,
-        [ERROR_FRAMES]    = h->error_frames,
-        [MISSED]          = h->missed,
-        [REPEATED]        = h->dropped_repeated,
-        [FROZEN]          = h->dropped_frozen,
-        [STUCK]           = h->dropped_stuck,
-        [NOT_AVAILABLE]   = h->dropped_not_available,
-        [OUT_OF_RANGE]    = h->dropped_out_of_range,
-        [JUMP]            = h->dropped_jump,
-        [NAN_VALUES]      = h->dropped_nan,
-        [WITHOUT_FORCE]   = h->without_force,
-        [RECONNECTS]      = h->reconnects,
-        [LOST]            = h->lost,
-        [UNSENT]          = h->unsent,
-        [RELOADS_REFUSED] = h->reloads_refused,
-        [OVERRUNS]        = h->overruns,
-    };
-    memcpy(count, counts, sizeof counts);
+    for (size_t i = 0; i < DIG_HEALTH_COUNTERS; i++) {
+        memcpy(&count[i], (const char *)h + counters[i].at, sizeof count[i]);
+    }
 }
 
 const struct dig_health_text *dig_health_state_text(const char *const state)
